@@ -1,0 +1,10 @@
+# cmake --install gives bin/eomgen, the runtime headers, and a package with eomgen::runtime and eomgen::cli.
+include(CMakePackageConfigHelpers)
+configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/eomgenConfig.cmake.in
+  ${PROJECT_BINARY_DIR}/eomgenConfig.cmake
+  INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/eomgen)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/eomgenConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(EXPORT eomgenTargets NAMESPACE eomgen:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/eomgen)
+install(FILES ${PROJECT_BINARY_DIR}/eomgenConfig.cmake ${PROJECT_BINARY_DIR}/eomgenConfigVersion.cmake
+  DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/eomgen)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/models DESTINATION ${CMAKE_INSTALL_DATADIR}/eomgen)

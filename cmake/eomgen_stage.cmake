@@ -1,0 +1,24 @@
+# eomgen_stage(NAME SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
+# One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
+# Headers are included as "stage/file.hpp" from generator/.
+function(eomgen_stage name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;NEEDS;LINKS" ${ARGN})
+  add_library(eomgen_${name} STATIC ${ARG_SOURCES})
+  target_include_directories(eomgen_${name} PUBLIC ${PROJECT_SOURCE_DIR}/generator)
+  target_link_libraries(eomgen_${name} PRIVATE eomgen_warnings)
+  foreach(stage IN LISTS ARG_NEEDS)
+    target_link_libraries(eomgen_${name} PUBLIC eomgen_${stage})
+  endforeach()
+  target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})
+endfunction()
+
+# eomgen_test(NAME SOURCES a.cpp ... LINKS target ...): one doctest executable and one ctest entry.
+function(eomgen_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
+  add_executable(test_${name} ${PROJECT_SOURCE_DIR}/tests/support/main.cpp ${ARG_SOURCES})
+  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_compile_definitions(test_${name} PRIVATE
+    EOMGEN_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EOMGEN_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_link_libraries(test_${name} PRIVATE ${ARG_LINKS} doctest::doctest eomgen_warnings)
+  add_test(NAME ${name} COMMAND test_${name})
+endfunction()

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The registry of fast routes: each derives the same EquationSystem its own way. They share the Mechanics and nothing
+// else; verify holds them against one another and against the judge.
+#pragma once
+
+#include <span>
+
+#include "mechanics/mechanics.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::derive {
+
+struct RouteEntry {
+  const char* name;
+  const char* title;
+  bool (*applies)(const mechanics::Mechanics&, system::Approach);
+  system::EquationSystem (*derive)(mechanics::Mechanics&, system::Approach);
+};
+
+std::span<const RouteEntry> routes();
+
+}  // namespace eomgen::derive

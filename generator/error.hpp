@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The one error of the whole program: which stage, where in the user's file, what is wrong, what to do.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <string>
+
+namespace eomgen {
+
+/// A place in a user's file; line and column count from 1, 0 where there is none. `text` is the whole source line.
+struct Where {
+  std::string file;
+  std::uint32_t line = 0;
+  std::uint32_t column = 0;
+  std::uint32_t length = 1;
+  std::string text;
+};
+
+/// What kind of failure; it decides the exit code (docs/commands.md).
+enum class Fault {
+  input,      ///< exit 2: the model file or the command line is wrong
+  check,      ///< exit 1: a check came out negative
+  numerical,  ///< exit 3: a run failed numerically
+  tool,       ///< exit 4: a tool that is needed is missing or failed
+};
+
+class Error : public std::exception {
+ public:
+  Error(std::string stage, Where where, std::string what, std::string remedy, Fault fault = Fault::input);
+
+  /// "file:line:col: error: ...", the source line, a caret under the place, and the remedy.
+  const char* what() const noexcept override { return report_.c_str(); }
+
+  const std::string& stage() const noexcept { return stage_; }
+  const Where& where() const noexcept { return where_; }
+  const std::string& message() const noexcept { return message_; }
+  const std::string& remedy() const noexcept { return remedy_; }
+  Fault fault() const noexcept { return fault_; }
+  int exit_code() const noexcept;
+
+ private:
+  std::string stage_;
+  Where where_;
+  std::string message_;
+  std::string remedy_;
+  Fault fault_;
+  std::string report_;
+};
+
+/// The same layout for a warning, which does not stop anything.
+struct Warning {
+  Where where;
+  std::string message;
+  std::string remedy;
+};
+std::string format_warning(const Warning& warning);
+
+}  // namespace eomgen

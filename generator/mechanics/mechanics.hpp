@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: Model. Out: the same system as expressions on one Dag: positions, energies, applied loads, constraints, and which
+// constraints fix a coordinate. Theory: docs/theory.md, eqs. (1.31), (2.20), (2.31), (3.20).
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+#include "symbolic/calculus.hpp"
+#include "symbolic/dag.hpp"
+
+namespace eomgen::mechanics {
+
+using symbolic::Dag;
+using symbolic::Ref;
+using Vec3 = std::array<Ref, 3>;  // components along E1, E2, E3
+
+struct PointMass {
+  std::string name;
+  Ref mass;
+  Vec3 position;
+  Vec3 velocity;  // total time derivative of the position
+};
+
+/// A force that is not derived from the potential, at a moving point.
+struct Load {
+  std::string name;
+  Vec3 force;
+  Vec3 at;
+  Vec3 at_velocity;
+};
+
+/// One scalar equation psi(q, t) = 0.
+struct Constraint {
+  std::string name;   // "sphere"
+  std::string label;  // "sphere", or "sphere.2" where the constraint has several equations
+  Ref psi;
+  std::vector<Ref> gradient;  // d psi/d q_i, all coordinates
+  Ref rate;                   // d psi/d t at fixed q
+};
+
+/// psi = 0 read as q_c = value(t): such a coordinate is eliminated (Approach I and II, eqs. (2.96)-(2.101)).
+struct FixedCoordinate {
+  std::uint32_t coordinate;
+  std::uint32_t constraint;
+  Ref value, rate, acceleration;  // functions of t and parameters (and of `function` symbols)
+};
+
+struct Mechanics {
+  const model::Model* model = nullptr;
+  std::shared_ptr<Dag> dag;  // later stages add nodes to it
+
+  std::vector<Ref> q, qdot, qddot;  // all coordinates of the model
+  Ref t;
+
+  std::vector<PointMass> masses;
+  Ref kinetic_given;  // of [energy], 0 if none
+  Ref kinetic;        // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
+  Ref potential;      // everything that has a potential, and [energy]
+  std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
+  std::vector<Load> loads;
+  std::vector<Ref> generalized;  // per coordinate: forces given as such (generalized, torsional dampers)
+
+  std::vector<Constraint> constraints;
+  std::vector<FixedCoordinate> fixed;  // in the order of elimination
+  std::vector<std::uint32_t> free;     // coordinates that stay, ascending
+  std::vector<std::uint32_t> active;   // constraints that stay, with multipliers, ascending
+
+  std::vector<Ref> function_value;                   // per Model::functions entry, as an expression of t
+  std::vector<Ref> parameter_value;                  // per parameter, of other parameters or constants
+  std::vector<std::optional<Vec3>> place_position;   // per Model::places entry
+  std::vector<Ref> scalar_definition;                // per definition; 0 for vectors
+
+  bool is_eliminated(std::uint32_t coordinate) const;
+};
+
+/// Spells the model out on a Dag and classifies its constraints. Throws Error{stage "mechanics"}: a constraint or force
+/// that changes no equation, a coordinate without inertia that nothing determines.
+Mechanics build_mechanics(const model::Model& model);
+
+/// Any expression of the model on the Dag of `mechanics` (scalars only).
+Ref lower_scalar(Mechanics& mechanics, model::NodeId expression);
+Vec3 lower_vector(Mechanics& mechanics, model::NodeId expression);
+
+}  // namespace eomgen::mechanics

@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a model file says, checked: the product of the model stage and all that later stages know of the user's file.
+// Contract: docs/model-format.md. Every quantity is in SI units; names are resolved to indices; vectors are 3-D.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "error.hpp"
+#include "model/expression.hpp"
+
+namespace eomgen::model {
+
+/// Exponents of m kg s A K mol cd; nothing where the dimension is unknown (a bare number).
+struct Dimension {
+  std::array<Rational, 7> exponents{};
+};
+struct Unit {
+  std::string text;                    // canonical SI, "m/s^2"; "1" for pure numbers; empty where unknown
+  std::optional<Dimension> dimension;  // nullopt: unknown
+};
+
+struct Parameter {
+  std::string name;
+  NodeId value = no_node;  // of numbers and earlier parameters only
+  Unit unit;
+  std::string tex, note;
+  bool positive = false;
+  Span span;
+  bool used = false;
+};
+struct Function {  // of time
+  std::string name;
+  NodeId is = no_node;
+  Unit unit;
+  std::string tex;
+  Span span;
+};
+struct Input {
+  std::string name;
+  NodeId fallback = no_node;  // the value where a scene gives none
+  Unit unit;
+  std::string tex;
+  Span span;
+};
+struct Coordinate {
+  std::string name;
+  Unit unit;
+  std::string tex;
+  NodeId lower = no_node, upper = no_node;  // open interval of the chart, where it has one
+  Span span;
+};
+struct Definition {
+  std::string name;
+  NodeId is = no_node;
+  bool vector = false;
+  Unit unit;
+  Span span;
+};
+
+/// Coordinates of a place, as the user wrote them: which system, which entries; `position` of the Place is the same
+/// thing already spelled out as a vector.
+struct Chart {
+  std::string system;                   // name in coordinates::registry()
+  std::array<NodeId, 3> entries{no_node, no_node, no_node};  // scalar expressions for the slots (third 0 if planar)
+  std::array<NodeId, 3> unit_basis{no_node, no_node, no_node};  // vector expressions e_1, e_2, e_3; no_node: normalise
+  bool planar = false;
+};
+/// A particle, a point, or the origin (always places[0]).
+struct Place {
+  std::string name;
+  NodeId position = no_node;  // absolute
+  std::optional<Chart> chart;
+  std::uint32_t from = 0;     // place that the chart measures from
+  Span span;
+};
+struct Particle {
+  std::uint32_t place = 0;
+  NodeId mass = no_node;
+  Span span;
+};
+
+struct Gravity { NodeId acceleration; };
+struct CentralGravity { NodeId GM; NodeId center; };  // order 0; center is a vector
+struct Gravitation { NodeId G; };                     // mutual, all masses
+struct AppliedForce { NodeId force; NodeId at; };     // both vectors; `at` is the point of application
+struct Spring {                                       // energy is of Op::extension; stiffness form has it no_node
+  NodeId a, b;
+  NodeId stiffness, length;
+  NodeId energy;
+};
+struct Damper { NodeId a, b; NodeId coefficient; };
+struct Torsion { NodeId angle; NodeId stiffness, rest; NodeId coefficient; };  // no_node where not given
+struct Drag { NodeId on; NodeId density, area, coefficient; };
+struct Generalized { std::vector<std::pair<std::uint32_t, NodeId>> components; };  // coordinate, force
+struct Force {
+  std::string name;  // given, or "force 2"
+  std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized> kind;
+  Span span;
+};
+
+struct Constraint {
+  std::string name;
+  std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
+  bool curve = false;       // holonomic = ["psi1", "psi2"]
+  Span span;
+};
+
+struct Energy {
+  NodeId kinetic = no_node, potential = no_node;
+};
+
+struct InitialValue {
+  std::uint32_t coordinate;
+  std::uint8_t order;  // 0: value, 1: rate
+  NodeId value;
+  Span span;
+};
+struct InputTable {  // piecewise constant: value[k] from t[k] until t[k+1]
+  std::vector<NodeId> t, value;
+};
+struct SceneInput {
+  std::uint32_t input;
+  std::variant<NodeId, InputTable> signal;
+  Span span;
+};
+struct Named {
+  std::string name;
+  Span span;
+};
+struct Scene {
+  std::string name;
+  NodeId t0 = no_node, t1 = no_node;
+  std::vector<InitialValue> initial, guess;
+  std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // coordinate, order that may be moved
+  std::vector<std::pair<std::uint32_t, NodeId>> parameters;
+  std::vector<SceneInput> inputs;
+  std::vector<Named> outputs;  // checked against the names that exist; "energy", "reaction.NAME", ...
+  std::string solver = "auto";
+  NodeId rtol = no_node, atol = no_node, step = no_node, every = no_node;
+  Span span;
+};
+
+struct Model {
+  std::string file;                 // as given
+  std::string id;                   // file name without .toml
+  std::string title, notes;
+  std::vector<std::string> lines;   // the source, for carets
+  std::string content_hash;         // of the file's bytes, hexadecimal
+  Arena arena;
+  std::vector<Parameter> parameters;
+  std::vector<Function> functions;
+  std::vector<Input> inputs;
+  std::vector<Coordinate> coordinates;  // in order of declaration or first appearance
+  std::vector<Definition> definitions;
+  std::vector<Place> places;            // [0] is the origin
+  std::vector<Particle> particles;
+  Energy energy;
+  std::vector<Force> forces;
+  std::vector<Constraint> constraints;
+  std::vector<Scene> scenes;            // scenes[0] is "default" (made up if the file has none)
+  std::vector<Warning> warnings;
+
+  Where where(const Span& span) const;                      // for Error
+  const Scene& scene(const std::string& name) const;        // throws Error with did-you-mean
+};
+
+/// Reads and checks a model file. Throws Error{stage "model"}.
+Model read_model(const std::string& path);
+/// The same from a text that is already in memory (tests, fuzzing); `file` is the name that errors show.
+Model read_model_text(const std::string& text, const std::string& file);
+
+}  // namespace eomgen::model

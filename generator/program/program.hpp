@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The product of the program stage: straight-line code for each function of the C ABI (docs/abi.md), optimised, ready
+// for any target to print.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "symbolic/dag.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::program {
+
+struct Operations {
+  std::size_t add = 0, mul = 0, div = 0, sqrt = 0, trig = 0, other = 0;
+  std::size_t flops() const { return add + mul; }
+  /// Stated cost by which routes are ranked: add + mul + 8 div + 12 sqrt + 25 trig + 20 other.
+  std::size_t cost() const { return add + mul + 8 * div + 12 * sqrt + 25 * trig + 20 * other; }
+};
+
+/// Where an operand comes from.
+enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, value };
+struct Operand {
+  Slot slot = Slot::value;
+  std::uint32_t index = 0;  // constant: into Function::constants; value: of the instruction that made it
+  bool negated = false;
+};
+
+struct Instruction {
+  symbolic::Op op = symbolic::Op::add;  // no symbol, constant, neg
+  std::vector<Operand> operands;        // add and mul may have more than two
+  long exponent = 0;                    // of Op::power
+  std::string name;                     // a name that means something ("M_12", "sin_theta"), or empty
+  std::string section;                  // heading that starts here, or empty
+};
+
+/// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix.
+struct PivotTest {
+  Operand pivot, scale;
+};
+
+struct Function {
+  std::string name;  // of the ABI: "rhs", "mass", ...
+  std::vector<std::pair<std::string, std::vector<Operand>>> results;  // argument name, its entries (column-major)
+  std::vector<symbolic::Rational> constants;
+  std::vector<Instruction> code;
+  std::vector<PivotTest> pivots;
+  bool uses_input = false;
+  Operations operations;
+};
+
+struct Tried {
+  std::string route;
+  Operations operations;
+};
+
+struct Program {
+  std::vector<std::uint32_t> free;  // coordinates of the model; state x = (q_free, qdot_free)
+  std::string route;
+  system::Approach approach = system::Approach::two;
+  std::vector<Function> functions;  // rhs first
+  std::vector<Tried> tried;
+  std::vector<std::string> reactions;  // labels, in the order of the array lambda
+  std::vector<std::string> outputs;    // names, in the order of the array y
+  std::size_t active_constraints = 0;
+};
+
+}  // namespace eomgen::program

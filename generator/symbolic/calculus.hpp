@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Differentiation and substitution on the Dag: forward, memoised, iterative (depth is no stack).
+#pragma once
+
+#include <map>
+#include <unordered_map>
+#include <vector>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::symbolic {
+
+/// d/ds along seeds: symbol -> d(symbol)/ds. Symbols without a seed are constant.
+class Derivation {
+ public:
+  Derivation(Dag& dag, std::map<Symbol, Ref> seeds) : dag_(dag), seeds_(std::move(seeds)) {}
+  Ref operator()(Ref expression);
+
+ private:
+  Ref of_node(Ref r);
+  Dag& dag_;
+  std::map<Symbol, Ref> seeds_;
+  std::unordered_map<std::uint32_t, Ref> memo_;
+};
+
+/// Partial derivative with respect to one symbol.
+Derivation partial(Dag& dag, Symbol symbol);
+
+/// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time. Third derivatives of coordinates
+/// do not exist here; `freeze_acceleration` seeds qdot with 0 in place of qddot (for bias terms).
+Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration = false);
+
+class Substitution {
+ public:
+  Substitution(Dag& dag, std::map<Symbol, Ref> values) : dag_(dag), values_(std::move(values)) {}
+  Ref operator()(Ref expression);
+
+ private:
+  Dag& dag_;
+  std::map<Symbol, Ref> values_;
+  std::unordered_map<std::uint32_t, Ref> memo_;
+};
+
+}  // namespace eomgen::symbolic

@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The fast form's expressions: one arena of hash-consed nodes per model. Equal expressions have equal ids, so sharing
+// is free and derivatives are memoised. Ids are in creation order and nothing iterates over hashes or pointers: the
+// same calls give the same ids in every process.
+//
+// Rules applied at construction: constant folding (exact), zero and one, commutative order by id, sign pulling
+// (-a*b -> -(a*b), -a-b -> -(a+b), b-a -> -(a-b) with the smaller id first, sin(-x) -> -sin x, ...).
+#pragma once
+
+#include <cln/rational.h>
+
+#include <array>
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+namespace eomgen::symbolic {
+
+using Rational = cln::cl_RA;
+
+enum class Op : std::uint8_t {
+  constant,  // payload: index into the constants
+  pi,
+  symbol,    // payload: index into the symbols
+  add, sub, mul, div, neg,
+  power,     // args[0] to the integer payload (>= 2; negative powers are 1/x^n as div)
+  pow,       // args[0] ^ args[1], general
+  sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, abs, sign,
+  atan2, min, max,
+  select,    // args[0] < args[1] ? args[2] : args[3]
+};
+
+enum class SymbolKind : std::uint8_t {
+  time,
+  coordinate,  // order 0: q, 1: qdot, 2: qddot
+  function,    // of time; order 0, 1, 2, 3
+  parameter,
+  input,
+  multiplier,  // lambda of Mechanics::constraints[index]
+  extra,       // an intermediate that a caller names itself (cut points of the solve, the extension of a spring)
+};
+
+struct Symbol {
+  SymbolKind kind = SymbolKind::time;
+  std::uint32_t index = 0;
+  std::uint8_t order = 0;
+  friend auto operator<=>(const Symbol&, const Symbol&) = default;
+};
+
+/// Index of a node in its Dag.
+struct Ref {
+  std::uint32_t id = 0;
+  friend auto operator<=>(const Ref&, const Ref&) = default;
+};
+
+struct Node {
+  Op op = Op::constant;
+  std::uint8_t arity = 0;
+  std::int32_t payload = 0;
+  std::array<Ref, 4> args{};
+  friend bool operator==(const Node&, const Node&) = default;
+};
+
+class Dag {
+ public:
+  Dag();
+
+  Ref zero() const { return zero_; }
+  Ref one() const { return one_; }
+  Ref constant(const Rational& value);
+  Ref integer(long value) { return constant(Rational(value)); }
+  Ref pi();
+  Ref symbol(Symbol symbol);
+
+  Ref add(Ref a, Ref b);
+  Ref sub(Ref a, Ref b);
+  Ref mul(Ref a, Ref b);
+  Ref div(Ref a, Ref b);
+  Ref neg(Ref a);
+  Ref power(Ref a, long exponent);  // any sign
+  Ref pow(Ref a, Ref b);            // folds to power or sqrt where the exponent is such a constant
+  Ref call(Op function, Ref a);     // sqrt ... sign
+  Ref call(Op function, Ref a, Ref b);  // atan2, min, max
+  Ref select(Ref a, Ref b, Ref x, Ref y);
+
+  const Node& operator[](Ref r) const { return nodes_[r.id]; }
+  std::size_t size() const { return nodes_.size(); }
+  bool is_constant(Ref r) const { return nodes_[r.id].op == Op::constant; }
+  bool is_zero(Ref r) const { return r == zero_; }
+  bool is_one(Ref r) const { return r == one_; }
+  const Rational& value(Ref r) const { return constants_[static_cast<std::size_t>(nodes_[r.id].payload)]; }
+  const Symbol& symbol_of(Ref r) const { return symbols_[static_cast<std::size_t>(nodes_[r.id].payload)]; }
+
+  /// The nodes that `roots` need, each once, operands before users (ascending id).
+  std::vector<Ref> reachable(const std::vector<Ref>& roots) const;
+  /// The symbols in `roots`, sorted.
+  std::vector<Symbol> symbols(const std::vector<Ref>& roots) const;
+
+ private:
+  struct Hash {
+    std::size_t operator()(const Node& node) const noexcept;
+  };
+  Ref intern(const Node& node);
+  Ref make(Op op, Ref a, Ref b);
+  Ref fold(Op op, Ref a, Ref b);
+
+  std::vector<Node> nodes_;
+  std::vector<Rational> constants_;
+  std::vector<Symbol> symbols_;
+  std::unordered_map<Node, std::uint32_t, Hash> index_;
+  std::unordered_map<std::string, std::uint32_t> constant_index_;
+  std::vector<std::pair<Symbol, std::uint32_t>> symbol_index_;  // sorted
+  Ref zero_, one_;
+};
+
+/// Operators for formulas that are to read like formulas; all operands from the same Dag.
+struct Scalar {
+  Dag* dag = nullptr;
+  Ref ref;
+};
+inline Scalar operator+(Scalar a, Scalar b) { return {a.dag, a.dag->add(a.ref, b.ref)}; }
+inline Scalar operator-(Scalar a, Scalar b) { return {a.dag, a.dag->sub(a.ref, b.ref)}; }
+inline Scalar operator*(Scalar a, Scalar b) { return {a.dag, a.dag->mul(a.ref, b.ref)}; }
+inline Scalar operator/(Scalar a, Scalar b) { return {a.dag, a.dag->div(a.ref, b.ref)}; }
+inline Scalar operator-(Scalar a) { return {a.dag, a.dag->neg(a.ref)}; }
+
+}  // namespace eomgen::symbolic

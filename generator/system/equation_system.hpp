@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The product of derive's fast routes: the equations of motion of the coordinates that stay,
+//   M(q,t) qddot = f(q,qdot,t,u) + A^T lambda,   A qddot + gamma = 0   (index-1 form, docs/theory.md),
+// as Dag expressions in the symbols t, q, qdot of the free coordinates, parameters and inputs only: functions of time
+// are written out and eliminated coordinates are replaced by theirs.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::system {
+
+using symbolic::Dag;
+using symbolic::Ref;
+
+enum class Approach { one, two };
+const char* name(Approach approach);  // "I", "II"
+
+/// lambda of one constraint. For the active ones the bare multiplier symbol; for eliminated ones an expression in
+/// qddot (free) and the multipliers of the active constraints (the "(b)" equations of Approach I).
+struct Reaction {
+  std::uint32_t constraint;  // index into Mechanics::constraints
+  std::string label;
+  Ref value;
+};
+
+struct Output {
+  std::string name;  // "R", "R_dot", "energy", "power", "P.position1", ...
+  Ref value;         // may use qddot of free coordinates and multipliers
+};
+
+struct EquationSystem {
+  std::shared_ptr<Dag> dag;
+  std::string route;  // "lagrange", "jacobian"
+  Approach approach = Approach::two;
+
+  std::vector<std::uint32_t> free;    // n coordinates of the model, ascending; state x = (q_free, qdot_free)
+  std::vector<std::uint32_t> active;  // m constraints with multipliers
+
+  std::vector<Ref> M;      // n x n, row-major, symmetric
+  std::vector<Ref> f;      // n
+  std::vector<Ref> psi;    // m
+  std::vector<Ref> A;      // m x n, row-major
+  std::vector<Ref> b;      // m: A qdot + b = 0
+  std::vector<Ref> gamma;  // m: A qddot + gamma = 0
+
+  std::vector<Reaction> reactions;  // all constraints, in model order
+  std::vector<Output> outputs;      // everything that can be asked for, in the order of docs/model-format.md
+  Ref energy, kinetic, potential, power;  // power: what dE/dt must be; may use multipliers and qddot
+};
+
+}  // namespace eomgen::system

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: MIT
+// How a run ended: an enumeration in the result, never an exception in a hot loop.
+// In: return codes of the emitted C ABI.  Out: Outcome and its spelling, as results and CSV files print it.
+#pragma once
+
+namespace eom {
+
+enum class Outcome {
+  done,
+  stopped_by_event,
+  diverged,
+  step_too_small,
+  singular_mass_matrix,
+  inconsistent_start,
+  friction_no_solution,
+  friction_many_solutions,
+  chart_left,
+  interrupted,
+  not_finite
+};
+
+/// The spelling of the enumerator.
+constexpr const char* name(Outcome outcome) {
+  switch (outcome) {
+    case Outcome::done: return "done";
+    case Outcome::stopped_by_event: return "stopped_by_event";
+    case Outcome::diverged: return "diverged";
+    case Outcome::step_too_small: return "step_too_small";
+    case Outcome::singular_mass_matrix: return "singular_mass_matrix";
+    case Outcome::inconsistent_start: return "inconsistent_start";
+    case Outcome::friction_no_solution: return "friction_no_solution";
+    case Outcome::friction_many_solutions: return "friction_many_solutions";
+    case Outcome::chart_left: return "chart_left";
+    case Outcome::interrupted: return "interrupted";
+    case Outcome::not_finite: return "not_finite";
+  }
+  return "not_finite";
+}
+
+/// The outcome that a return code of the C ABI stands for; 0 is done. A code outside the ABI (a projection that did
+/// not converge, a caller's own) gives step_too_small: no step, however small, could be completed.
+constexpr Outcome outcome_of_abi_code(int code) {
+  switch (code) {
+    case 0: return Outcome::done;
+    case 1: return Outcome::singular_mass_matrix;
+    case 2: return Outcome::chart_left;
+    case 3: return Outcome::friction_no_solution;
+    case 4: return Outcome::friction_many_solutions;
+    case 5: return Outcome::not_finite;
+    default: return Outcome::step_too_small;
+  }
+}
+
+}  // namespace eom

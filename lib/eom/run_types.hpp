@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: MIT
+// What goes into a run and what comes out of it: options, statistics, result, the view of one accepted step.
+// No method is known here; every family of methods (explicit_rk/, ...) shares these types.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eom/outcome.hpp"
+
+namespace eom {
+
+/// dx = f(t, x), returning a code of the C ABI (0: fine). The convenience form; integrate() takes any such callable.
+using Rhs = std::function<int(double t, const double* x, double* dx)>;
+
+struct Options {
+  double rtol = 1e-9;       // error allowed per step and component: atol + rtol |x|
+  double atol = 1e-12;
+  double initial_step = 0;  // 0: chosen
+  double max_step = std::numeric_limits<double>::infinity();
+  double fixed_step = 0;    // > 0: steps of this size without error control, whatever the method; rk4 needs it
+  std::size_t max_steps = 50'000'000;               // accepted and rejected together
+  std::size_t quadratures = 0;                      // trailing components of x kept out of the error norm
+  const std::atomic<bool>* interrupt = nullptr;     // looked at once per step
+};
+
+struct Statistics {
+  std::size_t steps = 0;            // accepted
+  std::size_t rejected = 0;
+  std::size_t rhs_evaluations = 0;
+  std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic, since an added stage failed
+};
+
+struct Result {
+  Outcome outcome = Outcome::done;
+  double t = 0;                     // the time reached: t1 exactly when the outcome is done
+  std::vector<double> x;            // the state at t, the last accepted one
+  Statistics statistics;
+  std::string detail;               // one sentence when the outcome is not done, else empty
+};
+
+/// One accepted step with its dense output; valid only during the observer's call.
+struct StepView {
+  double t0, t1;
+  std::span<const double> x0, x1;
+  const void* interpolant = nullptr;                                       // the stepper, seen by evaluate only
+  void (*evaluate)(const void* interpolant, double t, double* x) = nullptr;
+
+  /// The state at t between t0 and t1 (x: as long as x0), by the method's dense output.
+  void interpolate(double t, std::span<double> x) const { evaluate(interpolant, t, x.data()); }
+};
+
+/// What the registry tells of a method. The dense output's error within one step is O(h^(dense_order + 1)).
+struct MethodInfo {
+  const char* name;
+  int order;
+  int dense_order;
+  bool adaptive;                    // false: needs Options::fixed_step
+};
+
+/// The observer that looks at nothing.
+struct NoObserver {
+  bool operator()(const StepView&) const { return true; }
+};
+
+/// The after_step that moves nothing.
+struct NoProjection {
+  int operator()(double, double*) const { return 0; }
+};
+
+/// A run has diverged when a component of the state leaves this bound: far beyond mechanics, and squares still fit.
+inline constexpr double divergence_bound = 1e150;
+
+/// Steps shorter than this many units in the last place of t are refused (step_too_small).
+inline constexpr double smallest_step_in_ulps = 16;
+
+}  // namespace eom
