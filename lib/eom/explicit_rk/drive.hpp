@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: MIT
+// A run of an explicit Runge-Kutta method from t0 to t1. In: a tableau, a right-hand side, a start, options, an observer
+// and an after_step. Out: Result. Steps are chosen by the error estimate, or fixed where Options::fixed_step says so.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+
+#include "eom/explicit_rk/controller.hpp"
+#include "eom/explicit_rk/step.hpp"
+#include "eom/run_types.hpp"
+
+namespace eom::explicit_rk {
+
+template <class T, class F, class Observer, class AfterStep>
+class Run {
+ public:
+  Run(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+      AfterStep& after_step)
+      : stepper_(rhs, x0, options.quadratures),
+        controller_(T::control, T::order),
+        options_(options),
+        observer_(observer),
+        after_step_(after_step),
+        t_start_(t0),
+        t_(t0),
+        t_end_(t1),
+        direction_(t1 < t0 ? -1.0 : 1.0) {}
+
+  Result run() {
+    if (t_ != t_end_ && start())
+      while (t_ != t_end_ && step()) {
+      }
+    return result();
+  }
+
+ private:
+  /// Derivative and step size at the start; false: the run ends here.
+  bool start() {
+    const int code = stepper_.evaluate_start(t_);
+    if (code != 0) return end(outcome_of_abi_code(code), "the right-hand side returned code " + std::to_string(code) +
+                                                             " at the start");
+    if (!all_finite(stepper_.x0()) || !all_finite(stepper_.derivative0()))
+      return end(Outcome::not_finite, "the state or its derivative is not finite at the start");
+    if (options_.fixed_step > 0) return plan_fixed_steps();
+    h_ = options_.initial_step > 0 ? options_.initial_step : initial_step();
+    h_ = std::min(h_, longest_step());
+    return true;
+  }
+
+  /// As many equal steps as are needed and no more: a quotient that is an integer but for rounding counts as one.
+  bool plan_fixed_steps() {
+    const double quotient = std::abs(t_end_ - t_start_) / options_.fixed_step;
+    fixed_steps_ = std::max(1.0, std::ceil(quotient * (1 - 8 * epsilon)));
+    if (fixed_steps_ > 1 && options_.fixed_step < smallest_step(std::max(std::abs(t_start_), std::abs(t_end_))))
+      return end(Outcome::step_too_small, "the fixed step is lost in the rounding of t");
+    return true;
+  }
+
+  /// One trial step; false: the run ends here.
+  bool step() {
+    if (options_.interrupt != nullptr && options_.interrupt->load(std::memory_order_relaxed))
+      return end(Outcome::interrupted, "interrupted at t = " + printed(t_));
+    if (steps_ + rejected_ >= options_.max_steps)
+      return end(Outcome::diverged, "max_steps (" + std::to_string(options_.max_steps) + ") reached at t = " +
+                                        printed(t_));
+    const double t_next = next_time();
+    bool moved = false;
+    const int code = stepper_.attempt(t_, t_next);
+    if (code != 0) return retry(code);
+    const double error = adaptive() ? stepper_.error_norm(options_.rtol, options_.atol) : 0;
+    if (!std::isfinite(error) || !all_finite(stepper_.x1())) return retry(code_not_finite);
+    if (error > 1) return reject(t_next - t_, error);
+    const int end_code = complete(t_next, moved);
+    if (end_code != 0) return retry(end_code);
+    return accept(t_next, error, moved);
+  }
+
+  bool adaptive() const { return options_.fixed_step <= 0; }
+
+  /// Where the next step ends: t_end exactly for the last one, which is stretched by up to 1 % to avoid a sliver.
+  double next_time() const {
+    if (!adaptive()) {
+      const double k = static_cast<double>(steps_) + 1;
+      return k >= fixed_steps_ ? t_end_ : t_start_ + direction_ * options_.fixed_step * k;
+    }
+    const double left = std::abs(t_end_ - t_);
+    return 1.01 * h_ >= left ? t_end_ : t_ + direction_ * h_;
+  }
+
+  /// after_step and the derivative at the end of the step; returns a code.
+  int complete(double t_next, bool& moved) {
+    if constexpr (!std::is_same_v<std::remove_cvref_t<AfterStep>, NoProjection>) {
+      double* x1 = stepper_.x1();
+      std::copy_n(x1, stepper_.size(), stepper_.scratch());
+      const int code = after_step_(t_next, x1);
+      if (code != 0) return code;
+      moved = !std::equal(x1, x1 + stepper_.size(), stepper_.scratch());
+      if (moved && !all_finite(x1)) return code_not_finite;
+    }
+    if (moved || !error_uses_end<T>()) {
+      const int code = stepper_.evaluate_end();
+      if (code != 0) return code;
+    }
+    return all_finite(stepper_.derivative1()) ? 0 : code_not_finite;
+  }
+
+  bool accept(double t_next, double error, bool moved) {
+    const StepView view{t_, t_next, {stepper_.x0(), stepper_.size()}, {stepper_.x1(), stepper_.size()}, &stepper_,
+                        &Stepper<T, F>::interpolate};
+    const bool go_on = observer_(view);
+    if (adaptive()) h_ = std::min(controller_.after_accepted(std::abs(t_next - t_), error), longest_step());
+    t_ = t_next;
+    stepper_.accept(moved);
+    ++steps_;
+    if (!go_on) return end(Outcome::stopped_by_event, "stopped by the observer at t = " + printed(t_));
+    const double* x = stepper_.x0();
+    if (std::any_of(x, x + stepper_.size(), [](double value) { return std::abs(value) > divergence_bound; }))
+      return end(Outcome::diverged, "a component of the state exceeds 1e150 at t = " + printed(t_));
+    return true;
+  }
+
+  bool reject(double h, double error) {
+    ++rejected_;
+    h_ = controller_.after_rejected(std::abs(h), error);
+    if (h_ >= smallest_step(t_)) return true;
+    return end(Outcome::step_too_small, "the error estimate asks for a step below 16 units in the last place of t = " +
+                                            printed(t_));
+  }
+
+  /// After a code (or a value that is not finite): a shorter step, down to the smallest; a fixed step ends at once.
+  bool retry(int code) {
+    ++rejected_;
+    h_ = controller_.after_failed(adaptive() ? std::min(h_, std::abs(t_end_ - t_)) : 0);
+    if (adaptive() && h_ >= smallest_step(t_)) return true;
+    const std::string what = code == code_not_finite ? "a value that is not finite" : "code " + std::to_string(code);
+    return end(outcome_of_abi_code(code), what + " just after t = " + printed(t_));
+  }
+
+  /// HNW I, section II.4: a step for which an Euler step, and the change of the derivative along it, stay small.
+  double initial_step() {
+    const std::size_t n = stepper_.size() - options_.quadratures;
+    const double* x = stepper_.x0();
+    const double* f0 = stepper_.derivative0();
+    const double size_x = norm(n, [&](std::size_t i) { return x[i]; });
+    const double size_f = norm(n, [&](std::size_t i) { return f0[i]; });
+    double h0 = size_x < 1e-5 || size_f < 1e-5 ? 1e-6 : 0.01 * size_x / size_f;
+    h0 = std::min(h0, longest_step());
+    double* x_euler = stepper_.x1();
+    double* f1 = stepper_.scratch();
+    for (std::size_t i = 0; i < stepper_.size(); ++i) x_euler[i] = x[i] + direction_ * h0 * f0[i];
+    if (stepper_.evaluate(t_ + direction_ * h0, x_euler, f1) != 0 || !all_finite(f1)) return 0.01 * h0;
+    const double size_change = norm(n, [&](std::size_t i) { return f1[i] - f0[i]; }) / h0;
+    const double largest = std::max(size_f, size_change);
+    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 1.0 / T::order);
+    return std::min(100 * h0, h1);
+  }
+
+  template <class Component>
+  double norm(std::size_t n, Component component) {
+    double sum = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double scale = options_.atol + options_.rtol * std::abs(stepper_.x0()[i]);
+      const double value = component(i) == 0 ? 0 : component(i) / scale;
+      sum += value * value;
+    }
+    return std::sqrt(sum / static_cast<double>(n));
+  }
+
+  double longest_step() const { return std::min(options_.max_step, std::abs(t_end_ - t_start_)); }
+
+  static double smallest_step(double t) {
+    const double magnitude = std::abs(t);
+    return smallest_step_in_ulps * (std::nextafter(magnitude, std::numeric_limits<double>::infinity()) - magnitude);
+  }
+
+  bool all_finite(const double* values) const {
+    return std::all_of(values, values + stepper_.size(), [](double value) { return std::isfinite(value); });
+  }
+
+  static std::string printed(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+  }
+
+  bool end(Outcome outcome, std::string detail) {
+    outcome_ = outcome;
+    detail_ = std::move(detail);
+    return false;
+  }
+
+  Result result() {
+    return {outcome_,
+            t_,
+            {stepper_.x0(), stepper_.x0() + stepper_.size()},
+            {steps_, rejected_, stepper_.rhs_evaluations(), stepper_.dense_fallbacks()},
+            std::move(detail_)};
+  }
+
+  static constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  static constexpr int code_not_finite = 5;  // the C ABI's
+
+  Stepper<T, F> stepper_;
+  Controller controller_;
+  const Options& options_;
+  Observer& observer_;
+  AfterStep& after_step_;
+  double t_start_;
+  double t_;
+  double t_end_;
+  double direction_;
+  double h_ = 0;  // size of the next trial step
+  double fixed_steps_ = 0;
+  std::size_t steps_ = 0;
+  std::size_t rejected_ = 0;
+  Outcome outcome_ = Outcome::done;
+  std::string detail_;
+};
+
+}  // namespace eom::explicit_rk
