@@ -103,7 +103,6 @@ class Dag {
   };
   Ref intern(const Node& node);
   Ref make(Op op, Ref a, Ref b);
-  Ref fold(Op op, Ref a, Ref b);
 
   std::vector<Node> nodes_;
   std::vector<Rational> constants_;

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "symbolic/calculus.hpp"
+
+namespace eomgen::symbolic {
+
+Ref Derivation::operator()(Ref expression) {
+  if (const auto found = memo_.find(expression.id); found != memo_.end()) return found->second;
+  // Operands have smaller ids than their users, so ascending order is an order of evaluation. A stack of our own finds
+  // what is still missing without walking what is known.
+  std::vector<Ref> stack{expression};
+  while (!stack.empty()) {
+    const Ref r = stack.back();
+    if (memo_.contains(r.id)) {
+      stack.pop_back();
+      continue;
+    }
+    const Node node = dag_[r];
+    bool ready = true;
+    for (std::uint8_t i = 0; i < node.arity; ++i) {
+      if (!memo_.contains(node.args[i].id)) {
+        stack.push_back(node.args[i]);
+        ready = false;
+      }
+    }
+    if (!ready) continue;
+    memo_.emplace(r.id, of_node(r));
+    stack.pop_back();
+  }
+  return memo_.at(expression.id);
+}
+
+Ref Derivation::of_node(Ref r) {
+  const Node node = dag_[r];
+  if (node.op == Op::symbol) {
+    const auto seed = seeds_.find(dag_.symbol_of(r));
+    return seed == seeds_.end() ? dag_.zero() : seed->second;
+  }
+  bool constant = true;
+  std::array<Ref, 4> d{};
+  for (std::uint8_t i = 0; i < node.arity; ++i) {
+    d[i] = memo_.at(node.args[i].id);
+    constant = constant && dag_.is_zero(d[i]);
+  }
+  if (constant) return dag_.zero();
+  const auto s = [this](Ref ref) { return Scalar{&dag_, ref}; };
+  const Scalar self = s(r), x = s(node.args[0]), y = s(node.args[1]), dx = s(d[0]), dy = s(d[1]);
+  const Scalar one = s(dag_.one());
+  const auto call = [this, &x](Op op) { return Scalar{&dag_, dag_.call(op, x.ref)}; };
+  const auto square = [this](Scalar a) { return Scalar{&dag_, dag_.power(a.ref, 2)}; };
+  switch (node.op) {
+    case Op::add: return (dx + dy).ref;
+    case Op::sub: return (dx - dy).ref;
+    case Op::neg: return (-dx).ref;
+    case Op::mul: return (dx * y + x * dy).ref;
+    case Op::div: return ((dx - self * dy) / y).ref;
+    case Op::power:
+      return (s(dag_.integer(node.payload)) * s(dag_.power(x.ref, node.payload - 1)) * dx).ref;
+    case Op::pow: {
+      // d(x^y) = x^(y-1) y dx + x^y log(x) dy
+      Scalar result = s(dag_.pow(x.ref, (y - one).ref)) * y * dx;
+      if (!dag_.is_zero(dy.ref)) result = result + self * call(Op::log) * dy;
+      return result.ref;
+    }
+    case Op::sqrt: return (dx / (s(dag_.integer(2)) * self)).ref;
+    case Op::sin: return (call(Op::cos) * dx).ref;
+    case Op::cos: return (-(call(Op::sin) * dx)).ref;
+    case Op::tan: return ((one + square(self)) * dx).ref;
+    case Op::asin: return (dx / s(dag_.call(Op::sqrt, (one - square(x)).ref))).ref;
+    case Op::acos: return (-(dx / s(dag_.call(Op::sqrt, (one - square(x)).ref)))).ref;
+    case Op::atan: return (dx / (one + square(x))).ref;
+    case Op::sinh: return (call(Op::cosh) * dx).ref;
+    case Op::cosh: return (call(Op::sinh) * dx).ref;
+    case Op::tanh: return ((one - square(self)) * dx).ref;
+    case Op::exp: return (self * dx).ref;
+    case Op::log: return (dx / x).ref;
+    case Op::abs: return (call(Op::sign) * dx).ref;
+    case Op::sign: return dag_.zero();  // away from the kink, which is a switching surface
+    case Op::atan2: return ((y * dx - x * dy) / (square(x) + square(y))).ref;
+    case Op::min: return dag_.select(x.ref, y.ref, dx.ref, dy.ref);
+    case Op::max: return dag_.select(x.ref, y.ref, dy.ref, dx.ref);
+    case Op::select: return dag_.select(node.args[0], node.args[1], d[2], d[3]);
+    case Op::constant: case Op::pi: case Op::symbol: break;
+  }
+  return dag_.zero();
+}
+
+Derivation partial(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, dag.one()}}); }
+
+Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration) {
+  std::map<Symbol, Ref> seeds;
+  seeds[Symbol{SymbolKind::time, 0, 0}] = dag.one();
+  for (std::uint32_t i = 0; i < coordinates; ++i) {
+    seeds[{SymbolKind::coordinate, i, 0}] = dag.symbol({SymbolKind::coordinate, i, 1});
+    seeds[{SymbolKind::coordinate, i, 1}] =
+        freeze_acceleration ? dag.zero() : dag.symbol({SymbolKind::coordinate, i, 2});
+  }
+  for (std::uint32_t i = 0; i < functions; ++i) {
+    for (std::uint8_t order = 0; order < 3; ++order) {
+      seeds[{SymbolKind::function, i, order}] =
+          dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
+    }
+  }
+  return Derivation(dag, std::move(seeds));
+}
+
+Ref Substitution::operator()(Ref expression) {
+  for (const Ref r : dag_.reachable({expression})) {
+    if (memo_.contains(r.id)) continue;
+    const Node node = dag_[r];
+    std::array<Ref, 4> a{};
+    bool changed = false;
+    for (std::uint8_t i = 0; i < node.arity; ++i) {
+      a[i] = memo_.at(node.args[i].id);
+      changed = changed || a[i] != node.args[i];
+    }
+    Ref result = r;
+    if (node.op == Op::symbol) {
+      if (const auto found = values_.find(dag_.symbol_of(r)); found != values_.end()) result = found->second;
+    } else if (changed) {
+      switch (node.op) {
+        case Op::add: result = dag_.add(a[0], a[1]); break;
+        case Op::sub: result = dag_.sub(a[0], a[1]); break;
+        case Op::mul: result = dag_.mul(a[0], a[1]); break;
+        case Op::div: result = dag_.div(a[0], a[1]); break;
+        case Op::neg: result = dag_.neg(a[0]); break;
+        case Op::power: result = dag_.power(a[0], node.payload); break;
+        case Op::pow: result = dag_.pow(a[0], a[1]); break;
+        case Op::select: result = dag_.select(a[0], a[1], a[2], a[3]); break;
+        case Op::atan2: case Op::min: case Op::max: result = dag_.call(node.op, a[0], a[1]); break;
+        default: result = dag_.call(node.op, a[0]); break;
+      }
+    }
+    memo_.emplace(r.id, result);
+  }
+  return memo_.at(expression.id);
+}
+
+}  // namespace eomgen::symbolic
