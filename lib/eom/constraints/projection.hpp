@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: MIT
+// Projection of a state x = (q, v) onto its constraints psi(q, t) = 0 and A(q, t) v + b(q, t) = 0, in the metric of M.
+// In: callbacks for psi, A, b and for M.  Out: x moved, a code, iterations, sizes of the corrections.
+//
+// Positions, Newton's method: dq minimises dq^T M dq among the least-squares solutions of A dq = -psi; velocities, one
+// linear solve: the same with the defect A v + b. Where M is regular and A has full rank this is
+//   dq = -M^-1 A^T (A M^-1 A^T)^-1 psi,
+// the solution of the KKT system [M A^T; A 0] (dq, lambda) = (0, -psi). M may be singular as long as it is positive
+// definite on the null space of A; a direction that has no mass even there is left unmoved. Redundant rows of A are
+// found by a column-pivoted QR of A^T and met in the sense of least squares.
+#pragma once
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace eom {
+
+struct ProjectionOptions {
+  double tolerance = 1e-14;      // of the correction relative to the largest coordinate, of psi to its terms |A||q|
+  double rank_tolerance = 1e-11; // of a pivot relative to the largest, rows of A scaled to length 1
+  int max_iterations = 25;
+  double rounding = 1e-11;       // a correction that stops shrinking below this times max(1, |q|) counts as converged
+};
+
+struct ProjectionResult {
+  static constexpr int not_converged = -1;
+
+  int code = 0;                   // 0, the code of a callback, or not_converged
+  int iterations = 0;             // Newton corrections of the positions
+  int rank = 0;                   // of A, as last seen
+  double position_correction = 0; // largest component of q - q before
+  double velocity_correction = 0; // largest component of v - v before
+};
+
+/// The work space and the method for n coordinates and m constraints; allocates in the constructor only.
+class Projection {
+ public:
+  using Index = Eigen::Index;
+  using Matrix = Eigen::MatrixXd;
+  using Vector = Eigen::VectorXd;
+
+  /// The first `holonomic` of the m rows have a psi; the others bind velocities only (their psi is not looked at).
+  Projection(std::size_t n, std::size_t m, std::size_t holonomic, const ProjectionOptions& options = {})
+      : options_(options),
+        n_(static_cast<Index>(n)),
+        m_(static_cast<Index>(m)),
+        positions_(n_, static_cast<Index>(holonomic)),
+        velocities_(n_, m_),
+        psi_(m_), b_(m_), A_(m_, n_), M_(n_, n_), h_(n_), defect_(m_), correction_(n_), before_(2 * n_) {}
+
+  Projection(std::size_t n, std::size_t m) : Projection(n, m, m) {}
+
+  /// Moves x (2n components; further ones stay). constraints(t, x, psi, A, b) -> int, with A m x n column-major, and
+  /// mass(t, x, M, h) -> int, with M n x n, as in the C ABI; h is not used. Where the code is not 0, x is as it was.
+  template <class Constraints, class Mass>
+  ProjectionResult operator()(double t, double* x, Constraints&& constraints, Mass&& mass) {
+    Eigen::Map<Vector> state(x, 2 * n_);
+    before_ = state;
+    ProjectionResult result;
+    if (m_ == 0) return result;
+    const auto model = [&](bool with_mass) {
+      const int code = constraints(t, x, psi_.data(), A_.data(), b_.data());
+      if (code != 0 || !with_mass) return code;
+      return static_cast<int>(mass(t, x, M_.data(), h_.data()));
+    };
+    result.code = move_positions(x, model, result);
+    if (result.code == 0) result.code = move_velocities(x, model, result);
+    if (result.code != 0) {
+      state = before_;
+      return result;
+    }
+    result.position_correction = (state.head(n_) - before_.head(n_)).lpNorm<Eigen::Infinity>();
+    result.velocity_correction = (state.tail(n_) - before_.tail(n_)).lpNorm<Eigen::Infinity>();
+    return result;
+  }
+
+ private:
+  /// The constrained least-squares problem of one shape (n coordinates, m rows) with its work space.
+  struct Solver {
+    Solver(Index n, Index m)
+        : scaled_transpose(n, m), right(m), qr(n, m), rows(m, n), metric(n, n), w(n), metric_qr(n, n), length(m) {}
+
+    Matrix scaled_transpose;  // A^T, rows of A scaled to length 1
+    Vector right;             // the right-hand side, scaled and permuted
+    Eigen::ColPivHouseholderQR<Matrix> qr;
+    Matrix rows;              // R^T, m x rank in its first columns; then its own QR
+    Matrix metric;            // Q^T M Q, and the system for the part of the solution in the null space of A
+    Vector w;                 // the solution in the basis Q
+    Eigen::ColPivHouseholderQR<Matrix> metric_qr;
+    Vector length;            // of the rows of A
+  };
+
+  template <class Model>
+  int move_positions(double* x, const Model& model, ProjectionResult& result) {
+    const Index rows = positions_.right.size();
+    Eigen::Map<Vector> q(x, n_);
+    double last = std::numeric_limits<double>::infinity();
+    while (rows > 0) {
+      const int code = model(result.iterations == 0);  // the metric is that of the state handed over
+      if (code != 0) return code;
+      if (!psi_.head(rows).allFinite() || !A_.allFinite()) return code_not_finite;
+      if (psi_small(q, rows)) break;
+      if (result.iterations == options_.max_iterations) return ProjectionResult::not_converged;
+      ++result.iterations;
+      defect_.head(rows) = psi_.head(rows);
+      const double size = solve(positions_, result);
+      if (!std::isfinite(size)) return code_not_finite;
+      q -= correction_;
+      const double scale = q.lpNorm<Eigen::Infinity>();
+      if (size <= options_.tolerance * scale) break;
+      if (size > 0.5 * last && size <= options_.rounding * std::max(1.0, scale)) break;
+      last = size;
+    }
+    return rows == 0 || met(psi_, rows, q) ? 0 : ProjectionResult::not_converged;
+  }
+
+  template <class Model>
+  int move_velocities(double* x, const Model& model, ProjectionResult& result) {
+    Eigen::Map<Vector> v(x + n_, n_);
+    const int code = model(true);
+    if (code != 0) return code;
+    if (!A_.allFinite() || !b_.allFinite() || !M_.allFinite()) return code_not_finite;
+    for (int pass = 0; pass < 2; ++pass) {  // the second removes the rounding of the first
+      defect_.noalias() = A_.lazyProduct(v);
+      defect_ += b_;
+      if (!std::isfinite(solve(velocities_, result))) return code_not_finite;
+      v -= correction_;
+    }
+    defect_.noalias() = A_.lazyProduct(v);
+    defect_ += b_;
+    return met(defect_, m_, v) ? 0 : ProjectionResult::not_converged;
+  }
+
+  /// |psi_i| within the rounding of its terms, for which |A| |q| stands.
+  bool psi_small(const Eigen::Map<Vector>& q, Index rows) const {
+    for (Index i = 0; i < rows; ++i) {
+      double terms = 0;
+      for (Index j = 0; j < n_; ++j) terms += std::abs(A_(i, j) * q(j));
+      if (!(std::abs(psi_(i)) <= options_.tolerance * terms)) return psi_.head(rows).isZero(0);
+    }
+    return true;
+  }
+
+  /// Contradicting rows are met in the sense of least squares only, where corrections come to rest too: that is told.
+  bool met(const Vector& residual, Index rows, const Eigen::Map<Vector>& y) const {
+    const double scale = std::max(1.0, y.lpNorm<Eigen::Infinity>());
+    for (Index i = 0; i < rows; ++i)
+      if (!(std::abs(residual(i)) <= 10 * options_.rounding * scale * std::max(1.0, A_.row(i).norm()))) return false;
+    return true;
+  }
+
+  /// correction_ = the smallest in the metric M_ among the least-squares solutions of A correction = defect, for the
+  /// first rows of A_ and defect_ that s is made for. Returns its largest component.
+  double solve(Solver& s, ProjectionResult& result) {
+    factor_rows(s);
+    const Index rank = rank_of(s.qr, options_.rank_tolerance);
+    result.rank = static_cast<int>(rank);
+    solve_range_part(s, rank);
+    solve_null_part(s, rank);
+    correction_ = s.w;  // correction = Q w
+    for (Index k = std::min(n_, s.right.size()); k-- > 0;) reflect(s.qr, k, correction_);
+    return correction_.lpNorm<Eigen::Infinity>();
+  }
+
+  /// A^T P = Q R with rows of A scaled to length 1 (a row of zeros stays one and is redundant).
+  void factor_rows(Solver& s) const {
+    const Index rows = s.right.size();
+    for (Index i = 0; i < rows; ++i) {
+      const double length = A_.row(i).norm();
+      s.length(i) = length > 0 ? length : 1;
+      s.scaled_transpose.col(i) = A_.row(i).transpose() / s.length(i);
+    }
+    s.qr.compute(s.scaled_transpose);
+  }
+
+  /// The part w_1..rank of Q^T dq: R^T w = P^T defect, by Householder reflections, in the sense of least squares.
+  void solve_range_part(Solver& s, Index rank) const {
+    const Index rows = s.right.size();
+    const auto& permutation = s.qr.colsPermutation().indices();
+    for (Index i = 0; i < rows; ++i) {
+      const Index row = permutation(i);
+      s.right(i) = defect_(row) / s.length(row);
+      for (Index j = 0; j < rank; ++j) s.rows(i, j) = j <= i ? s.qr.matrixQR()(j, i) : 0.0;
+    }
+    for (Index k = 0; k < rank; ++k) {
+      auto column = s.rows.col(k).segment(k, rows - k);
+      const double pivot = column(0) > 0 ? -column.norm() : column.norm();
+      if (pivot == 0) continue;
+      column(0) -= pivot;
+      const double scale = 2 / column.squaredNorm();
+      for (Index j = k + 1; j < rank; ++j) {
+        auto other = s.rows.col(j).segment(k, rows - k);
+        other -= scale * column.dot(other) * column;
+      }
+      auto tail = s.right.segment(k, rows - k);
+      tail -= scale * column.dot(tail) * column;
+      s.w(k) = pivot;  // the diagonal of the triangle, until w is solved for below
+    }
+    for (Index k = rank; k-- > 0;) {
+      double sum = s.right(k);
+      for (Index j = k + 1; j < rank; ++j) sum -= s.rows(k, j) * s.w(j);
+      s.w(k) = sum / s.w(k);
+    }
+  }
+
+  /// The part of w in the null space of A: with S = Q^T M Q, S22 w2 = -S21 w1; no motion where S22 is singular.
+  void solve_null_part(Solver& s, Index rank) {
+    s.metric = M_;
+    for (Index k = 0; k < std::min(n_, s.right.size()); ++k) {
+      for (Index j = 0; j < n_; ++j) reflect(s.qr, k, s.metric.col(j));
+      for (Index j = 0; j < n_; ++j) reflect(s.qr, k, s.metric.row(j));
+    }
+    const Index free = n_ - rank;
+    for (Index i = rank; i < n_; ++i) {
+      double sum = 0;
+      for (Index j = 0; j < rank; ++j) sum -= s.metric(i, j) * s.w(j);
+      s.w(i) = sum;
+    }
+    const double largest = free > 0 ? s.metric.bottomRightCorner(free, free).lpNorm<Eigen::Infinity>() : 0;
+    const double scale = largest > 0 ? 1 / largest : 0;
+    s.metric.topRows(rank).setZero();  // the first rows say w1 = w1, so that the size stays n x n
+    s.metric.leftCols(rank).setZero();
+    s.metric.topLeftCorner(rank, rank).diagonal().setOnes();
+    s.metric.bottomRightCorner(free, free) *= scale;
+    s.w.tail(free) *= scale;
+    s.metric_qr.compute(s.metric);
+    solve_by(s.metric_qr, s.w);
+  }
+
+  /// Basic solution of (the square matrix of qr) y = right, in place; correction_ serves as work space.
+  void solve_by(const Eigen::ColPivHouseholderQR<Matrix>& qr, Vector& right) {
+    const Index rank = rank_of(qr, options_.rank_tolerance);
+    for (Index k = 0; k < n_; ++k) reflect(qr, k, right);
+    right.tail(n_ - rank).setZero();
+    for (Index k = rank; k-- > 0;) {
+      double sum = right(k);
+      for (Index j = k + 1; j < rank; ++j) sum -= qr.matrixQR()(k, j) * right(j);
+      right(k) = sum / qr.matrixQR()(k, k);
+    }
+    Vector& permuted = correction_;
+    for (Index k = 0; k < n_; ++k) permuted(qr.colsPermutation().indices()(k)) = right(k);
+    right = permuted;
+  }
+
+  static Index rank_of(const Eigen::ColPivHouseholderQR<Matrix>& qr, double tolerance) {
+    const Index size = std::min(qr.rows(), qr.cols());
+    Index rank = 0;
+    while (rank < size && std::abs(qr.matrixQR()(rank, rank)) > tolerance * std::max(qr.maxPivot(), 1e-300)) ++rank;
+    return rank;
+  }
+
+  /// Applies the k-th Householder reflection of qr (it is its own inverse) to a vector, without work space.
+  template <class Target>
+  static void reflect(const Eigen::ColPivHouseholderQR<Matrix>& qr, Index k, Target&& y) {
+    const Index n = qr.rows();
+    double sum = y(k);
+    for (Index i = k + 1; i < n; ++i) sum += qr.matrixQR()(i, k) * y(i);
+    sum *= qr.hCoeffs()(k);
+    y(k) -= sum;
+    for (Index i = k + 1; i < n; ++i) y(i) -= sum * qr.matrixQR()(i, k);
+  }
+
+  static constexpr int code_not_finite = 5;  // the C ABI's
+
+  ProjectionOptions options_;
+  Index n_, m_;
+  Solver positions_, velocities_;
+  Vector psi_, b_;
+  Matrix A_, M_;
+  Vector h_, defect_, correction_, before_;
+};
+
+}  // namespace eom

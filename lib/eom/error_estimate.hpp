@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: MIT
+// How far off the end state of a run is. In: the run and its options. Out: an estimate per component, from further runs.
+//
+// The second run is tighter: tolerances a hundredth, not below rtol 1e-14, but at most a half; or half the fixed step. With the
+// error proportional to the tolerance (to step^order) the difference of the end states is the first run's error times
+// 1 - ratio (1 - 2^-order), by which it is divided. Where the two agree so well that rounding may be what they differ
+// by, or happen to agree in, a third run with another sequence of steps is made and the largest difference is taken.
+// Never below a unit in the last place of the component. What all runs get wrong alike (the model, t0, x0, the
+// representation of the parameters, a discontinuity that no step sees) is not in it.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "eom/ode.hpp"
+
+namespace eom {
+
+struct ErrorEstimate {
+  std::vector<double> x;           // per component of the end state, absolute; infinite where a further run failed
+  double max = 0;                  // the largest of them
+  Outcome outcome = Outcome::done; // of the further runs: the first that did not end as the run itself did
+  std::size_t runs = 0;            // further runs made
+  Statistics statistics;           // and what they cost
+};
+
+namespace detail {
+
+/// A further run's options and the fraction of the first run's error that is expected to remain in it.
+struct Repetition {
+  Options options;
+  double remaining;
+};
+
+inline Repetition repetition(const Options& first, int order, double part) {
+  Repetition next{first, 0};
+  if (first.fixed_step > 0) {
+    next.options.fixed_step = first.fixed_step * part;
+    next.remaining = std::pow(part, order);
+    return next;
+  }
+  constexpr double smallest_rtol = 1e-14;
+  const double floor = first.rtol > 0 ? smallest_rtol / first.rtol : 0;
+  const double ratio = std::min(part, std::max(part / 50, floor));
+  next.options.rtol = first.rtol * ratio;
+  next.options.atol = first.atol * ratio;
+  next.options.initial_step = 0;
+  next.remaining = ratio;
+  return next;
+}
+
+/// What counts as close enough to rounding for a third run: relative to the largest component.
+inline constexpr double rounding_suspected = 1e-10;
+
+inline int order_of(std::string_view method) {
+  for (const MethodInfo& info : methods())
+    if (method == info.name) return info.order;
+  throw_unknown(method);
+}
+
+}  // namespace detail
+
+/// The estimate for a run that may be more than one integrate() (restarts at events, modes): run(options) -> Result
+/// repeats it. order: the method's; it matters for fixed steps only.
+template <class Run>
+ErrorEstimate estimate_error(int order, const Result& first, const Options& options, Run&& run) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  ErrorEstimate estimate;
+  estimate.x.resize(first.x.size());
+  double size_x = 0;
+  for (std::size_t i = 0; i < first.x.size(); ++i) {
+    estimate.x[i] = std::numeric_limits<double>::epsilon() * std::abs(first.x[i]);
+    size_x = std::max(size_x, std::abs(first.x[i]));
+  }
+  for (const double part : {0.5, 0.35}) {
+    const detail::Repetition next = detail::repetition(options, order, part);
+    const Result again = run(next.options);
+    ++estimate.runs;
+    estimate.statistics.steps += again.statistics.steps;
+    estimate.statistics.rejected += again.statistics.rejected;
+    estimate.statistics.rhs_evaluations += again.statistics.rhs_evaluations;
+    const bool comparable = again.outcome == Outcome::done || again.outcome == first.outcome;
+    if (!comparable) estimate.outcome = again.outcome;
+    for (std::size_t i = 0; i < first.x.size(); ++i) {
+      const double difference = comparable ? std::abs(first.x[i] - again.x[i]) / (1 - next.remaining) : infinity;
+      estimate.x[i] = std::max(estimate.x[i], std::isnan(difference) ? infinity : difference);
+      estimate.max = std::max(estimate.max, estimate.x[i]);
+    }
+    if (estimate.max > detail::rounding_suspected * size_x) break;
+  }
+  return estimate;
+}
+
+/// The estimate for a run of integrate(method, rhs, t0, x0, t1, options, ...) that gave `first`, at the time it reached.
+template <class F, class AfterStep = NoProjection>
+ErrorEstimate estimate_error(std::string_view method, F&& rhs, double t0, std::span<const double> x0,
+                             const Result& first, const Options& options, AfterStep&& after_step = {}) {
+  return estimate_error(detail::order_of(method), first, options, [&](const Options& tighter) {
+    return integrate(method, rhs, t0, x0, first.t, tighter, NoObserver{}, after_step);
+  });
+}
+
+}  // namespace eom

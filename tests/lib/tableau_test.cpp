@@ -1,0 +1,153 @@
+// The coefficients against the order conditions, over all rooted trees (Hairer, Norsett, Wanner I, theorem II.2.13).
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "eom/explicit_rk/registry.hpp"
+#include "support/tolerances.hpp"
+
+namespace {
+
+using namespace eom::explicit_rk;
+
+/// A rooted tree: its order, its density gamma, and which trees hang on its root.
+struct Tree {
+  int order;
+  double density;
+  std::vector<std::size_t> branches;
+};
+
+/// Adds all trees of the given order whose branches are taken from trees[0..last], largest index first.
+void grow(std::vector<Tree>& trees, int order, int missing, std::size_t last, std::vector<std::size_t>& branches) {
+  if (missing == 0) {
+    double density = order;
+    for (const std::size_t b : branches) density *= trees[b].density;
+    trees.push_back({order, density, branches});
+    return;
+  }
+  for (std::size_t b = 0; b <= last; ++b) {
+    if (trees[b].order > missing) continue;
+    branches.push_back(b);
+    grow(trees, order, missing - trees[b].order, b, branches);
+    branches.pop_back();
+  }
+}
+
+std::vector<Tree> rooted_trees(int order) {
+  std::vector<Tree> trees{{1, 1, {}}};
+  for (int n = 2; n <= order; ++n) {
+    std::vector<std::size_t> branches;
+    grow(trees, n, n - 1, trees.size() - 1, branches);
+  }
+  return trees;
+}
+
+/// For each tree and column j of the tableau: the elementary weight of the stage, product over branches of (A Phi)_j.
+template <class T>
+std::vector<std::vector<double>> stage_weights(const std::vector<Tree>& trees) {
+  constexpr std::size_t n = columns<T>;
+  std::vector<std::vector<double>> weights(trees.size(), std::vector<double>(n, 1.0));
+  for (std::size_t k = 0; k < trees.size(); ++k)
+    for (const std::size_t b : trees[k].branches)
+      for (std::size_t i = 0; i < n; ++i) {
+        double sum = 0;
+        for (std::size_t j = 0; j < n; ++j) sum += T::a[i][j] * weights[b][j];
+        weights[k][i] *= sum;
+      }
+  return weights;
+}
+
+template <class Row>
+double dot(const Row& row, const std::vector<double>& weights) {
+  double sum = 0;
+  for (std::size_t j = 0; j < row.size(); ++j) sum += row[j] * weights[j];
+  return sum;
+}
+
+/// Largest order up to which the weights meet all conditions: sum_j row_j Phi_j(tree) = target(tree).
+template <class Row, class Target>
+int order_met(const Row& row, const std::vector<Tree>& trees, const std::vector<std::vector<double>>& weights,
+              double tolerance, Target target) {
+  for (std::size_t k = 0; k < trees.size(); ++k)
+    if (std::abs(dot(row, weights[k]) - target(trees[k])) > tolerance) return trees[k].order - 1;
+  return trees.back().order;
+}
+
+/// The weights of the dense output at s, as tableau.hpp defines it.
+template <class T>
+std::vector<double> dense_weights(double s) {
+  const double r = 1 - s;
+  std::vector<double> weights(columns<T>, 0.0);
+  for (std::size_t j = 0; j < columns<T>; ++j) {
+    const double d1 = T::a[T::stages][j];
+    const double d2 = (j == 0 ? 1.0 : 0.0) - d1;
+    const double d3 = d1 - (j == T::stages ? 1.0 : 0.0) - d2;
+    double sum = 0;
+    for (std::size_t row = T::dense.size(); row-- > 0;) sum = (row % 2 == 0 ? r : s) * (T::dense[row][j] + sum);
+    weights[j] = s * (d1 + r * (d2 + s * (d3 + sum)));
+  }
+  return weights;
+}
+
+}  // namespace
+
+TEST_CASE("trees: there are 1, 1, 2, 4, 9, 20, 48, 115 and 286 of order 1 to 9") {
+  const std::vector<Tree> trees = rooted_trees(9);
+  std::vector<int> count(10, 0);
+  for (const Tree& tree : trees) ++count[static_cast<std::size_t>(tree.order)];
+  CHECK(count == std::vector<int>{0, 1, 1, 2, 4, 9, 20, 48, 115, 286});
+}
+
+TEST_CASE_TEMPLATE("tableaux: c holds the row sums of a, which is strictly lower triangular", T, Rk4, Dopri5, Dop853) {
+  for (std::size_t i = 0; i < columns<T>; ++i) {
+    CAPTURE(i);
+    double sum = 0;
+    for (std::size_t j = 0; j < columns<T>; ++j) {
+      if (j >= i) CHECK(T::a[i][j] == 0);
+      sum += T::a[i][j];
+    }
+    CHECK(std::abs(sum - T::c[i]) < tolerances::order_condition);
+  }
+}
+
+TEST_CASE_TEMPLATE("tableaux: the weights meet all order conditions up to the order, and not one more", T, Rk4, Dopri5,
+                   Dop853) {
+  CAPTURE(T::name);
+  const auto trees = rooted_trees(T::order + 1);
+  const auto weights = stage_weights<T>(trees);
+  CHECK(order_met(T::a[T::stages], trees, weights, tolerances::order_condition,
+                  [](const Tree& tree) { return 1 / tree.density; }) == T::order);
+}
+
+TEST_CASE_TEMPLATE("tableaux: sum b c^k = 1/(k+1), the quadrature conditions", T, Rk4, Dopri5, Dop853) {
+  for (int k = 0; k < T::order; ++k) {
+    double sum = 0;
+    for (std::size_t j = 0; j < T::stages; ++j) sum += T::a[T::stages][j] * std::pow(T::c[j], k);
+    CHECK(std::abs(sum - 1.0 / (k + 1)) < tolerances::order_condition);
+  }
+}
+
+TEST_CASE("tableaux: the error weights vanish up to order 4 (dopri5) and to orders 5 and 3 (dop853)") {
+  const auto zero = [](const Tree&) { return 0.0; };
+  const auto trees = rooted_trees(6);
+  const auto of_dopri5 = stage_weights<Dopri5>(trees);
+  const auto of_dop853 = stage_weights<Dop853>(trees);
+  CHECK(order_met(Dopri5::error[0], trees, of_dopri5, tolerances::order_condition, zero) == 4);
+  CHECK(order_met(Dop853::error[0], trees, of_dop853, tolerances::order_condition, zero) == 5);
+  CHECK(order_met(Dop853::error[1], trees, of_dop853, tolerances::order_condition, zero) == 3);
+}
+
+TEST_CASE_TEMPLATE("tableaux: the dense output meets the order conditions at any point of the step", T, Rk4, Dopri5,
+                   Dop853) {
+  CAPTURE(T::name);
+  const auto trees = rooted_trees(T::dense_order + 1);
+  const auto weights = stage_weights<T>(trees);
+  for (const double s : {0.15, 0.4, 0.65, 0.9}) {
+    CAPTURE(s);
+    CHECK(order_met(dense_weights<T>(s), trees, weights, tolerances::dense_order_condition, [&](const Tree& tree) {
+            return std::pow(s, tree.order) / tree.density;
+          }) == T::dense_order);
+  }
+}

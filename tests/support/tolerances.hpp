@@ -1,0 +1,29 @@
+// The tolerances of the tests: each with a name, a reason, and its home here. Comparisons are two-sided.
+#pragma once
+
+#include <limits>
+
+namespace tolerances {
+
+inline constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// --- lib: integrators -----------------------------------------------------------------------------------------------
+// A measured order is a slope between two step sizes; higher terms of the error bend it by about h.
+inline constexpr double measured_order = 0.2;
+// Order conditions: sums of up to 16^2 products of binary64 coefficients up to 45 in size (dense output: up to 530).
+inline constexpr double order_condition = 1e-13;
+inline constexpr double dense_order_condition = 1e-11;
+// The end state of a run at rtol 1e-12 over a few periods: errors of some 1000 steps add up.
+inline constexpr double closed_form = 1e-8;
+// Two computations of one number that differ by a few roundings only.
+inline constexpr double rounding = 64 * epsilon;
+// An error estimate is worth having when it is within this factor of the true error, both ways.
+inline constexpr double estimate_factor = 10;
+
+// --- lib: projection ------------------------------------------------------------------------------------------------
+// A projected state meets its constraints up to the rounding of their terms.
+inline constexpr double on_constraint = 1e-13;
+// A correction against a reference solve of the KKT system: condition numbers up to 1e3.
+inline constexpr double same_correction = 1e-11;
+
+}  // namespace tolerances
