@@ -95,7 +95,7 @@ Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, 
         freeze_acceleration ? dag.zero() : dag.symbol({SymbolKind::coordinate, i, 2});
   }
   for (std::uint32_t i = 0; i < functions; ++i) {
-    for (std::uint8_t order = 0; order < 3; ++order) {
+    for (std::uint8_t order = 0; order < 6; ++order) {
       seeds[{SymbolKind::function, i, order}] =
           dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
     }

@@ -34,7 +34,7 @@ enum class Op : std::uint8_t {
 enum class SymbolKind : std::uint8_t {
   time,
   coordinate,  // order 0: q, 1: qdot, 2: qddot
-  function,    // of time; order 0, 1, 2, 3
+  function,    // of time; order 0, 1, ..., 6
   parameter,
   input,
   multiplier,  // lambda of Mechanics::constraints[index]

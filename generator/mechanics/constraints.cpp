@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Holonomic constraints: gradients, and the elimination of coordinates that a constraint fixes.
+#include <algorithm>
+#include <set>
+
+#include "mechanics/stages.hpp"
+#include "mechanics/vanishes.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+std::set<std::uint32_t> coordinates_in(const Dag& dag, Ref expression) {
+  std::set<std::uint32_t> result;
+  for (const Symbol& symbol : dag.symbols({expression})) {
+    if (symbol.kind == SymbolKind::coordinate) result.insert(symbol.index);
+  }
+  return result;
+}
+
+const model::Constraint& of_model(const Mechanics& m, const Constraint& constraint) {
+  const auto same = [&](const model::Constraint& c) { return c.name == constraint.name; };
+  return *std::find_if(m.model->constraints.begin(), m.model->constraints.end(), same);
+}
+
+// psi as it reads once the coordinates that are already fixed are written as functions of time.
+Ref with_fixed(const Mechanics& m, Ref psi) {
+  std::map<Symbol, Ref> values;
+  for (const FixedCoordinate& fixed : m.fixed) values[{SymbolKind::coordinate, fixed.coordinate, 0}] = fixed.value;
+  return symbolic::Substitution(*m.dag, std::move(values))(psi);
+}
+
+// If psi is linear in its only coordinate, with a factor that cannot depend on the motion: that coordinate's value.
+bool solve_for_only_coordinate(const Mechanics& m, Ref psi, FixedCoordinate& result) {
+  Dag& dag = *m.dag;
+  const std::set<std::uint32_t> present = coordinates_in(dag, psi);
+  if (present.size() != 1) return false;
+  const Symbol symbol{SymbolKind::coordinate, *present.begin(), 0};
+  const Ref slope = symbolic::partial(dag, symbol)(psi);
+  if (!coordinates_in(dag, slope).empty() || dag.is_zero(slope)) return false;
+  const Ref at_zero = symbolic::Substitution(dag, {{symbol, dag.zero()}})(psi);
+  result.coordinate = symbol.index;
+  result.value = dag.neg(dag.div(at_zero, slope));
+  symbolic::Derivation ddt = symbolic::total_time(dag, 0, m.model->functions.size());
+  result.rate = ddt(result.value);
+  result.acceleration = ddt(result.rate);
+  return true;
+}
+
+void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduced) {
+  const bool same = vanishes(*m.dag, {reduced});
+  const std::string what = same ? "constraint '" + constraint.label + "' follows from the constraints before it"
+                                : "constraint '" + constraint.label + "' fixes nothing: the coordinates in it are already fixed, "
+                                  "and it does not hold for all times and parameters";
+  throw Error("mechanics", m.model->where(of_model(m, constraint).span), what,
+              same ? "remove it" : "remove it, or the constraint that it contradicts");
+}
+
+}  // namespace
+
+void add_constraints(Mechanics& m, Lowering& lower) {
+  Dag& dag = *m.dag;
+  for (const model::Constraint& constraint : m.model->constraints) {
+    for (std::size_t k = 0; k < constraint.psi.size(); ++k) {
+      Constraint result;
+      result.name = constraint.name;
+      result.label = constraint.psi.size() > 1 ? constraint.name + "." + std::to_string(k + 1) : constraint.name;
+      result.psi = lower.scalar(constraint.psi[k]);
+      for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+        result.gradient.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(result.psi));
+      }
+      result.rate = lower.explicit_rate(result.psi);
+      if (vanishes(dag, result.gradient)) {
+        throw Error("mechanics", m.model->where(constraint.span),
+                    "constraint '" + result.label + "' does not depend on any coordinate",
+                    "a constraint relates coordinates, such as holonomic = \"R - d\"");
+      }
+      m.constraints.push_back(std::move(result));
+    }
+  }
+}
+
+void eliminate_coordinates(Mechanics& m) {
+  std::vector<bool> used(m.constraints.size(), false);
+  // One constraint may fix a coordinate only after another is eliminated, so repeat until nothing changes.
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+      if (used[k]) continue;
+      const Ref reduced = with_fixed(m, m.constraints[k].psi);
+      if (coordinates_in(*m.dag, reduced).empty()) refuse_repeated(m, m.constraints[k], reduced);
+      FixedCoordinate fixed{};
+      fixed.constraint = k;
+      if (!solve_for_only_coordinate(m, reduced, fixed)) continue;
+      m.fixed.push_back(fixed);
+      used[k] = true;
+      changed = true;
+    }
+  }
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    if (!m.is_eliminated(i)) m.free.push_back(i);
+  }
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!used[k]) m.active.push_back(k);
+  }
+}
+
+}  // namespace eomgen::mechanics

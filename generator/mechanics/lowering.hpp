@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the model's expression trees to Dag nodes: kinematics (velocities, bases) included.
+#pragma once
+
+#include <unordered_map>
+
+#include "mechanics/mechanics.hpp"
+
+namespace eomgen::mechanics {
+
+using symbolic::Scalar;
+
+/// Interprets model expressions on the Dag of `mechanics`; memoised, so that sharing in the model is sharing here.
+class Lowering {
+ public:
+  explicit Lowering(Mechanics& mechanics);
+
+  Ref scalar(model::NodeId id);
+  Vec3 vector(model::NodeId id);
+  Vec3 position(std::uint32_t place);
+
+  /// The extension that Op::extension stands for while a spring's energy is read.
+  void set_extension(Ref extension);
+
+  Ref dot(const Vec3& a, const Vec3& b);
+  Vec3 subtract(const Vec3& a, const Vec3& b);
+  Vec3 scale(Ref factor, const Vec3& a);
+  Ref norm(const Vec3& a);
+  Vec3 gradient(const Vec3& a, std::uint32_t coordinate);  // d a/d q
+
+  /// d/dt; throws where `at` would need a third derivative of a coordinate or the rate of an input.
+  Ref ddt(Ref expression, const model::Span& at);
+  Vec3 ddt(const Vec3& expression, const model::Span& at);
+  /// d/dt at fixed coordinates and velocities.
+  Ref explicit_rate(Ref expression);
+
+ private:
+  struct Value {
+    bool vector = false;
+    Ref scalar;
+    Vec3 components{};
+  };
+  const Value& value(model::NodeId id);
+  Value lower(const model::Node& node);
+  Value lower_leaf(const model::Node& node);
+  Value lower_arithmetic(const model::Node& node);
+  Value lower_vector(const model::Node& node);
+  Value lower_derivative(const model::Node& node);
+  Value basis(const model::Node& node);
+  Vec3 contravariant(std::uint32_t place, std::uint32_t coordinate, const model::Span& span);
+  static Value of(Ref scalar) { return {false, scalar, {}}; }
+  static Value of(const Vec3& vector) { return {true, {}, vector}; }
+
+  Mechanics& m_;
+  Dag& dag_;
+  symbolic::Derivation ddt_;
+  symbolic::Derivation explicit_rate_;
+  std::unordered_map<model::NodeId, Value> memo_;
+  Ref extension_;
+  int depth_ = 0;
+};
+
+}  // namespace eomgen::mechanics

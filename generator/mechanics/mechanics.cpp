@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mechanics/mechanics.hpp"
+
+#include <algorithm>
+
+#include "mechanics/stages.hpp"
+#include "mechanics/vanishes.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+void add_symbols(Mechanics& m) {
+  Dag& dag = *m.dag;
+  m.t = dag.symbol({SymbolKind::time, 0, 0});
+  for (std::uint32_t i = 0; i < m.model->coordinates.size(); ++i) {
+    m.q.push_back(dag.symbol({SymbolKind::coordinate, i, 0}));
+    m.qdot.push_back(dag.symbol({SymbolKind::coordinate, i, 1}));
+    m.qddot.push_back(dag.symbol({SymbolKind::coordinate, i, 2}));
+  }
+}
+
+void add_values(Mechanics& m, Lowering& lower) {
+  for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.is));
+  for (const model::Parameter& parameter : m.model->parameters) m.parameter_value.push_back(lower.scalar(parameter.value));
+  for (std::uint32_t i = 0; i < m.model->places.size(); ++i) m.place_position.emplace_back(lower.position(i));
+  for (const model::Definition& definition : m.model->definitions) {
+    m.scalar_definition.push_back(definition.vector ? m.dag->zero() : lower.scalar(definition.is));
+  }
+}
+
+// A coordinate that no kinetic energy and no constraint mentions has no equation.
+void require_equations(const Mechanics& m) {
+  Dag& dag = *m.dag;
+  for (const std::uint32_t i : m.free) {
+    symbolic::Derivation by_rate = symbolic::partial(dag, {SymbolKind::coordinate, i, 1});
+    std::vector<Ref> presence;
+    for (const PointMass& mass : m.masses) {
+      for (const Ref v : mass.velocity) presence.push_back(by_rate(v));
+    }
+    presence.push_back(by_rate(m.kinetic_given));
+    for (const std::uint32_t k : m.active) presence.push_back(m.constraints[k].gradient[i]);
+    if (!vanishes(dag, presence)) continue;
+    const model::Coordinate& coordinate = m.model->coordinates[i];
+    throw Error("mechanics", m.model->where(coordinate.span),
+                "nothing that has mass moves with coordinate '" + coordinate.name + "', so it has no equation of motion",
+                "give it inertia (a mass whose position depends on it, or a kinetic energy), fix it by a constraint, or remove it");
+  }
+  if (m.q.empty()) {
+    throw Error("mechanics", Where{m.model->file, 0, 0, 1, ""}, "the model has no coordinates",
+                "add a [[particle]] with a position, or [coordinates] and [energy]");
+  }
+}
+
+}  // namespace
+
+bool vanishes(const Dag& dag, const std::vector<Ref>& expressions) {
+  if (std::all_of(expressions.begin(), expressions.end(), [&](Ref r) { return dag.is_zero(r); })) return true;
+  const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
+  int evaluated = 0;
+  for (std::uint64_t point = 1; point <= 4; ++point) {
+    // Values in (0.2, 1.2), by symbol; a fixed sequence, so that every process says the same.
+    const auto value = [point](const Symbol& symbol) -> cln::cl_R {
+      std::uint64_t x = point * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(symbol.kind) * 0xbf58476d1ce4e5b9ull +
+                        symbol.index * 0x94d049bb133111ebull + symbol.order * 0xd6e8feb86659fd93ull;
+      x = (x ^ (x >> 31)) * 0x9e3779b97f4a7c15ull;
+      x ^= x >> 29;
+      return cln::cl_R(symbolic::Rational(static_cast<long>(x % 1000003)) / 1000003 + symbolic::Rational(1) / 5);
+    };
+    try {
+      for (const cln::cl_R& r : symbolic::evaluate(dag, expressions, value, 40)) {
+        if (cln::abs(r) > small) return false;
+      }
+      ++evaluated;
+    } catch (const std::domain_error&) {
+      continue;  // outside the domain of a function there: this point says nothing
+    }
+  }
+  return evaluated > 0;
+}
+
+bool Mechanics::is_eliminated(std::uint32_t coordinate) const {
+  return std::any_of(fixed.begin(), fixed.end(), [=](const FixedCoordinate& f) { return f.coordinate == coordinate; });
+}
+
+void add_masses(Mechanics& m, Lowering& lower) {
+  Dag& dag = *m.dag;
+  m.kinetic_given = lower.scalar(m.model->energy.kinetic);
+  m.kinetic = m.kinetic_given;
+  for (const model::Particle& particle : m.model->particles) {
+    PointMass mass;
+    mass.name = m.model->places[particle.place].name;
+    mass.mass = lower.scalar(particle.mass);
+    mass.position = lower.position(particle.place);
+    mass.velocity = lower.ddt(mass.position, particle.span);
+    const Ref twice = dag.mul(mass.mass, lower.dot(mass.velocity, mass.velocity));
+    m.kinetic = dag.add(m.kinetic, dag.div(twice, dag.integer(2)));
+    m.masses.push_back(std::move(mass));
+  }
+}
+
+Mechanics build_mechanics(const model::Model& model) {
+  Mechanics m;
+  m.model = &model;
+  m.dag = std::make_shared<Dag>();
+  add_symbols(m);
+  Lowering lower(m);
+  add_masses(m, lower);
+  add_forces(m, lower);
+  add_constraints(m, lower);
+  eliminate_coordinates(m);
+  add_values(m, lower);
+  require_equations(m);
+  return m;
+}
+
+Ref lower_scalar(Mechanics& mechanics, model::NodeId expression) { return Lowering(mechanics).scalar(expression); }
+Vec3 lower_vector(Mechanics& mechanics, model::NodeId expression) { return Lowering(mechanics).vector(expression); }
+
+}  // namespace eomgen::mechanics

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The steps of build_mechanics, in the order in which they run.
+#pragma once
+
+#include "mechanics/lowering.hpp"
+
+namespace eomgen::mechanics {
+
+void add_masses(Mechanics& mechanics, Lowering& lower);        // masses, kinetic energy, eq. (1.31), (3.20)
+void add_forces(Mechanics& mechanics, Lowering& lower);        // potential, loads, generalised forces
+void add_constraints(Mechanics& mechanics, Lowering& lower);   // psi and its gradient, eq. (2.31)
+void eliminate_coordinates(Mechanics& mechanics);              // which constraints read q_c = d(t), eq. (2.96)
+
+}  // namespace eomgen::mechanics
