@@ -59,6 +59,15 @@ void require_equations(const Mechanics& m) {
 
 bool vanishes(const Dag& dag, const std::vector<Ref>& expressions) {
   if (std::all_of(expressions.begin(), expressions.end(), [&](Ref r) { return dag.is_zero(r); })) return true;
+  // Beyond a kink an expression may be something else: sampling one side proves nothing.
+  for (const Ref r : dag.reachable(expressions)) {
+    switch (dag[r].op) {
+      case symbolic::Op::abs: case symbolic::Op::sign: case symbolic::Op::min: case symbolic::Op::max:
+      case symbolic::Op::select:
+        return false;
+      default: break;
+    }
+  }
   const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
   int evaluated = 0;
   for (std::uint64_t point = 1; point <= 4; ++point) {

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/equations.hpp"
+
+#include <algorithm>
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+using system::EquationSystem;
+
+Symbol coordinate(std::uint32_t i, std::uint8_t order) { return {SymbolKind::coordinate, i, order}; }
+
+/// Imposes the constraints, then writes functions of time out.
+struct Finish {
+  symbolic::Substitution imposed, written;
+  Ref operator()(Ref r) { return written(imposed(r)); }
+};
+
+void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
+  Dag& dag = *m.dag;
+  symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
+  for (const std::uint32_t k : s.active) {
+    // Written with the fixed coordinates imposed first, so that A has only the columns that move.
+    const Ref psi = finish.imposed(m.constraints[k].psi);
+    s.psi.push_back(finish(psi));
+    for (const std::uint32_t i : s.free) s.A.push_back(finish(symbolic::partial(dag, coordinate(i, 0))(psi)));
+    const Ref rate = bias(psi);  // A qdot + b
+    symbolic::Substitution at_rest(dag, [&] {
+      std::map<Symbol, Ref> zero;
+      for (const std::uint32_t i : s.free) zero[coordinate(i, 1)] = dag.zero();
+      return zero;
+    }());
+    s.b.push_back(finish(at_rest(rate)));
+    s.gamma.push_back(finish(bias(rate)));
+  }
+}
+
+// The (b) equations: row c of M qddot - f = sum_k lambda_k dpsi_k/dq_c, from the last coordinate that was fixed to the
+// first; a constraint's gradient has only coordinates that were fixed with it or before it, so this is a back substitution.
+void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
+  Dag& dag = *m.dag;
+  const std::size_t n = m.q.size();
+  std::vector<Ref> lambda(m.constraints.size(), dag.zero());
+  for (const std::uint32_t k : s.active) lambda[k] = dag.symbol({SymbolKind::multiplier, k, 0});
+  for (auto fixed = m.fixed.rbegin(); fixed != m.fixed.rend(); ++fixed) {
+    const std::uint32_t c = fixed->coordinate;
+    Ref force = dag.neg(full.f[c]);
+    for (std::uint32_t i = 0; i < n; ++i) force = dag.add(force, dag.mul(full.M[c * n + i], m.qddot[i]));
+    for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+      if (k != fixed->constraint) force = dag.sub(force, dag.mul(m.constraints[k].gradient[c], lambda[k]));
+    }
+    lambda[fixed->constraint] = dag.div(force, m.constraints[fixed->constraint].gradient[c]);
+  }
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    s.reactions.push_back({k, m.constraints[k].label, lambda[k]});
+  }
+}
+
+// dE/dt = -dL/dt|q + sum Q_i qdot_i - sum lambda_k dpsi_k/dt|q + d(T1 + 2 T0)/dt: docs/theory.md, "Power".
+Ref power(Mechanics& m, const EquationSystem& s) {
+  Dag& dag = *m.dag;
+  const std::size_t functions = m.model->functions.size();
+  std::map<Symbol, Ref> explicit_time{{{SymbolKind::time, 0, 0}, dag.one()}};
+  for (std::uint32_t i = 0; i < functions; ++i) {
+    for (std::uint8_t order = 0; order < 6; ++order) {
+      explicit_time[{SymbolKind::function, i, order}] =
+          dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
+    }
+  }
+  symbolic::Derivation at_fixed_motion(dag, explicit_time);
+  Ref result = at_fixed_motion(m.potential);
+  Ref moving = dag.zero();  // T1 + 2 T0 = sum m v . dr/dt|q
+  for (const mechanics::PointMass& mass : m.masses) {
+    Vec3 drift;
+    for (std::size_t k = 0; k < 3; ++k) drift[k] = at_fixed_motion(mass.position[k]);
+    moving = dag.add(moving, dag.mul(mass.mass, dot(dag, mass.velocity, drift)));
+    const Ref mass_rate = at_fixed_motion(mass.mass);
+    const Ref half_square = dag.div(dot(dag, mass.velocity, mass.velocity), dag.integer(2));
+    result = dag.sub(result, dag.mul(mass_rate, half_square));
+    // dT/dt at fixed q, qdot through a prescribed part of the position
+    Vec3 rate_of_velocity;
+    for (std::size_t k = 0; k < 3; ++k) rate_of_velocity[k] = at_fixed_motion(mass.velocity[k]);
+    result = dag.sub(result, dag.mul(mass.mass, dot(dag, mass.velocity, rate_of_velocity)));
+  }
+  const std::vector<Ref> Q = generalized_forces(m);
+  Ref virial = dag.zero();  // qdot . dT/dqdot of the given kinetic energy
+  bool homogeneous = true;
+  std::map<Symbol, Ref> zero;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    result = dag.add(result, dag.mul(Q[i], m.qdot[i]));
+    const Ref p = symbolic::partial(dag, coordinate(i, 1))(m.kinetic_given);
+    virial = dag.add(virial, dag.mul(m.qdot[i], p));
+    zero[coordinate(i, 1)] = dag.zero();
+  }
+  symbolic::Substitution at_rest(dag, zero);
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    const Ref p = symbolic::partial(dag, coordinate(i, 1))(m.kinetic_given);
+    homogeneous = homogeneous && dag.is_zero(at_rest(p));
+    for (std::uint32_t k = 0; k < m.q.size(); ++k) {
+      const Ref mass = symbolic::partial(dag, coordinate(k, 1))(p);
+      for (const Symbol& symbol : dag.symbols({mass})) {
+        homogeneous = homogeneous && !(symbol.kind == SymbolKind::coordinate && symbol.order > 0);
+      }
+    }
+  }
+  homogeneous = homogeneous && dag.is_zero(at_rest(m.kinetic_given));
+  result = dag.sub(result, at_fixed_motion(m.kinetic_given));
+  if (!homogeneous) moving = dag.add(moving, dag.sub(dag.mul(dag.integer(2), m.kinetic_given), virial));
+  symbolic::Derivation ddt = symbolic::total_time(dag, m.q.size(), functions);
+  result = dag.add(result, ddt(moving));
+  for (const system::Reaction& reaction : s.reactions) {
+    result = dag.sub(result, dag.mul(reaction.value, m.constraints[reaction.constraint].rate));
+  }
+  return result;
+}
+
+void add_outputs(Mechanics& m, EquationSystem& s) {
+  const auto add = [&s](std::string name, Ref value) { s.outputs.push_back({std::move(name), value}); };
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    add(m.model->coordinates[i].name, m.q[i]);
+    add(m.model->coordinates[i].name + "_dot", m.qdot[i]);
+  }
+  add("energy", s.energy);
+  add("kinetic", s.kinetic);
+  add("potential", s.potential);
+  add("power", s.power);
+  symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
+  for (std::uint32_t i = 1; i < m.model->places.size(); ++i) {
+    const Vec3& position = *m.place_position[i];
+    const std::string& name = m.model->places[i].name;
+    for (std::size_t k = 0; k < 3; ++k) add(name + ".position" + std::to_string(k + 1), position[k]);
+    for (std::size_t k = 0; k < 3; ++k) add(name + ".velocity" + std::to_string(k + 1), ddt(position[k]));
+  }
+  for (const system::Reaction& reaction : s.reactions) add("reaction." + reaction.label, reaction.value);
+  for (std::size_t i = 0; i < m.model->definitions.size(); ++i) {
+    const model::Definition& definition = m.model->definitions[i];
+    if (!definition.vector) add(definition.name, m.scalar_definition[i]);
+  }
+}
+
+}  // namespace
+
+Ref dot(Dag& dag, const Vec3& a, const Vec3& b) {
+  Ref sum = dag.mul(a[0], b[0]);
+  for (std::size_t k = 1; k < 3; ++k) sum = dag.add(sum, dag.mul(a[k], b[k]));
+  return sum;
+}
+
+std::vector<Ref> generalized_forces(Mechanics& m) {
+  Dag& dag = *m.dag;
+  std::vector<Ref> Q = m.generalized;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    symbolic::Derivation by = symbolic::partial(dag, coordinate(i, 0));
+    for (const mechanics::Load& load : m.loads) {
+      Q[i] = dag.add(Q[i], dot(dag, load.force, Vec3{by(load.at[0]), by(load.at[1]), by(load.at[2])}));
+    }
+  }
+  return Q;
+}
+
+EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquations* motion, const char* route,
+                        system::Approach approach) {
+  Dag& dag = *m.dag;
+  EquationSystem s;
+  s.dag = m.dag;
+  s.route = route;
+  s.approach = approach;
+  s.free = m.free;
+  s.active = m.active;
+  const std::size_t all = m.q.size();
+  if (motion != nullptr) {
+    s.M = motion->M;
+    s.f = motion->f;
+  } else {
+    for (const std::uint32_t i : s.free) {
+      Ref f = full.f[i];
+      for (const std::uint32_t k : s.free) s.M.push_back(full.M[i * all + k]);
+      for (const mechanics::FixedCoordinate& c : m.fixed) {
+        f = dag.sub(f, dag.mul(full.M[i * all + c.coordinate], c.acceleration));
+      }
+      s.f.push_back(f);
+    }
+  }
+  add_reactions(m, full, s);
+  s.kinetic = m.kinetic;
+  s.potential = m.potential;
+  s.energy = dag.add(m.kinetic, m.potential);
+  s.power = power(m, s);
+  add_outputs(m, s);
+  Finish finish{impose(m), write_out(m)};
+  for (Ref* r : {&s.kinetic, &s.potential, &s.energy, &s.power}) *r = finish(*r);
+  for (Ref& r : s.M) r = finish(r);
+  for (Ref& r : s.f) r = finish(r);
+  for (system::Reaction& reaction : s.reactions) reaction.value = finish(reaction.value);
+  for (system::Output& output : s.outputs) output.value = finish(output.value);
+  add_constraints(m, s, finish);
+  return s;
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Imposing integrable constraints, eq. (2.97): eliminated coordinates become functions of time; and writing functions
+// of time out as expressions of t and parameters.
+#pragma once
+
+#include "mechanics/mechanics.hpp"
+
+namespace eomgen::derive {
+
+using mechanics::Mechanics;
+using mechanics::Vec3;
+using symbolic::Dag;
+using symbolic::Ref;
+
+/// q_c -> d(t), qdot_c -> d'(t), qddot_c -> d''(t); functions of time stay named.
+symbolic::Substitution impose(const Mechanics& mechanics);
+
+/// Functions of time (any derivative) -> expressions in t and parameters.
+symbolic::Substitution write_out(const Mechanics& mechanics);
+
+}  // namespace eomgen::derive
