@@ -54,8 +54,9 @@ struct Kepler {
 
 /// theta'' = -sin theta, released at rest from theta_max.
 struct Pendulum {
-  double theta_max = 2;
-  State start{theta_max, 0};
+  explicit Pendulum(double amplitude = 2) : theta_max(amplitude), start{theta_max, 0} {}
+  double theta_max;
+  State start;
   int operator()(double, const double* x, double* dx) const {
     dx[0] = x[1];
     dx[1] = -std::sin(x[0]);

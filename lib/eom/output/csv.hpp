@@ -11,6 +11,7 @@
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
+#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -28,9 +29,9 @@ class CsvWriter {
   CsvWriter(std::filesystem::path path, std::span<const std::string> columns)
       : path_(std::move(path)), partial_(path_), columns_(columns.size()) {
     partial_ += ".partial";
-    file_ = std::fopen(partial_.string().c_str(), "wb");
+    file_.reset(std::fopen(partial_.string().c_str(), "wb"));
     if (file_ == nullptr) fail("open", partial_, std::strerror(errno));
-    std::setvbuf(file_, nullptr, _IONBF, 0);  // lines are gathered here, so that only whole ones reach the file
+    std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // lines are gathered here, so that only whole ones reach the file
     lines_.reserve(2 * flush_size);
     lines_ += 't';
     for (const std::string& column : columns) append_name(column);
@@ -43,8 +44,7 @@ class CsvWriter {
 
   ~CsvWriter() {
     if (file_ == nullptr) return;
-    std::fwrite(lines_.data(), 1, lines_.size(), file_);  // nothing can be told any more: the .partial file stays
-    std::fclose(file_);
+    std::fwrite(lines_.data(), 1, lines_.size(), file_.get());  // a failure cannot be told any more
   }
 
   /// One line: t and as many values as there are columns. Throws std::invalid_argument for another number of values.
@@ -64,7 +64,7 @@ class CsvWriter {
   /// Hands the lines written so far to the operating system.
   void flush() {
     if (file_ == nullptr) throw std::logic_error(path_.string() + ": written to after finish");
-    const std::size_t written = std::fwrite(lines_.data(), 1, lines_.size(), file_);
+    const std::size_t written = std::fwrite(lines_.data(), 1, lines_.size(), file_.get());
     if (written != lines_.size()) fail("write", partial_, std::strerror(errno));
     lines_.clear();
   }
@@ -75,13 +75,16 @@ class CsvWriter {
     lines_ += name(outcome);
     lines_ += '\n';
     flush();
-    if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("close", partial_, std::strerror(errno));
+    if (std::fclose(file_.release()) != 0) fail("close", partial_, std::strerror(errno));
     std::error_code error;
     std::filesystem::rename(partial_, path_, error);
     if (error) fail("rename to its final name", partial_, error.message());
   }
 
  private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
   static constexpr std::size_t flush_size = 1 << 16;
 
   [[noreturn]] static void fail(const char* action, const std::filesystem::path& path, const std::string& why) {
@@ -109,7 +112,7 @@ class CsvWriter {
   std::filesystem::path path_;
   std::filesystem::path partial_;
   std::size_t columns_;
-  std::FILE* file_ = nullptr;
+  std::unique_ptr<std::FILE, Close> file_;
   std::string lines_;
 };
 

@@ -1,0 +1,138 @@
+// The CSV file appears whole, with its outcome, or not at all; what is written reads back to the same bits.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "eom/output/csv.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A folder of its own for one test case, removed at the end.
+struct Folder {
+  fs::path path;
+  explicit Folder(const char* name) : path(fs::temp_directory_path() / ("eomgen_csv_test_" + std::string(name))) {
+    fs::remove_all(path);
+    fs::create_directories(path);
+  }
+  ~Folder() { fs::remove_all(path); }
+};
+
+std::string text_of(const fs::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+const std::vector<std::string> columns{"theta", "theta_dot"};
+
+}  // namespace
+
+TEST_CASE("csv: t first, 17 significant digits, a trailing line with the outcome, no .partial file left") {
+  const Folder folder("whole");
+  const fs::path path = folder.path / "run.csv";
+  eom::CsvWriter csv(path, columns);
+  csv.row(0, std::vector<double>{0.1, -2});
+  csv.row(0.5, std::vector<double>{1e-300, std::numeric_limits<double>::infinity()});
+  CHECK(!fs::exists(path));
+  csv.finish(eom::Outcome::done);
+  CHECK(text_of(path) ==
+        "t,theta,theta_dot\n0,0.10000000000000001,-2\n0.5,1e-300,inf\n# outcome: done\n");
+  CHECK(!fs::exists(path.string() + ".partial"));
+}
+
+TEST_CASE("csv: every number reads back to the same bits") {
+  const Folder folder("bits");
+  const std::vector<double> values{1.0 / 3, std::numeric_limits<double>::denorm_min(), -1.7976931348623157e308,
+                                   123456789.123456789, -0.0};
+  eom::CsvWriter csv(folder.path / "run.csv", std::vector<std::string>{"a", "b", "c", "d", "e"});
+  csv.row(0.1, values);
+  csv.finish(eom::Outcome::done);
+  std::istringstream lines(text_of(folder.path / "run.csv"));
+  std::string line;
+  std::getline(lines, line);
+  std::getline(lines, line);
+  const char* at = line.c_str();
+  char* end = nullptr;
+  CHECK(std::strtod(at, &end) == 0.1);
+  for (const double value : values) {
+    at = end + 1;
+    CHECK(std::strtod(at, &end) == value);
+  }
+}
+
+TEST_CASE("csv: an interrupted run keeps its lines, marked so") {
+  const Folder folder("interrupted");
+  const fs::path path = folder.path / "run.csv";
+  eom::CsvWriter csv(path, columns);
+  csv.row(0, std::vector<double>{1, 2});
+  csv.finish(eom::Outcome::interrupted);
+  CHECK(text_of(path) == "t,theta,theta_dot\n0,1,2\n# outcome: interrupted\n");
+}
+
+TEST_CASE("csv: without finish the .partial file stays with whole lines, and an older file is untouched") {
+  const Folder folder("partial");
+  const fs::path path = folder.path / "run.csv";
+  std::ofstream(path) << "older\n";
+  {
+    eom::CsvWriter csv(path, columns);
+    for (int k = 0; k < 10000; ++k) csv.row(k, std::vector<double>{0.1 * k, 0.2});
+    const std::string so_far = text_of(path.string() + ".partial");
+    CHECK(so_far.size() > 100000);  // written along the way, not kept to the end
+    CHECK(so_far.back() == '\n');
+  }
+  CHECK(text_of(path) == "older\n");
+  const std::string partial = text_of(path.string() + ".partial");
+  CHECK(partial.ends_with(",0.20000000000000001\n"));
+  CHECK(std::count(partial.begin(), partial.end(), '\n') == 10001);
+}
+
+TEST_CASE("csv: names with commas and quotes are quoted as RFC 4180 asks") {
+  const Folder folder("names");
+  eom::CsvWriter csv(folder.path / "run.csv", std::vector<std::string>{"a,b", "say \"q\"", "plain"});
+  csv.finish(eom::Outcome::done);
+  CHECK(text_of(folder.path / "run.csv") == "t,\"a,b\",\"say \"\"q\"\"\",plain\n# outcome: done\n");
+}
+
+TEST_CASE("csv: errors of the file system are thrown with the path") {
+  const Folder folder("errors");
+  const auto message = [](auto action) {
+    try {
+      action();
+    } catch (const std::runtime_error& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  const fs::path nowhere = folder.path / "no_such_folder" / "run.csv";
+  CHECK(message([&] { eom::CsvWriter(nowhere, columns); }).find("no_such_folder") != std::string::npos);
+
+  const fs::path blocked = folder.path / "blocked.csv";  // a folder of that name is in the way of the rename
+  fs::create_directories(blocked / "inside");
+  eom::CsvWriter csv(blocked, columns);
+  CHECK(message([&] { csv.finish(eom::Outcome::done); }).find("blocked.csv") != std::string::npos);
+  CHECK(fs::exists(blocked.string() + ".partial"));
+
+  if (fs::exists("/dev/full")) {  // a device that is always full
+    fs::create_symlink("/dev/full", folder.path / "full.csv.partial");
+    CHECK(message([&] { eom::CsvWriter(folder.path / "full.csv", columns); }).find("full.csv") != std::string::npos);
+  }
+}
+
+TEST_CASE("csv: a row of the wrong length, and one after finish, are refused") {
+  const Folder folder("refused");
+  eom::CsvWriter csv(folder.path / "run.csv", columns);
+  CHECK_THROWS_AS(csv.row(0, std::vector<double>{1}), std::invalid_argument);
+  csv.finish(eom::Outcome::done);
+  CHECK_THROWS_AS(csv.flush(), std::logic_error);
+}

@@ -1,0 +1,94 @@
+// The estimate of the end state's error against closed forms: within a factor of 10, both ways.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "eom/error_estimate.hpp"
+#include "lib/problems.hpp"
+#include "support/tolerances.hpp"
+
+namespace {
+
+void check_estimate(double estimate, double error) {
+  CAPTURE(estimate);
+  CAPTURE(error);
+  CHECK(estimate * tolerances::estimate_factor > error);
+  // below some roundings an estimate may be higher: it does not claim what binary64 cannot carry
+  CHECK(estimate < tolerances::estimate_factor * std::max(error, tolerances::rounding));
+}
+
+template <class Problem>
+void check_tolerances(const Problem& problem, double t1) {
+  for (const char* method : {"dopri5", "dop853"})
+    for (int digits = 4; digits <= 15; ++digits)
+      for (const double end : {t1, -0.7 * t1}) {
+        CAPTURE(std::string(method));
+        CAPTURE(digits);
+        CAPTURE(end);
+        eom::Options options;
+        options.rtol = std::pow(10, -digits);
+        options.atol = 1e-2 * options.rtol;
+        const auto result = eom::integrate(method, problem, 0, problem.start, end, options);
+        const auto estimate = eom::estimate_error(method, problem, 0, problem.start, result, options);
+        CHECK(estimate.outcome == eom::Outcome::done);
+        check_estimate(estimate.max, problems::largest_difference(result.x, problem.exact(end)));
+      }
+}
+
+}  // namespace
+
+TEST_CASE("estimate: within a factor of 10 of the error for rtol 1e-4 to 1e-15 (oscillator, Kepler, pendulum)") {
+  check_tolerances(problems::Oscillator{}, 30);
+  check_tolerances(problems::Kepler{0.5}, 25);
+  check_tolerances(problems::Pendulum{}, 30);
+}
+
+TEST_CASE("estimate: within a factor of 10 for fixed steps, down to where rounding takes over") {
+  const problems::Kepler kepler;
+  for (double step = 0.1; step > 1e-4; step /= 4) {
+    CAPTURE(step);
+    eom::Options options;
+    options.fixed_step = step;
+    const auto result = eom::integrate("rk4", kepler, 0, kepler.start, 10, options);
+    const auto estimate = eom::estimate_error("rk4", kepler, 0, kepler.start, result, options);
+    check_estimate(estimate.max, problems::largest_difference(result.x, kepler.exact(10)));
+  }
+}
+
+TEST_CASE("estimate: where two runs agree up to rounding a third one is made, and its cost is told") {
+  const problems::Oscillator oscillator;
+  eom::Options options;
+  options.rtol = 1e-6;
+  auto result = eom::integrate("dop853", oscillator, 0, oscillator.start, 10, options);
+  CHECK(eom::estimate_error("dop853", oscillator, 0, oscillator.start, result, options).runs == 1);
+  options.rtol = 1e-14;
+  options.atol = 1e-16;
+  result = eom::integrate("dop853", oscillator, 0, oscillator.start, 10, options);
+  const auto estimate = eom::estimate_error("dop853", oscillator, 0, oscillator.start, result, options);
+  CHECK(estimate.runs == 2);
+  CHECK(estimate.statistics.rhs_evaluations > 2 * result.statistics.rhs_evaluations);
+  CHECK(estimate.max >= tolerances::epsilon * std::abs(result.x[1]));
+}
+
+TEST_CASE("estimate: of a run that stopped early it is that at the time reached") {
+  const problems::Pendulum pendulum;
+  eom::Options options;
+  options.rtol = 1e-6;
+  const auto result = eom::integrate("dopri5", pendulum, 0, pendulum.start, 10, options,
+                                     [](const eom::StepView& view) { return view.t1 < 5; });
+  REQUIRE(result.outcome == eom::Outcome::stopped_by_event);
+  const auto estimate = eom::estimate_error("dopri5", pendulum, 0, pendulum.start, result, options);
+  check_estimate(estimate.max, problems::largest_difference(result.x, pendulum.exact(result.t)));
+}
+
+TEST_CASE("estimate: infinite, with the outcome told, where the further run fails") {
+  const problems::Oscillator oscillator;
+  eom::Options options;
+  const auto result = eom::integrate("dopri5", oscillator, 0, oscillator.start, 3, options);
+  options.max_steps = result.statistics.steps + result.statistics.rejected;  // not enough for the tighter run
+  const auto estimate = eom::estimate_error("dopri5", oscillator, 0, oscillator.start, result, options);
+  CHECK(std::isinf(estimate.max));
+  CHECK(estimate.outcome == eom::Outcome::diverged);
+}
