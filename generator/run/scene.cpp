@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/scene.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "derive/imposition.hpp"
+#include "run/start.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using mechanics::Mechanics;
+using symbolic::Rational;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+constexpr int digits = 40;
+
+std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
+  const std::size_t n = m.model->parameters.size();
+  std::vector<Ref> formula = m.parameter_value;
+  for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
+  for (const auto& [name, value] : overrides.parameters) {
+    const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
+                                    [&](const model::Parameter& p) { return p.name == name; });
+    if (found == m.model->parameters.end()) {
+      throw Error("scene", {}, fmt::format("there is no parameter '{}' to set", name),
+                  "eomgen check MODEL lists the parameters");
+    }
+    formula[static_cast<std::size_t>(found - m.model->parameters.begin())] = m.dag->constant(value);
+  }
+  std::vector<cln::cl_R> values(n, 0);
+  std::vector<bool> known(n, false);
+  // Parameters may use one another without cycles, in any order of the file: n rounds settle the longest chain.
+  for (std::size_t round = 0; round < n; ++round) {
+    for (std::size_t i = 0; i < n; ++i) {
+      if (known[i]) continue;
+      bool ready = true;
+      for (const Symbol& s : m.dag->symbols({formula[i]})) ready = ready && s.kind == SymbolKind::parameter && known[s.index];
+      if (!ready) continue;
+      const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
+      try {
+        values[i] = symbolic::evaluate(*m.dag, {formula[i]}, lookup, digits)[0];
+      } catch (const std::exception& error) {
+        const model::Parameter& p = m.model->parameters[i];
+        throw Error("scene", m.model->where(p.span), fmt::format("parameter '{}' has no value: {}", p.name, error.what()),
+                    "check the numbers that it is computed from");
+      }
+      known[i] = true;
+    }
+  }
+  return values;
+}
+
+// Expressions of a scene are evaluated once, at its start.
+class SceneEvaluator {
+ public:
+  SceneEvaluator(Mechanics& m, const std::vector<cln::cl_R>& parameters)
+      : m_(m), parameters_(parameters), written_(derive::write_out(m)) {}
+
+  double number(model::NodeId id, const char* what) { return number(mechanics::lower_scalar(m_, id), id, what); }
+  void set_start(double t0) { t0_ = cln::cl_R(t0); }
+  void give(std::uint32_t coordinate, std::uint8_t order, double value) {
+    given_[{SymbolKind::coordinate, coordinate, order}] = cln::cl_R(value);
+  }
+
+ private:
+  double number(Ref expression, model::NodeId id, const char* what) {
+    const Ref written = written_(expression);
+    const model::Span span = m_.model->arena[id].span;
+    const auto lookup = [&](const Symbol& s) -> cln::cl_R {
+      if (s.kind == SymbolKind::parameter) return parameters_[s.index];
+      if (s.kind == SymbolKind::time) return t0_;
+      if (const auto found = given_.find(s); found != given_.end()) return found->second;
+      throw Error("scene", m_.model->where(span), fmt::format("{} uses a value that is not given before it", what),
+                  "give the values that it uses on earlier lines of `initial`");
+    };
+    try {
+      const double value = cln::double_approx(symbolic::evaluate(*m_.dag, {written}, lookup, digits)[0]);
+      if (std::isfinite(value)) return value;
+      throw std::domain_error("it is too large for binary64");
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      throw Error("scene", m_.model->where(span), fmt::format("{} has no value: {}", what, error.what()),
+                  "check the numbers that it is computed from");
+    }
+  }
+
+  Mechanics& m_;
+  const std::vector<cln::cl_R>& parameters_;
+  symbolic::Substitution written_;
+  cln::cl_R t0_ = 0;
+  std::map<Symbol, cln::cl_R> given_;
+};
+
+void resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value, Scene& result) {
+  symbolic::Substitution written = derive::write_out(m);
+  for (std::uint32_t i = 0; i < m.model->inputs.size(); ++i) {
+    const auto given = std::find_if(scene.inputs.begin(), scene.inputs.end(), [&](const auto& s) { return s.input == i; });
+    const model::InputTable* table = given == scene.inputs.end() ? nullptr : std::get_if<model::InputTable>(&given->signal);
+    if (table != nullptr) {
+      std::vector<double> t, v;
+      for (const model::NodeId id : table->t) t.push_back(value.number(id, "a time of an input table"));
+      for (const model::NodeId id : table->value) v.push_back(value.number(id, "a value of an input table"));
+      if (!std::is_sorted(t.begin(), t.end(), std::less_equal<>())) {
+        throw Error("scene", m.model->where(given->span), "the times of an input table must increase", "sort the table by time");
+      }
+      result.inputs.emplace_back(std::move(t), std::move(v));
+      continue;
+    }
+    const model::NodeId id = given == scene.inputs.end() ? m.model->inputs[i].fallback : std::get<model::NodeId>(given->signal);
+    result.inputs.emplace_back(*m.dag, written(mechanics::lower_scalar(m, id)), result.parameters);
+  }
+}
+
+void require_span(const Mechanics& m, const model::Scene& scene, const Scene& result) {
+  const auto fail = [&](const char* what, const char* remedy) {
+    throw Error("scene", m.model->where(scene.span), what, remedy);
+  };
+  if (!(result.t1 > result.t0)) fail("the end of the scene must come after its start", "t = [t0, t1] with t1 > t0");
+  if (!(result.rtol >= 0 && result.atol >= 0 && result.rtol + result.atol > 0)) {
+    fail("tolerances must not be negative, nor both zero", "give rtol = 1e-9 and atol = 1e-12, say");
+  }
+  if (result.step < 0 || result.every < 0) fail("step and every must be positive", "leave them out for the defaults");
+}
+
+}  // namespace
+
+Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
+                    const Overrides& overrides) {
+  Scene result;
+  result.name = scene.name;
+  const std::vector<cln::cl_R> parameters = parameter_values(m, scene, overrides);
+  for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
+  // The start is computed with the binary64 parameters that the run will use.
+  std::vector<cln::cl_R> rounded;
+  for (const double p : result.parameters) rounded.push_back(cln::cl_R(p));
+  SceneEvaluator value(m, rounded);
+  if (scene.t0 != model::no_node) result.t0 = value.number(scene.t0, "the start time");
+  result.t1 = scene.t1 != model::no_node ? value.number(scene.t1, "the end time") : result.t0 + 10;
+  value.set_start(result.t0);
+  const auto number = [&](model::NodeId id, double& target, const char* what) {
+    if (id != model::no_node) target = value.number(id, what);
+  };
+  number(scene.rtol, result.rtol, "rtol");
+  number(scene.atol, result.atol, "atol");
+  number(scene.step, result.step, "step");
+  number(scene.every, result.every, "every");
+  result.t1 = overrides.t_end.value_or(result.t1);
+  result.rtol = overrides.rtol.value_or(result.rtol);
+  result.atol = overrides.atol.value_or(result.atol);
+  result.step = overrides.step.value_or(result.step);
+  result.every = overrides.every.value_or(result.every);
+  result.solver = overrides.solver.value_or(scene.solver);
+  require_span(m, scene, result);
+  resolve_inputs(m, scene, value, result);
+
+  StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}};
+  for (const model::InitialValue& initial : scene.initial) {
+    const double v = value.number(initial.value, "an initial value");
+    value.give(initial.coordinate, initial.order, v);
+    problem.given[{initial.coordinate, initial.order}] = {v, initial.span};
+  }
+  for (const model::InitialValue& guess : scene.guess) {
+    problem.guess[{guess.coordinate, guess.order}] = value.number(guess.value, "a guess");
+  }
+  solve_start(problem);
+  result.q = problem.q;
+  result.qdot = problem.qdot;
+  result.solved = problem.solved;
+
+  std::vector<model::Named> wanted = scene.outputs;
+  if (!overrides.outputs.empty()) {
+    wanted.clear();
+    for (const std::string& name : overrides.outputs) wanted.push_back({name, {}});
+  }
+  result.outputs = expand_outputs(m, system, wanted);
+  return result;
+}
+
+std::vector<std::string> expand_outputs(const Mechanics& m, const system::EquationSystem& system,
+                                        const std::vector<model::Named>& wanted) {
+  std::set<std::string> coordinates;
+  for (const model::Coordinate& c : m.model->coordinates) {
+    coordinates.insert(c.name);
+    coordinates.insert(c.name + "_dot");
+  }
+  std::vector<std::string> result;
+  std::set<std::string> seen;
+  const auto take = [&](const std::string& name) {
+    if (!coordinates.contains(name) && seen.insert(name).second) result.push_back(name);
+  };
+  for (const model::Named& want : wanted) {
+    bool found = coordinates.contains(want.name);
+    for (const system::Output& output : system.outputs) {
+      const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
+      if (want.name != "all" && output.name != want.name && !part) continue;
+      take(output.name);
+      found = true;
+    }
+    if (!found) {
+      std::string names;
+      for (const system::Output& output : system.outputs) {
+        if (!coordinates.contains(output.name)) names += (names.empty() ? "" : ", ") + output.name;
+      }
+      const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};
+      throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");
+    }
+  }
+  return result;
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: a scene of the model and what the command line overrides. Out: numbers: parameters, time span, a start that
+// satisfies the constraints, tolerances, inputs, the columns that are wanted.
+#pragma once
+
+#include <cln/real.h>
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+#include "run/signal.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::run {
+
+/// What `run` takes from the command line in place of the scene's values.
+struct Overrides {
+  std::map<std::string, symbolic::Rational> parameters;
+  std::optional<double> t_end, rtol, atol, step, every;
+  std::optional<std::string> solver;
+  std::vector<std::string> outputs;  // in place of the scene's, unless empty
+};
+
+struct Scene {
+  std::string name;
+  std::vector<double> parameters;  // all of the model, in order; dependent ones computed
+  double t0 = 0, t1 = 0;
+  std::vector<double> q, qdot;     // all coordinates of the model
+  std::string solver;              // as asked for; may be "auto"
+  double rtol = 1e-9, atol = 1e-12;
+  double step = 0, every = 0;      // 0: not given
+  std::vector<Signal> inputs;      // one per input of the model
+  std::vector<std::string> outputs;  // expanded, without the coordinates, each once
+  std::vector<std::string> solved;   // sentences: what followed from the constraints
+};
+
+inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
+
+/// Throws Error{stage "scene"}: an unknown name, a value that does not exist, a start that breaks a constraint.
+Scene resolve_scene(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const model::Scene& scene,
+                    const Overrides& overrides);
+
+/// Names of all outputs that can be asked for: those of the system, vectors and reactions by their parts.
+std::vector<std::string> expand_outputs(const mechanics::Mechanics& mechanics, const system::EquationSystem& system,
+                                        const std::vector<model::Named>& wanted);
+
+}  // namespace eomgen::run

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// An input u(t) during a run: an expression of t and parameters, or piecewise constant with jumps.
+#pragma once
+
+#include <vector>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::run {
+
+class Signal {
+ public:
+  Signal() = default;
+  /// An expression in t and parameters; it is copied, so the Dag need not live on.
+  Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::vector<double>& parameters);
+  /// value[k] from time[k] until time[k+1]; value[0] before time[0].
+  Signal(std::vector<double> time, std::vector<double> value);
+
+  /// The value at t. At a jump: the value of the piece that `side_of` (a time inside the current piece) lies in.
+  double operator()(double t, double side_of) const;
+  const std::vector<double>& jumps() const { return time_; }
+
+ private:
+  struct Step {
+    symbolic::Op op;
+    std::int32_t payload;
+    std::array<std::uint32_t, 4> args;
+  };
+  double evaluate(double t) const;
+  std::vector<Step> code_;
+  std::vector<double> constants_;
+  mutable std::vector<double> work_;
+  std::vector<double> time_, value_;
+};
+
+}  // namespace eomgen::run

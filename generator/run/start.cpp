@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/start.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "derive/imposition.hpp"
+#include "run/scene.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+// Newton ends when the step is below this many units in the last place; 50 steps are far more than it needs.
+constexpr double newton_tolerance = 4e-16;
+constexpr int newton_steps = 50;
+// Columns of A whose part outside the span of the others is smaller than this (relative) do not fix their coordinate.
+constexpr double rank_tolerance = 1e-10;
+
+class StartSolver {
+ public:
+  explicit StartSolver(StartProblem& problem) : p_(problem), s_(problem.system), n_(s_.free.size()), m_(s_.active.size()) {}
+
+  void run() {
+    const std::size_t all = p_.mechanics.q.size();
+    p_.q.assign(all, 0);
+    p_.qdot.assign(all, 0);
+    for (const auto& [key, given] : p_.given) value(key) = given.value;
+    impose_fixed();
+    solve(0);
+    solve(1);
+  }
+
+ private:
+  double& value(StartProblem::Key key) { return (key.second == 0 ? p_.q : p_.qdot)[key.first]; }
+  std::string label(StartProblem::Key key) const {
+    return p_.mechanics.model->coordinates[key.first].name + (key.second == 0 ? "" : "_dot");
+  }
+
+  double lookup(const Symbol& s) const {
+    switch (s.kind) {
+      case SymbolKind::parameter: return p_.parameters[s.index];
+      case SymbolKind::time: return p_.t0;
+      case SymbolKind::coordinate: return s.order == 0 ? p_.q[s.index] : p_.qdot[s.index];
+      default: return std::nan("");
+    }
+  }
+  std::vector<double> evaluate(const std::vector<Ref>& refs) const {
+    return symbolic::evaluate(*s_.dag, refs, [this](const Symbol& s) { return lookup(s); });
+  }
+
+  // Eliminated coordinates have their value from the constraint; a value that was given must be that one.
+  void impose_fixed() {
+    symbolic::Substitution written = derive::write_out(p_.mechanics);
+    for (const mechanics::FixedCoordinate& fixed : p_.mechanics.fixed) {
+      const std::vector<double> exact = evaluate({written(fixed.value), written(fixed.rate)});
+      for (std::uint8_t order = 0; order < 2; ++order) {
+        const StartProblem::Key key{fixed.coordinate, order};
+        const std::string& constraint = p_.mechanics.constraints[fixed.constraint].label;
+        const auto given = p_.given.find(key);
+        if (given != p_.given.end() && !may_move(key)) {
+          const double off = std::abs(given->second.value - exact[order]);
+          if (!(off <= start_tolerance * std::max(std::abs(exact[order]), std::abs(given->second.value)))) {
+            throw Error("scene", p_.mechanics.model->where(given->second.span),
+                        fmt::format("{} = {:.17g} breaks constraint '{}', which fixes it at {:.17g} (off by {:.3g})",
+                                    label(key), given->second.value, constraint, exact[order], off),
+                        fmt::format("leave {} out: it follows from the constraint", label(key)));
+          }
+        }
+        value(key) = exact[order];
+        p_.solved.push_back(fmt::format("{} = {:.17g} follows from '{}'", label(key), exact[order], constraint));
+      }
+    }
+  }
+
+  bool may_move(StartProblem::Key key) const {
+    return std::find(p_.scene.solve.begin(), p_.scene.solve.end(), key) != p_.scene.solve.end();
+  }
+
+  std::vector<std::size_t> unknowns(std::uint8_t order) const {  // positions in s_.free
+    std::vector<std::size_t> result;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const StartProblem::Key key{s_.free[i], order};
+      if (!p_.given.contains(key) || may_move(key)) result.push_back(i);
+    }
+    return result;
+  }
+
+  /// Residual of psi (order 0) or A qdot + b (order 1), and A.
+  void linearise(std::uint8_t order, VectorXd& residual, MatrixXd& A) const {
+    std::vector<Ref> refs = s_.A;
+    const std::vector<Ref>& constant = order == 0 ? s_.psi : s_.b;
+    refs.insert(refs.end(), constant.begin(), constant.end());
+    const std::vector<double> values = evaluate(refs);
+    A.resize(static_cast<Eigen::Index>(m_), static_cast<Eigen::Index>(n_));
+    residual.resize(static_cast<Eigen::Index>(m_));
+    for (std::size_t k = 0; k < m_; ++k) {
+      double sum = values[m_ * n_ + k];
+      for (std::size_t i = 0; i < n_; ++i) {
+        A(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = values[k * n_ + i];
+        if (order == 1) sum += values[k * n_ + i] * p_.qdot[s_.free[i]];
+      }
+      residual(static_cast<Eigen::Index>(k)) = sum;
+    }
+  }
+
+  // |psi_k| against the size of its linear terms: the relative measure of the contract.
+  double relative(const VectorXd& residual, const MatrixXd& A, std::uint8_t order, Eigen::Index k) const {
+    double terms = 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double x = order == 0 ? p_.q[s_.free[i]] : p_.qdot[s_.free[i]];
+      terms += std::abs(A(k, static_cast<Eigen::Index>(i)) * x);
+    }
+    const double size = std::abs(residual(k));
+    if (size == 0) return 0;
+    // At rest every term of A qdot vanishes; b itself is then the scale.
+    return terms > size ? size / terms : 1;
+  }
+
+  double worst(std::uint8_t order, Eigen::Index* where = nullptr) const {
+    VectorXd residual;
+    MatrixXd A;
+    linearise(order, residual, A);
+    double largest = 0;
+    for (Eigen::Index k = 0; k < residual.size(); ++k) {
+      const double size = std::isfinite(residual(k)) ? relative(residual, A, order, k) : 1;
+      if (size <= largest) continue;
+      largest = size;
+      if (where != nullptr) *where = k;
+    }
+    return largest;
+  }
+
+  void solve(std::uint8_t order) {
+    if (m_ == 0) return;
+    const std::vector<std::size_t> free = unknowns(order);
+    for (const std::size_t i : free) {
+      const auto guess = p_.guess.find({s_.free[i], order});
+      if (guess != p_.guess.end()) value({s_.free[i], order}) = guess->second;
+    }
+    if (worst(order) > rounding) newton(order, free);
+    Eigen::Index k = 0;
+    if (worst(order, &k) > start_tolerance) refuse(order, static_cast<std::size_t>(k), free);
+  }
+
+  // Tried from the guess (or 0), then from points beside it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
+  void newton(std::uint8_t order, const std::vector<std::size_t>& free) {
+    const std::vector<double> start = order == 0 ? p_.q : p_.qdot;
+    for (const double offset : {0.0, 1.0, -1.0, 0.1, 10.0}) {
+      (order == 0 ? p_.q : p_.qdot) = start;
+      for (const std::size_t i : free) value({s_.free[i], order}) += offset;
+      if (!iterate(order, free)) continue;
+      // Only what the constraints fix may follow from them; the rest would be a guess of ours.
+      for (const std::size_t i : free) {
+        const StartProblem::Key key{s_.free[i], order};
+        if (value(key) == start[key.first]) continue;
+        p_.solved.push_back(fmt::format("{} = {:.17g} follows from the constraints", label(key), value(key)));
+      }
+      return;
+    }
+    (order == 0 ? p_.q : p_.qdot) = start;
+  }
+
+  bool iterate(std::uint8_t order, const std::vector<std::size_t>& free) {
+    VectorXd residual;
+    MatrixXd A;
+    for (int step = 0; step < newton_steps; ++step) {
+      linearise(order, residual, A);
+      if (!residual.allFinite() || !A.allFinite()) return false;
+      std::vector<std::size_t> moving;  // with a column that is not zero
+      for (const std::size_t i : free) {
+        if (A.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > 0) moving.push_back(i);
+      }
+      if (moving.empty()) return worst(order) <= rounding;
+      MatrixXd columns(A.rows(), static_cast<Eigen::Index>(moving.size()));
+      for (std::size_t i = 0; i < moving.size(); ++i) {
+        columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(moving[i]));
+      }
+      Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+      decomposition.setThreshold(rank_tolerance);
+      decomposition.compute(columns);
+      if (decomposition.rank() < columns.cols()) return false;  // not fixed by the constraints
+      const VectorXd move = decomposition.solve(residual);
+      double size = 0, scale = 0;
+      for (std::size_t i = 0; i < moving.size(); ++i) {
+        double& x = value({s_.free[moving[i]], order});
+        x -= move(static_cast<Eigen::Index>(i));
+        size = std::max(size, std::abs(move(static_cast<Eigen::Index>(i))));
+        scale = std::max(scale, std::abs(x));
+      }
+      if (size <= newton_tolerance * scale || worst(order) <= newton_tolerance) return worst(order) <= rounding;
+    }
+    return worst(order) <= rounding;
+  }
+
+  [[noreturn]] void refuse(std::uint8_t order, std::size_t k, const std::vector<std::size_t>& free) const {
+    VectorXd residual;
+    MatrixXd A;
+    linearise(order, residual, A);
+    const auto row = static_cast<Eigen::Index>(k);
+    const mechanics::Constraint& constraint = p_.mechanics.constraints[s_.active[k]];
+    std::string given, open;
+    model::Span span = p_.scene.span;
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (A(row, static_cast<Eigen::Index>(i)) == 0) continue;
+      const StartProblem::Key key{s_.free[i], order};
+      const auto found = p_.given.find(key);
+      if (std::find(free.begin(), free.end(), i) != free.end()) {
+        open += (open.empty() ? "" : ", ") + label(key);
+      } else if (found != p_.given.end()) {
+        given += (given.empty() ? "\"" : ", \"") + label(key) + "\"";
+        span = found->second.span;
+      }
+    }
+    const std::string remedy =
+        !given.empty() && open.empty()
+            ? fmt::format("give consistent values, or name what may be moved: solve = [one of {}]", given)
+            : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve", open);
+    throw Error("scene", p_.mechanics.model->where(span),
+                fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
+                            constraint.label, order == 0 ? "" : " in its rates", residual(row),
+                            relative(residual, A, order, row), start_tolerance),
+                remedy);
+  }
+
+  static constexpr double rounding = 1e-14;  // of relative(): a few units in the last place of a sum of terms
+
+  StartProblem& p_;
+  const system::EquationSystem& s_;
+  std::size_t n_, m_;
+};
+
+}  // namespace
+
+void solve_start(StartProblem& problem) { StartSolver(problem).run(); }
+
+}  // namespace eomgen::run

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A start that satisfies the constraints: what is not given is 0, or follows from the constraints where they fix it.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::run {
+
+struct StartProblem {
+  using Key = std::pair<std::uint32_t, std::uint8_t>;  // coordinate, order 0 or 1
+  struct Given {
+    double value;
+    model::Span span;
+  };
+
+  mechanics::Mechanics& mechanics;
+  const system::EquationSystem& system;
+  const model::Scene& scene;
+  double t0;
+  const std::vector<double>& parameters;
+  std::map<Key, Given> given;
+  std::map<Key, double> guess;
+
+  std::vector<double> q, qdot;  // out: all coordinates
+  std::vector<std::string> solved = {};  // out: a sentence for each value that followed
+};
+
+/// Fills q, qdot. Positions by Newton on psi = 0, then rates by A qdot + b = 0. Throws Error{stage "scene"} with the
+/// place of the offending value and by how much the constraint is broken.
+void solve_start(StartProblem& problem);
+
+}  // namespace eomgen::run
