@@ -259,6 +259,7 @@ TEST_CASE("projection: no allocation after construction, also when the rank chan
   eom::Projection projection(2, 3);
   std::array<double, 4> x{0.7, -0.8, 0.8, 0.5};
   Eigen::internal::set_is_malloc_allowed(false);
+  CHECK_THROWS_AS(Eigen::MatrixXd(3, 3), std::logic_error);  // the guard itself works
   eom::ProjectionResult on_circle;
   eom::ProjectionResult at_centre;
   std::array<double, 4> y{0, 0, 1, 1};  // A vanishes here

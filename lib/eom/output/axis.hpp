@@ -19,6 +19,11 @@ struct Tick {
   bool minor = false;
 };
 
+/// Whether a value can be shown at all; beyond 1e300 the differences of two would overflow.
+inline bool showable(double value, bool logarithmic) {
+  return std::abs(value) <= 1e300 && (!logarithmic || value > 0);
+}
+
 struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
@@ -32,8 +37,7 @@ struct Axis {
     if (logarithmic) return std::log(value / low) / std::log(high / low);
     return (value - low) / (high - low);
   }
-  /// Whether a value can be shown at all.
-  bool shows(double value) const { return std::isfinite(value) && (!logarithmic || value > 0); }
+  bool shows(double value) const { return showable(value, logarithmic); }
 };
 
 namespace detail {
@@ -102,7 +106,7 @@ inline void logarithmic_ticks(Axis& axis, int about) {
 
 }  // namespace detail
 
-/// The axis for values from low to high (both finite; positive where logarithmic), widened a little, with about so many
+/// The axis for values from low to high (both showable), widened a little, with about so many
 /// labelled ticks. Where there is no extent, or no value at all (low > high), some range about them is taken.
 inline Axis make_axis(double low, double high, bool logarithmic, int about) {
   Axis axis;
@@ -116,7 +120,7 @@ inline Axis make_axis(double low, double high, bool logarithmic, int about) {
     return axis;
   }
   const double size = std::max(std::abs(low), std::abs(high));
-  const double extent = std::min(high - low, std::numeric_limits<double>::max() / 4);
+  const double extent = high - low;
   const double margin = extent > 1e-12 * size ? 0.03 * extent : (size > 0 ? 0.1 * size : 1);
   axis.low = low - margin;
   axis.high = high + margin;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A line plot as a self-contained SVG document. In: named series, labels, linear or logarithmic axes. Out: a string.
-// Values that cannot be shown (not finite; not positive on a logarithmic axis) interrupt the line. All text is escaped.
+// Values that cannot be shown (not finite, beyond 1e300, not positive on a logarithmic axis) interrupt the line. All text is escaped.
 #pragma once
 
 #include <algorithm>
@@ -107,7 +107,7 @@ class Drawing {
       if (series.x.size() != series.y.size())
         throw std::invalid_argument("svg plot: series '" + series.name + "' has x and y of different lengths");
       for (std::size_t i = 0; i < series.x.size(); ++i) {
-        if (!shown(series.x[i], plot_.log_x) || !shown(series.y[i], plot_.log_y)) continue;
+        if (!showable(series.x[i], plot_.log_x) || !showable(series.y[i], plot_.log_y)) continue;
         x.see(series.x[i]);
         y.see(series.y[i]);
       }
@@ -116,8 +116,6 @@ class Drawing {
     x_ = make_axis(x.low, x.high, plot_.log_x, static_cast<int>((right_ - left_) / 90));
     y_ = make_axis(y.low, y.high, plot_.log_y, static_cast<int>((bottom_ - top_) / 50));
   }
-
-  static bool shown(double value, bool logarithmic) { return std::isfinite(value) && (!logarithmic || value > 0); }
 
   /// Widens the shorter range about its middle until a unit has the same length on both axes.
   void equalise(Range& x, Range& y) const {

@@ -1,0 +1,47 @@
+// The runtime includes the standard library and itself; Eigen in constraints/projection.hpp alone; every header is MIT.
+#include <doctest/doctest.h>
+
+#include <cctype>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+namespace {
+
+bool allowed(const std::string& included, const std::string& header) {
+  if (included.starts_with("\"eom/")) return true;
+  if (included.starts_with("<Eigen/")) return header == "projection.hpp";
+  if (!included.starts_with("<")) return false;
+  for (const char c : included.substr(1, included.size() - 2))
+    if (std::islower(static_cast<unsigned char>(c)) == 0 && c != '_') return false;  // <vector>, but not <ginac/ginac.h>
+  return true;
+}
+
+}  // namespace
+
+TEST_CASE("runtime headers: own headers and the standard library only, Eigen in the projection only, MIT, no globals") {
+  int headers = 0;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(EOMGEN_SOURCE_DIR "/lib/eom")) {
+    if (!entry.is_regular_file()) continue;
+    const std::string name = entry.path().filename().string();
+    CAPTURE(name);
+    CHECK(entry.path().extension() == ".hpp");
+    std::ifstream file(entry.path());
+    std::string line;
+    std::getline(file, line);
+    CHECK(line == "// SPDX-License-Identifier: MIT");
+    int lines = 1;
+    bool guarded = false;
+    for (; std::getline(file, line); ++lines) {
+      guarded = guarded || line == "#pragma once";
+      if (!line.starts_with("#include ")) continue;
+      const std::string included = line.substr(9, line.find_first_of(">\"", 10) - 8);
+      CAPTURE(included);
+      CHECK(allowed(included, name));
+    }
+    CHECK(guarded);
+    CHECK(lines < 400);
+    ++headers;
+  }
+  CHECK(headers > 10);
+}
