@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A command of the program: one file each in commands/, one line each in registry.cpp.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+
+namespace eomgen::cli {
+
+/// Options that every command has.
+struct Common {
+  bool json = false;
+  std::uint64_t seed = 1;
+};
+
+/// What main asks of a command: `declare` adds its options to the parser, `execute` does the work and returns the exit
+/// code. Results go to standard output, everything else to standard error.
+struct Command {
+  const char* name;
+  const char* summary;
+  std::function<int(const Common&)> (*declare)(CLI::App&);
+};
+
+std::span<const Command> commands();
+
+}  // namespace eomgen::cli

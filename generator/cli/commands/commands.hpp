@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include "cli/command.hpp"
+
+namespace eomgen::cli {
+
+using Execute = std::function<int(const Common&)>;
+
+Execute declare_new(CLI::App& app);
+Execute declare_list(CLI::App& app);
+Execute declare_check(CLI::App& app);
+Execute declare_derive(CLI::App& app);
+Execute declare_verify(CLI::App& app);
+Execute declare_emit(CLI::App& app);
+Execute declare_run(CLI::App& app);
+
+}  // namespace eomgen::cli

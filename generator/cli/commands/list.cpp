@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands/commands.hpp"
+#include "coordinates/coordinate_system.hpp"
+#include "derive/routes.hpp"
+#include "emit/targets.hpp"
+#include "eom/ode.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json registries() {
+  json result{{"format", 1}};
+  json coordinates = json::array(), routes = json::array(), solvers = json::array(), targets = json::array();
+  for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
+    json slots = json::array();
+    for (const coordinates::Slot& slot : system->slots) slots.push_back(slot.name);
+    coordinates.push_back({{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
+  }
+  for (const derive::RouteEntry& route : derive::routes()) routes.push_back({{"name", route.name}, {"title", route.title}});
+  for (const eom::MethodInfo& method : eom::methods()) {
+    solvers.push_back({{"name", method.name}, {"order", method.order}, {"dense_order", method.dense_order}, {"adaptive", method.adaptive}});
+  }
+  for (const emit::TargetEntry& target : emit::targets()) targets.push_back({{"name", target.name}, {"title", target.title}});
+  result["coordinates"] = coordinates;
+  result["rotations"] = json::array();
+  result["joints"] = json::array();
+  result["solvers"] = solvers;
+  result["targets"] = targets;
+  result["routes"] = routes;
+  return result;
+}
+
+int execute(const Common& common) {
+  const json all = registries();
+  if (common.json) {
+    fmt::print("{}\n", all.dump(2));
+    return 0;
+  }
+  for (const auto& [key, entries] : all.items()) {
+    if (!entries.is_array()) continue;
+    fmt::print("{}:\n", key);
+    if (entries.empty()) fmt::print("  none yet\n");
+    for (const json& entry : entries) {
+      const std::string title = entry.contains("title") ? entry["title"].get<std::string>()
+                                                        : fmt::format("order {}", entry["order"].get<int>());
+      fmt::print("  {:<14} {}\n", entry["name"].get<std::string>(), title);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+
+Execute declare_list(CLI::App&) { return execute; }
+
+}  // namespace eomgen::cli

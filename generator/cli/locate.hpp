@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From what the user typed as MODEL to a Model, with its warnings told.
+#pragma once
+
+#include <string>
+
+#include "model/model.hpp"
+
+namespace eomgen::cli {
+
+/// A path, or the name of a file in models/ (here, above, or beside the installed program). Throws Error with
+/// did-you-mean where there is no such model.
+std::string locate_model(const std::string& name);
+
+/// Reads it and prints its warnings to standard error.
+model::Model load_model(const std::string& name);
+
+}  // namespace eomgen::cli

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/integration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace eomgen::run {
+
+std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw std::logic_error("the compiled code has no output '" + name + "'");
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+Integration::Integration(const RunRequest& request, std::string solver)
+    : request_(request),
+      code_(request.code),
+      solver_(std::move(solver)),
+      n_(request.code.free.size()),
+      energy_(index_of(request.code.output_names, "energy")),
+      u_(std::max<std::size_t>(1, request.scene.inputs.size())),
+      y_(request.code.output_names.size()),
+      psi_(request.code.active_constraints),
+      A_(request.code.active_constraints * n_),
+      b_(request.code.active_constraints),
+      projection_(n_, request.code.active_constraints) {
+  if (request.watch_power) power_ = index_of(request.code.output_names, "power");
+}
+
+std::vector<double> Integration::initial_state() const {
+  std::vector<double> x;
+  for (const std::uint32_t i : code_.free) x.push_back(request_.scene.q[i]);
+  for (const std::uint32_t i : code_.free) x.push_back(request_.scene.qdot[i]);
+  if (request_.watch_power) x.push_back(0);  // the work done since the start
+  return x;
+}
+
+const double* Integration::inputs(double t) const {
+  for (std::size_t i = 0; i < request_.scene.inputs.size(); ++i) u_[i] = request_.scene.inputs[i](t, side_);
+  return u_.data();
+}
+
+int Integration::rhs(double t, const double* x, double* dx) {
+  const double* u = inputs(t);
+  const int code = code_.rhs(t, x, request_.scene.parameters.data(), u, 0, dx);
+  if (code != 0 || !request_.watch_power) return code;
+  const int watched = code_.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
+  dx[2 * n_] = y_[power_];
+  return watched;
+}
+
+int Integration::outputs(double t, const double* x, std::span<double> y) const {
+  return code_.outputs(t, x, request_.scene.parameters.data(), inputs(t), 0, y.data());
+}
+
+double Integration::constraint_defect(double t, const double* x) {
+  if (psi_.empty()) return 0;
+  code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data());
+  double largest = 0;
+  for (const double psi : psi_) largest = std::max(largest, std::abs(psi));
+  return largest;
+}
+
+int Integration::project(double t, double* x) {
+  const double* p = request_.scene.parameters.data();
+  outputs(t, x, y_);
+  const double before = y_[energy_];
+  const eom::ProjectionResult moved = projection_(
+      t, x,
+      [&](double at, const double* state, double* psi, double* A, double* b) {
+        return code_.constraints(at, state, p, psi, A, b);
+      },
+      [&](double at, const double* state, double* M, double* h) { return code_.mass(at, state, p, M, h); });
+  if (moved.code != 0) return moved.code;
+  outputs(t, x, y_);
+  position_correction = std::max(position_correction, moved.position_correction);
+  velocity_correction = std::max(velocity_correction, moved.velocity_correction);
+  work += y_[energy_] - before;
+  return 0;
+}
+
+eom::Result Integration::run(const eom::Options& options, const Observer& observer) {
+  position_correction = velocity_correction = work = 0;
+  std::vector<double> restarts;
+  for (const Signal& signal : request_.scene.inputs) {
+    for (const double t : signal.jumps()) {
+      if (t > request_.scene.t0 && t < request_.scene.t1) restarts.push_back(t);
+    }
+  }
+  std::sort(restarts.begin(), restarts.end());
+  restarts.erase(std::unique(restarts.begin(), restarts.end()), restarts.end());
+  restarts.push_back(request_.scene.t1);
+
+  eom::Options piece = options;
+  piece.quadratures = request_.watch_power ? 1 : 0;
+  eom::Result total;
+  total.x = initial_state();
+  total.t = request_.scene.t0;
+  const auto f = [this](double t, const double* x, double* dx) { return rhs(t, x, dx); };
+  const auto watch = [&](const eom::StepView& step) { return !observer || observer(step); };
+  const auto after = [this](double t, double* x) { return psi_.empty() ? 0 : project(t, x); };
+  for (const double end : restarts) {
+    side_ = (total.t + end) / 2;
+    const eom::Result part = eom::integrate(solver_, f, total.t, total.x, end, piece, watch, after);
+    total.outcome = part.outcome;
+    total.detail = part.detail;
+    total.t = part.t;
+    total.x = part.x;
+    total.statistics.steps += part.statistics.steps;
+    total.statistics.rejected += part.statistics.rejected;
+    total.statistics.rhs_evaluations += part.statistics.rhs_evaluations;
+    total.statistics.dense_fallbacks += part.statistics.dense_fallbacks;
+    if (part.outcome != eom::Outcome::done) break;
+  }
+  return total;
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,190 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/runner.hpp"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+#include <eom/error_estimate.hpp>
+#include <eom/watch/drift.hpp>
+
+#include "run/integration.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+
+/// What is looked at after every step: invariants, power balance, constraints; and the rows in between.
+class Watch {
+ public:
+  Watch(const RunRequest& request, Integration& integration)
+      : request_(request), integration_(integration), y_(request.code.output_names.size()) {
+    const std::vector<std::string>& names = request.code.output_names;
+    kinetic_ = index_of(names, "kinetic");
+    potential_ = index_of(names, "potential");
+    energy_ = index_of(names, "energy");
+    for (const std::string& name : request.conserved) {
+      conserved_.push_back(index_of(names, name));
+      drifts_.emplace_back(name);
+    }
+    const std::vector<double> x = integration.initial_state();
+    between_.resize(x.size());
+    see(request.scene.t0, x.data());
+    row(request.scene.t0, x.data());
+  }
+
+  bool step(const eom::StepView& view) {
+    if (request_.every > 0) rows_within(view);
+    see(view.t1, view.x1.data());
+    if (request_.progress) {
+      request_.progress((view.t1 - request_.scene.t0) / (request_.scene.t1 - request_.scene.t0));
+    }
+    return true;
+  }
+
+  /// The end of the run as a last row, unless it is on the grid already.
+  void finish(double t, const double* x) {
+    if (request_.every > 0 && t != last_row_) row(t, x);
+  }
+
+  void report(RunResult& result) const {
+    for (const eom::Drift& drift : drifts_) {
+      result.invariants.push_back({drift.name(), drift.initial(), drift.max_relative_drift()});
+    }
+    result.power_balance = balance_.max_relative_defect();
+    result.constraint_drift = defect_;
+  }
+
+ private:
+  void see(double t, const double* x) {
+    integration_.outputs(t, x, y_);
+    const double magnitude = std::abs(y_[kinetic_]) + std::abs(y_[potential_]);
+    for (std::size_t i = 0; i < conserved_.size(); ++i) {
+      const bool energy = conserved_[i] == energy_;
+      drifts_[i].see(y_[conserved_[i]], energy ? magnitude : 0);
+    }
+    const double work = request_.watch_power ? x[2 * request_.code.free.size()] : 0;
+    balance_.see(y_[energy_] - integration_.work, work, magnitude);
+    defect_ = std::max(defect_, integration_.constraint_defect(t, x));
+  }
+
+  void rows_within(const eom::StepView& view) {
+    // Multiples of the interval, counted, so that the grid does not drift; a last sliver belongs to the end.
+    while (true) {
+      const double t = request_.scene.t0 + static_cast<double>(next_) * request_.every;
+      if (t > view.t1 || t > request_.scene.t1) return;
+      if (t == view.t1) {
+        row(t, view.x1.data());
+      } else {
+        view.interpolate(t, between_);
+        row(t, between_.data());
+      }
+      ++next_;
+    }
+  }
+
+  void row(double t, const double* x) {
+    if (request_.every <= 0 || !request_.row) return;
+    integration_.outputs(t, x, y_);
+    request_.row(t, y_);
+    last_row_ = t;
+  }
+
+  const RunRequest& request_;
+  Integration& integration_;
+  std::vector<double> y_, between_;
+  std::size_t kinetic_ = 0, potential_ = 0, energy_ = 0;
+  std::vector<std::size_t> conserved_;
+  std::vector<eom::Drift> drifts_;
+  eom::PowerBalance balance_;
+  double defect_ = 0;
+  std::uint64_t next_ = 1;
+  double last_row_ = std::nan("");
+};
+
+void estimate_error(const RunRequest& request, const eom::Result& first, const eom::Options& options, RunResult& result) {
+  const Clock::time_point start = Clock::now();
+  int order = 0;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (method.name == result.solver) order = method.order;
+  }
+  Integration again(request, result.solver);
+  const eom::ErrorEstimate estimate =
+      eom::estimate_error(order, first, options, [&](const eom::Options& tighter) { return again.run(tighter, {}); });
+  double largest = 0;
+  for (std::size_t i = 0; i < request.state_names.size(); ++i) {
+    result.error_estimate.emplace_back(request.state_names[i], estimate.x[i]);
+    largest = std::max(largest, estimate.x[i]);
+  }
+  result.error_estimate.emplace_back("max", largest);
+  result.estimate_rhs_evaluations = estimate.statistics.rhs_evaluations;
+  if (estimate.outcome != eom::Outcome::done) {
+    result.estimate_note = fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(estimate.outcome));
+  }
+  result.seconds_estimate = seconds_since(start);
+}
+
+eom::Options options_of(const RunRequest& request, const std::string& solver) {
+  eom::Options options;
+  options.rtol = request.scene.rtol;
+  options.atol = request.scene.atol;
+  options.fixed_step = request.scene.step;
+  options.interrupt = request.interrupt;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (method.name == solver && !method.adaptive && options.fixed_step <= 0) {
+      throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", solver),
+                  "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
+    }
+  }
+  return options;
+}
+
+}  // namespace
+
+std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
+  if (asked != "auto") {
+    for (const eom::MethodInfo& method : eom::methods()) {
+      if (asked == method.name) return {asked, "as asked for"};
+    }
+    std::string names;
+    for (const eom::MethodInfo& method : eom::methods()) names += fmt::format("{}, ", method.name);
+    static constexpr const char* later[] = {"tsit5", "taylor", "radau5", "rodas", "midpoint", "variational2", "variational4"};
+    for (const char* name : later) {
+      if (asked == name) throw Error("run", {}, fmt::format("solver '{}' is not supported yet", asked), "choose from: " + names + "auto");
+    }
+    throw Error("run", {}, fmt::format("there is no solver '{}'", asked), "choose from: " + names + "auto");
+  }
+  if (scene.step > 0) return {"rk4", "a fixed step is given"};
+  if (scene.rtol > 1e-6) return {"dopri5", "rtol is above 1e-6, where order 5 needs the fewest evaluations"};
+  return {"dop853", "rtol is 1e-6 or below, where order 8 needs the fewest evaluations"};
+}
+
+RunResult integrate_scene(const RunRequest& request) {
+  RunResult result;
+  std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
+  const eom::Options options = options_of(request, result.solver);
+  Integration integration(request, result.solver);
+  Watch watch(request, integration);
+  const Clock::time_point start = Clock::now();
+  const eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); });
+  result.seconds_integrate = seconds_since(start);
+  watch.finish(end.t, end.x.data());
+  watch.report(result);
+  result.outcome = end.outcome;
+  result.detail = end.detail;
+  result.t = end.t;
+  result.statistics = end.statistics;
+  result.projection_position = integration.position_correction;
+  result.projection_velocity = integration.velocity_correction;
+  result.projection_work = integration.work;
+  std::vector<double> y(request.code.output_names.size());
+  integration.outputs(end.t, end.x.data(), y);
+  for (std::size_t i = 0; i < y.size(); ++i) result.final.emplace_back(request.code.output_names[i], y[i]);
+  if (request.estimate && end.outcome == eom::Outcome::done) estimate_error(request, end, options, result);
+  return result;
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: compiled code, a scene in numbers. Out: the run: end state, error estimate, invariants, power balance, what it
+// cost; and rows of outputs to whoever wants them.
+#pragma once
+
+#include <atomic>
+#include <eom/ode.hpp>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "run/scene.hpp"
+
+namespace eomgen::run {
+
+/// The functions of the C ABI that a run calls (docs/abi.md); mass and constraints only where there are multipliers.
+struct Code {
+  int (*rhs)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
+  int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
+  std::vector<std::string> output_names;  // entries of y: begins with every coordinate and its _dot
+  std::vector<std::uint32_t> free;        // coordinates that are state
+  std::size_t active_constraints = 0;
+};
+
+struct Invariant {
+  std::string name;
+  double initial = 0, max_relative_drift = 0;
+};
+struct RunEvent {
+  double t;
+  std::string kind, name;
+};
+
+struct RunResult {
+  std::string solver, reason;
+  eom::Outcome outcome = eom::Outcome::done;
+  std::string detail;
+  double t = 0;
+  eom::Statistics statistics;
+  double seconds_integrate = 0, seconds_estimate = 0;
+  std::vector<std::pair<std::string, double>> final;
+  std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not asked for
+  std::size_t estimate_rhs_evaluations = 0;
+  std::string estimate_note;  // where the estimate itself could not be made as told
+  std::vector<Invariant> invariants;
+  double power_balance = 0;      // largest |E - E(0) - W| relative to the energies exchanged
+  double constraint_drift = 0;   // largest |psi| at the end of a step
+  double projection_position = 0, projection_velocity = 0, projection_work = 0;
+  std::vector<RunEvent> events;
+};
+
+struct RunRequest {
+  const Code& code;
+  const Scene& scene;
+  std::vector<std::string> state_names;   // of x
+  std::vector<std::string> conserved;     // outputs that are invariants
+  bool watch_power = false;               // power is not identically zero: its work is integrated alongside
+  bool estimate = true;
+  double every = 0;                       // interval of rows; 0: no rows
+  std::function<void(double t, std::span<const double> y)> row;
+  std::function<void(double fraction)> progress;
+  const std::atomic<bool>* interrupt = nullptr;
+};
+
+/// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.
+RunResult integrate_scene(const RunRequest& request);
+
+/// The solver that `auto` stands for, and why.
+std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);
+
+}  // namespace eomgen::run
