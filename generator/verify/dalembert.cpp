@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/dalembert.hpp"
+
+#include <cln/real.h>
+
+#include "verify/plain_forces.hpp"
+#include "verify/uses.hpp"
+
+namespace eomgen::verify {
+
+namespace {
+
+// Highest derivative of a function of time that an expression can ask for: a residual needs the second, an expression
+// such as ddt(d_ddot) two more.
+constexpr std::size_t function_orders = 4;
+
+/// All mixed slopes of `jet` on the levels 1 .. top: the top-th time derivative.
+Jet nested_slope(Jet jet, unsigned top) {
+  for (unsigned level = top; level >= 1; --level) jet = jet.slope(level, 0);
+  return jet;
+}
+
+Vector slope(const Vector& v, unsigned level, std::size_t i) {
+  return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
+}
+
+}  // namespace
+
+void Residual::add(const Real& term) {
+  value = value + term;
+  scale = scale + cln::abs(term);
+}
+
+double relative(const Real& difference, const Real& scale) {
+  if (cln::zerop(difference)) return 0;
+  return cln::zerop(scale) ? 1 : cln::double_approx(cln::abs(difference) / scale);
+}
+
+double Residual::relative() const { return verify::relative(value, scale); }
+
+Judge::Judge(const model::Model& model, int digits) : model_(model), precision_(digits) {
+  for (const model::Constraint& constraint : model.constraints)
+    psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
+}
+
+bool Judge::is_independent_parameter(std::size_t index) const {
+  return !uses(model_, model_.parameters[index].value, model::Op::parameter);
+}
+
+std::vector<Real> Judge::parameters(std::vector<Real> given) const {
+  given.resize(model_.parameters.size(), Real(0));
+  Environment environment;
+  for (std::size_t i = 0; i < given.size(); ++i) {
+    if (!is_independent_parameter(i)) {
+      Interpreter reader(model_, environment, precision_);  // parameters are expressions of earlier ones
+      given[i] = reader.scalar(model_.parameters[i].value).real();
+    }
+    environment.parameters.emplace_back(given[i]);
+  }
+  return given;
+}
+
+void Judge::add_functions(Environment& environment) const {
+  const std::size_t n = model_.functions.size();
+  environment.functions.assign(n, {});
+  // A function may use others, declared before or after it.
+  for (std::size_t done = 0, before = 1; done < n && done != before;) {
+    before = done;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!environment.functions[i].empty()) continue;
+      const auto unknown = [&](const model::Node& node) {
+        return node.op == model::Op::function && environment.functions[node.index].empty();
+      };
+      if (uses(model_, model_.functions[i].is, unknown)) continue;
+      Interpreter now(model_, environment, precision_);
+      Interpreter* at = &now;
+      std::vector<Jet> orders{now.scalar(model_.functions[i].is)};
+      for (unsigned k = 1; k <= function_orders; ++k) {
+        at = &at->along_time();
+        try {
+          orders.push_back(nested_slope(at->scalar(model_.functions[i].is), k));
+        } catch (const Error&) {
+          break;  // it uses a derivative of another function: fewer of its own are known
+        }
+      }
+      environment.functions[i] = std::move(orders);
+      ++done;
+    }
+  }
+}
+
+Interpreter Judge::interpreter(const State& state, Margin* margin) const {
+  Environment environment;
+  environment.t = Jet(state.t);
+  for (const Real& value : state.parameters) environment.parameters.emplace_back(value);
+  for (const Real& value : state.inputs) environment.inputs.emplace_back(value);
+  add_functions(environment);
+  for (std::size_t i = 0; i < state.q.size(); ++i) {
+    environment.coordinates.push_back({Jet(state.q[i]), Jet(state.qdot[i])});
+    if (i < state.qddot.size()) environment.coordinates.back().emplace_back(state.qddot[i]);
+  }
+  return Interpreter(model_, std::move(environment), precision_, margin);
+}
+
+Real Judge::value(model::NodeId expression, const State& state) const {
+  return interpreter(state).scalar(expression).real();
+}
+
+namespace {
+
+/// sum over particles of d(m v)/dt . dr/dq_i, term by term.
+void add_inertia(const model::Model& model, Interpreter& now, std::vector<Residual>& sums) {
+  Interpreter& by_q = now.by_coordinates(false);
+  Interpreter& later = now.along_time();
+  Interpreter& twice = later.along_time();
+  for (const model::Particle& particle : model.particles) {
+    const Vector v = slope(twice.place(particle.place), twice.level(), 0);  // v + a eps
+    const Vector momentum = later.scalar(particle.mass) * v;
+    const Vector rate = slope(momentum, later.level(), 0);
+    const Vector r = by_q.place(particle.place);
+    for (std::size_t i = 0; i < sums.size(); ++i)
+      for (std::size_t k = 0; k < 3; ++k) sums[i].add((rate[k] * r[k].slope(by_q.level(), i)).real());
+  }
+}
+
+/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model gives as such.
+void add_energies(const model::Model& model, Interpreter& now, std::vector<Residual>& sums) {
+  const std::size_t n = sums.size();
+  if (model.energy.kinetic != model::no_node) {
+    Interpreter& later = now.along_time();
+    Interpreter& varied = later.by_coordinates(true);
+    const Jet T = varied.scalar(model.energy.kinetic);
+    for (std::size_t i = 0; i < n; ++i) {
+      sums[i].add(T.slope(varied.level(), n + i).slope(later.level(), 0).real());
+      sums[i].add((-T.slope(varied.level(), i)).real());
+    }
+  }
+  if (model.energy.potential != model::no_node) {
+    Interpreter& by_q = now.by_coordinates(false);
+    const Jet U = by_q.scalar(model.energy.potential);
+    for (std::size_t i = 0; i < n; ++i) sums[i].add(U.slope(by_q.level(), i).real());
+  }
+}
+
+}  // namespace
+
+std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin) const {
+  Interpreter now = interpreter(state, margin);
+  std::vector<Residual> sums(state.q.size());
+  add_inertia(model_, now, sums);
+  add_energies(model_, now, sums);
+  subtract_forces(model_, precision_, now, sums);
+  Interpreter& by_q = now.by_coordinates(false);
+  for (std::size_t k = 0; k < psi_.size(); ++k) {
+    const Jet psi = by_q.scalar(psi_[k]);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * psi.slope(by_q.level(), i).real());
+  }
+  return sums;
+}
+
+ConstraintValues Judge::constraint_values(const State& state, Margin* margin) const {
+  Interpreter now = interpreter(state, margin);
+  Interpreter& by_q = now.by_coordinates(false);
+  Interpreter& later = now.along_time();
+  ConstraintValues values;
+  for (const model::NodeId id : psi_) {
+    const Jet rate = later.scalar(id);
+    values.psi.push_back(rate.real());
+    values.psi_dot.push_back(rate.slope(later.level(), 0).real());
+    if (!state.qddot.empty()) {
+      Interpreter& twice = later.along_time();
+      const Jet both = twice.scalar(id).slope(twice.level(), 0);
+      values.psi_ddot.push_back(both.slope(later.level(), 0).real());
+    }
+    const Jet psi = by_q.scalar(id);
+    std::vector<Real> row;
+    for (std::size_t i = 0; i < state.q.size(); ++i) row.push_back(psi.slope(by_q.level(), i).real());
+    values.gradient.push_back(std::move(row));
+  }
+  return values;
+}
+
+EnergyValues Judge::energy_values(const State& state) const {
+  Interpreter now = interpreter(state);
+  Interpreter& later = now.along_time();
+  EnergyValues sum;
+  const auto add = [&](const Jet& term, Real& value, Real& rate) {
+    const Real slope = term.slope(later.level(), 0).real();
+    value = value + term.real();
+    rate = rate + slope;
+    sum.scale = sum.scale + cln::abs(term.real());
+    sum.rate_scale = sum.rate_scale + cln::abs(slope);
+  };
+  Interpreter& twice = later.along_time();
+  for (const model::Particle& particle : model_.particles) {
+    const Vector v = slope(twice.place(particle.place), twice.level(), 0);
+    const Jet half_mass = later.scalar(particle.mass) / 2;
+    for (const Jet& component : v) add(half_mass * component * component, sum.kinetic, sum.kinetic_rate);
+  }
+  if (model_.energy.kinetic != model::no_node) {
+    const Jet T = later.scalar(model_.energy.kinetic);
+    add(T, sum.kinetic, sum.kinetic_rate);
+  }
+  for (const Jet& term : potentials(model_, precision_, later)) add(term, sum.potential, sum.potential_rate);
+  return sum;
+}
+
+}  // namespace eomgen::verify

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The independent judge. In: a Model and a state with accelerations and multipliers. Out: by how much d'Alembert's
+// principle fails there, per coordinate,
+//   sum_particles (d(m v)/dt - F) . dr/dq_i - Q_i - sum_k lambda_k dpsi_k/dq_i      ((2.74), (2.163), (2.31), (3.20)),
+// with the Euler-Lagrange residual d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of energies that are given as such; the
+// constraints and their rates; and the energies with theirs.
+//
+// Forces are plain forces read from the Model. It may include the Model and jets only: no graph, no computer algebra, no
+// mechanics. That is what makes its agreement mean something (docs/verification.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verify/interpreter.hpp"
+
+namespace eomgen::verify {
+
+struct State {
+  Real t = 0;
+  std::vector<Real> q, qdot, qddot;  // every coordinate of the model
+  std::vector<Real> parameters, inputs;
+};
+
+/// A sum that should vanish, and the sum of the absolute values of its terms.
+struct Residual {
+  Real value = 0;
+  Real scale = 0;
+  void add(const Real& term);
+  double relative() const;  // |value| / scale; 0 where both are 0
+};
+
+/// Of all scalar equations psi_k = 0 in the order of the model; N coordinates, K equations.
+struct ConstraintValues {
+  std::vector<Real> psi, psi_dot, psi_ddot;  // along the path
+  std::vector<std::vector<Real>> gradient;   // K x N: dpsi_k/dq_i
+};
+
+struct EnergyValues {
+  Real kinetic = 0, potential = 0;            // T; U of everything that has a potential
+  Real kinetic_rate = 0, potential_rate = 0;  // along the path
+  Real scale = 0;                             // sum of the absolute values of their terms
+  Real rate_scale = 0;
+};
+
+class Judge {
+ public:
+  Judge(const model::Model& model, int digits);
+
+  const model::Model& model() const { return model_; }
+  const Precision& precision() const { return precision_; }
+  const std::vector<model::NodeId>& constraints() const { return psi_; }
+
+  /// Every parameter, those that are expressions of others computed; `given` holds the independent ones.
+  std::vector<Real> parameters(std::vector<Real> given) const;
+  bool is_independent_parameter(std::size_t index) const;
+
+  std::vector<Residual> dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin = nullptr) const;
+  ConstraintValues constraint_values(const State& state, Margin* margin = nullptr) const;
+  EnergyValues energy_values(const State& state) const;
+  /// Value of an expression of the model, such as a start of a scene.
+  Real value(model::NodeId expression, const State& state) const;
+
+  Interpreter interpreter(const State& state, Margin* margin = nullptr) const;
+
+ private:
+  void add_functions(Environment& environment) const;
+
+  const model::Model& model_;
+  Precision precision_;
+  std::vector<model::NodeId> psi_;
+};
+
+}  // namespace eomgen::verify

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: the expressions of a Model and an environment (time, coordinates and their rates, parameters, inputs as jets).
+// Out: values as jets. ddt(e) re-reads e with time on a new level, q -> q + qdot eps, qdot -> qdot + qddot eps; diff(e, x)
+// and the basis vectors a_i = dr/dq_i (1.20) re-read theirs with x on a new level. Nothing is differentiated as a
+// formula, and nothing here is shared with mechanics, derive or the reading form.
+#pragma once
+
+#include <array>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <tuple>
+#include <unordered_map>
+#include <vector>
+
+#include "model/model.hpp"
+#include "verify/jet.hpp"
+
+namespace eomgen::verify {
+
+using Vector = std::array<Jet, 3>;
+
+Vector operator+(const Vector& a, const Vector& b);
+Vector operator-(const Vector& a, const Vector& b);
+Vector operator*(const Jet& s, const Vector& v);
+Jet dot(const Vector& a, const Vector& b);
+Vector cross(const Vector& a, const Vector& b);
+Jet norm(const Vector& a, const Precision& p);
+
+struct Environment {
+  Jet t;
+  std::vector<std::vector<Jet>> coordinates;  // [coordinate][order]: as many orders as are known
+  std::vector<std::vector<Jet>> functions;    // [function][order]
+  std::vector<Jet> parameters, inputs;
+  unsigned level = 0;  // the highest level in use
+};
+
+/// How near a state is to a kink (abs, sign, min, max, if): the least relative distance met so far.
+struct Margin {
+  double kink = 1;
+};
+
+class Interpreter {
+ public:
+  Interpreter(const model::Model& model, Environment environment, Precision precision, Margin* margin = nullptr,
+              const model::Spring* spring = nullptr);
+
+  Jet scalar(model::NodeId id);
+  Vector vector(model::NodeId id);
+  Vector place(std::uint32_t index);  // position of Model::places[index]
+  /// |b - a| - length of the spring that Op::extension means here.
+  Jet extension(const model::Spring& spring);
+
+  const Environment& environment() const { return environment_; }
+  unsigned level() const { return environment_.level; }
+
+  /// The same a moment later: d/dt is slope(level(), 0) of what it gives.
+  Interpreter& along_time();
+  /// Every coordinate (and, if `rates`, every velocity) on a new level: d/dq_i is slope(level(), i), d/dqdot_i is
+  /// slope(level(), n + i).
+  Interpreter& by_coordinates(bool rates);
+  /// The same environment, in which Op::extension is that of `spring`.
+  Interpreter for_spring(const model::Spring& spring) const;
+
+ private:
+  using Leaf = std::tuple<model::Op, std::uint32_t, std::uint8_t>;
+  Interpreter& by_leaf(const model::Node& leaf);
+  Jet read(const model::Node& node);
+  Jet leaf(const model::Node& node);
+  Jet derivative(const model::Node& node);
+  Jet call(const model::Node& node);
+  Jet conditional(const model::Node& node);
+  Vector read_vector(const model::Node& node);
+  Vector read_basis(const model::Node& node);
+  bool names(std::uint32_t place, const model::Node& coordinate) const;
+  Vector tangent(std::uint32_t place, const model::Node& coordinate, bool relative);  // dr/dq
+  Vector dual(std::uint32_t place, const model::Node& coordinate);                    // grad q
+  bool less(const Jet& a, const Jet& b);
+  [[noreturn]] void refuse(const model::Node& node, const char* what) const;
+  std::unique_ptr<Interpreter> child(Environment environment) const;
+
+  const model::Model& model_;
+  Environment environment_;
+  Precision precision_;
+  Margin* margin_;
+  const model::Spring* spring_;
+  std::unordered_map<model::NodeId, Jet> scalars_;
+  std::unordered_map<model::NodeId, Vector> vectors_;
+  std::unique_ptr<Interpreter> later_, by_q_, by_q_and_rates_;
+  std::map<Leaf, std::unique_ptr<Interpreter>> by_leaf_;
+};
+
+}  // namespace eomgen::verify

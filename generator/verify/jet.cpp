@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/jet.hpp"
+
+#include <cln/integer.h>
+#include <cln/integer_ring.h>
+#include <cln/rational.h>
+#include <cln/rational_ring.h>
+
+#include <algorithm>
+
+namespace eomgen::verify {
+
+struct Jet::Dual {
+  Jet value;
+  std::vector<Jet> slopes;
+};
+
+namespace {
+
+const Jet& zero_jet() {
+  static const Jet zero;
+  return zero;
+}
+
+bool is_integer(const Real& x) { return cln::instanceof(x, cln::cl_I_ring); }
+
+void require(bool ok, const char* why) {
+  if (!ok) throw Singular(why);
+}
+
+}  // namespace
+
+Jet Jet::on_level(unsigned level, Jet value, std::vector<Jet> slopes) {
+  if (std::all_of(slopes.begin(), slopes.end(), [](const Jet& s) { return s.exactly_zero(); })) return value;
+  Jet jet;
+  jet.level_ = level;
+  jet.dual_ = std::make_shared<const Dual>(Dual{std::move(value), std::move(slopes)});
+  return jet;
+}
+
+Jet Jet::variable(unsigned level, Jet value, std::size_t direction, std::size_t directions) {
+  std::vector<Jet> slopes(directions);
+  slopes[direction] = Jet(1);
+  return on_level(level, std::move(value), std::move(slopes));
+}
+
+const Jet& Jet::value(unsigned level) const { return level_ == level && dual_ ? dual_->value : *this; }
+
+const Jet& Jet::slope(unsigned level, std::size_t direction) const {
+  if (level_ != level || !dual_ || direction >= dual_->slopes.size()) return zero_jet();
+  return dual_->slopes[direction];
+}
+
+const Real& Jet::real() const {
+  const Jet* jet = this;
+  while (jet->dual_) jet = &jet->dual_->value;
+  return jet->real_;
+}
+
+bool Jet::exactly_zero() const {
+  return !dual_ && cln::zerop(real_) && cln::instanceof(real_, cln::cl_RA_ring);
+}
+
+std::size_t Jet::directions(const Jet& a, const Jet& b, unsigned level) {
+  const std::size_t na = a.level_ == level && a.dual_ ? a.dual_->slopes.size() : 0;
+  const std::size_t nb = b.level_ == level && b.dual_ ? b.dual_->slopes.size() : 0;
+  return std::max(na, nb);
+}
+
+Jet operator+(const Jet& a, const Jet& b) {
+  if (a.exactly_zero()) return b;
+  if (b.exactly_zero()) return a;
+  if (!a.dual_ && !b.dual_) return a.real_ + b.real_;
+  const unsigned level = std::max(a.level_, b.level_);
+  std::vector<Jet> slopes(Jet::directions(a, b, level));
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = a.slope(level, i) + b.slope(level, i);
+  return Jet::on_level(level, a.value(level) + b.value(level), std::move(slopes));
+}
+
+Jet operator-(const Jet& a, const Jet& b) {
+  if (b.exactly_zero()) return a;
+  if (!a.dual_ && !b.dual_) return a.real_ - b.real_;
+  const unsigned level = std::max(a.level_, b.level_);
+  std::vector<Jet> slopes(Jet::directions(a, b, level));
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = a.slope(level, i) - b.slope(level, i);
+  return Jet::on_level(level, a.value(level) - b.value(level), std::move(slopes));
+}
+
+Jet operator*(const Jet& a, const Jet& b) {
+  if (a.exactly_zero() || b.exactly_zero()) return Jet();
+  if (!a.dual_ && !b.dual_) return a.real_ * b.real_;
+  const unsigned level = std::max(a.level_, b.level_);
+  const Jet& a0 = a.value(level);
+  const Jet& b0 = b.value(level);
+  std::vector<Jet> slopes(Jet::directions(a, b, level));
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = a0 * b.slope(level, i) + a.slope(level, i) * b0;
+  return Jet::on_level(level, a0 * b0, std::move(slopes));
+}
+
+Jet operator/(const Jet& a, const Jet& b) {
+  if (!b.dual_) {
+    require(!cln::zerop(b.real_), "division by zero");
+    if (a.exactly_zero()) return Jet();
+    if (!a.dual_) return a.real_ / b.real_;
+    return a * Jet(1 / b.real_);
+  }
+  const unsigned level = std::max(a.level_, b.level_);
+  const Jet& b0 = b.value(level);
+  const Jet quotient = a.value(level) / b0;
+  std::vector<Jet> slopes(Jet::directions(a, b, level));
+  for (std::size_t i = 0; i < slopes.size(); ++i)
+    slopes[i] = (a.slope(level, i) - quotient * b.slope(level, i)) / b0;
+  return Jet::on_level(level, quotient, std::move(slopes));
+}
+
+Jet chain(const Jet& x, Jet value, const Jet& derivative) {
+  std::vector<Jet> slopes(x.dual_->slopes.size());
+  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = x.dual_->slopes[i] * derivative;
+  return Jet::on_level(x.level_, std::move(value), std::move(slopes));
+}
+
+std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {
+  if (x.level() == 0) {
+    if (x.exactly_zero()) return {Jet(0), Jet(1)};
+    const cln::cos_sin_t both = cln::cos_sin(p.round(x.real()));
+    return {Jet(both.sin), Jet(both.cos)};
+  }
+  const auto [s, c] = sin_cos(x.value(x.level()), p);
+  return {chain(x, s, c), chain(x, c, -s)};
+}
+
+std::pair<Jet, Jet> sinh_cosh(const Jet& x, const Precision& p) {
+  if (x.level() == 0) {
+    const cln::cosh_sinh_t both = cln::cosh_sinh(p.round(x.real()));
+    return {Jet(both.sinh), Jet(both.cosh)};
+  }
+  const auto [s, c] = sinh_cosh(x.value(x.level()), p);
+  return {chain(x, s, c), chain(x, c, s)};
+}
+
+Jet tan(const Jet& x, const Precision& p) {
+  const auto [s, c] = sin_cos(x, p);
+  return s / c;
+}
+
+Jet asin(const Jet& x, const Precision& p) {
+  // the angle at which the cosine is the positive root
+  return atan2(x, sqrt((1 - x) * (1 + x), p), p);
+}
+
+Jet acos(const Jet& x, const Precision& p) { return atan2(sqrt((1 - x) * (1 + x), p), x, p); }
+
+Jet atan(const Jet& x, const Precision& p) {
+  if (x.level() == 0) return Jet(cln::atan(p.round(x.real())));
+  const Jet& x0 = x.value(x.level());
+  return chain(x, atan(x0, p), 1 / (1 + x0 * x0));
+}
+
+Jet atan2(const Jet& y, const Jet& x, const Precision& p) {
+  const unsigned level = std::max(x.level(), y.level());
+  if (level == 0) {
+    require(!cln::zerop(x.real()) || !cln::zerop(y.real()), "atan2(0, 0)");
+    return Jet(cln::atan(p.round(x.real()), p.round(y.real())));  // CLN: the angle of x + i y
+  }
+  // d(angle) = (x dy - y dx)/(x^2 + y^2); the linear combination is formed on the level of both
+  const Jet& x0 = x.value(level);
+  const Jet& y0 = y.value(level);
+  const Jet square = x0 * x0 + y0 * y0;
+  const Jet moment = (x0 / square) * y - (y0 / square) * x;  // its slopes are those of the angle; its value is 0
+  return atan2(y0, x0, p) + (moment - moment.value(level));
+}
+
+Jet tanh(const Jet& x, const Precision& p) {
+  const auto [s, c] = sinh_cosh(x, p);
+  return s / c;
+}
+
+Jet exp(const Jet& x, const Precision& p) {
+  if (x.level() == 0) return Jet(cln::exp(p.round(x.real())));
+  const Jet e = exp(x.value(x.level()), p);
+  return chain(x, e, e);
+}
+
+Jet log(const Jet& x, const Precision& p) {
+  require(cln::plusp(x.real()), "log of a number that is not positive");
+  if (x.level() == 0) return Jet(cln::ln(p.round(x.real())));
+  const Jet& x0 = x.value(x.level());
+  return chain(x, log(x0, p), 1 / x0);
+}
+
+Jet sqrt(const Jet& x, const Precision& p) {
+  if (x.level() == 0) {
+    require(!cln::minusp(x.real()), "sqrt of a negative number");
+    return x.exactly_zero() ? Jet() : Jet(cln::sqrt(p.round(x.real())));
+  }
+  require(cln::plusp(x.real()), "sqrt at zero, where it has no derivative");
+  const Jet root = sqrt(x.value(x.level()), p);
+  return chain(x, root, 1 / (2 * root));
+}
+
+namespace {
+
+/// base^n by squaring, n >= 0.
+Jet integer_power(Jet base, cln::cl_I n) {
+  Jet result(1);
+  while (!cln::zerop(n)) {
+    if (cln::oddp(n)) result = result * base;
+    n = n >> 1;
+    if (!cln::zerop(n)) base = base * base;
+  }
+  return result;
+}
+
+}  // namespace
+
+Jet power(const Jet& base, const Jet& exponent, const Precision& p) {
+  if (exponent.level() == 0 && is_integer(exponent.real())) {
+    const cln::cl_I n = cln::the<cln::cl_I>(exponent.real());
+    const bool small = cln::abs(n) <= 1000;  // larger powers of exact numbers would not stay small
+    const Jet start = base.level() == 0 && !small ? Jet(p.round(base.real())) : base;
+    const Jet whole = integer_power(start, cln::abs(n));
+    return cln::minusp(n) ? 1 / whole : whole;
+  }
+  require(cln::plusp(base.real()), "real power of a number that is not positive");
+  return exp(exponent * log(base, p), p);
+}
+
+}  // namespace eomgen::verify

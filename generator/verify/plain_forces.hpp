@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces of a Model as the judge sees them: a vector at a point, or a tension times a virtual extension.
+#pragma once
+
+#include <vector>
+
+#include "verify/dalembert.hpp"
+
+namespace eomgen::verify {
+
+/// Subtracts Q_i of every force of the model from sums[i]; `now` holds the state.
+void subtract_forces(const model::Model& model, const Precision& precision, Interpreter& now,
+                     std::vector<Residual>& sums);
+
+/// U of every force that has one (gravity that is uniform, attraction, springs), term by term, and that of [energy].
+std::vector<Jet> potentials(const model::Model& model, const Precision& precision, Interpreter& at);
+
+/// |difference| / scale as a binary64; 0 where both vanish, 1 where only the scale does.
+double relative(const Real& difference, const Real& scale);
+
+}  // namespace eomgen::verify

@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models by hand for the judge's tests, which need no reader: formulas append nodes to the Arena.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/model.hpp"
+
+namespace eomgen::verify::test {
+
+using model::Fn;
+using model::Node;
+using model::NodeId;
+using model::Op;
+using model::Rational;
+
+struct Formula {
+  model::Model* model = nullptr;
+  NodeId id = model::no_node;
+};
+
+inline bool is_vector(Formula f) { return f.model->arena[f.id].vector; }
+
+inline Formula make(model::Model& m, Node node) {
+  m.arena.nodes.push_back(std::move(node));
+  return {&m, static_cast<NodeId>(m.arena.nodes.size() - 1)};
+}
+inline Formula make(model::Model& m, Op op, std::vector<Formula> args, bool vector) {
+  Node node;
+  node.op = op;
+  node.vector = vector;
+  for (std::size_t i = 0; i < args.size(); ++i) node.args[i] = args[i].id;
+  return make(m, node);
+}
+inline Formula number(model::Model& m, Rational value) {
+  Node node;
+  node.value = value;
+  return make(m, node);
+}
+inline Formula operator+(Formula a, Formula b) { return make(*a.model, Op::add, {a, b}, is_vector(a)); }
+inline Formula operator-(Formula a, Formula b) { return make(*a.model, Op::subtract, {a, b}, is_vector(a)); }
+inline Formula operator-(Formula a) { return make(*a.model, Op::negate, {a}, is_vector(a)); }
+inline Formula operator*(Formula a, Formula b) {
+  return make(*a.model, Op::multiply, {a, b}, is_vector(a) || is_vector(b));
+}
+inline Formula operator/(Formula a, Formula b) { return make(*a.model, Op::divide, {a, b}, is_vector(a)); }
+inline Formula operator+(Formula a, int b) { return a + number(*a.model, b); }
+inline Formula operator-(Formula a, int b) { return a - number(*a.model, b); }
+inline Formula operator*(int a, Formula b) { return number(*b.model, a) * b; }
+inline Formula operator/(Formula a, int b) { return a / number(*a.model, b); }
+inline Formula operator^(Formula a, int n) { return make(*a.model, Op::power, {a, number(*a.model, n)}, false); }
+
+inline Formula call(Fn fn, Formula x) {
+  Node node;
+  node.op = Op::call;
+  node.fn = fn;
+  node.args[0] = x.id;
+  return make(*x.model, node);
+}
+inline Formula sin(Formula x) { return call(Fn::sin, x); }
+inline Formula cos(Formula x) { return call(Fn::cos, x); }
+inline Formula ddt(Formula x) { return make(*x.model, Op::total_derivative, {x}, is_vector(x)); }
+inline Formula diff(Formula x, Formula by) { return make(*x.model, Op::partial_derivative, {x, by}, is_vector(x)); }
+inline Formula dot(Formula a, Formula b) { return make(*a.model, Op::dot, {a, b}, false); }
+inline Formula norm(Formula a) { return make(*a.model, Op::norm, {a}, false); }
+inline Formula vector(Formula x, Formula y, Formula z) { return make(*x.model, Op::array, {x, y, z}, true); }
+
+inline Formula leaf(model::Model& m, Op op, std::uint32_t index, std::uint8_t order = 0, bool is_vec = false) {
+  Node node;
+  node.op = op;
+  node.index = index;
+  node.order = order;
+  node.vector = is_vec;
+  return make(m, node);
+}
+inline Formula time(model::Model& m) { return leaf(m, Op::time, 0); }
+inline Formula E(model::Model& m, std::uint32_t i) { return leaf(m, Op::fixed_basis, i - 1, 0, true); }
+
+inline Formula parameter(model::Model& m, std::string name, Rational value) {
+  model::Parameter p;
+  p.name = std::move(name);
+  p.value = number(m, value).id;
+  m.parameters.push_back(std::move(p));
+  return leaf(m, Op::parameter, static_cast<std::uint32_t>(m.parameters.size() - 1));
+}
+inline Formula coordinate(model::Model& m, std::string name) {
+  model::Coordinate c;
+  c.name = std::move(name);
+  m.coordinates.push_back(std::move(c));
+  return leaf(m, Op::coordinate, static_cast<std::uint32_t>(m.coordinates.size() - 1));
+}
+inline Formula rate(Formula q) { return leaf(*q.model, Op::coordinate, q.model->arena[q.id].index, 1); }
+inline Formula function(model::Model& m, std::string name, Formula is) {
+  model::Function f;
+  f.name = std::move(name);
+  f.is = is.id;
+  m.functions.push_back(std::move(f));
+  return leaf(m, Op::function, static_cast<std::uint32_t>(m.functions.size() - 1));
+}
+inline Formula input(model::Model& m, std::string name) {
+  model::Input u;
+  u.name = std::move(name);
+  u.fallback = number(m, 0).id;
+  m.inputs.push_back(std::move(u));
+  return leaf(m, Op::input, static_cast<std::uint32_t>(m.inputs.size() - 1));
+}
+/// A place and, where `mass` is given, a particle there. Gives the leaf that stands for the position.
+inline Formula place(model::Model& m, std::string name, Formula position, Formula mass = {}) {
+  if (m.places.empty()) m.places.emplace_back();  // the origin
+  model::Place p;
+  p.name = std::move(name);
+  p.position = position.id;
+  m.places.push_back(std::move(p));
+  const auto index = static_cast<std::uint32_t>(m.places.size() - 1);
+  if (mass.model != nullptr) m.particles.push_back({index, mass.id, {}});
+  return leaf(m, Op::place, index, 0, true);
+}
+inline Formula basis(Op op, Formula place, Formula q) {
+  Node node;
+  node.op = op;
+  node.vector = true;
+  node.index = place.model->arena[place.id].index;
+  node.args[0] = q.id;
+  return make(*place.model, node);
+}
+template <class Kind>
+void force(model::Model& m, Kind kind) {
+  m.forces.push_back({"force " + std::to_string(m.forces.size() + 1), kind, {}});
+}
+inline void holonomic(model::Model& m, std::string name, std::vector<Formula> psi) {
+  model::Constraint c;
+  c.name = std::move(name);
+  for (const Formula& f : psi) c.psi.push_back(f.id);
+  m.constraints.push_back(std::move(c));
+}
+inline void default_scene(model::Model& m) {
+  model::Scene scene;
+  scene.name = "default";
+  m.scenes.push_back(scene);
+}
+
+}  // namespace eomgen::verify::test

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The models that several tests of verify use, built by hand.
+#pragma once
+
+#include "verify/model_builder.hpp"
+
+namespace eomgen::verify::test {
+
+inline Formula spherical(Formula R, Formula phi, Formula theta) {
+  return vector(R * sin(phi) * cos(theta), R * sin(phi) * sin(theta), R * cos(phi));
+}
+
+/// P7 and P1: a particle on a sphere of radius d(t) = d0 + a sin(w t) under gravity, with the force D R e_theta.
+/// Parameters m, g, D, d0, a, w; coordinates R, phi, theta.
+inline model::Model moving_sphere() {
+  model::Model m;
+  m.id = "moving_sphere";
+  const Formula mass = parameter(m, "m", 1), g = parameter(m, "g", Rational(981) / 100);
+  const Formula D = parameter(m, "D", Rational(3) / 10), d0 = parameter(m, "d0", 1);
+  const Formula a = parameter(m, "a", Rational(1) / 10), w = parameter(m, "w", 2);
+  const Formula d = function(m, "d", d0 + a * sin(w * time(m)));
+  const Formula R = coordinate(m, "R"), phi = coordinate(m, "phi"), theta = coordinate(m, "theta");
+  m.coordinates[0].lower = m.coordinates[1].lower = number(m, 0).id;
+  m.coordinates[1].upper = leaf(m, Op::pi, 0).id;
+  const Formula P = place(m, "P", spherical(R, phi, theta), mass);
+  force(m, model::Gravity{(-(g * E(m, 3))).id});
+  force(m, model::AppliedForce{(D * R * basis(Op::unit_basis, P, theta)).id, P.id});
+  holonomic(m, "sphere", {R - d});
+  default_scene(m);
+  return m;
+}
+
+/// A cart (M, pulled by F against c x_dot) with a pendulum (m, l), from its energies.
+/// Parameters M, m, l, g, c; coordinates x, theta.
+inline model::Model cart_pendulum() {
+  model::Model m;
+  m.id = "cart_pendulum";
+  const Formula M = parameter(m, "M", 2), mass = parameter(m, "m", Rational(1) / 2);
+  const Formula l = parameter(m, "l", Rational(4) / 5), g = parameter(m, "g", Rational(981) / 100);
+  const Formula c = parameter(m, "c", Rational(1) / 10);
+  const Formula F = input(m, "F");
+  const Formula x = coordinate(m, "x"), theta = coordinate(m, "theta");
+  const Formula x_dot = rate(x), theta_dot = rate(theta);
+  m.energy.kinetic = ((M + mass) / 2 * (x_dot ^ 2) + mass * l * x_dot * theta_dot * cos(theta) +
+                      mass * (l ^ 2) / 2 * (theta_dot ^ 2)).id;
+  m.energy.potential = (-(mass * g * l * cos(theta))).id;
+  force(m, model::Generalized{{{0, (F - c * x_dot).id}}});
+  default_scene(m);
+  return m;
+}
+
+/// A planar chain of n masses, absolute angles from the vertical; parameters m1, l1, m2, l2, ..., g.
+inline model::Model chain(int n) {
+  model::Model m;
+  m.id = "chain";
+  Formula position{};
+  for (int i = 1; i <= n; ++i) {
+    const Formula mass = parameter(m, "m" + std::to_string(i), i), l = parameter(m, "l" + std::to_string(i), Rational(1) / i);
+    const Formula angle = coordinate(m, "th" + std::to_string(i));
+    const Formula rod = vector(l * sin(angle), -(l * cos(angle)), number(m, 0));
+    position = place(m, "P" + std::to_string(i), i == 1 ? rod : position + rod, mass);
+  }
+  const Formula g = parameter(m, "g", Rational(981) / 100);
+  force(m, model::Gravity{(-(g * E(m, 2))).id});
+  default_scene(m);
+  return m;
+}
+
+/// A planar pendulum in x, y on a rod whose length constraint stays with a multiplier, pulled by a spring and a damper
+/// from a point. Parameters m, g, L, k, c.
+inline model::Model rod_pendulum() {
+  model::Model m;
+  m.id = "rod_pendulum";
+  const Formula mass = parameter(m, "m", 2), g = parameter(m, "g", Rational(981) / 100), L = parameter(m, "L", 1);
+  const Formula k = parameter(m, "k", 5), c = parameter(m, "c", Rational(1) / 2);
+  const Formula x = coordinate(m, "x"), y = coordinate(m, "y");
+  const Formula P = place(m, "P", vector(x, y, number(m, 0)), mass);
+  const Formula A = place(m, "A", vector(number(m, 2), number(m, 1), number(m, 0)));
+  force(m, model::Gravity{(-(g * E(m, 2))).id});
+  force(m, model::Spring{A.id, P.id, k.id, number(m, Rational(3) / 2).id, model::no_node});
+  force(m, model::Damper{A.id, P.id, c.id});
+  holonomic(m, "rod", {(x ^ 2) + (y ^ 2) - (L ^ 2)});
+  m.scenes.clear();
+  default_scene(m);
+  model::InitialValue start{1, 0, number(m, -1).id, {}};
+  m.scenes[0].initial.push_back(start);
+  return m;
+}
+
+}  // namespace eomgen::verify::test
