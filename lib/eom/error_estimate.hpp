@@ -38,10 +38,12 @@ struct Repetition {
   double remaining;
 };
 
-inline Repetition repetition(const Options& first, int order, double part) {
+/// The run made anew with another sequence of steps: span is the time it covered in so many steps.
+inline Repetition repetition(const Options& first, double span, std::size_t steps, int order, double part) {
   Repetition next{first, 0};
+  const double count = static_cast<double>(steps);
   if (first.fixed_step > 0) {
-    next.options.fixed_step = first.fixed_step * part;
+    next.options.fixed_step = part * (steps > 0 ? std::min(first.fixed_step, span / count) : first.fixed_step);
     next.remaining = std::pow(part, order);
     return next;
   }
@@ -51,6 +53,9 @@ inline Repetition repetition(const Options& first, int order, double part) {
   next.options.rtol = first.rtol * ratio;
   next.options.atol = first.atol * ratio;
   next.options.initial_step = 0;
+  // Steps bounded by max_step or by their growth (few, or few between restarts) would repeat themselves exactly.
+  next.options.max_step = part * first.max_step;
+  if (span > 0) next.options.max_step = std::min(next.options.max_step, span / (count + 1.5 / part));
   next.remaining = ratio;
   return next;
 }
@@ -67,9 +72,9 @@ inline int order_of(std::string_view method) {
 }  // namespace detail
 
 /// The estimate for a run that may be more than one integrate() (restarts at events, modes): run(options) -> Result
-/// repeats it. order: the method's; it matters for fixed steps only.
+/// repeats it, from t0 on. order: the method's; it matters for fixed steps only.
 template <class Run>
-ErrorEstimate estimate_error(int order, const Result& first, const Options& options, Run&& run) {
+ErrorEstimate estimate_error(int order, double t0, const Result& first, const Options& options, Run&& run) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   ErrorEstimate estimate;
   estimate.x.resize(first.x.size());
@@ -79,7 +84,8 @@ ErrorEstimate estimate_error(int order, const Result& first, const Options& opti
     size_x = std::max(size_x, std::abs(first.x[i]));
   }
   for (const double part : {0.5, 0.35}) {
-    const detail::Repetition next = detail::repetition(options, order, part);
+    const detail::Repetition next =
+        detail::repetition(options, std::abs(first.t - t0), first.statistics.steps, order, part);
     const Result again = run(next.options);
     ++estimate.runs;
     estimate.statistics.steps += again.statistics.steps;
@@ -101,7 +107,7 @@ ErrorEstimate estimate_error(int order, const Result& first, const Options& opti
 template <class F, class AfterStep = NoProjection>
 ErrorEstimate estimate_error(std::string_view method, F&& rhs, double t0, std::span<const double> x0,
                              const Result& first, const Options& options, AfterStep&& after_step = {}) {
-  return estimate_error(detail::order_of(method), first, options, [&](const Options& tighter) {
+  return estimate_error(detail::order_of(method), t0, first, options, [&](const Options& tighter) {
     return integrate(method, rhs, t0, x0, first.t, tighter, NoObserver{}, after_step);
   });
 }

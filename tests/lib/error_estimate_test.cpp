@@ -57,6 +57,35 @@ TEST_CASE("estimate: within a factor of 10 for fixed steps, down to where roundi
   }
 }
 
+TEST_CASE("estimate: a run of so few steps that a tighter one would take the same is repeated with others") {
+  const problems::Pendulum slow(3.1);  // released near the upper equilibrium: steps grow as fast as they may
+  eom::Options options;
+  options.rtol = 1e-3;
+  options.atol = 1e-6;
+  for (const double end : {1.5, 2.2, 2.5}) {
+    const auto result = eom::integrate("dop853", slow, 0, slow.start, end, options);
+    CAPTURE(result.statistics.steps);
+    const auto estimate = eom::estimate_error("dop853", slow, 0, slow.start, result, options);
+    check_estimate(estimate.max, problems::largest_difference(result.x, slow.exact(end)));
+  }
+  options.fixed_step = 10;  // longer than the run: one step, and a half of 10 would be the same one
+  const auto result = eom::integrate("rk4", slow, 0, slow.start, 0.5, options);
+  const auto estimate = eom::estimate_error("rk4", slow, 0, slow.start, result, options);
+  check_estimate(estimate.max, problems::largest_difference(result.x, slow.exact(0.5)));
+}
+
+TEST_CASE("estimate: a run whose steps are all bounded by max_step is repeated with shorter ones") {
+  const problems::Pendulum pendulum;
+  eom::Options options;
+  options.rtol = 1e-3;
+  options.atol = 1e-3;
+  options.max_step = 0.02;
+  const auto result = eom::integrate("dopri5", pendulum, 0, pendulum.start, 10, options);
+  CHECK(result.statistics.steps > 490);
+  const auto estimate = eom::estimate_error("dopri5", pendulum, 0, pendulum.start, result, options);
+  check_estimate(estimate.max, problems::largest_difference(result.x, pendulum.exact(10)));
+}
+
 TEST_CASE("estimate: where two runs agree up to rounding a third one is made, and its cost is told") {
   const problems::Oscillator oscillator;
   eom::Options options;

@@ -1,7 +1,9 @@
 // What integrate() promises: closed forms, both directions, exact ends, steps, observers, projections, quadratures.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
@@ -203,6 +205,49 @@ TEST_CASE("options: max_step and initial_step are kept to") {
   eom::integrate("dop853", oscillator, 0, oscillator.start, 10, options, observe);
   CHECK(first == 0.0625);
   CHECK(longest <= 0.125 * (1 + 0.02));  // the last step may be stretched by 1 %
+}
+
+TEST_CASE("dense output: where an added stage fails it falls back to the cubic of the step, and says how often") {
+  for (const double bad : {2.0, std::numeric_limits<double>::infinity()}) {
+    // x = t^3, which the cubic has exactly; t = 0.1 is met by an added stage of the step from 0 to 1 alone
+    const auto rhs = [bad](double t, const double*, double* dx) {
+      const bool fails = std::abs(t - 0.1) < 1e-9;
+      dx[0] = fails ? bad : 3 * t * t;
+      return fails && std::isfinite(bad) ? 2 : 0;
+    };
+    eom::Options options;
+    options.fixed_step = 1;
+    problems::State x(1);
+    const auto observe = [&](const eom::StepView& view) {
+      view.interpolate(view.t0 + 0.5, x);
+      CHECK(std::abs(x[0] - std::pow(view.t0 + 0.5, 3)) < tolerances::rounding);
+      return true;
+    };
+    const auto result = eom::integrate("dop853", rhs, 0, problems::State{0}, 2, options, observe);
+    CHECK(result.outcome == eom::Outcome::done);
+    CHECK(result.statistics.dense_fallbacks == 1);
+  }
+}
+
+TEST_CASE("tolerances: purely relative ones work for components that start at zero, or stay there") {
+  const problems::Kepler kepler;
+  const auto rhs = [&](double t, const double* x, double* dx) {
+    dx[4] = 0;
+    return kepler(t, x, dx);
+  };
+  problems::State start = kepler.start;
+  start.push_back(0);
+  eom::Options options;
+  options.rtol = 1e-10;
+  options.atol = 0;
+  for (const char* method : {"dopri5", "dop853"}) {
+    CAPTURE(std::string(method));
+    auto result = eom::integrate(method, rhs, 0, start, 3, options);
+    CHECK(result.outcome == eom::Outcome::done);
+    CHECK(result.statistics.steps < 1000);
+    result.x.pop_back();
+    CHECK(problems::largest_difference(result.x, kepler.exact(3)) < tolerances::closed_form);
+  }
 }
 
 TEST_CASE("start and end at one time: done at once, with the start") {

@@ -161,12 +161,13 @@ class Stepper {
   void prepare_corrections() const {
     if (corrections_ready_ || dense_rows == 0) return;
     corrections_ready_ = true;
-    if (dense_columns_from<T::stages + 1>() != 0) {
-      ++dense_fallbacks_;
-      std::fill_n(corrections_, dense_rows * n_, 0.0);
-      return;
+    if (dense_columns_from<T::stages + 1>() == 0) {
+      fill_corrections(std::make_index_sequence<dense_rows>{});
+      if (std::all_of(corrections_, corrections_ + dense_rows * n_, [](double value) { return std::isfinite(value); }))
+        return;
     }
-    fill_corrections(std::make_index_sequence<dense_rows>{});
+    ++dense_fallbacks_;
+    std::fill_n(corrections_, dense_rows * n_, 0.0);
   }
 
   template <std::size_t Row>
