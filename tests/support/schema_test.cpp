@@ -1,0 +1,179 @@
+#include "support/schema.hpp"
+
+#include <doctest/doctest.h>
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+namespace {
+
+using nlohmann::json;
+
+// A right document of each schema, as small as may be.
+const std::map<std::string, json>& right_documents() {
+  static const std::map<std::string, json> documents = [] {
+    const json operations = {{"add", 4}, {"mul", 9}, {"div", 1}, {"sqrt", 0}, {"trig", 2}, {"other", 0}};
+    const json formula = {{"latex", "m \\ddot{x} = 0"}, {"text", "m*x_ddot = 0"}};
+    json equation = formula, reaction = formula;
+    equation["coordinate"] = "x";
+    reaction["name"] = "sphere";
+    return std::map<std::string, json>{
+        {"list",
+         {{"format", 1},
+          {"coordinates", {{{"name", "cartesian"}}}},
+          {"rotations", json::array()},
+          {"joints", json::array()},
+          {"solvers", {{{"name", "dop853"}, {"order", 8}}}},
+          {"targets", {{{"name", "cpp"}}}}}},
+        {"check",
+         {{"format", 1},
+          {"coordinates", {"R", "phi"}},
+          {"dof", 1},
+          {"parameters", {"m"}},
+          {"constraints",
+           {{{"name", "sphere"}, {"kind", "holonomic"}, {"integrable", "yes"}, {"integral", "R - d"}, {"redundant", false}}}},
+          {"forces", {{{"name", "gravity"}, {"conservative", "yes"}, {"potential", "m*g*z"}}}},
+          {"conserved", {{{"name", "h_theta"}, {"expression", "m*R^2*theta_dot"}}}},
+          {"singular", {{{"set", "sin(phi) = 0"}, {"approach", "II"}}}},
+          {"units", "checked"},
+          {"warnings", json::array()}}},
+        {"derive", {{"format", 1}, {"approach", "I"}, {"equations", {equation}}, {"reactions", {reaction}}}},
+        {"verify",
+         {{"format", 1},
+          {"routes", {{{"a", "lagrange"}, {"b", "judge"}, {"shares_code", false}, {"max_relative_difference", 1e-48}}}},
+          {"points", 20},
+          {"rejected", 0},
+          {"verdict", "pass"}}},
+        {"emit",
+         {{"format", 1},
+          {"files", {"P7.hpp", "P7.c", "P7.h"}},
+          {"route", "lagrange"},
+          {"tried", {{{"route", "lagrange"}, {"operations", operations}}}},
+          {"operations", operations},
+          {"seconds", {{"read", 0.1}, {"derive", 0.1}, {"optimise", 0.1}, {"verify", 0.1}, {"print", 0.1}}}}},
+        {"run",
+         {{"format", 1},
+          {"solver", "dop853"},
+          {"outcome", "done"},
+          {"steps", 100},
+          {"rejected", 3},
+          {"rhs_evaluations", 1236},
+          {"seconds", {{"derive", 0.1}, {"emit", 0.1}, {"compile", 1.0}, {"integrate", 1e-4}, {"estimate", 1e-4}}},
+          {"final", {{"x", 1.0}, {"x_dot", -2}}},
+          {"error_estimate", {{"x", 1e-9}, {"x_dot", 1e-9}, {"max", 1e-9}}},
+          {"invariants", {{"energy", {{"initial", 0.5}, {"max_relative_drift", 1e-12}}}}},
+          {"power_balance", 1e-12},
+          {"constraint_drift", 1e-14},
+          {"events", {{{"t", 0.5}, {"kind", "stop"}, {"name", "floor"}}}}}},
+    };
+  }();
+  return documents;
+}
+
+// A right document with the value at `pointer` replaced.
+json changed(const std::string& schema, const std::string& pointer, json value) {
+  json document = right_documents().at(schema);
+  document.at(json::json_pointer(pointer)) = std::move(value);
+  return document;
+}
+
+}  // namespace
+
+TEST_CASE("every schema of docs/schema takes a right document and refuses it without any one of its needed keys") {
+  for (const std::string& schema : support::schema_names()) {
+    CAPTURE(schema);
+    REQUIRE(right_documents().count(schema) == 1);
+    const json& right = right_documents().at(schema);
+    support::check_schema(right, schema);
+    std::size_t refused = 0;
+    for (const auto& [key, value] : right.items()) {
+      json without = right;
+      without.erase(key);
+      refused += support::schema_errors(without, schema).empty() ? 0 : 1;
+    }
+    // Keys that a document may do without, among those above: equations, reactions, error_estimate.
+    const std::size_t free = schema == "derive" ? 2 : schema == "run" ? 1 : 0;
+    CHECK(refused == right.size() - free);
+  }
+}
+
+TEST_CASE("every schema takes keys that a later version adds, and refuses another format") {
+  for (const auto& [schema, right] : right_documents()) {
+    CAPTURE(schema);
+    json more = right;
+    more["later"] = true;
+    CHECK(support::schema_errors(more, schema).empty());
+    for (const json& format : {json(2), json("1"), json(nullptr)}) {
+      CAPTURE(format.dump());
+      CHECK_FALSE(support::schema_errors(changed(schema, "/format", format), schema).empty());
+    }
+    CHECK_FALSE(support::schema_errors(json::array(), schema).empty());
+  }
+}
+
+TEST_CASE("wrong values are refused, each at its place") {
+  struct Wrong {
+    const char* schema;
+    const char* pointer;
+    json value;
+  };
+  const Wrong cases[] = {
+      {"list", "/solvers", json::array()},
+      {"list", "/solvers/0", "dop853"},
+      {"list", "/coordinates/0/name", ""},
+      {"check", "/dof", -1},
+      {"check", "/dof", 1.5},
+      {"check", "/constraints/0/kind", "Holonomic"},
+      {"check", "/constraints/0/integrable", true},
+      {"check", "/constraints/0/redundant", "no"},
+      {"check", "/forces/0/conservative", "maybe"},
+      {"check", "/singular/0/approach", "III"},
+      {"derive", "/approach", "auto"},
+      {"derive", "/equations/0/latex", ""},
+      {"derive", "/equations/0", "m*x_ddot = 0"},
+      {"verify", "/verdict", "told"},
+      {"verify", "/points", 0},
+      {"verify", "/routes", json::array()},
+      {"verify", "/routes/0/max_relative_difference", nullptr},
+      {"emit", "/files", json::array()},
+      {"emit", "/files", {"a.c", "a.c"}},
+      {"emit", "/route", "fastest"},
+      {"emit", "/operations/mul", -3},
+      {"emit", "/operations", json::object()},
+      {"emit", "/seconds/derive", "0.1"},
+      {"run", "/solver", "auto"},
+      {"run", "/outcome", "ok"},
+      {"run", "/steps", -1},
+      {"run", "/final", json::object()},
+      {"run", "/final/x", nullptr},
+      {"run", "/final/x", "1.0"},
+      {"run", "/error_estimate", {{"x", 1e-9}}},
+      {"run", "/error_estimate/max", -1e-9},
+      {"run", "/invariants/energy/max_relative_drift", nullptr},
+      {"run", "/constraint_drift", -1.0},
+      {"run", "/events/0/kind", "bounce"},
+  };
+  for (const Wrong& wrong : cases) {
+    CAPTURE(wrong.schema);
+    CAPTURE(wrong.pointer);
+    CAPTURE(wrong.value.dump());
+    CHECK_FALSE(support::schema_errors(changed(wrong.schema, wrong.pointer, wrong.value), wrong.schema).empty());
+  }
+}
+
+TEST_CASE("a run that failed numerically may hold values that are not finite") {
+  json failed = changed("run", "/final/x", nullptr);
+  failed["outcome"] = "not_finite";
+  CHECK(support::schema_errors(failed, "run").empty());
+}
+
+TEST_CASE("a schema that is not there is an error, not a pass") {
+  CHECK_THROWS_AS(support::schema_errors(json::object(), "no_such_command"), std::runtime_error);
+}
+
+TEST_CASE("an error names the place in the document") {
+  const std::vector<std::string> errors = support::schema_errors(changed("run", "/outcome", "ok"), "run");
+  REQUIRE_FALSE(errors.empty());
+  CHECK(errors.back().find("outcome") != std::string::npos);
+}
