@@ -25,6 +25,8 @@ Integration::Integration(const RunRequest& request, std::string solver)
       A_(request.code.active_constraints * n_),
       b_(request.code.active_constraints),
       projection_(n_, request.code.active_constraints) {
+  // Before the first piece starts: just inside it, so that a table gives its value right of t0.
+  side_ = std::nextafter(request.scene.t0, request.scene.t1);
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
 }
 

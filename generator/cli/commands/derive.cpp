@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/commands/commands.hpp"
+#include "cli/locate.hpp"
+#include "cli/pipeline.hpp"
+#include "print/render.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct Options {
+  std::string model, approach = "auto", format = "text";
+  std::vector<std::string> show{"equations", "constraints", "reactions"};
+};
+
+const std::vector<std::string>& show_keys() {
+  static const std::vector<std::string> keys{"basis", "metric", "christoffel", "line_element", "energies", "lagrangian",
+                                             "equations", "constraints", "reactions", "conserved", "singular", "linear", "all"};
+  return keys;
+}
+
+void require_keys(const std::vector<std::string>& show) {
+  for (const std::string& key : show) {
+    if (std::find(show_keys().begin(), show_keys().end(), key) == show_keys().end()) {
+      throw Error("derive", {}, fmt::format("there is nothing called '{}' to show", key),
+                  fmt::format("choose from: {}", fmt::join(show_keys(), ", ")));
+    }
+    if (key == "linear") {
+      throw Error("derive", {}, "the linearised equations are not supported yet", "leave 'linear' out of --show");
+    }
+  }
+}
+
+const std::string& in_format(const print::Item& item, const std::string& format) {
+  return format == "latex" ? item.latex : format == "mathml" ? item.mathml : item.text;
+}
+
+json to_json(const std::vector<print::Item>& items, const std::string& approach) {
+  json result{{"format", 1}, {"approach", approach}, {"equations", json::array()}, {"reactions", json::array()}};
+  for (const print::Item& item : items) {
+    json entry;
+    if (!item.coordinate.empty()) entry["coordinate"] = item.coordinate;
+    if (!item.name.empty()) entry["name"] = item.name;
+    if (!item.role.empty()) entry["role"] = item.role;
+    entry["text"] = item.text;
+    entry["latex"] = item.latex;
+    entry["mathml"] = item.mathml;
+    result[item.key].push_back(entry);
+  }
+  return result;
+}
+
+void print_readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format) {
+  fmt::print("Approach {}\n", approach);
+  std::string heading;
+  for (const print::Item& item : items) {
+    const std::string next = item.role.empty() ? item.key : item.key + ": " + item.role;
+    if (next != heading) fmt::print("\n{}\n", next);
+    heading = next;
+    fmt::print("  {}\n", in_format(item, format));
+  }
+}
+
+int execute(const Options& options, const Common& common) {
+  require_keys(options.show);
+  const ApproachChoice choice = approach_choice(options.approach);
+  model::Model model = load_model(options.model);
+  mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
+  // Approach I shows the constraint forces too, so it is what `auto` means wherever something is eliminated.
+  const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !mechanics.fixed.empty());
+  const system::Approach approach = one ? system::Approach::one : system::Approach::two;
+  const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
+  const std::vector<print::Item> items = print::render(mechanics, form, options.show);
+  if (common.json) {
+    fmt::print("{}\n", to_json(items, system::name(approach)).dump(2));
+  } else {
+    print_readable(items, system::name(approach), options.format);
+  }
+  return 0;
+}
+
+}  // namespace
+
+Execute declare_derive(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
+  app.add_option("--show", options->show, "what to show; a list of " + fmt::format("{}", fmt::join(show_keys(), ", ")))->delimiter(',');
+  app.add_option("--format", options->format, "text, latex or mathml")
+      ->check(CLI::IsMember({"text", "latex", "mathml"}))
+      ->capture_default_str();
+  return [options](const Common& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli

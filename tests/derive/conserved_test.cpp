@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/conserved.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "derive/routes.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+std::vector<std::string> names(const std::string& text) {
+  const model::Model model = model::read_model_text(text, "conserved");
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  system::EquationSystem s = derive::routes().front().derive(m, system::Approach::two);
+  std::vector<std::string> result;
+  for (const derive::Conserved& c : derive::conserved_quantities(m, s)) result.push_back(c.name);
+  return result;
+}
+
+const std::string spherical_pendulum = R"(format = 1
+[parameters]
+m = 1
+g = 9.81
+L0 = 1
+[functions]
+L = "L0 LENGTH"
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "rod"
+holonomic = "R - L"
+)";
+
+std::string with(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("conserved: a spherical pendulum of constant length keeps its energy and h_z") {
+  CHECK(names(with(spherical_pendulum, " LENGTH", "")) == std::vector<std::string>{"energy", "momentum.theta"});
+}
+
+TEST_CASE("conserved: of varying length it keeps h_z only") {
+  CHECK(names(with(spherical_pendulum, " LENGTH", " + sin(t)/5")) == std::vector<std::string>{"momentum.theta"});
+}
+
+TEST_CASE("conserved: a bead on a hoop that turns at a constant rate keeps the Jacobi integral, not the energy") {
+  const std::vector<std::string> found = names(R"(format = 1
+[parameters]
+m = 1
+g = 9.81
+L = 1
+W = 3
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "hoop"
+holonomic = "R - L"
+[[constraint]]
+name = "turn"
+holonomic = "theta - W*t"
+)");
+  CHECK(found == std::vector<std::string>{"jacobi"});
+}
+
+TEST_CASE("conserved: a damper leaves nothing") {
+  const std::vector<std::string> found = names(R"(format = 1
+[parameters]
+m = 1
+c = 1
+[[particle]]
+name = "P"
+mass = "m"
+position = "x*E1"
+[[force]]
+on = "P"
+force = "-c*x_dot*E1"
+[coordinates]
+x = {}
+)");
+  CHECK(found.empty());
+}
