@@ -103,6 +103,12 @@ ErrorEstimate estimate_error(int order, double t0, const Result& first, const Op
   return estimate;
 }
 
+/// The same for a run that starts at t = 0.
+template <class Run>
+ErrorEstimate estimate_error(int order, const Result& first, const Options& options, Run&& run) {
+  return estimate_error(order, 0.0, first, options, std::forward<Run>(run));
+}
+
 /// The estimate for a run of integrate(method, rhs, t0, x0, t1, options, ...) that gave `first`, at the time it reached.
 template <class F, class AfterStep = NoProjection>
 ErrorEstimate estimate_error(std::string_view method, F&& rhs, double t0, std::span<const double> x0,
