@@ -149,13 +149,9 @@ Ref dot(Dag& dag, const Vec3& a, const Vec3& b) {
 }
 
 std::vector<Ref> generalized_forces(Mechanics& m) {
-  Dag& dag = *m.dag;
-  std::vector<Ref> Q = m.generalized;
-  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    symbolic::Derivation by = symbolic::partial(dag, coordinate(i, 0));
-    for (const mechanics::Load& load : m.loads) {
-      Q[i] = dag.add(Q[i], dot(dag, load.force, Vec3{by(load.at[0]), by(load.at[1]), by(load.at[2])}));
-    }
+  std::vector<Ref> Q(m.q.size(), m.dag->zero());
+  for (const std::vector<Ref>& force : m.force_components) {
+    for (std::size_t i = 0; i < Q.size(); ++i) Q[i] = m.dag->add(Q[i], force[i]);
   }
   return Q;
 }

@@ -22,6 +22,7 @@ class ForceReader {
     m_.potential_by_force.push_back(potential_);
     m_.potential = dag_.add(m_.potential, potential_);
     for (std::size_t i = 0; i < m_.q.size(); ++i) m_.generalized[i] = dag_.add(m_.generalized[i], generalized_[i]);
+    m_.force_components.push_back(components(first_load));
   }
 
  private:
@@ -133,15 +134,21 @@ class ForceReader {
     }
     return false;
   }
+  // Q_i = F . dr/dq_i, eq. (3.20)
+  std::vector<Ref> components(std::size_t first_load) const {
+    std::vector<Ref> Q = generalized_;
+    for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
+      for (std::size_t k = first_load; k < m_.loads.size(); ++k) {
+        Q[i] = dag_.add(Q[i], lower_.dot(m_.loads[k].force, lower_.gradient(m_.loads[k].at, i)));
+      }
+    }
+    return Q;
+  }
   // A force that enters no equation is a mistake of the model, not something to drop silently.
   void refuse_if_idle(std::size_t first_load) const {
-    std::vector<Ref> effect = generalized_;
+    std::vector<Ref> effect = components(first_load);
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
-      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0});
-      effect.push_back(by(potential_));
-      for (std::size_t k = first_load; k < m_.loads.size(); ++k) {
-        effect.push_back(lower_.dot(m_.loads[k].force, lower_.gradient(m_.loads[k].at, i)));
-      }
+      effect.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(potential_));
     }
     if (vanishes(dag_, effect)) {
       fail("'" + force_->name + "' changes no equation of motion: it does no work in any motion of the coordinates",

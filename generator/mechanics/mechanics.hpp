@@ -64,6 +64,7 @@ struct Mechanics {
   std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
   std::vector<Ref> generalized;  // per coordinate: forces given as such (generalized, torsional dampers)
+  std::vector<std::vector<Ref>> force_components;  // per Model::forces entry: its Q_i beyond the potential, loads included
 
   std::vector<Constraint> constraints;
   std::vector<FixedCoordinate> fixed;  // in the order of elimination
