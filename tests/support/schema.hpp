@@ -1,4 +1,5 @@
-// In: a JSON document that a command printed, and the command's name. Out: where it breaks docs/schema/NAME.schema.json.
+// In: a JSON document that a command printed, and the command's name. Out: where it breaks
+// docs/schema/NAME.schema.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -1,0 +1,240 @@
+// The dependency rule of docs/architecture.md, read off the include lines: all stages share one include path, so that
+// the compiler alone would let a stage include a header of any other.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "architecture/stages.hpp"
+
+using namespace architecture;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path root = EOMGEN_SOURCE_DIR;
+
+/// The products that the stages hand to one another, in the order of the data flow: plain data, so that a later stage
+/// may read them without needing the stage that makes them.
+const std::vector<std::pair<std::string, std::string>> products = {
+    {"model", "model/expression.hpp"},        {"model", "model/model.hpp"},
+    {"mechanics", "mechanics/mechanics.hpp"}, {"system", "system/equation_system.hpp"},
+    {"program", "program/program.hpp"},
+};
+const std::vector<std::string> data_flow = {"model",  "coordinates", "symbolic", "mechanics", "derive",
+                                            "system", "reading",     "program",  "verify",    "print",
+                                            "emit",   "run",         "cli"};
+
+/// Libraries by the beginning of their headers' paths, and the targets that bring them.
+const std::vector<std::pair<std::string, std::set<std::string>>> libraries = {
+    {"ginac/", {"GiNaC::ginac"}},
+    {"cln/", {"GiNaC::cln", "GiNaC::ginac"}},
+    {"Eigen/", {"Eigen3::Eigen"}},
+    {"eom/", {"eomgen::runtime", "eomgen_runtime"}},
+    {"fmt/", {"fmt::fmt", "error"}},  // error hands fmt on
+    {"nlohmann/", {"nlohmann_json::nlohmann_json"}},
+    {"CLI/", {"CLI11::CLI11"}},
+    {"toml++/", {"tomlplusplus::tomlplusplus"}},
+};
+
+std::string place(const fs::path& file, const Include& include) {
+  return fs::relative(file, root).generic_string() + ":" + std::to_string(include.line) + " includes " + include.path;
+}
+
+std::string first_part(const std::string& path) { return path.substr(0, path.find('/')); }
+
+bool is_product(const std::string& path) {
+  return std::any_of(products.begin(), products.end(), [&](const auto& product) { return product.second == path; });
+}
+
+bool comes_before(const std::string& a, const std::string& b) {
+  const auto end = data_flow.end();
+  const auto at_a = std::find(data_flow.begin(), end, a), at_b = std::find(data_flow.begin(), end, b);
+  return at_a != end && at_b != end && at_a < at_b;
+}
+
+struct Generator {
+  std::map<std::string, Stage> stages;                   // by name
+  std::map<std::string, std::set<std::string>> folders;  // folder: names of the stages whose home it is
+
+  std::set<std::string> reached_from(const std::string& folder) const {
+    std::set<std::string> reached;
+    for (const std::string& stage : folders.at(folder)) reached.merge(reachable(stage, stages));
+    return reached;
+  }
+};
+
+Generator read_generator() {
+  Generator generator;
+  for (const fs::directory_entry& entry : fs::directory_iterator(root / "generator")) {
+    const fs::path list = entry.path() / "CMakeLists.txt";
+    if (!fs::exists(list)) continue;
+    const std::string folder = entry.path().filename().string();
+    const std::string text = read_text(list);
+    for (Stage& stage : parse_stages(folder, text)) {
+      generator.folders[folder].insert(stage.name);
+      // A folder whose sources another folder's stage compiles is at home there too.
+      std::vector<std::string> sources = stage.sources;
+      for (const std::vector<std::string>& arguments : cmake_calls(text, "target_sources"))
+        if (!arguments.empty() && arguments.front() == "eomgen_" + stage.name)
+          sources.insert(sources.end(), arguments.begin() + 1, arguments.end());
+      for (const std::string& source : sources)
+        if (source.starts_with("../")) generator.folders[first_part(source.substr(3))].insert(stage.name);
+      generator.stages.emplace(stage.name, std::move(stage));
+    }
+  }
+  return generator;
+}
+
+}  // namespace
+
+TEST_CASE("a stage includes its own folder, the stages that its CMakeLists.txt needs, and products made before it") {
+  const Generator generator = read_generator();
+  REQUIRE(generator.stages.size() >= 8);
+  for (const auto& [folder, owners] : generator.folders) {
+    const std::set<std::string> reached = generator.reached_from(folder);
+    std::set<std::string> allowed{folder};
+    for (const auto& [other, stages] : generator.folders)
+      for (const std::string& stage : stages)
+        if (reached.count(stage) == 1) allowed.insert(other);
+
+    for (const fs::path& file : files_below(root / "generator" / folder, {".cpp", ".hpp"})) {
+      for (const Include& include : parse_includes(read_text(file))) {
+        const std::string first = first_part(include.path);
+        if (!include.quoted || first == "eom") continue;
+        INFO(place(file, include));
+        if (is_product(include.path) && comes_before(first, folder)) continue;
+        CHECK(allowed.count(include.path == "error.hpp" ? "error" : first) == 1);
+      }
+    }
+  }
+}
+
+TEST_CASE("a stage includes the libraries that its CMakeLists.txt links, and no others") {
+  const Generator generator = read_generator();
+  for (const auto& [folder, owners] : generator.folders) {
+    const std::set<std::string> reached = generator.reached_from(folder);
+    for (const fs::path& file : files_below(root / "generator" / folder, {".cpp", ".hpp"})) {
+      for (const Include& include : parse_includes(read_text(file))) {
+        for (const auto& [prefix, targets] : libraries) {
+          if (!include.path.starts_with(prefix)) continue;
+          INFO(place(file, include));
+          CHECK(
+              std::any_of(targets.begin(), targets.end(), [&](const auto& name) { return reached.count(name) == 1; }));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("no stage needs itself, over whatever way") {
+  const Generator generator = read_generator();
+  for (const auto& [name, stage] : generator.stages) {
+    for (const std::string& need : stage.needs) {
+      CAPTURE(name);
+      CAPTURE(need);
+      CHECK(reachable(need, generator.stages).count(name) == 0);
+    }
+  }
+}
+
+TEST_CASE("products include products and the graph, no stage's working") {
+  for (const auto& [folder, header] : products) {
+    const fs::path file = root / "generator" / header;
+    for (const Include& include : parse_includes(read_text(file))) {
+      if (!include.quoted) continue;
+      INFO(place(file, include));
+      CHECK((is_product(include.path) || include.path.starts_with("symbolic/") || include.path == "error.hpp"));
+    }
+  }
+}
+
+TEST_CASE("the judge shares nothing with what it judges: the Model and its own files only") {
+  const Generator generator = read_generator();
+  REQUIRE(generator.stages.count("judge") == 1);
+  const Stage& judge = generator.stages.at("judge");
+  CHECK(reachable("judge", generator.stages) == std::set<std::string>{"judge", "error", "GiNaC::cln"});
+  std::set<std::string> own;  // "verify/jet" for jet.cpp and jet.hpp
+  for (const std::string& source : judge.sources) own.insert(judge.folder + "/" + fs::path(source).stem().string());
+  for (const std::string& stem : own) {
+    for (const char* ending : {".hpp", ".cpp"}) {
+      const fs::path file = root / "generator" / (stem + ending);
+      if (!fs::exists(file)) continue;
+      for (const Include& include : parse_includes(read_text(file))) {
+        if (!include.quoted) continue;
+        INFO(place(file, include));
+        const std::string included_stem = fs::path(include.path).replace_extension().string();
+        CHECK((own.count(included_stem) == 1 || include.path == "model/model.hpp" ||
+               include.path == "model/expression.hpp" || include.path == "error.hpp"));
+      }
+    }
+  }
+}
+
+TEST_CASE("the routes to the equations never include each other, so that their agreeing proves something") {
+  const std::vector<std::string> routes = {"approach_one", "approach_two", "lagrange",    "jacobian",
+                                           "recursive",    "christoffel",  "newton_euler"};
+  for (const std::string& route : routes) {
+    for (const char* ending : {".hpp", ".cpp"}) {
+      const fs::path file = root / "generator" / "derive" / (route + ending);
+      if (!fs::exists(file)) continue;
+      for (const Include& include : parse_includes(read_text(file))) {
+        INFO(place(file, include));
+        for (const std::string& other : routes) CHECK((other == route || include.path != "derive/" + other + ".hpp"));
+      }
+    }
+  }
+}
+
+TEST_CASE("the runtime and emitted code include neither the generator nor computer algebra") {
+  const std::set<std::string> code = {".hpp", ".h", ".cpp", ".c", ".mustache", ".in"};
+  std::size_t seen = 0;
+  for (const char* folder : {"lib", "templates", "generated", "examples"}) {
+    for (const fs::path& file : files_below(root / folder, code)) {
+      for (const Include& include : parse_includes(read_text(file))) {
+        ++seen;
+        INFO(place(file, include));
+        CHECK_FALSE(include.path.starts_with("ginac/"));
+        CHECK_FALSE(include.path.starts_with("cln/"));
+        CHECK_FALSE(fs::exists(root / "generator" / include.path));
+      }
+    }
+  }
+  CHECK(seen > 20);
+}
+
+TEST_CASE("no file names a folder of the machine that it was written or built on") {
+  // Spelt in two halves, since this file is looked at too.
+  const std::vector<std::string> never = {
+      "/wo"
+      "rk/",
+      "/ho"
+      "me/",
+      "/ro"
+      "ot/",
+      "/Us"
+      "ers/",
+      "C:"
+      "\\"};
+  std::vector<fs::path> files;
+  for (const char* folder : {".ci", "bench", "cmake", "docs", "examples", "generated", "generator", "lib", "models",
+                             "scripts", "templates", "tests"}) {
+    const std::vector<fs::path> more = files_below(root / folder);
+    files.insert(files.end(), more.begin(), more.end());
+  }
+  for (const char* file : {"CMakeLists.txt", "CMakePresets.json", "README.md"}) files.push_back(root / file);
+  for (const fs::path& file : files) {
+    const std::string text = read_text(file);
+    INFO(fs::relative(file, root).generic_string());
+    for (const std::string& folder : never) {
+      const std::size_t at = text.find(folder);
+      INFO("names " << folder << " in: " << (at == std::string::npos ? "" : text.substr(at, 60)));
+      CHECK(at == std::string::npos);
+    }
+  }
+}

@@ -1,0 +1,42 @@
+#include "architecture/stages.hpp"
+
+#include <doctest/doctest.h>
+
+using namespace architecture;
+
+TEST_CASE("the stages of a CMakeLists.txt are read with their lists, comments left out") {
+  const std::vector<Stage> stages = parse_stages("verify", R"(
+# eomgen_stage(ghost NEEDS everything)
+eomgen_stage(judge SOURCES a.cpp  # the judge
+  b.cpp NEEDS error
+  LINKS GiNaC::cln)
+eomgen_stage(verify SOURCES c.cpp NEEDS judge program)
+)");
+  REQUIRE(stages.size() == 2);
+  CHECK(stages[0].name == "judge");
+  CHECK(stages[0].sources == std::vector<std::string>{"a.cpp", "b.cpp"});
+  CHECK(stages[0].needs == std::vector<std::string>{"error"});
+  CHECK(stages[0].links == std::vector<std::string>{"GiNaC::cln"});
+  CHECK(stages[1].needs == std::vector<std::string>{"judge", "program"});
+}
+
+TEST_CASE("include lines are read with their place; those in comments and strings are not") {
+  const std::vector<Include> includes =
+      parse_includes("#include <vector>\n// #include <list>\n#  include \"model/model.hpp\"\n\"#include <map>\";\n");
+  REQUIRE(includes.size() == 2);
+  CHECK(includes[0].path == "vector");
+  CHECK_FALSE(includes[0].quoted);
+  CHECK(includes[1].path == "model/model.hpp");
+  CHECK(includes[1].quoted);
+  CHECK(includes[1].line == 3);
+}
+
+TEST_CASE("a stage reaches what its needs reach, and nothing that needs it") {
+  const std::map<std::string, Stage> stages = {
+      {"model", {"model", "model", {}, {"error"}, {}}},
+      {"symbolic", {"symbolic", "symbolic", {}, {}, {"GiNaC::cln"}}},
+      {"derive", {"derive", "derive", {}, {"model"}, {"eomgen_symbolic"}}},
+  };
+  CHECK(reachable("derive", stages) == std::set<std::string>{"derive", "model", "error", "symbolic", "GiNaC::cln"});
+  CHECK(reachable("model", stages) == std::set<std::string>{"model", "error"});
+}
