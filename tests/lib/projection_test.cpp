@@ -133,6 +133,7 @@ TEST_CASE("projection: a state on the constraints stays where it is, to the bit"
   const auto result = projection(0, x.data(), pendulum.constraints(), pendulum.mass());
   CHECK(result.code == 0);
   CHECK(result.iterations == 0);
+  CHECK(result.rank == -1);
   CHECK(x == std::array<double, 4>{0, -1, 2, 0});
 }
 

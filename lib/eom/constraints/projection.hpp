@@ -31,7 +31,7 @@ struct ProjectionResult {
 
   int code = 0;                   // 0, the code of a callback, or not_converged
   int iterations = 0;             // Newton corrections of the positions
-  int rank = 0;                   // of A, as last seen
+  int rank = -1;                  // of A, where last solved with; -1: the state was consistent as it was
   double position_correction = 0; // largest component of q - q before
   double velocity_correction = 0; // largest component of v - v before
 };
@@ -62,13 +62,16 @@ class Projection {
     before_ = state;
     ProjectionResult result;
     if (m_ == 0) return result;
-    const auto model = [&](bool with_mass) {
+    const auto evaluate_constraints = [&] {
       const int code = constraints(t, x, psi_.data(), A_.data(), b_.data());
-      if (code != 0 || !with_mass) return code;
-      return static_cast<int>(mass(t, x, M_.data(), h_.data()));
+      return code != 0 || (A_.allFinite() && b_.allFinite()) ? code : code_not_finite;
     };
-    result.code = move_positions(x, model, result);
-    if (result.code == 0) result.code = move_velocities(x, model, result);
+    const auto evaluate_mass = [&] {
+      const int code = mass(t, x, M_.data(), h_.data());
+      return code != 0 || M_.allFinite() ? code : code_not_finite;
+    };
+    result.code = move_positions(x, evaluate_constraints, evaluate_mass, result);
+    if (result.code == 0) result.code = move_velocities(x, evaluate_constraints, evaluate_mass, result);
     if (result.code != 0) {
       state = before_;
       return result;
@@ -94,17 +97,19 @@ class Projection {
     Vector length;            // of the rows of A
   };
 
-  template <class Model>
-  int move_positions(double* x, const Model& model, ProjectionResult& result) {
+  template <class Constraints, class Mass>
+  int move_positions(double* x, const Constraints& evaluate_constraints, const Mass& evaluate_mass,
+                     ProjectionResult& result) {
     const Index rows = positions_.right.size();
     Eigen::Map<Vector> q(x, n_);
     double last = std::numeric_limits<double>::infinity();
     while (rows > 0) {
-      const int code = model(result.iterations == 0);  // the metric is that of the state handed over
-      if (code != 0) return code;
-      if (!psi_.head(rows).allFinite() || !A_.allFinite()) return code_not_finite;
+      if (const int code = evaluate_constraints(); code != 0) return code;
+      if (!psi_.head(rows).allFinite()) return code_not_finite;
       if (psi_small(q, rows)) break;
       if (result.iterations == options_.max_iterations) return ProjectionResult::not_converged;
+      if (result.iterations == 0)  // the metric is that of the state handed over
+        if (const int code = evaluate_mass(); code != 0) return code;
       ++result.iterations;
       defect_.head(rows) = psi_.head(rows);
       const double size = solve(positions_, result);
@@ -118,21 +123,36 @@ class Projection {
     return rows == 0 || met(psi_, rows, q) ? 0 : ProjectionResult::not_converged;
   }
 
-  template <class Model>
-  int move_velocities(double* x, const Model& model, ProjectionResult& result) {
+  template <class Constraints, class Mass>
+  int move_velocities(double* x, const Constraints& evaluate_constraints, const Mass& evaluate_mass,
+                      ProjectionResult& result) {
     Eigen::Map<Vector> v(x + n_, n_);
-    const int code = model(true);
-    if (code != 0) return code;
-    if (!A_.allFinite() || !b_.allFinite() || !M_.allFinite()) return code_not_finite;
+    if (const int code = evaluate_constraints(); code != 0) return code;
+    if (defect_small(v)) return 0;
+    if (const int code = evaluate_mass(); code != 0) return code;
     for (int pass = 0; pass < 2; ++pass) {  // the second removes the rounding of the first
-      defect_.noalias() = A_.lazyProduct(v);
-      defect_ += b_;
       if (!std::isfinite(solve(velocities_, result))) return code_not_finite;
       v -= correction_;
+      if (defect_small(v)) return 0;
     }
-    defect_.noalias() = A_.lazyProduct(v);
-    defect_ += b_;
     return met(defect_, m_, v) ? 0 : ProjectionResult::not_converged;
+  }
+
+  /// defect_ = A v + b; whether it is within the rounding of its terms.
+  bool defect_small(const Eigen::Map<Vector>& v) {
+    bool small = true;
+    for (Index i = 0; i < m_; ++i) {
+      double sum = b_(i);
+      double terms = std::abs(b_(i));
+      for (Index j = 0; j < n_; ++j) {
+        const double term = A_(i, j) * v(j);
+        sum += term;
+        terms += std::abs(term);
+      }
+      defect_(i) = sum;
+      small = small && std::abs(sum) <= 4 * std::numeric_limits<double>::epsilon() * terms;
+    }
+    return small;
   }
 
   /// |psi_i| within the rounding of its terms, for which |A| |q| stands.

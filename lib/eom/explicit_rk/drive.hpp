@@ -85,14 +85,16 @@ class Run {
 
   bool adaptive() const { return options_.fixed_step <= 0; }
 
-  /// Where the next step ends: t_end exactly for the last one, which is stretched by up to 1 % to avoid a sliver.
+  /// Where the next step ends: t_end exactly for the last one, which may be stretched by 1 %; what is left for two
+  /// steps is halved, so that no sliver remains.
   double next_time() const {
     if (!adaptive()) {
       const double k = static_cast<double>(steps_) + 1;
       return k >= fixed_steps_ ? t_end_ : t_start_ + direction_ * options_.fixed_step * k;
     }
     const double left = std::abs(t_end_ - t_);
-    return 1.01 * h_ >= left ? t_end_ : t_ + direction_ * h_;
+    if (1.01 * h_ >= left) return t_end_;
+    return t_ + direction_ * (2 * h_ > left ? 0.5 * left : h_);
   }
 
   /// after_step and the derivative at the end of the step; returns a code.
