@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# The installed tree: complete, movable, and usable without the generator's libraries.
+#   install_test.sh BUILD SOURCE SCRATCH CMAKE CXX
+set -euo pipefail
+build=$1 source=$2 scratch=$3 cmake=$4 cxx=$5
+
+refuse() {
+  printf 'FAILED: %s\n' "$*" >&2
+  exit 1
+}
+
+rm -rf -- "$scratch"
+mkdir -p "$scratch/empty"
+"$cmake" --install "$build" --prefix "$scratch/first" >"$scratch/install.log" || { cat "$scratch/install.log"; refuse "cmake --install"; }
+# Used from another folder than it was installed to: an installed tree may be moved.
+prefix="$scratch/prefix"
+mv "$scratch/first" "$prefix"
+
+echo "-- the package holds no path of the source or build tree"
+if grep -rIlF -e "$source" -e "$build" -e "$scratch/first" -- "$prefix"; then refuse "these files name folders of the build"; fi
+
+echo "-- a stranger's program is built with it and links neither GiNaC nor CLN"
+"$cmake" -S "$source/tests/install/consumer" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/configure.log" 2>&1 ||
+  { cat "$scratch/configure.log"; refuse "find_package(eomgen)"; }
+grep -q "^eomgen_DIR:PATH=$prefix/" "$scratch/consumer/CMakeCache.txt" || refuse "another eomgen was found than the one installed here"
+"$cmake" --build "$scratch/consumer"
+"$scratch/consumer/oscillator"
+linked=$(ldd "$scratch/consumer/oscillator")
+if grep -Ei 'ginac|libcln|libgmp' <<<"$linked"; then refuse "the program links computer algebra"; fi
+if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these installed headers include computer algebra"; fi
+
+echo "-- the licence of what is installed lies beside it"
+[[ -n $(find "$prefix" -path '*doc*' -name 'LICENSE*') ]] || refuse "no licence is installed"
+
+echo "-- the program runs from the prefix, with its models"
+[[ -x $prefix/bin/eomgen ]] || refuse "there is no bin/eomgen"
+[[ $(cat "$scratch/consumer/cli_path.txt") == "$prefix/bin/eomgen" ]] || refuse "eomgen::cli is not bin/eomgen"
+cd "$scratch/empty"
+"$prefix/bin/eomgen" list --json | grep -q '"format": 1' || refuse "eomgen list"
+"$prefix/bin/eomgen" check P7_moving_sphere --json | grep -q '"format": 1' || refuse "eomgen check of an installed model, by its name"
+[[ -z $(ls -A) ]] || refuse "eomgen left files where it was called"
+echo "all is well"
