@@ -1,0 +1,245 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "symbolic/polynomial.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace eomgen::symbolic {
+namespace {
+
+// Powers of sums beyond this are left as they are: nobody's equations of motion need them written out.
+constexpr long highest_expanded_power = 8;
+
+void add_term(Polynomial& p, const Monomial& m, const Rational& coefficient) {
+  const auto [place, inserted] = p.try_emplace(m, coefficient);
+  if (inserted) return;
+  place->second = place->second + coefficient;
+  if (cln::zerop(place->second)) p.erase(place);
+}
+
+Monomial times(const Monomial& a, const Monomial& b) {
+  Monomial result;
+  auto i = a.begin();
+  auto j = b.begin();
+  while (i != a.end() || j != b.end()) {
+    if (j == b.end() || (i != a.end() && i->first < j->first)) {
+      result.push_back(*i++);
+    } else if (i == a.end() || j->first < i->first) {
+      result.push_back(*j++);
+    } else {
+      const long exponent = i->second + j->second;
+      if (exponent != 0) result.emplace_back(i->first, exponent);
+      ++i;
+      ++j;
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<Ref> Expander::operator()(Ref expression) {
+  const Maybe& expanded = expand(expression);
+  if (!expanded) return std::nullopt;
+  return rebuild(reduce(*expanded));
+}
+
+const Expander::Maybe& Expander::expand(Ref expression) {
+  // Operands first, iteratively: their ids are smaller.
+  for (const Ref r : dag_.reachable({expression})) {
+    if (!memo_.contains(r.id)) {
+      Maybe expanded = expand_node(r);
+      memo_.emplace(r.id, std::move(expanded));
+    }
+  }
+  return memo_.at(expression.id);
+}
+
+Polynomial Expander::atom(Ref r) const { return {{Monomial{{r, 1}}, Rational(1)}}; }
+
+Expander::Maybe Expander::expand_node(Ref r) {
+  const Node node = dag_[r];
+  const auto arg = [&](std::size_t i) -> const Maybe& { return memo_.at(node.args[i].id); };
+  switch (node.op) {
+    case Op::constant: {
+      Polynomial p;
+      add_term(p, {}, dag_.value(r));
+      if (dag_.is_zero(r)) p.clear();
+      return p;
+    }
+    case Op::pi: case Op::symbol: return atom(r);
+    case Op::add: case Op::sub: {
+      if (!arg(0) || !arg(1)) return std::nullopt;
+      Polynomial sum = *arg(0);
+      for (const auto& [m, c] : *arg(1)) add_term(sum, m, node.op == Op::add ? c : -c);
+      if (sum.size() > budget_) return std::nullopt;
+      return sum;
+    }
+    case Op::neg: {
+      if (!arg(0)) return std::nullopt;
+      Polynomial negated = *arg(0);
+      for (auto& term : negated) term.second = -term.second;
+      return negated;
+    }
+    case Op::mul:
+      if (!arg(0) || !arg(1)) return std::nullopt;
+      return product(*arg(0), *arg(1));
+    case Op::div:
+      if (!arg(0) || !arg(1)) return std::nullopt;
+      return quotient(*arg(0), *arg(1));
+    case Op::power: {
+      if (!arg(0)) return std::nullopt;
+      if (node.payload > highest_expanded_power && arg(0)->size() > 1) return with_simpler_arguments(r);
+      Maybe power = *arg(0);
+      if (power->size() == 1) {
+        Monomial m = power->begin()->first;
+        for (auto& factor : m) factor.second *= node.payload;
+        return Polynomial{{m, cln::expt(power->begin()->second, node.payload)}};
+      }
+      for (std::int32_t i = 1; i < node.payload && power; ++i) power = product(*power, *arg(0));
+      return power;
+    }
+    default: return with_simpler_arguments(r);
+  }
+}
+
+Expander::Maybe Expander::product(const Polynomial& a, const Polynomial& b) const {
+  if (a.size() * b.size() > 16 * budget_) return std::nullopt;
+  Polynomial result;
+  for (const auto& [m, c] : a) {
+    for (const auto& [n, d] : b) add_term(result, times(m, n), c * d);
+  }
+  if (result.size() > budget_) result = reduce(std::move(result));
+  if (result.size() > budget_) return std::nullopt;
+  return result;
+}
+
+Expander::Maybe Expander::quotient(const Polynomial& a, const Polynomial& b) {
+  const Polynomial divisor = reduce(b);
+  if (divisor.empty()) return std::nullopt;
+  Polynomial inverse;
+  if (divisor.size() == 1) {
+    Monomial m = divisor.begin()->first;
+    for (auto& factor : m) factor.second = -factor.second;
+    inverse.emplace(std::move(m), cln::recip(divisor.begin()->second));
+  } else {
+    const Ref denominator = rebuild(divisor);
+    // The sum as an atom of its own, with exponent -1, so that equal denominators meet.
+    const bool negative = dag_[denominator].op == Op::neg;
+    const Ref positive = negative ? dag_[denominator].args[0] : denominator;
+    inverse.emplace(Monomial{{positive, -1}}, negative ? Rational(-1) : Rational(1));
+  }
+  return product(a, inverse);
+}
+
+// A function is an atom; what it is taken of may still become simpler.
+Polynomial Expander::with_simpler_arguments(Ref r) {
+  const Node node = dag_[r];
+  std::array<Ref, 4> a{};
+  for (std::uint8_t i = 0; i < node.arity; ++i) {
+    const Maybe& argument = memo_.at(node.args[i].id);
+    a[i] = argument ? rebuild(reduce(*argument)) : node.args[i];
+  }
+  Ref result;
+  switch (node.op) {
+    case Op::power: result = dag_.power(a[0], node.payload); break;
+    case Op::pow: result = dag_.pow(a[0], a[1]); break;
+    case Op::select: result = dag_.select(a[0], a[1], a[2], a[3]); break;
+    case Op::atan2: case Op::min: case Op::max: result = dag_.call(node.op, a[0], a[1]); break;
+    default: result = dag_.call(node.op, a[0]); break;
+  }
+  if (dag_.is_zero(result)) return {};
+  if (dag_.is_constant(result)) return {{Monomial{}, dag_.value(result)}};
+  if (dag_[result].op == Op::neg) return {{Monomial{{dag_[result].args[0], 1}}, Rational(-1)}};
+  return atom(result);
+}
+
+std::optional<Polynomial> Expander::replace_square(const Polynomial& p, Ref square, Ref other) const {
+  Polynomial result;
+  bool any = false;
+  for (const auto& [m, c] : p) {
+    const auto factor = std::find_if(m.begin(), m.end(), [&](const auto& f) { return f.first == square; });
+    if (factor == m.end() || factor->second < 2) {
+      add_term(result, m, c);
+      continue;
+    }
+    any = true;
+    const long pairs = factor->second / 2;
+    Monomial rest = m;
+    auto& exponent = rest[static_cast<std::size_t>(factor - m.begin())].second;
+    exponent -= 2 * pairs;
+    if (exponent == 0) rest.erase(rest.begin() + (factor - m.begin()));
+    // (1 - other^2)^pairs by the binomial theorem
+    Rational binomial = 1;
+    for (long k = 0; k <= pairs; ++k) {
+      const Monomial even = k == 0 ? Monomial{} : Monomial{{other, 2 * k}};
+      add_term(result, times(rest, even), c * binomial);
+      binomial = binomial * Rational(-(pairs - k)) / Rational(k + 1);
+    }
+    if (result.size() > 4 * budget_) return std::nullopt;
+  }
+  if (!any) return std::nullopt;
+  return result;
+}
+
+Polynomial Expander::reduce(Polynomial p) const {
+  std::set<Ref> angles;  // arguments of which a square of a sine or cosine occurs
+  for (const auto& term : p) {
+    for (const auto& [r, exponent] : term.first) {
+      const Op op = dag_[r].op;
+      if (exponent >= 2 && (op == Op::sin || op == Op::cos)) angles.insert(dag_[r].args[0]);
+    }
+  }
+  Dag& dag = dag_;
+  for (bool shorter = true; shorter;) {
+    shorter = false;
+    for (const Ref angle : angles) {
+      const Ref sine = dag.call(Op::sin, angle), cosine = dag.call(Op::cos, angle);
+      for (const auto& [square, other] : {std::pair{sine, cosine}, std::pair{cosine, sine}}) {
+        std::optional<Polynomial> candidate = replace_square(p, square, other);
+        if (!candidate || candidate->size() >= p.size()) continue;
+        p = std::move(*candidate);
+        shorter = true;
+      }
+    }
+  }
+  return p;
+}
+
+Ref Expander::rebuild_monomial(const Monomial& m, const Rational& coefficient) {
+  Ref above = dag_.one(), below = dag_.one();
+  for (const auto& [r, exponent] : m) {
+    if (exponent > 0) above = dag_.mul(above, dag_.power(r, exponent));
+    if (exponent < 0) below = dag_.mul(below, dag_.power(r, -exponent));
+  }
+  return dag_.mul(dag_.constant(coefficient), dag_.div(above, below));
+}
+
+// Factors that all terms share are pulled out in front.
+Ref Expander::rebuild(const Polynomial& p) {
+  if (p.empty()) return dag_.zero();
+  std::map<Ref, long> common;
+  for (const auto& [r, exponent] : p.begin()->first) common[r] = exponent;
+  for (const auto& term : p) {
+    std::map<Ref, long> here(term.first.begin(), term.first.end());
+    for (auto& [r, exponent] : common) {
+      const auto found = here.find(r);
+      exponent = std::min(exponent, found == here.end() ? 0L : found->second);
+    }
+    for (const auto& [r, exponent] : here) {
+      if (exponent < 0) common.try_emplace(r, 0).first->second = std::min(common[r], exponent);
+    }
+  }
+  Monomial front, inverse;
+  for (const auto& [r, exponent] : common) {
+    if (exponent == 0) continue;
+    front.emplace_back(r, exponent);
+    inverse.emplace_back(r, -exponent);
+  }
+  Ref sum = dag_.zero();
+  for (const auto& [m, c] : p) sum = dag_.add(sum, rebuild_monomial(times(m, inverse), c));
+  Ref result = rebuild_monomial(front, Rational(1));
+  return dag_.mul(result, sum);
+}
+
+}  // namespace eomgen::symbolic

@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions expanded into sums of products over atoms (symbols, sines, roots, ...), with sin^2 + cos^2 = 1 used in
+// whichever direction leaves fewer terms. In: a Ref. Out: a Ref of equal value, never more terms than the budget.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <unordered_map>
+#include <utility>
+#include <vector>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::symbolic {
+
+/// Atoms with their exponents (any sign), sorted by atom.
+using Monomial = std::vector<std::pair<Ref, long>>;
+/// Coefficients are not zero.
+using Polynomial = std::map<Monomial, Rational>;
+
+class Expander {
+ public:
+  /// Nothing is expanded to more than `term_budget` terms.
+  explicit Expander(Dag& dag, std::size_t term_budget = 400) : dag_(dag), budget_(term_budget) {}
+
+  /// The expanded and reduced form; nothing where the budget does not suffice.
+  std::optional<Ref> operator()(Ref expression);
+
+ private:
+  using Maybe = std::optional<Polynomial>;
+  const Maybe& expand(Ref r);
+  Maybe expand_node(Ref r);
+  Maybe product(const Polynomial& a, const Polynomial& b) const;
+  Maybe quotient(const Polynomial& a, const Polynomial& b);
+  Polynomial atom(Ref r) const;
+  Polynomial with_simpler_arguments(Ref r);
+  Polynomial reduce(Polynomial p) const;
+  std::optional<Polynomial> replace_square(const Polynomial& p, Ref square, Ref other) const;
+  Ref rebuild(const Polynomial& p);
+  Ref rebuild_monomial(const Monomial& m, const Rational& coefficient);
+
+  Dag& dag_;
+  std::size_t budget_;
+  std::unordered_map<std::uint32_t, Maybe> memo_;
+};
+
+}  // namespace eomgen::symbolic
