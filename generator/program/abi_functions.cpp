@@ -1,0 +1,219 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/abi_functions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "error.hpp"
+
+namespace eomgen::program {
+
+using symbolic::Substitution;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+namespace {
+
+constexpr const char* section_mass = "mass matrix";
+constexpr const char* section_forces = "forces";
+constexpr const char* section_constraints = "constraints";
+constexpr const char* section_multipliers = "multipliers";
+constexpr const char* section_accelerations = "accelerations";
+
+void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, symbolic::Rational>& fix) {
+  if (fix.empty()) return;
+  std::map<Symbol, Ref> values;
+  for (const auto& [index, value] : fix) values[{SymbolKind::parameter, index, 0}] = s.dag->constant(value);
+  Substitution fixed(*s.dag, std::move(values));
+  for (auto* list : {&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma}) {
+    for (Ref& r : *list) r = fixed(r);
+  }
+  for (auto& reaction : s.reactions) reaction.value = fixed(reaction.value);
+  for (auto& output : s.outputs) output.value = fixed(output.value);
+}
+
+/// "12" or, from ten rows on, "3_12".
+std::string indices(std::size_t i, std::size_t j, std::size_t n) {
+  return n < 10 ? fmt::format("{}{}", i + 1, j + 1) : fmt::format("{}_{}", i + 1, j + 1);
+}
+
+}  // namespace
+
+AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
+                           Ties ties)
+    : system_(std::move(system)), n_(system_.free.size()), m_(system_.active.size()) {
+  fix_parameters(system_, fix);
+  Dag& dag = *system_.dag;
+  std::map<Symbol, Ref> solution;
+  solve_ = std::make_unique<Solve>(system_, ties);
+  std::vector<Ref> c;
+  for (const Ref gamma : system_.gamma) c.push_back(dag.neg(gamma));
+  std::tie(qddot_, lambda_) = (*solve_)(system_.f, c);
+  for (std::size_t i = 0; i < n_; ++i) {
+    qdot_.push_back(dag.symbol({SymbolKind::coordinate, system_.free[i], 1}));
+    const Symbol qddot{SymbolKind::coordinate, system_.free[i], 2};
+    qddot_symbol_.push_back(dag.symbol(qddot));
+    solution[qddot] = qddot_[i];
+  }
+  for (std::size_t k = 0; k < m_; ++k) {
+    const Symbol lambda{SymbolKind::multiplier, system_.active[k], 0};
+    lambda_symbol_.push_back(dag.symbol(lambda));
+    solution[lambda] = lambda_[k];
+  }
+  solution_ = std::make_unique<Substitution>(dag, std::move(solution));
+}
+
+void AbiFunctions::label_matrices(WantedFunction& function) {
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) {
+      function.labels.push_back({system_.M[i * n_ + j], "M_" + indices(j, i, n_), section_mass});
+    }
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    function.labels.push_back({system_.f[i], fmt::format("f_{{{}}}", system_.free[i]), section_forces});
+  }
+  for (std::size_t k = 0; k < m_; ++k) {
+    for (std::size_t j = 0; j < n_; ++j) {
+      function.labels.push_back({system_.A[k * n_ + j], "A_" + indices(k, j, std::max(n_, m_)), section_constraints});
+    }
+    function.labels.push_back({system_.gamma[k], fmt::format("gamma_{}", k + 1), section_constraints});
+  }
+}
+
+void AbiFunctions::add_solution(WantedFunction& function) {
+  const std::vector<Ref> needed = [&] {
+    std::vector<Ref> roots;
+    for (const auto& result : function.results) roots.insert(roots.end(), result.second.begin(), result.second.end());
+    return system_.dag->reachable(roots);
+  }();
+  for (const Pivot& pivot : solve_->pivots()) {
+    if (std::binary_search(needed.begin(), needed.end(), pivot.pivot)) function.pivots.push_back(pivot);
+  }
+  label_matrices(function);
+  for (std::size_t k = 0; k < m_; ++k) {
+    std::string label;
+    for (const auto& reaction : system_.reactions) {
+      if (reaction.constraint == system_.active[k]) label = reaction.label;
+    }
+    std::replace(label.begin(), label.end(), '.', '_');
+    function.labels.push_back({lambda_[k], "lambda_" + label, section_multipliers});
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    function.labels.push_back({qddot_[i], fmt::format("{{{}}}_ddot", system_.free[i]), section_accelerations});
+  }
+}
+
+WantedFunction AbiFunctions::rhs() {
+  WantedFunction function{"rhs", {{"dx", qdot_}}, {}, {}};
+  auto& dx = function.results[0].second;
+  dx.insert(dx.end(), qddot_.begin(), qddot_.end());
+  add_solution(function);
+  return function;
+}
+
+// d(qddot)/ds by differentiating the equations of motion, not their solution: with qddot and lambda held,
+//   M dqddot = df + dA^T lambda - dM qddot + A^T dlambda,   A dqddot = -(dgamma + dA qddot).
+std::vector<Ref> AbiFunctions::column(Symbol along) {
+  Dag& dag = *system_.dag;
+  symbolic::Derivation d = symbolic::partial(dag, along);
+  std::vector<Ref> r, c;
+  for (std::size_t i = 0; i < n_; ++i) {
+    Ref sum = d(system_.f[i]);
+    for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + i]), lambda_[k]));
+    for (std::size_t j = 0; j < n_; ++j) sum = dag.sub(sum, dag.mul(d(system_.M[i * n_ + j]), qddot_[j]));
+    r.push_back(sum);
+  }
+  for (std::size_t k = 0; k < m_; ++k) {
+    Ref sum = d(system_.gamma[k]);
+    for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + j]), qddot_[j]));
+    c.push_back(dag.neg(sum));
+  }
+  return (*solve_)(std::move(r), c).first;
+}
+
+WantedFunction AbiFunctions::jac() {
+  const Dag& dag = *system_.dag;
+  WantedFunction function{"jac", {{"dfdx", {}}, {"dfdt", {}}}, {}, {}};
+  auto& dfdx = function.results[0].second;
+  auto& dfdt = function.results[1].second;
+  for (std::uint8_t order = 0; order < 2; ++order) {
+    for (std::size_t j = 0; j < n_; ++j) {
+      for (std::size_t i = 0; i < n_; ++i) dfdx.push_back(order == 1 && i == j ? dag.one() : dag.zero());
+      const std::vector<Ref> lower = column({SymbolKind::coordinate, system_.free[j], order});
+      dfdx.insert(dfdx.end(), lower.begin(), lower.end());
+    }
+  }
+  dfdt.assign(n_, dag.zero());
+  const std::vector<Ref> lower = column({SymbolKind::time, 0, 0});
+  dfdt.insert(dfdt.end(), lower.begin(), lower.end());
+  add_solution(function);
+  return function;
+}
+
+WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
+  WantedFunction function{"jac_p", {{"dfdp", {}}}, {}, {}};
+  auto& dfdp = function.results[0].second;
+  for (std::uint32_t j = 0; j < parameters; ++j) {
+    dfdp.insert(dfdp.end(), n_, system_.dag->zero());
+    const std::vector<Ref> lower = column({SymbolKind::parameter, j, 0});
+    dfdp.insert(dfdp.end(), lower.begin(), lower.end());
+  }
+  add_solution(function);
+  return function;
+}
+
+WantedFunction AbiFunctions::mass() {
+  WantedFunction function{"mass", {{"M", {}}, {"h", {}}}, {}, {}};
+  for (std::size_t j = 0; j < n_; ++j) {
+    for (std::size_t i = 0; i < n_; ++i) function.results[0].second.push_back(system_.M[i * n_ + j]);
+  }
+  for (std::size_t i = 0; i < n_; ++i) function.results[1].second.push_back(system_.dag->neg(system_.f[i]));
+  label_matrices(function);
+  return function;
+}
+
+WantedFunction AbiFunctions::constraints() {
+  WantedFunction function{"constraints", {{"psi", system_.psi}, {"A", {}}, {"b", system_.b}}, {}, {}};
+  for (std::size_t j = 0; j < n_; ++j) {
+    for (std::size_t k = 0; k < m_; ++k) function.results[1].second.push_back(system_.A[k * n_ + j]);
+  }
+  return function;
+}
+
+Ref AbiFunctions::written_out(Ref expression, bool& solved) {
+  for (const Symbol& symbol : system_.dag->symbols({expression})) {
+    solved = solved || symbol.kind == SymbolKind::multiplier ||
+             (symbol.kind == SymbolKind::coordinate && symbol.order == 2);
+  }
+  return solved ? (*solution_)(expression) : expression;
+}
+
+WantedFunction AbiFunctions::reactions() {
+  WantedFunction function{"reactions", {{"lambda", {}}}, {}, {}};
+  bool solved = false;
+  for (const auto& reaction : system_.reactions) {
+    function.results[0].second.push_back(written_out(reaction.value, solved));
+  }
+  if (solved) add_solution(function);
+  return function;
+}
+
+WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
+  WantedFunction function{"outputs", {{"y", {}}}, {}, {}};
+  bool solved = false;
+  for (const std::string& name : names) {
+    const auto found = std::find_if(system_.outputs.begin(), system_.outputs.end(),
+                                    [&name](const system::Output& output) { return output.name == name; });
+    if (found == system_.outputs.end()) {
+      std::string known;
+      for (const auto& output : system_.outputs) known += (known.empty() ? "" : ", ") + output.name;
+      throw Error("program", {}, fmt::format("there is no output `{}`", name), "outputs of this model: " + known);
+    }
+    function.results[0].second.push_back(written_out(found->value, solved));
+  }
+  if (solved) add_solution(function);
+  return function;
+}
+
+}  // namespace eomgen::program

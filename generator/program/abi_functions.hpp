@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: EquationSystem and what is asked for. Out: the results of each function of the C ABI (docs/abi.md) as
+// expressions of t, the state, parameters and inputs; nothing is optimised yet.
+#pragma once
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "program/solve.hpp"
+#include "symbolic/calculus.hpp"
+
+namespace eomgen::program {
+
+struct WantedLabel {
+  Ref value;
+  std::string name, section;
+};
+
+struct WantedFunction {
+  std::string name;
+  std::vector<std::pair<std::string, std::vector<Ref>>> results;  // argument name, entries (column-major)
+  std::vector<Pivot> pivots;
+  std::vector<WantedLabel> labels;
+};
+
+/// The equations of motion, solved, with what the functions of the ABI are made of.
+class AbiFunctions {
+ public:
+  /// `fix`: parameters that become numbers.
+  AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
+               Ties ties = Ties::ascending);
+
+  WantedFunction rhs();
+  WantedFunction jac();
+  WantedFunction jac_p(std::size_t parameters);
+  WantedFunction mass();
+  WantedFunction constraints();
+  WantedFunction reactions();
+  /// Throws Error with the names that exist where one is unknown.
+  WantedFunction outputs(const std::vector<std::string>& names);
+
+  const system::EquationSystem& system() const { return system_; }
+
+ private:
+  void add_solution(WantedFunction& function);
+  void label_matrices(WantedFunction& function);
+  std::vector<Ref> column(symbolic::Symbol along);
+  /// qddot and the active multipliers written out; true in `solved` if there were any.
+  Ref written_out(Ref expression, bool& solved);
+
+  system::EquationSystem system_;
+  std::size_t n_, m_;
+  std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
+  std::unique_ptr<Solve> solve_;
+  std::vector<Ref> qddot_, lambda_;
+  std::unique_ptr<symbolic::Substitution> solution_;
+};
+
+}  // namespace eomgen::program

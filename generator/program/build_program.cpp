@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/build_program.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include "error.hpp"
+#include "program/from_dag.hpp"
+
+namespace eomgen::program {
+namespace {
+
+constexpr double worth_optimising = 1.5;  // times the cheapest raw cost
+
+struct Candidate {
+  std::size_t index = 0;  // into the candidates
+  std::unique_ptr<AbiFunctions> functions;
+  WantedFunction rhs;
+  Polynomials raw;
+  Operations operations;  // raw, then optimised
+  std::size_t raw_cost = 0;
+};
+
+Polynomials raw_graph(const AbiFunctions& functions, const WantedFunction& wanted) {
+  Polynomials graph = flatten(from_dag(*functions.system().dag, wanted, functions.system().free), false);
+  reduce_pivots(graph);
+  return flatten(graph, false);
+}
+
+Function finished(const Polynomials& graph, const WantedFunction& wanted) {
+  std::vector<std::pair<std::string, std::size_t>> shape;
+  for (const auto& [argument, entries] : wanted.results) shape.emplace_back(argument, entries.size());
+  return schedule(graph, wanted.name, shape);
+}
+
+/// Both orders of elimination of every route, as they come out of the derivation.
+std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>& systems, const Request& request) {
+  std::vector<Candidate> result;
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    for (const Ties ties : {Ties::ascending, Ties::descending}) {
+      if (ties == Ties::descending && systems[i].free.size() + systems[i].active.size() < 2) continue;
+      Candidate candidate;
+      candidate.index = i;
+      candidate.functions = std::make_unique<AbiFunctions>(systems[i], request.fix, ties);
+      candidate.rhs = candidate.functions->rhs();
+      candidate.raw = raw_graph(*candidate.functions, candidate.rhs);
+      candidate.operations = count_operations(candidate.raw);
+      candidate.raw_cost = candidate.operations.cost();
+      result.push_back(std::move(candidate));
+    }
+  }
+  return result;
+}
+
+/// Optimises what is cheap enough and gives the index of the best.
+std::size_t choose(std::vector<Candidate>& candidates) {
+  std::size_t cheapest = candidates[0].raw_cost;
+  for (const Candidate& candidate : candidates) cheapest = std::min(cheapest, candidate.raw_cost);
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    Candidate& candidate = candidates[i];
+    if (static_cast<double>(candidate.raw_cost) > worth_optimising * static_cast<double>(cheapest)) continue;
+    candidate.raw = optimise(candidate.raw);
+    candidate.operations = count_operations(candidate.raw);
+    if (!best || candidate.operations.cost() < candidates[*best].operations.cost()) best = i;
+  }
+  return *best;
+}
+
+std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::vector<system::EquationSystem>& systems) {
+  std::vector<Tried> result;
+  for (const Candidate& candidate : candidates) {
+    const std::string& route = systems[candidate.index].route;
+    if (result.empty() || result.back().route != route) {
+      result.push_back({route, candidate.operations});
+    } else if (candidate.operations.cost() < result.back().operations.cost()) {
+      result.back().operations = candidate.operations;
+    }
+  }
+  return result;
+}
+
+std::size_t parameter_count(const system::EquationSystem& system) {
+  std::size_t count = 0;
+  std::vector<symbolic::Ref> roots;
+  for (const auto* list : {&system.M, &system.f, &system.A, &system.gamma}) {
+    roots.insert(roots.end(), list->begin(), list->end());
+  }
+  for (const symbolic::Symbol& symbol : system.dag->symbols(roots)) {
+    if (symbol.kind == symbolic::SymbolKind::parameter) count = std::max<std::size_t>(count, symbol.index + 1);
+  }
+  return count;
+}
+
+WantedFunction wanted_function(AbiFunctions& functions, const std::string& name, const Request& request) {
+  if (name == "jac") return functions.jac();
+  if (name == "jac_p") {
+    return functions.jac_p(request.parameters > 0 ? request.parameters : parameter_count(functions.system()));
+  }
+  if (name == "mass") return functions.mass();
+  if (name == "constraints") return functions.constraints();
+  if (name == "reactions") return functions.reactions();
+  const bool later = name == "events" || name == "taylor" || name == "rhs_batch";
+  throw Error("program", {},
+              later ? fmt::format("function `{}` is not supported yet", name) : fmt::format("there is no function `{}`", name),
+              "functions that can be asked for: jac, jac_p, mass, constraints, reactions, outputs");
+}
+
+}  // namespace
+
+Program build_program(std::vector<system::EquationSystem>& systems, const Request& request) {
+  if (systems.empty()) {
+    throw Error("program", {}, "no route derives this model", "choose another approach or form");
+  }
+  std::vector<Candidate> candidates = raw_candidates(systems, request);
+  std::size_t best = 0;
+  if (request.optimise) best = choose(candidates);
+  Candidate& chosen = candidates[best];
+  const system::EquationSystem& system = systems[chosen.index];
+
+  Program program;
+  program.free = system.free;
+  program.route = system.route;
+  program.approach = system.approach;
+  program.tried = tried(candidates, systems);
+  program.active_constraints = system.active.size();
+  program.functions.push_back(finished(chosen.raw, chosen.rhs));
+  const auto add = [&](const WantedFunction& wanted) {
+    const Polynomials raw = raw_graph(*chosen.functions, wanted);
+    program.functions.push_back(finished(request.optimise ? optimise(raw) : raw, wanted));
+  };
+  for (const std::string& name : request.with) {
+    if (name == "outputs" || name == "rhs") continue;  // by the names asked for; always
+    add(wanted_function(*chosen.functions, name, request));
+    if (name == "reactions") {
+      for (const auto& reaction : system.reactions) program.reactions.push_back(reaction.label);
+    }
+  }
+  if (!request.outputs.empty()) {
+    add(chosen.functions->outputs(request.outputs));
+    program.outputs = request.outputs;
+  }
+  return program;
+}
+
+}  // namespace eomgen::program

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// x*a + x*b + c -> x*(a + b) + c, the most frequent factor of a sum first, inside the new sums too.
+#include <cln/rational.h>
+
+#include <algorithm>
+#include <map>
+
+#include "program/polynomials.hpp"
+
+namespace eomgen::program {
+namespace {
+
+/// A factor that several terms share: a node above or below the fraction bar, or the size of a coefficient.
+struct Shared {
+  bool number = false;
+  NodeId node = 0;
+  bool divisor = false;
+  Rational size = 1;
+};
+
+class Factoring {
+ public:
+  Factoring(Polynomials& graph, std::uint64_t seed) : graph_(graph), seed_(seed) {}
+
+  /// Factors the sum of one node, once.
+  void refine(NodeId id) {
+    if (graph_[id].kind != Node::Kind::sum || graph_[id].terms.size() < 2) return;
+    if (done_.size() < graph_.size()) done_.resize(graph_.size(), false);
+    if (done_[id]) return;
+    done_[id] = true;
+    std::vector<Term> terms = sum(graph_[id].terms);
+    graph_.terms_of(id) = std::move(terms);
+  }
+
+ private:
+  std::vector<Term> sum(std::vector<Term> terms) {
+    Shared best;
+    while (terms.size() > 1 && find(terms, best)) {
+      std::vector<Term> with, without;
+      for (Term& term : terms) (has(term, best) ? with : without).push_back(std::move(term));
+      const Term front = common(with, best);
+      for (Term& term : with) {
+        term.coefficient = term.coefficient / front.coefficient;
+        term.factors = multiply(term.factors, front.factors, -1);
+      }
+      // The bracket in normal form may turn out to be a sum that exists; a new one is factored in turn.
+      Term bracket = graph_.normal(std::move(with));
+      refine(bracket);
+      without.push_back(multiply(front, bracket));
+      terms = std::move(without);
+    }
+    return terms;
+  }
+
+  static bool has(const Term& term, const Shared& shared) {
+    if (shared.number) return !term.is_constant() && cln::abs(term.coefficient) == shared.size;
+    return std::any_of(term.factors.begin(), term.factors.end(), [&shared](const Factor& f) {
+      return f.node == shared.node && (f.exponent < 0) == shared.divisor;
+    });
+  }
+
+  static Term common(const std::vector<Term>& with, const Shared& shared) {
+    if (shared.number) return {shared.size, {}};
+    std::int32_t exponent = 0;
+    for (const Term& term : with) {
+      for (const Factor& f : term.factors) {
+        if (f.node == shared.node && (exponent == 0 || std::abs(f.exponent) < std::abs(exponent))) exponent = f.exponent;
+      }
+    }
+    return {1, {{shared.node, exponent}}};
+  }
+
+  /// The factor that saves most multiplications: those of all terms but one, and terms that are the factor alone.
+  bool find(const std::vector<Term>& terms, Shared& best) const {
+    std::map<std::pair<NodeId, bool>, int> saved;
+    std::vector<std::pair<Rational, int>> sizes;
+    for (const Term& term : terms) {
+      const bool unit = term.coefficient == 1 || term.coefficient == -1;
+      for (const Factor& f : term.factors) {
+        const bool alone = unit && term.factors.size() == 1 && f.exponent == 1;
+        auto& count = saved.try_emplace({f.node, f.exponent < 0}, -1).first->second;
+        count += alone ? 0 : 1;
+      }
+      if (unit || term.is_constant()) continue;
+      const Rational size = cln::abs(term.coefficient);
+      auto found = std::find_if(sizes.begin(), sizes.end(), [&size](const auto& s) { return s.first == size; });
+      if (found == sizes.end()) found = sizes.insert(found, {size, -1});
+      ++found->second;
+    }
+    int most = 0;
+    std::uint64_t tie = 0;
+    for (const auto& [key, count] : saved) {
+      const std::uint64_t rank = seed_ == 0 ? key.first : scramble(key.first, seed_);
+      if (count < most || count < 1 || (count == most && rank <= tie)) continue;
+      most = count;
+      tie = rank;
+      best = {false, key.first, key.second, 1};
+    }
+    for (const auto& [size, count] : sizes) {
+      if (count <= most) continue;
+      most = count;
+      best = {true, 0, false, size};
+    }
+    return most > 0;
+  }
+
+  void refine(const Term& bracket) {
+    for (const Factor& f : bracket.factors) refine(f.node);
+  }
+
+  Polynomials& graph_;
+  std::uint64_t seed_;
+  std::vector<bool> done_;
+};
+
+}  // namespace
+
+void factor_sums(Polynomials& graph, std::uint64_t seed) {
+  Factoring factoring(graph, seed);
+  for (const NodeId id : graph.order()) factoring.refine(id);
+}
+
+}  // namespace eomgen::program

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From the graph to straight-line code, and what that code costs. The two must agree: a test compares them.
+#include <cln/rational.h>
+
+#include <algorithm>
+#include <map>
+
+#include "program/polynomials.hpp"
+
+namespace eomgen::program {
+namespace {
+
+using symbolic::Op;
+
+// x^1, x^2, x^3 are written out as factors; beyond, halves are squared.
+constexpr std::int32_t written_out = 3;
+
+std::size_t power_factors(std::int32_t e) { return static_cast<std::size_t>(e <= written_out ? e : 2 + e % 2); }
+std::size_t power_cost(std::int32_t e) {  // of the halves that need an instruction
+  return e <= written_out ? 0 : power_factors(e / 2) - 1 + power_cost(e / 2);
+}
+
+bool is_unit(const Rational& c) { return c == 1 || c == -1; }
+
+void count_term(const Term& term, const std::vector<std::uint32_t>& divides, Operations& operations) {
+  std::size_t above = is_unit(term.coefficient) ? 0 : 1, below = 0;
+  for (const Factor& f : term.factors) {
+    const std::int32_t e = std::abs(f.exponent);
+    operations.mul += power_cost(e);
+    (f.exponent > 0 || divides[f.node] > 1 ? above : below) += power_factors(e);
+  }
+  operations.mul += above > 1 ? above - 1 : 0;
+  operations.mul += below > 1 ? below - 1 : 0;
+  operations.div += below > 0 ? 1 : 0;
+}
+
+void count_call(Op op, Operations& operations) {
+  switch (op) {
+    case Op::div: ++operations.div; break;
+    case Op::sqrt: ++operations.sqrt; break;
+    case Op::sin: case Op::cos: case Op::tan: ++operations.trig; break;
+    default: ++operations.other; break;
+  }
+}
+
+}  // namespace
+
+Operations count_operations(const Polynomials& graph) {
+  Operations operations;
+  const std::vector<NodeId> order = graph.order();
+  const std::vector<std::uint32_t> divides = graph.divisor_uses(order);
+  for (const NodeId id : order) {
+    const Node& node = graph[id];
+    if (divides[id] > 1) ++operations.div;
+    if (node.kind == Node::Kind::call) count_call(node.op, operations);
+    if (node.kind != Node::Kind::sum) continue;
+    operations.add += node.terms.size() - 1;
+    for (const Term& term : node.terms) count_term(term, divides, operations);
+  }
+  return operations;
+}
+
+namespace {
+
+class Schedule {
+ public:
+  Schedule(const Polynomials& graph, std::string name)
+      : graph_(graph), value_(graph.size()), reciprocal_(graph.size()), has_reciprocal_(graph.size(), false) {
+    function_.name = std::move(name);
+  }
+
+  Function run(const std::vector<std::pair<std::string, std::size_t>>& shape) {
+    prepare();
+    Walk walk(graph_);
+    const auto take = [this](NodeId id) { emit(id); };
+    const std::vector<NodeId> order = graph_.order();
+    section_ = "sines and cosines";
+    for (const NodeId id : order) {
+      if (!graph_.is_trig(id)) continue;
+      walk.from(id, take);
+      NodeId other = 0;
+      if (graph_.partner(id, other) && needed_[other]) walk.from(other, take);
+    }
+    section_.clear();
+    for (const Label& label : graph_.labels) {
+      if (!needed_[label.value.factors[0].node]) continue;
+      section_ = label.section;
+      walk.from(label.value, take);
+    }
+    section_ = "results";
+    walk.from_results(take);
+    finish(shape);
+    return std::move(function_);
+  }
+
+ private:
+  void prepare() {
+    const std::vector<NodeId> order = graph_.order();
+    divides_ = graph_.divisor_uses(order);
+    needed_.assign(graph_.size(), false);
+    flipped_.assign(graph_.size(), false);
+    for (const NodeId id : order) needed_[id] = true;
+    for (const Label& label : graph_.labels) {
+      const NodeId id = label.value.factors[0].node;
+      if (!needed_[id] || name_.contains(id)) continue;
+      const Node& node = graph_[id];
+      const bool negative = cln::minusp(label.value.coefficient);
+      if (node.kind != Node::Kind::sum) continue;
+      // The value of this name is minus the node: turn the node around where that costs nothing.
+      flipped_[id] = negative && std::any_of(node.terms.begin(), node.terms.end(), [](const Term& term) {
+                       return cln::minusp(term.coefficient);
+                     });
+      name_[id] = negative && !flipped_[id] ? "minus_" + label.name : label.name;
+    }
+  }
+
+  Operand constant(const Rational& value) {
+    const Rational size = cln::abs(value);
+    auto found = std::find(function_.constants.begin(), function_.constants.end(), size);
+    if (found == function_.constants.end()) found = function_.constants.insert(found, size);
+    const auto index = static_cast<std::uint32_t>(found - function_.constants.begin());
+    return {Slot::constant, index, cln::minusp(value)};
+  }
+
+  Operand add_instruction(Op op, std::vector<Operand> operands, const std::string& name = "") {
+    Instruction instruction;
+    instruction.op = op;
+    instruction.operands = std::move(operands);
+    instruction.name = name;
+    if (section_ != last_section_) instruction.section = last_section_ = section_;
+    for (const Operand& operand : instruction.operands) {
+      function_.uses_input = function_.uses_input || operand.slot == Slot::input;
+    }
+    count(instruction);
+    function_.code.push_back(std::move(instruction));
+    return {Slot::value, static_cast<std::uint32_t>(function_.code.size() - 1), false};
+  }
+
+  void count(const Instruction& instruction) {
+    Operations& operations = function_.operations;
+    if (instruction.op == Op::add) {
+      operations.add += instruction.operands.size() - 1;
+    } else if (instruction.op == Op::mul) {
+      operations.mul += instruction.operands.size() - 1;
+    } else {
+      count_call(instruction.op, operations);
+    }
+  }
+
+  Operand product(std::vector<Operand> factors, const std::string& name = "") {
+    if (factors.size() == 1) return factors[0];
+    return add_instruction(Op::mul, std::move(factors), name);
+  }
+
+  void push_power(const Operand& base, std::int32_t e, std::vector<Operand>& factors) {
+    if (e <= written_out) {
+      factors.insert(factors.end(), static_cast<std::size_t>(e), base);
+      return;
+    }
+    std::vector<Operand> half_factors;
+    push_power(base, e / 2, half_factors);
+    const Operand half = product(std::move(half_factors));
+    factors.insert(factors.end(), 2, half);
+    if (e % 2 == 1) factors.push_back(base);
+  }
+
+  Operand reciprocal(NodeId id) {
+    if (!has_reciprocal_[id]) {
+      has_reciprocal_[id] = true;
+      const auto named = name_.find(id);
+      reciprocal_[id] = add_instruction(Op::div, {constant(1), value_[id]},
+                                        named == name_.end() ? "" : "inverse_" + named->second);
+    }
+    return reciprocal_[id];
+  }
+
+  /// The size of a term as an operand; `negated` tells its sign.
+  Operand term(const Term& term, const std::string& name) {
+    std::vector<Operand> above, below;
+    if (!is_unit(term.coefficient)) above.push_back(constant(cln::abs(term.coefficient)));
+    bool negated = cln::minusp(term.coefficient);
+    for (const Factor& f : term.factors) {
+      const bool multiply_by_reciprocal = f.exponent < 0 && divides_[f.node] > 1;
+      Operand base = multiply_by_reciprocal ? reciprocal(f.node) : value_[f.node];
+      negated = negated != (base.negated && f.exponent % 2 != 0);
+      base.negated = false;
+      push_power(base, std::abs(f.exponent), f.exponent > 0 || multiply_by_reciprocal ? above : below);
+    }
+    if (above.empty()) above.push_back(constant(1));
+    Operand result = product(std::move(above), below.empty() ? name : "");
+    if (!below.empty()) result = add_instruction(Op::div, {result, product(std::move(below))}, name);
+    result.negated = result.negated != negated;
+    return result;
+  }
+
+  void emit(NodeId id) {
+    const Node& node = graph_[id];
+    const auto named = name_.find(id);
+    const std::string name = named == name_.end() ? "" : named->second;
+    if (node.kind == Node::Kind::leaf) {
+      value_[id] = node.leaf;
+      function_.uses_input = function_.uses_input || node.leaf.slot == Slot::input;
+    } else if (node.kind == Node::Kind::call) {
+      std::vector<Operand> arguments;
+      for (const Term& argument : node.terms) {
+        arguments.push_back(argument.is_constant() ? constant(argument.coefficient) : term(argument, ""));
+      }
+      value_[id] = add_instruction(node.op, std::move(arguments), name);
+    } else if (node.terms.size() == 1) {
+      value_[id] = term(node.terms[0], name);
+    } else {
+      std::vector<Operand> summands;
+      for (const Term& summand : node.terms) {
+        Operand operand = term(summand, "");
+        operand.negated = operand.negated != flipped_[id];
+        summands.push_back(operand);
+      }
+      std::stable_partition(summands.begin(), summands.end(), [](const Operand& o) { return !o.negated; });
+      value_[id] = add_instruction(Op::add, std::move(summands), name);
+      value_[id].negated = flipped_[id];
+    }
+  }
+
+  Operand operand(const Term& term) {
+    if (term.is_constant()) return constant(term.coefficient);
+    Operand result = value_[term.factors[0].node];
+    result.negated = result.negated != cln::minusp(term.coefficient);
+    return result;
+  }
+
+  void finish(const std::vector<std::pair<std::string, std::size_t>>& shape) {
+    std::size_t next = 0;
+    for (const auto& [argument, entries] : shape) {
+      std::vector<Operand> values;
+      for (std::size_t i = 0; i < entries; ++i) values.push_back(operand(graph_.results[next++]));
+      function_.results.emplace_back(argument, std::move(values));
+    }
+    test_pivots();
+  }
+
+  void test_pivots() {
+    const std::vector<bool> divides = graph_.divisors(graph_.order());
+    std::vector<bool> tested(graph_.size(), false);
+    for (const PivotPair& pair : graph_.pivots) {
+      if (!pair.scale.is_constant() || pair.scale.coefficient != 0) {
+        function_.pivots.push_back({operand(pair.pivot), operand(pair.scale)});
+        continue;
+      }
+      // What must not be zero is told only where the finished program still divides by it.
+      for (const NodeId id : graph_.atoms(pair.pivot)) {
+        if (divides[id] && !tested[id]) function_.pivots.push_back({value_[id], constant(0)});
+        tested[id] = true;
+      }
+    }
+  }
+
+  const Polynomials& graph_;
+  Function function_;
+  std::vector<Operand> value_, reciprocal_;
+  std::vector<bool> has_reciprocal_, needed_, flipped_;
+  std::vector<std::uint32_t> divides_;
+  std::map<NodeId, std::string> name_;
+  std::string section_, last_section_;
+};
+
+}  // namespace
+
+Function schedule(const Polynomials& graph, const std::string& name,
+                  const std::vector<std::pair<std::string, std::size_t>>& shape) {
+  return Schedule(graph, name).run(shape);
+}
+
+}  // namespace eomgen::program

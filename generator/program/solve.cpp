@@ -1,0 +1,197 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/solve.hpp"
+
+#include <cln/real.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "error.hpp"
+#include "program/polynomials.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::program {
+
+using symbolic::Symbol;
+
+Factorisation::Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, Ties ties)
+    : dag_(dag), n_(n), w_(std::move(matrix)) {
+  std::vector<bool> done(n, false);
+  std::vector<Ref> diagonal(n);
+  for (std::size_t i = 0; i < n; ++i) diagonal[i] = w_[i * n + i];
+  for (std::size_t step = 0; step < n; ++step) {
+    const std::size_t k = next_row(done, ties);
+    done[k] = true;
+    order_.push_back(k);
+    const Ref pivot = w_[k * n + k];
+    d_.push_back(pivot);
+    const bool untouched = pivot == diagonal[k];
+    pivots_.push_back({pivot, untouched ? dag.zero() : diagonal[k]});
+    for (std::size_t i = 0; i < n; ++i) {
+      if (done[i] || dag.is_zero(w_[i * n + k])) continue;
+      const Ref l = dag.div(w_[i * n + k], pivot);
+      for (std::size_t j = 0; j <= i; ++j) {
+        if (done[j] || dag.is_zero(w_[j * n + k])) continue;
+        w_[i * n + j] = w_[j * n + i] = dag.sub(w_[i * n + j], dag.mul(l, w_[j * n + k]));
+      }
+    }
+  }
+}
+
+// Minimum degree: the row whose elimination touches the fewest others, so that zeros stay zeros.
+std::size_t Factorisation::next_row(std::vector<bool>& done, Ties ties) {
+  std::size_t best = n_, best_degree = 0;
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (done[i]) continue;
+    std::size_t degree = 0;
+    for (std::size_t j = 0; j < n_; ++j) degree += !done[j] && j != i && !dag_.is_zero(w_[i * n_ + j]) ? 1 : 0;
+    if (best == n_ || degree < best_degree || (degree == best_degree && ties == Ties::descending)) {
+      best = i;
+      best_degree = degree;
+    }
+  }
+  return best;
+}
+
+std::vector<Ref> Factorisation::forward(const std::vector<Ref>& r) const {
+  std::vector<Ref> z;
+  for (std::size_t step = 0; step < n_; ++step) {
+    const std::size_t i = order_[step];
+    Ref sum = r[i];
+    for (std::size_t k = 0; k < step; ++k) {
+      const Ref entry = w_[i * n_ + order_[k]];
+      if (dag_.is_zero(entry) || dag_.is_zero(z[k])) continue;
+      sum = dag_.sub(sum, dag_.mul(dag_.div(entry, d_[k]), z[k]));
+    }
+    z.push_back(sum);
+  }
+  return z;
+}
+
+std::vector<Ref> Factorisation::backward(const std::vector<Ref>& z) const {
+  std::vector<Ref> x(n_, dag_.zero());
+  for (std::size_t step = n_; step-- > 0;) {
+    Ref sum = z[step];
+    for (std::size_t k = step + 1; k < n_; ++k) {
+      const Ref entry = w_[order_[k] * n_ + order_[step]];
+      sum = dag_.sub(sum, dag_.mul(entry, x[order_[k]]));
+    }
+    x[order_[step]] = dag_.div(sum, d_[step]);
+  }
+  return x;
+}
+
+Ref Factorisation::inner(const std::vector<Ref>& a, const std::vector<Ref>& b) const {
+  Ref sum = dag_.zero();
+  for (std::size_t k = 0; k < n_; ++k) sum = dag_.add(sum, dag_.div(dag_.mul(a[k], b[k]), d_[k]));
+  return sum;
+}
+
+Solve::Solve(const system::EquationSystem& system, Ties ties)
+    : dag_(system.dag), n_(system.free.size()), m_(system.active.size()), A_(system.A) {
+  Dag& dag = *dag_;
+  std::vector<Ref> M = system.M;
+  augmented_ = is_singular_everywhere(dag, M, n_);
+  if (augmented_) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t j = 0; j < n_; ++j) {
+        for (std::size_t c = 0; c < m_; ++c) {
+          M[i * n_ + j] = dag.add(M[i * n_ + j], dag.mul(A_[c * n_ + i], A_[c * n_ + j]));
+        }
+      }
+    }
+    if (is_singular_everywhere(dag, M, n_)) {
+      throw Error("program", {}, "the mass matrix is singular at every state, with the constraints too",
+                  "give every coordinate a mass or a constraint that determines it");
+    }
+  }
+  mass_ = std::make_unique<Factorisation>(dag, std::move(M), n_, ties);
+  if (m_ == 0) return;
+  for (std::size_t c = 0; c < m_; ++c) {
+    const auto row = A_.begin() + static_cast<std::ptrdiff_t>(c * n_);
+    Y_.push_back(mass_->forward({row, row + static_cast<std::ptrdiff_t>(n_)}));
+  }
+  std::vector<Ref> S(m_ * m_);
+  for (std::size_t i = 0; i < m_; ++i) {
+    for (std::size_t j = 0; j <= i; ++j) S[i * m_ + j] = S[j * m_ + i] = mass_->inner(Y_[i], Y_[j]);
+  }
+  schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
+}
+
+std::pair<std::vector<Ref>, std::vector<Ref>> Solve::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
+  Dag& dag = *dag_;
+  if (augmented_) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t k = 0; k < m_; ++k) r[i] = dag.add(r[i], dag.mul(A_[k * n_ + i], c[k]));
+    }
+  }
+  std::vector<Ref> z = mass_->forward(r);
+  std::vector<Ref> lambda;
+  if (m_ > 0) {
+    std::vector<Ref> excess;
+    for (std::size_t k = 0; k < m_; ++k) excess.push_back(dag.sub(c[k], mass_->inner(Y_[k], z)));
+    lambda = schur_->backward(schur_->forward(excess));
+    for (std::size_t k = 0; k < m_; ++k) {
+      for (std::size_t i = 0; i < n_; ++i) z[i] = dag.add(z[i], dag.mul(Y_[k][i], lambda[k]));
+    }
+  }
+  return {mass_->backward(z), lambda};
+}
+
+std::vector<Pivot> Solve::pivots() const {
+  std::vector<Pivot> result = mass_->pivots();
+  if (schur_) result.insert(result.end(), schur_->pivots().begin(), schur_->pivots().end());
+  return result;
+}
+
+namespace {
+
+/// Rank of a positive semidefinite matrix by elimination with diagonal pivots; values of 40 digits, zeros below 1e-25.
+bool is_singular(std::vector<cln::cl_R> M, std::size_t n) {
+  cln::cl_R largest = 0;
+  for (std::size_t i = 0; i < n; ++i) largest = cln::max(largest, cln::abs(M[i * n + i]));
+  const cln::cl_R smallest = largest * cln::expt(cln::cl_RA(10), -25);
+  std::vector<bool> done(n, false);
+  for (std::size_t step = 0; step < n; ++step) {
+    std::size_t k = n;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!done[i] && (k == n || cln::abs(M[i * n + i]) > cln::abs(M[k * n + k]))) k = i;
+    }
+    if (cln::abs(M[k * n + k]) <= smallest) return true;
+    done[k] = true;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (done[i]) continue;
+      const cln::cl_R l = M[i * n + k] / M[k * n + k];
+      for (std::size_t j = 0; j < n; ++j) {
+        if (!done[j]) M[i * n + j] = M[i * n + j] - l * M[k * n + j];
+      }
+    }
+  }
+  return false;
+}
+
+}  // namespace
+
+bool is_singular_everywhere(const Dag& dag, const std::vector<Ref>& M, std::size_t n) {
+  for (std::size_t i = 0; i < n; ++i) {
+    if (dag.is_zero(M[i * n + i])) return true;
+  }
+  // Values in (0.3, 1.3): inside the charts and the domains of most functions; points without a value say nothing.
+  constexpr std::uint64_t points = 8;
+  bool judged = false;
+  for (std::uint64_t point = 0; point < points; ++point) {
+    const auto value = [point](const Symbol& s) -> cln::cl_R {
+      const std::uint64_t key = (static_cast<std::uint64_t>(s.kind) << 40) + (std::uint64_t{s.order} << 32) + s.index;
+      return Rational(static_cast<long>(scramble(key, point) % 1000003) + 300000) / 1000003;
+    };
+    try {
+      if (!is_singular(symbolic::evaluate(dag, M, value, 40), n)) return false;
+      judged = true;
+    } catch (const std::domain_error&) {
+    } catch (const std::runtime_error&) {
+    }
+  }
+  return judged;
+}
+
+}  // namespace eomgen::program
