@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "program/build_program.hpp"
+#include "program/build.hpp"
 
 #include <fmt/format.h>
 
