@@ -16,7 +16,7 @@ constexpr double start_time = 0.7;  // not a symmetric point of the motion, so t
 /// Largest error along a run of length 6 of a pendulum of moderate amplitude: nonlinear, and smooth enough for clean
 /// slopes before rounding sets in at order 8 (the end state alone, or an eccentric orbit, gives slopes that oscillate).
 double run_error(const char* method, double direction, double step) {
-  const problems::Pendulum pendulum(1.5);
+  const problems::Pendulum pendulum(1);
   eom::Options options;
   options.fixed_step = step;
   double largest = 0;
