@@ -10,7 +10,10 @@ refuse() {
 }
 
 rm -rf -- "$scratch"
-mkdir -p "$scratch/empty"
+mkdir -p "$scratch"
+# Outside the source tree, for eomgen looks for models in the folders above the one it is called in.
+elsewhere=$(mktemp -d)
+trap 'rm -rf -- "$elsewhere"' EXIT
 "$cmake" --install "$build" --prefix "$scratch/first" >"$scratch/install.log" || { cat "$scratch/install.log"; refuse "cmake --install"; }
 # Used from another folder than it was installed to: an installed tree may be moved.
 prefix="$scratch/prefix"
@@ -36,7 +39,7 @@ echo "-- the licence of what is installed lies beside it"
 echo "-- the program runs from the prefix, with its models"
 [[ -x $prefix/bin/eomgen ]] || refuse "there is no bin/eomgen"
 [[ $(cat "$scratch/consumer/cli_path.txt") == "$prefix/bin/eomgen" ]] || refuse "eomgen::cli is not bin/eomgen"
-cd "$scratch/empty"
+cd "$elsewhere"
 "$prefix/bin/eomgen" list --json | grep -q '"format": 1' || refuse "eomgen list"
 "$prefix/bin/eomgen" check P7_moving_sphere --json | grep -q '"format": 1' || refuse "eomgen check of an installed model, by its name"
 [[ -z $(ls -A) ]] || refuse "eomgen left files where it was called"
