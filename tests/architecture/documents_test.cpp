@@ -1,0 +1,71 @@
+// What the documents say about the tree: their links, the model that the README shows, the packages and the commands.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <regex>
+#include <string>
+
+#include "architecture/stages.hpp"
+
+using namespace architecture;
+namespace fs = std::filesystem;
+
+namespace {
+
+const fs::path root = EOMGEN_SOURCE_DIR;
+
+std::vector<fs::path> documents() {
+  std::vector<fs::path> files = files_below(root / "docs", {".md"});
+  files.push_back(root / "README.md");
+  return files;
+}
+
+}  // namespace
+
+TEST_CASE("every link within the repository leads to something") {
+  static const std::regex link(R"(\]\(([^)\s#]+)(#[^)]*)?\))");
+  for (const fs::path& document : documents()) {
+    const std::string text = read_text(document);
+    for (std::sregex_iterator at(text.begin(), text.end(), link), end; at != end; ++at) {
+      const std::string target = (*at)[1];
+      if (target.find("://") != std::string::npos) continue;
+      INFO(fs::relative(document, root).generic_string() << " links " << target);
+      CHECK(fs::exists(document.parent_path() / target));
+    }
+  }
+}
+
+TEST_CASE("the README shows the shipped model as it is") {
+  const std::string model = read_text(root / "models" / "P7_moving_sphere.toml");
+  CHECK(read_text(root / "README.md").find("```toml\n" + model + "```\n") != std::string::npos);
+}
+
+TEST_CASE("docs/commands.md tells of every command that has a schema, and every schema is linked") {
+  const std::string text = read_text(root / "docs" / "commands.md");
+  for (const fs::path& schema : files_below(root / "docs" / "schema", {".json"})) {
+    const std::string file = schema.filename().string();
+    CAPTURE(file);
+    CHECK(text.find("(schema/" + file + ")") != std::string::npos);
+    CHECK(text.find("## " + file.substr(0, file.find('.')) + "\n") != std::string::npos);
+  }
+}
+
+TEST_CASE("scripts/setup installs the packages that docs/architecture.md lists") {
+  const std::string setup = read_text(root / "scripts" / "setup");
+  const std::string text = read_text(root / "docs" / "architecture.md");
+  const std::size_t table = text.find("| package (Debian)");
+  REQUIRE(table != std::string::npos);
+  static const std::regex first_cell(R"(\n\| ([^|]+) \|)");
+  const std::string rows = text.substr(table);
+  std::size_t seen = 0;
+  for (std::sregex_iterator at(rows.begin(), rows.end(), first_cell), end; at != end; ++at) {
+    const std::string cell = (*at)[1];
+    static const std::regex name("[^, ]+");
+    for (std::sregex_iterator word(cell.begin(), cell.end(), name); word != end; ++word, ++seen) {
+      CAPTURE(word->str());
+      CHECK(std::regex_search(
+          setup, std::regex("[ (]" + std::regex_replace(word->str(), std::regex(R"(\+)"), "\\+") + "[ )\n]")));
+    }
+  }
+  CHECK(seen > 15);
+}
