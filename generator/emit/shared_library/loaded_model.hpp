@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: emitted C. Out: its functions, compiled and loaded. Libraries are kept in a cache by content: the same source,
+// compiler and flags are compiled once.
+#pragma once
+
+#include <memory>
+#include <string>
+
+namespace eomgen::emit {
+
+using RhsFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dx);
+using JacobianFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
+                                 double* dfdt);
+using MassFunction = int (*)(double t, const double* x, const double* p, double* M, double* h);
+using ConstraintFunction = int (*)(double t, const double* x, const double* p, double* psi, double* A, double* b);
+
+/// The functions of the C ABI (docs/abi.md); null where a function was not asked for. Unloads the library at the end.
+class LoadedModel {
+ public:
+  /// `name`: NAME of the symbols; `path`: of a shared library. Throws Error{Fault::tool} if it cannot be loaded, is of
+  /// another ABI, or fails its self test.
+  LoadedModel(const std::string& path, const std::string& name);
+  ~LoadedModel();
+  LoadedModel(LoadedModel&& other) noexcept;
+  LoadedModel& operator=(LoadedModel&& other) noexcept;
+  LoadedModel(const LoadedModel&) = delete;
+  LoadedModel& operator=(const LoadedModel&) = delete;
+
+  RhsFunction rhs = nullptr;
+  RhsFunction jac_p = nullptr;      // dfdp in place of dx
+  RhsFunction reactions = nullptr;  // lambda in place of dx
+  RhsFunction outputs = nullptr;    // y in place of dx
+  JacobianFunction jac = nullptr;
+  MassFunction mass = nullptr;
+  ConstraintFunction constraints = nullptr;
+  void (*defaults)(double* x, double* p) = nullptr;
+  std::string info;  // JSON
+
+ private:
+  void* handle_ = nullptr;
+};
+
+struct Compiled {
+  LoadedModel model;
+  std::string path;      // of the library in the cache
+  bool cached = false;   // it was there already
+  double seconds = 0;    // of the compiler
+};
+
+/// Compiles `c_source` (NAME.c; `header` is NAME.h) into the cache unless it is there whole, and loads it. The cache:
+/// $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen or ~/.cache/eomgen. The compiler: $EOMGEN_CC, $CC, cc or gcc.
+/// Throws Error{Fault::tool}: no compiler (with the command that installs one), a failed one (with what it said).
+Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name);
+
+}  // namespace eomgen::emit

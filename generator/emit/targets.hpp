@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The registry of targets: one file and one line each (docs/adding-a-target.md).
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "emit/context.hpp"
+#include "program/program.hpp"
+
+namespace eomgen::emit {
+
+struct EmittedFile {
+  std::string name;  // without a folder
+  std::string text;
+};
+
+struct TargetEntry {
+  const char* name;
+  const char* title;
+  std::vector<EmittedFile> (*emit)(const program::Program&, const EmissionContext&);
+};
+
+std::span<const TargetEntry> targets();
+
+/// Sources for `target`. Throws Error with the names that exist where it is unknown.
+std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,
+                              const std::string& target = "cpp");
+
+}  // namespace eomgen::emit
