@@ -38,13 +38,24 @@ double relative(const Real& difference, const Real& scale) {
 
 double Residual::relative() const { return verify::relative(value, scale); }
 
-Judge::Judge(const model::Model& model, int digits) : model_(model), precision_(digits) {
+Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
   for (const model::Constraint& constraint : model.constraints)
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
 }
 
 bool Judge::is_independent_parameter(std::size_t index) const {
   return !uses(model_, model_.parameters[index].value, model::Op::parameter);
+}
+
+std::vector<Real> Judge::default_parameters() const {
+  Environment environment;
+  std::vector<Real> values;
+  for (const model::Parameter& parameter : model_.parameters) {
+    Interpreter reader(model_, environment, precision_);  // of numbers and earlier parameters
+    values.push_back(precision_.round(reader.scalar(parameter.value).real()));
+    environment.parameters.emplace_back(values.back());
+  }
+  return values;
 }
 
 std::vector<Real> Judge::parameters(std::vector<Real> given) const {

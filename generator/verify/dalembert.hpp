@@ -49,8 +49,10 @@ class Judge {
 
   const model::Model& model() const { return model_; }
   const Precision& precision() const { return precision_; }
+  int digits() const { return digits_; }
   const std::vector<model::NodeId>& constraints() const { return psi_; }
 
+  std::vector<Real> default_parameters() const;
   /// Every parameter, those that are expressions of others computed; `given` holds the independent ones.
   std::vector<Real> parameters(std::vector<Real> given) const;
   bool is_independent_parameter(std::size_t index) const;
@@ -67,6 +69,7 @@ class Judge {
   void add_functions(Environment& environment) const;
 
   const model::Model& model_;
+  int digits_;
   Precision precision_;
   std::vector<model::NodeId> psi_;
 };

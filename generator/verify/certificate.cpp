@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/certificate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "derive/routes.hpp"
+#include "verify/comparisons.hpp"
+#include "verify/points.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+// Rejections that are allowed before the search for states is given up: some, and some per point.
+constexpr std::size_t rejections_at_least = 200, rejections_per_point = 20;
+// Beyond the digits asked for, so that rounding in the comparisons themselves stays below them.
+constexpr int guard_digits = 10;
+
+std::string describe(const Comparison& c) {
+  return fmt::format("{:.1e} ({} against {})", c.max_relative_difference, c.a, c.b);
+}
+
+bool nearer_to_failing(const Comparison& a, const Comparison& b) {
+  return a.max_relative_difference * b.tolerance < b.max_relative_difference * a.tolerance;
+}
+
+}  // namespace
+
+std::size_t Certificate::rejections() const {
+  std::size_t sum = 0;
+  for (const auto& [reason, count] : rejected) sum += count;
+  return sum;
+}
+
+std::string Certificate::summary() const {
+  std::vector<Comparison> shown;
+  // What fails; otherwise what means most: the pairs that share no code.
+  const auto wanted = [&](const Comparison& c) { return pass ? !c.shares_code : !c.pass; };
+  std::copy_if(comparisons.begin(), comparisons.end(), std::back_inserter(shown), wanted);
+  std::string text = fmt::format("{}: {} points, {} digits", verdict(), points, options.digits);
+  if (shown.empty()) return text;
+  const Comparison& worst = *std::max_element(shown.begin(), shown.end(), nearer_to_failing);
+  text += ", worst " + describe(worst);
+  if (!pass && shown.size() > 1) text += fmt::format(" and {} more comparisons", shown.size() - 1);
+  return text;
+}
+
+std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics) {
+  std::vector<system::EquationSystem> systems;
+  for (const derive::RouteEntry& route : derive::routes())
+    for (const system::Approach approach : {system::Approach::one, system::Approach::two})
+      if (route.applies(mechanics, approach)) systems.push_back(route.derive(mechanics, approach));
+  return systems;
+}
+
+Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options) {
+  const Judge judge(*mechanics.model, options.digits + guard_digits);
+  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points);
+  Tally tally(options.digits);
+  while (tally.points() < options.points) {
+    const State state = points.next();
+    Tally with_this_point = tally;
+    try {
+      compare_at(mechanics, subjects, judge, state, with_this_point);
+    } catch (const std::domain_error& no_value) {
+      points.reject(no_value.what());
+      continue;
+    }
+    tally = std::move(with_this_point);
+    tally.count_point();
+  }
+  Certificate certificate;
+  certificate.options = options;
+  certificate.comparisons = tally.comparisons();
+  certificate.points = tally.points();
+  certificate.rejected = points.rejected();
+  const auto& rows = certificate.comparisons;
+  certificate.pass = !rows.empty() && std::all_of(rows.begin(), rows.end(), [](const Comparison& c) { return c.pass; });
+  return certificate;
+}
+
+Certificate verify(mechanics::Mechanics& mechanics, const Options& options) {
+  Subjects subjects;
+  subjects.systems = all_routes(mechanics);
+  return certify(mechanics, subjects, options);
+}
+
+}  // namespace eomgen::verify

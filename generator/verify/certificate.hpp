@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: everything that claims to be the equations of motion of one model: the routes, the reading form, the optimised
+// program, the compiled code. Out: a certificate that holds them against the judge and against one another at random
+// states, says which pairs share code, and names what disagrees. Method and tolerances: docs/verification.md.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+#include "system/equation_system.hpp"
+#include "verify/jet.hpp"
+
+namespace eomgen::verify {
+
+struct Options {
+  int digits = 50;
+  std::size_t points = 20;
+  std::uint64_t seed = 1;
+};
+
+/// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,
+/// inputs and the multipliers of all constraints, on the Dag of the Mechanics.
+struct ReadingForm {
+  std::string name;  // "reading form I"
+  std::vector<symbolic::Ref> residuals;
+};
+
+/// The optimised program read in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u).
+struct ProgramForm {
+  std::string name;  // "program"
+  std::function<std::vector<Real>(const Real& t, const std::vector<Real>& x, const std::vector<Real>& p,
+                                  const std::vector<Real>& u)> rhs;
+};
+
+/// Compiled code in binary64; nothing where it reports an error code.
+struct CompiledForm {
+  std::string name;  // "emitted code"
+  std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
+                                                   const std::vector<double>& u)> rhs;
+};
+
+struct Subjects {
+  std::vector<system::EquationSystem> systems;
+  std::vector<ReadingForm> reading;
+  std::vector<ProgramForm> programs;
+  std::vector<CompiledForm> compiled;
+};
+
+struct Comparison {
+  std::string a, b;
+  bool shares_code = false;
+  double max_relative_difference = 0;
+  double tolerance = 0;
+  int digits_agreed = 0;  // of those asked for
+  bool pass = true;
+};
+
+struct Certificate {
+  Options options;
+  std::vector<Comparison> comparisons;
+  std::size_t points = 0;
+  std::map<std::string, std::size_t> rejected;  // by reason
+  bool pass = false;
+  const char* verdict() const { return pass ? "pass" : "fail"; }
+  std::size_t rejections() const;
+  /// "pass: 20 points, 50 digits, worst 3.1e-49 (jacobian II against d'Alembert)"
+  std::string summary() const;
+};
+
+/// Every route of derive::routes() by both approaches.
+std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics);
+
+/// Throws Error{Fault::check} if no states can be found at which to compare.
+Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options = {});
+
+/// certify of all routes.
+Certificate verify(mechanics::Mechanics& mechanics, const Options& options = {});
+
+}  // namespace eomgen::verify

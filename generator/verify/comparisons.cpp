@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/comparisons.hpp"
+
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "symbolic/evaluate.hpp"
+#include "verify/plain_forces.hpp"
+#include "verify/system_values.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+using symbolic::Ref;
+using system::EquationSystem;
+
+const char* const judge_name = "d'Alembert";
+
+// Points are rejected where the solve loses more than 8 digits; the guard digits and these make up for it.
+constexpr int digits_given_up = 5;
+// Binary64 has 16 digits; some thousand operations and terms that cancel leave 11 of them, relative to the terms.
+constexpr double tolerance_binary64 = 1e-11;
+
+std::string name_of(const EquationSystem& s) { return s.route + " " + system::name(s.approach); }
+
+double worst(const std::vector<double>& values) {
+  double largest = 0;
+  for (const double value : values) largest = std::isnan(value) ? 1.0 : std::max(largest, value);
+  return largest;
+}
+
+double relative_to(const Real& difference, double scale) {
+  if (cln::zerop(difference)) return 0;
+  const double size = std::fabs(cln::double_approx(difference));
+  return scale > 0 ? size / scale : 1;
+}
+
+/// Accelerations and multipliers of two systems, relative to the terms of the equations.
+double difference(const SystemValues& a, const SystemValues& b) {
+  const std::size_t n = a.state.qddot.size();
+  double largest = 0;
+  for (std::size_t i = 0; i < n + a.lambda.size(); ++i) {
+    const Real d = i < n ? a.state.qddot[i] - b.state.qddot[i] : a.lambda[i - n] - b.lambda[i - n];
+    largest = std::max(largest, relative_to(d, std::max(a.scale[i], b.scale[i])));
+  }
+  return largest;
+}
+
+/// d'Alembert's residuals and psi_ddot = 0 with the accelerations and multipliers of the system.
+double motion_residual(const SystemValues& v) {
+  double largest = 0;
+  for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
+  for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
+    Residual along;  // A qddot and what remains of psi_ddot
+    for (std::size_t i = 0; i < v.state.qddot.size(); ++i) along.add(v.constraints.gradient[k][i] * v.state.qddot[i]);
+    along.add(v.constraints.psi_ddot[k] - along.value);
+    largest = std::max(largest, along.relative());
+  }
+  return largest;
+}
+
+/// psi = 0, A = dpsi/dq and A qdot + b = 0 of the constraints that keep a multiplier.
+double constraint_residual(const EquationSystem& s, const SystemValues& v) {
+  double largest = 0;
+  const std::size_t n = s.free.size();
+  for (std::size_t k = 0; k < s.active.size(); ++k) {
+    Residual rate;
+    Real length = 0, size = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real& slope = v.constraints.gradient[s.active[k]][s.free[i]];
+      length = cln::max(length, cln::abs(slope));
+      size = size + cln::abs(slope * v.state.q[s.free[i]]);
+      rate.add(v.A[k * n + i] * v.state.qdot[s.free[i]]);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      const Real slope = v.constraints.gradient[s.active[k]][s.free[i]];
+      largest = std::max(largest, relative(v.A[k * n + i] - slope, length));
+    }
+    rate.add(v.b[k]);
+    largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length)});
+  }
+  return largest;
+}
+
+void compare_energies(const EquationSystem& s, const SystemValues& v, const Judge& judge, Tally& tally) {
+  const EnergyValues e = judge.energy_values(v.state);
+  const std::string name = name_of(s);
+  tally.note("energies of " + name, judge_name, false,
+             worst({relative(v.kinetic - e.kinetic, e.scale), relative(v.potential - e.potential, e.scale),
+                    relative(v.energy - e.kinetic - e.potential, e.scale)}));
+  const Real scale = e.rate_scale + cln::abs(v.power);
+  tally.note("power of " + name, judge_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
+  const Real rate = energy_rate(s, judge, v, tally.digits());
+  tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale));
+}
+
+/// Outputs that the judge can compute from the model: coordinates, positions, velocities, scalar definitions.
+void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge& judge, Tally& tally) {
+  const model::Model& m = judge.model();
+  Interpreter now = judge.interpreter(v.state);
+  Interpreter& later = now.along_time();
+  std::map<std::string, std::pair<Real, Real>> expected;  // value, scale
+  const auto expect = [&](const std::string& name, const Real& value, const Real& scale) {
+    expected[name] = {value, scale};
+  };
+  for (std::size_t i = 0; i < m.coordinates.size(); ++i) {
+    expect(m.coordinates[i].name, v.state.q[i], cln::abs(v.state.q[i]));
+    expect(m.coordinates[i].name + "_dot", v.state.qdot[i], cln::abs(v.state.qdot[i]));
+  }
+  for (std::uint32_t i = 1; i < m.places.size(); ++i) {
+    const Vector r = later.place(i);
+    Real length = 0, speed = 0;
+    for (const Jet& x : r) length = length + cln::abs(x.real()), speed = speed + cln::abs(x.slope(later.level(), 0).real());
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string axis = std::to_string(k + 1);
+      expect(m.places[i].name + ".position" + axis, r[k].real(), length);
+      expect(m.places[i].name + ".velocity" + axis, r[k].slope(later.level(), 0).real(), speed);
+    }
+  }
+  for (const model::Definition& definition : m.definitions)
+    if (!definition.vector) {
+      const Real value = now.scalar(definition.is).real();
+      expect(definition.name, value, cln::abs(value) + 1);
+    }
+  double largest = 0;
+  for (std::size_t i = 0; i < s.outputs.size(); ++i)
+    if (const auto found = expected.find(s.outputs[i].name); found != expected.end())
+      // eliminated coordinates come from a projection and may be 0 up to rounding
+      largest = std::max(largest, relative(v.outputs[i] - found->second.first, found->second.second + 1));
+  tally.note("outputs of " + name_of(s), judge_name, false, largest);
+}
+
+void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
+  std::vector<Ref> open{r};
+  while (!open.empty()) {
+    const symbolic::Node& node = dag[open.back()];
+    const Ref here = open.back();
+    open.pop_back();
+    switch (node.op) {
+      case symbolic::Op::add: case symbolic::Op::sub: case symbolic::Op::neg:
+        for (std::size_t i = 0; i < node.arity; ++i) open.push_back(node.args[i]);
+        break;
+      default: terms.push_back(here);
+    }
+  }
+}
+
+/// Each residual relative to the sum of the absolute values of its terms.
+double reading_residual(const ReadingForm& form, const symbolic::Dag& dag, const SystemValues& v, const Judge& judge) {
+  Lookup lookup(judge, v.state);
+  lookup.lambda = v.lambda;
+  double largest = 0;
+  for (const Ref residual : form.residuals) {
+    std::vector<Ref> roots{residual};
+    top_level_terms(dag, residual, roots);
+    const std::vector<Real> value = symbolic::evaluate(dag, roots, lookup, judge.digits());
+    Real scale = 0;
+    for (std::size_t i = 1; i < value.size(); ++i) scale = scale + cln::abs(value[i]);
+    largest = std::max(largest, relative(value[0], scale));
+  }
+  return largest;
+}
+
+/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale.
+double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
+                      const SystemValues& v) {
+  const std::size_t n = s.free.size();
+  if (a.size() != 2 * n) return 1;
+  double largest = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    largest = std::max(largest, relative(a[i] - b[i], cln::abs(b[i])));
+    largest = std::max(largest, relative_to(a[n + i] - b[n + i], v.scale[s.free[i]]));
+  }
+  return largest;
+}
+
+std::vector<Real> state_vector(const EquationSystem& s, const State& state) {
+  std::vector<Real> x;
+  for (const std::uint32_t i : s.free) x.push_back(state.q[i]);
+  for (const std::uint32_t i : s.free) x.push_back(state.qdot[i]);
+  return x;
+}
+
+std::vector<double> rounded(const std::vector<Real>& values) {
+  std::vector<double> result;
+  for (const Real& value : values) result.push_back(cln::double_approx(value));
+  return result;
+}
+
+/// Code in binary64 against the system at the same binary64 numbers.
+double compiled_difference(const CompiledForm& form, const EquationSystem& s, const SystemValues& v, const Judge& judge) {
+  const auto exactly = [&](const Real& value) {
+    return judge.precision().round(cln::rational(Real(cln::cl_DF(cln::double_approx(value)))));
+  };
+  State at = v.state;
+  at.t = exactly(at.t);
+  for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs})
+    for (Real& value : *part) value = exactly(value);
+  const std::vector<Real> reference = right_hand_side(s, judge, at);
+  const auto dx = form.rhs(cln::double_approx(at.t), rounded(state_vector(s, at)), rounded(at.parameters), rounded(at.inputs));
+  if (!dx) return 1;
+  std::vector<Real> precise;
+  for (const double value : *dx) {
+    if (!std::isfinite(value)) return 1;
+    precise.push_back(exactly(Real(cln::cl_DF(value))));
+  }
+  return rhs_difference(precise, reference, s, v);
+}
+
+}  // namespace
+
+void Tally::note(const std::string& a, const std::string& b, bool shares_code, double relative_difference, Kind kind) {
+  const auto same = [&](const Comparison& row) { return row.a == a && row.b == b; };
+  auto row = std::find_if(rows_.begin(), rows_.end(), same);
+  if (row == rows_.end()) {
+    rows_.push_back({a, b, shares_code, 0, 0, 0, true});
+    row = rows_.end() - 1;
+    row->tolerance = kind == Kind::binary64 ? tolerance_binary64 : std::pow(10.0, digits_given_up - digits_);
+  }
+  row->max_relative_difference = std::max(row->max_relative_difference, relative_difference);
+  const double largest = row->max_relative_difference;
+  row->pass = largest <= row->tolerance;
+  const int digits = largest > 0 ? static_cast<int>(std::floor(-std::log10(largest))) : digits_;
+  row->digits_agreed = std::clamp(digits, 0, digits_);
+}
+
+void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Judge& judge, const State& state,
+                Tally& tally) {
+  std::vector<SystemValues> values;
+  for (const EquationSystem& s : subjects.systems) values.push_back(values_of(s, mechanics, judge, state));
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const EquationSystem& s = subjects.systems[i];
+    tally.note(name_of(s), judge_name, false, motion_residual(values[i]));
+    if (!s.active.empty()) tally.note("constraints of " + name_of(s), judge_name, false, constraint_residual(s, values[i]));
+    compare_energies(s, values[i], judge, tally);
+    compare_outputs(s, values[i], judge, tally);
+    for (std::size_t k = 0; k < i; ++k)
+      tally.note(name_of(subjects.systems[k]), name_of(s), true, difference(values[k], values[i]));
+  }
+  if (values.empty()) return;
+  const EquationSystem& first = subjects.systems.front();
+  const SystemValues& v = values.front();
+  for (const ReadingForm& form : subjects.reading)
+    tally.note(form.name, name_of(first), false, reading_residual(form, *mechanics.dag, v, judge));
+  for (const ProgramForm& form : subjects.programs) {
+    const std::vector<Real> x = state_vector(first, v.state);
+    const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs);
+    tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v));
+  }
+  for (const CompiledForm& form : subjects.compiled)
+    tally.note(form.name, name_of(first), true, compiled_difference(form, first, v, judge), Kind::binary64);
+}
+
+}  // namespace eomgen::verify

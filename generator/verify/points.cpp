@@ -1,0 +1,252 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/points.hpp"
+
+#include <cln/float.h>
+#include <cln/integer.h>
+#include <cln/rational.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "verify/linear_solve.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+/// Unfit, and why; counted by reason.
+struct Unfit : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+// How far random values go from the defaults and starts, before anything is rejected.
+constexpr double parameter_spread = 0.25;   // relative
+constexpr double coordinate_spread = 0.5;   // of the scale of its unit
+constexpr double angle_spread = 1.2;        // rad
+constexpr double range_margin = 0.05;       // of a chart's range, at either end: charts are singular there
+constexpr double longest_span = 100;        // s; later times test nothing more
+constexpr double kink_margin = 1e-6;        // so that rounding to binary64 cannot change the branch
+constexpr double singular_constraints = 1e10;
+
+bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
+
+}  // namespace
+
+Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap) : judge_(judge), engine_(seed), cap_(cap) {
+  read_scene();
+}
+
+double Points::uniform() { return (static_cast<double>(engine_() >> 12) + 0.5) * 0x1p-52; }
+double Points::symmetric() { return 2 * uniform() - 1; }
+Real Points::exact(double value) const { return judge_.precision().round(cln::rational(Real(value))); }
+
+// ---- what the file says about where the system lives
+
+void Points::read_scene() {
+  const model::Model& m = judge_.model();
+  State start;
+  start.parameters = judge_.default_parameters();
+  const model::Scene* scene = m.scenes.empty() ? nullptr : &m.scenes.front();
+  if (scene != nullptr)
+    for (const auto& [index, value] : scene->parameters) {
+      State now = start;
+      now.parameters = judge_.parameters(start.parameters);
+      start.parameters[index] = judge_.value(value, now);
+    }
+  defaults_ = start.parameters;
+  start.parameters = judge_.parameters(defaults_);
+  for (const model::Input& input : m.inputs) {
+    start.inputs.push_back(judge_.value(input.fallback, start));
+    input_defaults_.push_back(cln::double_approx(start.inputs.back()));
+  }
+  if (scene != nullptr && scene->t0 != model::no_node) {
+    t0_ = cln::double_approx(judge_.value(scene->t0, start));
+    t1_ = t0_ + 1;
+    if (scene->t1 != model::no_node) t1_ = cln::double_approx(judge_.value(scene->t1, start));
+  }
+  t1_ = std::min(t1_, t0_ + longest_span);
+  start.t = exact(t0_);
+  start.q.assign(m.coordinates.size(), exact(0));
+  start.qdot = start.qddot = start.q;
+  if (scene != nullptr)
+    for (const auto* values : {&scene->guess, &scene->initial})
+      for (const model::InitialValue& given : *values) {
+        std::vector<Real>& target = given.order == 0 ? start.q : start.qdot;
+        try {
+          target[given.coordinate] = judge_.value(given.value, start);
+        } catch (const Singular&) {
+          continue;  // a start that needs values which only the constraints give
+        }
+      }
+  read_ranges(start);
+  read_scales();
+}
+
+void Points::read_ranges(const State& start) {
+  const model::Model& m = judge_.model();
+  for (std::size_t i = 0; i < m.coordinates.size(); ++i) {
+    Choice c;
+    c.center = cln::double_approx(start.q[i]);
+    c.rate_center = cln::double_approx(start.qdot[i]);
+    c.has_lower = m.coordinates[i].lower != model::no_node;
+    c.has_upper = m.coordinates[i].upper != model::no_node;
+    if (c.has_lower) c.lower = cln::double_approx(judge_.value(m.coordinates[i].lower, start));
+    if (c.has_upper) c.upper = cln::double_approx(judge_.value(m.coordinates[i].upper, start));
+    choices_.push_back(c);
+  }
+}
+
+/// Coordinates of the same unit share a scale: an orbit that starts at (7e6, 0) m moves in both.
+void Points::read_scales() {
+  const model::Model& m = judge_.model();
+  for (std::size_t i = 0; i < choices_.size(); ++i) {
+    Choice& c = choices_[i];
+    const model::Unit& unit = m.coordinates[i].unit;
+    double scale = std::fabs(c.center), rate = std::fabs(c.rate_center);
+    if (!unit.text.empty() && !is_angle(unit))
+      for (std::size_t k = 0; k < choices_.size(); ++k) {
+        if (m.coordinates[k].unit.text != unit.text) continue;
+        scale = std::max(scale, std::fabs(choices_[k].center));
+        rate = std::max(rate, std::fabs(choices_[k].rate_center));
+      }
+    c.scale = scale > 0 && !is_angle(unit) ? scale : 1;
+    c.rate_scale = rate > 0 ? rate : 1;
+    const bool below = c.has_lower && c.center <= c.lower, above = c.has_upper && c.center >= c.upper;
+    if (below || above) {  // not given: it follows from a constraint
+      if (c.has_lower && c.has_upper) c.center = (c.lower + c.upper) / 2;
+      else c.center = below ? c.lower + c.scale : c.upper - c.scale;
+    }
+  }
+}
+
+// ---- one state
+
+double Points::draw_coordinate(const Choice& c) {
+  if (c.has_lower && c.has_upper) {
+    const double margin = range_margin * (c.upper - c.lower);
+    const double anywhere = c.lower + margin + uniform() * (c.upper - c.lower - 2 * margin);
+    return c.center + spread_ * (anywhere - c.center);
+  }
+  if (c.has_lower || c.has_upper) {
+    const double bound = c.has_lower ? c.lower : c.upper;
+    return bound + (c.center - bound) * (1 + coordinate_spread * spread_ * symmetric());
+  }
+  return c.center + spread_ * symmetric() * c.scale;
+}
+
+State Points::draw() {
+  const model::Model& m = judge_.model();
+  State s;
+  s.t = exact(t0_ + uniform() * (t1_ - t0_));
+  for (std::size_t i = 0; i < m.parameters.size(); ++i) {
+    const double u = symmetric();
+    const bool zero = cln::zerop(defaults_[i]);  // a term that is switched off by default is tested too
+    s.parameters.push_back(zero ? exact(spread_ * (0.55 + 0.45 * u))
+                                : defaults_[i] * exact(1 + parameter_spread * spread_ * u));
+  }
+  s.parameters = judge_.parameters(std::move(s.parameters));
+  for (const double fallback : input_defaults_)
+    s.inputs.push_back(exact(fallback + symmetric() * std::max(1.0, std::fabs(fallback))));
+  for (std::size_t i = 0; i < choices_.size(); ++i) {
+    Choice c = choices_[i];
+    c.scale *= is_angle(m.coordinates[i].unit) ? angle_spread : coordinate_spread;
+    s.q.push_back(exact(draw_coordinate(c)));
+    s.qdot.push_back(exact(c.rate_center + spread_ * symmetric() * c.rate_scale));
+  }
+  s.qddot.assign(s.q.size(), Real(0));
+  return s;
+}
+
+/// The least change, measured by the scales, that removes the defect: W A^T (A W A^T)^-1 (-defect).
+std::vector<Real> Points::correction(const State& state, const std::vector<Real>& defect, bool rates) const {
+  const ConstraintValues c = judge_.constraint_values(state);
+  const std::size_t rows = c.gradient.size(), n = choices_.size();
+  std::vector<Real> weight;
+  for (const Choice& choice : choices_) {
+    const Real scale = exact(rates ? choice.rate_scale : choice.scale);
+    weight.push_back(scale * scale);
+  }
+  std::vector<Real> gram(rows * rows, Real(0)), right;
+  for (std::size_t i = 0; i < rows; ++i) {
+    right.push_back(-defect[i]);
+    for (std::size_t k = 0; k < rows; ++k)
+      for (std::size_t j = 0; j < n; ++j)
+        gram[i * rows + k] = gram[i * rows + k] + c.gradient[i][j] * weight[j] * c.gradient[k][j];
+  }
+  const Solution y = solve(std::move(gram), std::move(right));
+  if (y.x.empty() || y.condition > singular_constraints) throw Unfit("the constraints lose rank");
+  std::vector<Real> change(n, Real(0));
+  for (std::size_t j = 0; j < n; ++j)
+    for (std::size_t i = 0; i < rows; ++i) change[j] = change[j] + weight[j] * c.gradient[i][j] * y.x[i];
+  return change;
+}
+
+void Points::project_positions(State& s) const {
+  if (judge_.constraints().empty()) return;
+  // Convergence is quadratic: after a step of relative size 10^-h the error is of the order 10^-2h.
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 + 2));
+  for (int iteration = 0; iteration < 40; ++iteration) {
+    const std::vector<Real> step = correction(s, judge_.constraint_values(s).psi, false);
+    Real size = 0;
+    for (std::size_t i = 0; i < step.size(); ++i) {
+      s.q[i] = s.q[i] + step[i];
+      size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
+    }
+    if (size > 1000) break;
+    if (size < small) return;
+  }
+  throw Unfit("no configuration on the constraints was found");
+}
+
+void Points::project_velocities(State& s) const {
+  if (judge_.constraints().empty()) return;
+  const std::vector<Real> change = correction(s, judge_.constraint_values(s).psi_dot, true);
+  for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
+}
+
+void Points::require_inside(const State& s) const {
+  for (std::size_t i = 0; i < choices_.size(); ++i) {
+    const Choice& c = choices_[i];
+    const double q = cln::double_approx(s.q[i]);
+    const double margin = c.has_lower && c.has_upper ? 0.5 * range_margin * (c.upper - c.lower) : 0;
+    if ((c.has_lower && q <= c.lower + margin) || (c.has_upper && q >= c.upper - margin))
+      throw Unfit("outside the range of a coordinate");
+  }
+}
+
+void Points::require_smooth(const State& s) const {
+  Margin margin;
+  const std::vector<Real> no_forces(judge_.constraints().size(), Real(0));
+  judge_.dalembert(s, no_forces, &margin);
+  if (margin.kink < kink_margin) throw Unfit("too near a kink");
+}
+
+State Points::next() {
+  for (;;) {
+    try {
+      State s = draw();
+      project_positions(s);
+      project_velocities(s);
+      require_inside(s);
+      require_smooth(s);
+      return s;
+    } catch (const Unfit& unfit) {
+      reject(unfit.what());
+    } catch (const Singular& singular) {
+      reject(singular.what());
+    }
+  }
+}
+
+void Points::reject(const std::string& why) {
+  ++rejected_[why];
+  if (++rejections_ % 10 == 0) spread_ *= 0.8;
+  if (rejections_ <= cap_) return;
+  std::string reasons;
+  for (const auto& [reason, count] : rejected_)
+    reasons += (reasons.empty() ? "" : ", ") + reason + " (" + std::to_string(count) + ")";
+  throw Error("verify", Where{judge_.model().file, 0, 0, 1, ""},
+              "no states were found at which the equations can be checked: " + reasons,
+              "look at the ranges of the coordinates, the constraints and the start of the default scene", Fault::check);
+}
+
+}  // namespace eomgen::verify

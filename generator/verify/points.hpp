@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Random states that the model allows. In: the judge. Out: t, parameters about their defaults, coordinates within
+// their ranges about the start of the default scene, put onto the constraints by Newton's method at full precision
+// (positions, then velocities). Deterministic by seed on every platform; what is unfit is rejected and counted.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "verify/dalembert.hpp"
+
+namespace eomgen::verify {
+
+class Points {
+ public:
+  /// At most `cap` rejections in all.
+  Points(const Judge& judge, std::uint64_t seed, std::size_t cap);
+
+  /// A state with qddot = 0. Throws Error (Fault::check) once too many were rejected.
+  State next();
+  /// The state that next() gave is unfit after all.
+  void reject(const std::string& why);
+  const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
+
+ private:
+  struct Choice {
+    double center = 0, scale = 1, rate_center = 0, rate_scale = 1;
+    bool has_lower = false, has_upper = false;
+    double lower = 0, upper = 0;
+  };
+  double uniform();                 // in (0, 1)
+  double symmetric();               // in (-1, 1)
+  Real exact(double value) const;   // the same number at full precision
+  void read_scene();
+  void read_ranges(const State& start);
+  void read_scales();
+  State draw();
+  double draw_coordinate(const Choice& choice);
+  void project_positions(State& state) const;
+  void project_velocities(State& state) const;
+  std::vector<Real> correction(const State& state, const std::vector<Real>& defect, bool rates) const;
+  void require_inside(const State& state) const;
+  void require_smooth(const State& state) const;
+
+  const Judge& judge_;
+  std::mt19937_64 engine_;
+  std::size_t cap_;
+  std::vector<Choice> choices_;       // per coordinate
+  std::vector<Real> defaults_;        // of the parameters
+  std::vector<double> input_defaults_;
+  double t0_ = 0, t1_ = 1;
+  double spread_ = 1;                 // narrows about the defaults as points are rejected
+  std::size_t rejections_ = 0;
+  std::map<std::string, std::size_t> rejected_;
+};
+
+}  // namespace eomgen::verify

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/system_values.hpp"
+
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include <cmath>
+
+#include "symbolic/evaluate.hpp"
+#include "verify/linear_solve.hpp"
+
+namespace eomgen::verify {
+
+using symbolic::Ref;
+using symbolic::SymbolKind;
+using system::EquationSystem;
+
+namespace {
+
+// Digits beyond the tolerance that a solve may lose; worse points are rejected.
+constexpr double worst_condition = 1e8;
+
+struct Solved {
+  std::vector<Real> matrix;  // [M A^T; A 0], row-major
+  std::vector<Real> qddot, lambda;
+  std::vector<Real> psi, A, b, gamma;
+  double condition = 1;
+};
+
+std::vector<Ref> concatenate(std::initializer_list<const std::vector<Ref>*> lists) {
+  std::vector<Ref> all;
+  for (const auto* list : lists) all.insert(all.end(), list->begin(), list->end());
+  return all;
+}
+
+Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits) {
+  const std::vector<Ref> roots = concatenate({&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma});
+  const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, digits);
+  auto next = value.begin();
+  const auto take = [&](std::size_t count) {
+    std::vector<Real> part(next, next + static_cast<std::ptrdiff_t>(count));
+    next += static_cast<std::ptrdiff_t>(count);
+    return part;
+  };
+  const std::size_t n = s.free.size(), m = s.active.size(), size = n + m;
+  const std::vector<Real> M = take(n * n), f = take(n);
+  Solved out;
+  out.psi = take(m), out.A = take(m * n), out.b = take(m), out.gamma = take(m);
+  out.matrix.assign(size * size, Real(0));
+  std::vector<Real> right = f;
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t k = 0; k < n; ++k) out.matrix[i * size + k] = M[i * n + k];
+  for (std::size_t k = 0; k < m; ++k) {
+    for (std::size_t i = 0; i < n; ++i) {
+      out.matrix[i * size + n + k] = out.A[k * n + i];
+      out.matrix[(n + k) * size + i] = out.A[k * n + i];
+    }
+    right.push_back(-out.gamma[k]);
+  }
+  const Solution solution = solve(out.matrix, right);
+  out.condition = solution.condition;
+  if (solution.x.empty() || solution.condition > worst_condition) throw Singular("the mass matrix is nearly singular");
+  out.qddot.assign(solution.x.begin(), solution.x.begin() + static_cast<std::ptrdiff_t>(n));
+  for (std::size_t k = 0; k < m; ++k) out.lambda.push_back(-solution.x[n + k]);
+  return out;
+}
+
+/// Accelerations of eliminated coordinates are those that keep their constraints: psi_ddot = 0, by the judge.
+void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& judge, State& state) {
+  const std::size_t count = mechanics.fixed.size();
+  if (count == 0) return;
+  const ConstraintValues c = judge.constraint_values(state);
+  std::vector<Real> matrix, right;
+  for (const mechanics::FixedCoordinate& row : mechanics.fixed) {
+    for (const mechanics::FixedCoordinate& column : mechanics.fixed)
+      matrix.push_back(c.gradient[row.constraint][column.coordinate]);
+    right.push_back(-c.psi_ddot[row.constraint]);
+  }
+  const Solution solution = solve(std::move(matrix), std::move(right));
+  if (solution.x.empty()) throw Singular("the constraints lose rank");
+  for (std::size_t i = 0; i < count; ++i) state.qddot[mechanics.fixed[i].coordinate] = solution.x[i];
+}
+
+/// sum_k |K^-1|_ik scale_k in binary64, for the unknowns of the solve.
+std::vector<double> propagate(const Solved& solved, const std::vector<double>& row_scale) {
+  const std::size_t size = row_scale.size();
+  std::vector<Real> rough;
+  for (const Real& x : solved.matrix) rough.emplace_back(cln::cl_DF(cln::double_approx(x)));
+  std::vector<double> scale(size, 0.0);
+  for (std::size_t k = 0; k < size; ++k) {
+    std::vector<Real> unit(size, Real(cln::cl_DF(0.0)));
+    unit[k] = cln::cl_DF(row_scale[k]);
+    const Solution column = solve(rough, std::move(unit));
+    for (std::size_t i = 0; i < column.x.size(); ++i) scale[i] += std::fabs(cln::double_approx(column.x[i]));
+  }
+  return scale;
+}
+
+void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Solved& solved, SystemValues& v) {
+  const std::size_t n = s.free.size(), m = s.active.size(), all = v.state.q.size();
+  std::vector<double> row_scale;
+  for (const std::uint32_t i : s.free) row_scale.push_back(cln::double_approx(v.rows[i].scale));
+  for (std::size_t k = 0; k < m; ++k) {
+    Real sum = cln::abs(solved.gamma[k]);
+    for (std::size_t i = 0; i < n; ++i) sum = sum + cln::abs(solved.A[k * n + i] * solved.qddot[i]);
+    row_scale.push_back(cln::double_approx(sum));
+  }
+  const std::vector<double> unknown = propagate(solved, row_scale);
+  v.scale.assign(all + v.lambda.size(), 0.0);
+  for (std::size_t i = 0; i < n; ++i) v.scale[s.free[i]] = unknown[i];
+  for (std::size_t k = 0; k < m; ++k) v.scale[all + s.active[k]] = unknown[n + k];
+  for (const mechanics::FixedCoordinate& fixed : mechanics.fixed) {
+    const double slope = cln::double_approx(cln::abs(v.constraints.gradient[fixed.constraint][fixed.coordinate]));
+    v.scale[fixed.coordinate] = std::fabs(cln::double_approx(v.state.qddot[fixed.coordinate]));
+    v.scale[all + fixed.constraint] = cln::double_approx(v.rows[fixed.coordinate].scale) / slope;
+  }
+}
+
+}  // namespace
+
+Lookup::Lookup(const Judge& of, State at) : judge(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
+  const Interpreter now = judge.interpreter(state);
+  for (const std::vector<Jet>& orders : now.environment().functions) {
+    functions.emplace_back();
+    for (const Jet& jet : orders) functions.back().push_back(jet.real());
+  }
+}
+
+Real Lookup::operator()(const symbolic::Symbol& symbol) const {
+  switch (symbol.kind) {
+    case SymbolKind::time: return state.t;
+    case SymbolKind::coordinate:
+      return (symbol.order == 0 ? state.q : symbol.order == 1 ? state.qdot : state.qddot).at(symbol.index);
+    case SymbolKind::function: return functions.at(symbol.index).at(symbol.order);
+    case SymbolKind::parameter: return state.parameters.at(symbol.index);
+    case SymbolKind::input: return state.inputs.at(symbol.index);
+    case SymbolKind::multiplier: return lambda.at(symbol.index);
+    case SymbolKind::extra: break;
+  }
+  throw std::logic_error("verify: a symbol without a value");
+}
+
+SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Judge& judge,
+                       const State& state) {
+  Lookup lookup(judge, state);
+  const Solved solved = solve_system(s, lookup, judge.digits());
+  for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];
+  for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
+  complete_accelerations(mechanics, judge, lookup.state);
+  std::vector<Ref> roots{s.kinetic, s.potential, s.energy, s.power};
+  for (const system::Reaction& reaction : s.reactions) roots.push_back(reaction.value);
+  for (const system::Output& output : s.outputs) roots.push_back(output.value);
+  const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, judge.digits());
+  SystemValues v;
+  v.state = lookup.state;
+  v.lambda.assign(judge.constraints().size(), Real(0));
+  v.kinetic = value[0], v.potential = value[1], v.energy = value[2], v.power = value[3];
+  for (std::size_t i = 0; i < s.reactions.size(); ++i) v.lambda[s.reactions[i].constraint] = value[4 + i];
+  v.outputs.assign(value.begin() + static_cast<std::ptrdiff_t>(4 + s.reactions.size()), value.end());
+  v.psi = solved.psi, v.A = solved.A, v.b = solved.b;
+  v.condition = solved.condition;
+  v.rows = judge.dalembert(v.state, v.lambda);
+  v.constraints = judge.constraint_values(v.state);
+  add_scales(s, mechanics, solved, v);
+  return v;
+}
+
+std::vector<Real> right_hand_side(const EquationSystem& s, const Judge& judge, const State& state) {
+  const Solved solved = solve_system(s, Lookup(judge, state), judge.digits());
+  std::vector<Real> dx;
+  for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
+  dx.insert(dx.end(), solved.qddot.begin(), solved.qddot.end());
+  return dx;
+}
+
+Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues& v, int digits) {
+  // At 3 d digits a step of 10^-d leaves 10^-2d of the truncation and of the rounding alike.
+  const int more = 3 * digits + 10;
+  const Precision precision(more);
+  const Real h = precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)));
+  const auto energy_at = [&](const Real& step) {
+    Lookup lookup(judge, v.state);
+    State& at = lookup.state;
+    at.t = precision.round(at.t) + step;
+    for (const std::uint32_t i : s.free) {
+      at.q[i] = precision.round(at.q[i]) + step * precision.round(at.qdot[i]);
+      at.qdot[i] = precision.round(at.qdot[i]) + step * precision.round(at.qddot[i]);
+    }
+    return symbolic::evaluate(*s.dag, {s.energy}, lookup, more)[0];
+  };
+  return (energy_at(h) - energy_at(-h)) / (2 * h);
+}
+
+}  // namespace eomgen::verify

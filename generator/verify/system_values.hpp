@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: an EquationSystem and a state. Out: the numbers that it claims there: accelerations and multipliers from
+// [M A^T; A 0][qddot; -lambda] = [f; -gamma], reactions, energies, power, outputs.
+#pragma once
+
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+#include "system/equation_system.hpp"
+#include "verify/dalembert.hpp"
+
+namespace eomgen::verify {
+
+/// What symbols stand for at a state: all coordinates to second order, functions, parameters, inputs, multipliers.
+struct Lookup {
+  const Judge& judge;
+  State state;
+  std::vector<Real> lambda;                  // per Mechanics::constraints entry
+  std::vector<std::vector<Real>> functions;  // [function][order]
+  Lookup(const Judge& judge, State state);
+  Real operator()(const symbolic::Symbol& symbol) const;
+};
+
+struct SystemValues {
+  State state;                    // with the accelerations of all coordinates
+  std::vector<Real> lambda;       // per scalar constraint of the model
+  std::vector<Real> psi, A, b;    // as in EquationSystem
+  Real kinetic = 0, potential = 0, energy = 0, power = 0;
+  std::vector<Real> outputs;
+  double condition = 1;
+  std::vector<Residual> rows;     // d'Alembert's, per coordinate
+  ConstraintValues constraints;   // the judge's, with these accelerations
+  std::vector<double> scale;      // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
+                                  // terms of every equation can change in them
+};
+
+/// Throws std::domain_error where there is no value, Singular where the system cannot be solved well.
+SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Judge& judge,
+                       const State& state);
+
+/// Only qdot and qddot of the free coordinates, with their scales: what a right-hand side returns.
+std::vector<Real> right_hand_side(const system::EquationSystem& system, const Judge& judge, const State& state);
+
+/// dE/dt of the system's energy by central differences along the path of `values`, at three times the digits.
+Real energy_rate(const system::EquationSystem& system, const Judge& judge, const SystemValues& values, int digits);
+
+}  // namespace eomgen::verify

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/points.hpp"
+
+#include <doctest/doctest.h>
+
+#include "verify/linear_solve.hpp"
+#include "verify/near.hpp"
+#include "verify/sample_models.hpp"
+
+using namespace eomgen;
+using namespace eomgen::verify;
+using namespace eomgen::verify::test;
+
+namespace {
+
+constexpr std::size_t many = 100;
+
+}  // namespace
+
+TEST_CASE("points: states satisfy the constraints and their rates to all digits") {
+  for (const model::Model& m : {moving_sphere(), rod_pendulum()}) {
+    const Judge judge(m, 60);
+    Points points(judge, 7, many);
+    for (int i = 0; i < 10; ++i) {
+      const State s = points.next();
+      const ConstraintValues c = judge.constraint_values(s);
+      CHECK(near(c.psi[0], 0, 57, 1));
+      CHECK(near(c.psi_dot[0], 0, 57, 1));
+    }
+  }
+}
+
+TEST_CASE("points: the same seed gives the same states, another seed others") {
+  const model::Model m = moving_sphere();
+  const Judge judge(m, 60);
+  Points a(judge, 3, many), b(judge, 3, many), c(judge, 4, many);
+  for (int i = 0; i < 3; ++i) {
+    const State x = a.next(), y = b.next(), z = c.next();
+    CHECK(x.q == y.q);
+    CHECK(x.qdot == y.qdot);
+    CHECK(x.parameters == y.parameters);
+    CHECK(x.q != z.q);
+  }
+}
+
+TEST_CASE("points: coordinates stay inside their ranges, away from the ends, and parameters keep their signs") {
+  const model::Model m = moving_sphere();
+  const Judge judge(m, 60);
+  Points points(judge, 11, many);
+  for (int i = 0; i < 50; ++i) {
+    const State s = points.next();
+    CHECK(cln::double_approx(s.q[1]) > 0.07);
+    CHECK(cln::double_approx(s.q[1]) < 3.07);
+    for (const Real& value : s.parameters) CHECK(cln::plusp(value));
+  }
+}
+
+TEST_CASE("points: what has no value is rejected, counted, and given up in the end with the reasons") {
+  model::Model m = chain(1);
+  const Formula th = leaf(m, Op::coordinate, 0);
+  force(m, model::Generalized{{{0, call(Fn::log, th).id}}});  // of negative angles: no value
+  const Judge judge(m, 60);
+  Points points(judge, 5, many);
+  for (int i = 0; i < 20; ++i) CHECK(cln::plusp(points.next().q[0]));
+  REQUIRE(points.rejected().size() == 1);
+  CHECK(points.rejected().begin()->first == "log of a number that is not positive");
+  CHECK(points.rejected().begin()->second > 3);
+
+  model::Model never = chain(1);
+  force(never, model::Generalized{{{0, call(Fn::log, number(never, -1)).id}}});
+  const Judge of_never(never, 60);
+  Points none(of_never, 5, many);
+  try {
+    none.next();
+    FAIL("a state was found");
+  } catch (const Error& error) {
+    CHECK(error.fault() == Fault::check);
+    CHECK(error.message().find("log of a number that is not positive (101)") != std::string::npos);
+  }
+}
+
+TEST_CASE("points: kinks are kept away from, constraints that contradict one another have no states") {
+  model::Model m = chain(1);
+  const Formula th = leaf(m, Op::coordinate, 0);
+  force(m, model::Generalized{{{0, call(Fn::abs, th - th).id}}});  // always at the kink
+  const Judge judge(m, 60);
+  Points points(judge, 5, many);
+  CHECK_THROWS_AS(points.next(), Error);
+  CHECK(points.rejected().count("too near a kink") == 1);
+
+  model::Model twice = rod_pendulum();
+  const Formula x = leaf(twice, Op::coordinate, 0), y = leaf(twice, Op::coordinate, 1);
+  holonomic(twice, "again", {2 * ((x ^ 2) + (y ^ 2)) - 2 * (leaf(twice, Op::parameter, 2) ^ 2)});
+  const Judge of_twice(twice, 60);
+  Points none(of_twice, 5, many);
+  CHECK_THROWS_AS(none.next(), Error);
+  CHECK(none.rejected().count("the constraints lose rank") == 1);
+}
+
+TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a singular matrix") {
+  const Precision p(60);
+  const auto r = [&](double value) { return p.round(cln::rational(Real(value))); };
+  // [0 1e20; 1e-20 1] x = [1e20; 3]
+  const Solution good = solve({Real(0), r(1e20), r(1e-20), r(1)}, {r(1e20), r(3)});
+  REQUIRE(good.x.size() == 2);
+  CHECK(near(good.x[1], 1, 55));
+  CHECK(near(good.x[0], 2 / r(1e-20), 55));
+  CHECK(solve({r(1), r(2), r(2), r(4)}, {r(1), r(1)}).x.empty());
+}
