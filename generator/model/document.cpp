@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/document.hpp"
+
+#include <fmt/format.h>
+#include <toml++/toml.h>
+
+#include <algorithm>
+
+namespace eomgen::model {
+namespace {
+
+std::size_t offset_of(const Source& source, const toml::source_position& place) {
+  return source.offset(place.line, place.column);
+}
+
+// Walks a TOML string in the source beside its decoded bytes, so that every byte knows where it came from.
+class StringWalk {
+ public:
+  StringWalk(const std::string& source, std::size_t begin, const std::string& decoded)
+      : source_(source), at_(begin), decoded_(decoded) {}
+
+  std::vector<std::size_t> origin() {
+    std::vector<std::size_t> result;
+    const char quote = at_ < source_.size() ? source_[at_] : '\0';
+    if (quote != '"' && quote != '\'') return fallback();
+    const bool multiline = source_.compare(at_, 3, std::string(3, quote)) == 0;
+    at_ += multiline ? 3 : 1;
+    if (multiline && at_ < source_.size() && source_[at_] == '\r') ++at_;
+    if (multiline && at_ < source_.size() && source_[at_] == '\n') ++at_;
+    while (result.size() < decoded_.size()) {
+      if (at_ >= source_.size()) return fallback();
+      if (quote == '"' && source_[at_] == '\\') {
+        if (!escape(result)) return fallback();
+        continue;
+      }
+      if (source_[at_] != decoded_[result.size()]) {
+        if (source_[at_] != '\r') return fallback();  // toml++ turns CRLF into LF
+        ++at_;
+        continue;
+      }
+      result.push_back(at_++);
+    }
+    result.push_back(at_);
+    return result;
+  }
+
+ private:
+  // Should the walk and toml++ ever disagree, the start of the string is still a place.
+  std::vector<std::size_t> fallback() const { return std::vector<std::size_t>(decoded_.size() + 1, begin_); }
+
+  bool escape(std::vector<std::size_t>& result) {
+    const std::size_t start = at_++;
+    const char c = at_ < source_.size() ? source_[at_] : '\0';
+    if (c == '\n' || c == '\r' || c == ' ' || c == '\t') {  // a line-ending backslash
+      while (at_ < source_.size() && std::string_view(" \t\r\n").find(source_[at_]) != std::string_view::npos) ++at_;
+      return true;
+    }
+    const std::size_t digits = c == 'u' ? 4 : c == 'U' ? 8 : 0;
+    std::size_t bytes = 1;
+    if (digits > 0) {
+      const auto first = static_cast<unsigned char>(decoded_[result.size()]);
+      bytes = first < 0x80 ? 1 : first < 0xe0 ? 2 : first < 0xf0 ? 3 : 4;
+    }
+    at_ += 1 + digits;
+    if (result.size() + bytes > decoded_.size()) return false;
+    result.insert(result.end(), bytes, start);
+    return true;
+  }
+
+  const std::string& source_;
+  std::size_t at_;
+  std::size_t begin_ = at_;
+  const std::string& decoded_;
+};
+
+std::string number_text(const std::string& text, std::size_t begin) {
+  std::size_t end = begin;
+  while (end < text.size() && std::string_view("+-._").find(text[end]) != std::string_view::npos) ++end;
+  while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 ||
+                               std::string_view("+-._").find(text[end]) != std::string_view::npos)) {
+    ++end;
+  }
+  return text.substr(begin, end - begin);
+}
+
+Value convert(const Source& source, const toml::node& node);
+
+void convert_table(const Source& source, const toml::table& table, Value& value) {
+  value.kind = Value::Kind::table;
+  std::vector<std::pair<std::size_t, Entry>> entries;
+  for (const auto& [key, child] : table) {
+    const std::size_t begin = offset_of(source, key.source().begin);
+    const std::size_t end = offset_of(source, key.source().end);
+    entries.push_back({begin, Entry{std::string(key.str()), source.span(begin, end - begin), convert(source, child)}});
+  }
+  // toml++ keeps keys by name; a model keeps the order of the file.
+  std::stable_sort(entries.begin(), entries.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (auto& [begin, entry] : entries) value.entries.push_back(std::move(entry));
+}
+
+void convert_string(const Source& source, const toml::node& node, Value& value) {
+  value.kind = Value::Kind::text;
+  value.text = node.as_string()->get();
+  value.origin = StringWalk(source.text(), value.begin, value.text).origin();
+}
+
+Value convert(const Source& source, const toml::node& node) {
+  Value value;
+  value.begin = offset_of(source, node.source().begin);
+  const std::size_t end = offset_of(source, node.source().end);
+  value.span = source.span(value.begin, end > value.begin ? end - value.begin : 1);
+  if (const auto* table = node.as_table()) {
+    convert_table(source, *table, value);
+  } else if (const auto* array = node.as_array()) {
+    value.kind = Value::Kind::array;
+    for (const auto& item : *array) value.items.push_back(convert(source, item));
+  } else if (node.is_string()) {
+    convert_string(source, node, value);
+  } else if (const auto* truth = node.as_boolean()) {
+    value.kind = Value::Kind::boolean;
+    value.truth = truth->get();
+  } else if (const auto* integer = node.as_integer()) {
+    value.kind = Value::Kind::integer;
+    value.text = std::to_string(integer->get());
+  } else if (node.is_floating_point()) {
+    value.kind = Value::Kind::real;
+    value.text = number_text(source.text(), value.begin);
+  } else {
+    value.kind = Value::Kind::date;
+  }
+  return value;
+}
+
+// "Error while parsing string: unescaped ..." reads better without its first words.
+std::string clean_description(std::string_view description) {
+  constexpr std::string_view lead = "Error while parsing ";
+  if (description.starts_with(lead)) description.remove_prefix(lead.size());
+  return fmt::format("this is not TOML: {}", description);
+}
+
+}  // namespace
+
+const Entry* Value::entry(std::string_view key) const {
+  for (const Entry& candidate : entries) {
+    if (candidate.key == key) return &candidate;
+  }
+  return nullptr;
+}
+
+const Value* Value::find(std::string_view key) const {
+  const Entry* found = entry(key);
+  return found == nullptr ? nullptr : &found->value;
+}
+
+const char* kind_name(Value::Kind kind) {
+  switch (kind) {
+    case Value::Kind::text: return "a string";
+    case Value::Kind::integer:
+    case Value::Kind::real: return "a number";
+    case Value::Kind::boolean: return "true or false";
+    case Value::Kind::date: return "a date or time";
+    case Value::Kind::array: return "an array";
+    case Value::Kind::table: return "a table";
+  }
+  return "a value";
+}
+
+Value read_document(const Source& source) {
+  try {
+    const toml::table table = toml::parse(source.text());
+    Value root = convert(source, table);
+    root.span = source.span(0, 1);
+    return root;
+  } catch (const toml::parse_error& error) {
+    source.fail(source.span(offset_of(source, error.source().begin), 1), clean_description(error.description()),
+                "a model is a TOML 1.0 file: key = value, [section], [[entry]]; texts in quotes (docs/model-format.md)");
+  }
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A TOML file as a tree of values with exact places, in the order of the file. The only user of toml++.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "model/source.hpp"
+
+namespace eomgen::model {
+
+struct Entry;
+
+struct Value {
+  enum class Kind { text, integer, real, boolean, date, array, table };
+  Kind kind = Kind::table;
+  std::string text;           // strings: decoded; numbers: as written in the file
+  bool truth = false;         // of booleans
+  std::vector<Value> items;   // of arrays
+  std::vector<Entry> entries; // of tables
+  std::size_t begin = 0;      // byte offset in the file
+  std::vector<std::size_t> origin;  // strings: file offset of every byte of `text`, and of the end
+  Span span;
+
+  const Value* find(std::string_view key) const;
+  const Entry* entry(std::string_view key) const;
+  bool is(Kind which) const { return kind == which; }
+};
+
+struct Entry {
+  std::string key;
+  Span span;  // of the key
+  Value value;
+};
+
+/// "a string", "an array": for messages.
+const char* kind_name(Value::Kind kind);
+
+/// The tree of a file. Throws Error for everything that TOML 1.0 forbids.
+Value read_document(const Source& source);
+
+}  // namespace eomgen::model

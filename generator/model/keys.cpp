@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables and their keys: what is unknown, what is missing, what is not supported yet.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/reader.hpp"
+
+namespace eomgen::model {
+
+void Reader::check_keys(const Value& table, const Keys& keys) const {
+  for (const Entry& entry : table.entries) {
+    if (std::find(keys.known.begin(), keys.known.end(), entry.key) != keys.known.end()) continue;
+    if (std::find(keys.later.begin(), keys.later.end(), entry.key) != keys.later.end()) {
+      not_yet(entry.span, fmt::format("'{}' in {}", entry.key, keys.what));
+    }
+    std::vector<std::string> candidates(keys.known.begin(), keys.known.end());
+    candidates.insert(candidates.end(), keys.later.begin(), keys.later.end());
+    const std::string hint = did_you_mean(entry.key, candidates);
+    source_.fail(entry.span, fmt::format("{} has no key {}", keys.what, quote(entry.key)),
+                 hint.empty() ? fmt::format("its keys are {}", fmt::join(keys.known, ", ")) : hint);
+  }
+}
+
+void Reader::not_yet(Span span, const std::string& what) const {
+  source_.fail(span, what + " is not supported yet",
+               "a later version brings it; docs/model-format.md lists what works now");
+}
+
+const Value& Reader::needed(const Value& table, std::string_view key, const std::string& what, const std::string& remedy) const {
+  const Value* value = table.find(key);
+  if (value == nullptr) source_.fail(table.span, fmt::format("{} has no {}", what, key), remedy);
+  return *value;
+}
+
+const Value& Reader::as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const {
+  if (!value.is(kind)) {
+    source_.fail(value.span, fmt::format("{} is {}, and {} is asked", what, model::kind_name(value.kind), model::kind_name(kind)), remedy);
+  }
+  return value;
+}
+
+const Value* Reader::section(std::string_view name) const {
+  const Entry* entry = root_.entry(name);
+  if (entry == nullptr) return nullptr;
+  return &as(Value::Kind::table, entry->value, fmt::format("[{}]", name), fmt::format("write [{}] and its keys below", name));
+}
+
+std::vector<const Value*> Reader::sections(std::string_view name) const {
+  std::vector<const Value*> result;
+  const Entry* entry = root_.entry(name);
+  if (entry == nullptr) return result;
+  const std::string remedy = fmt::format("write [[{}]] with two brackets, once for each", name);
+  if (!entry->value.is(Value::Kind::array)) {
+    source_.fail(entry->span, fmt::format("[{}] is a list of entries", name), remedy);
+  }
+  for (const Value& item : entry->value.items) result.push_back(&as(Value::Kind::table, item, fmt::format("[[{}]]", name), remedy));
+  return result;
+}
+
+std::string Reader::text_of_key(const Value& table, std::string_view key, const std::string& what) const {
+  const Value& value = needed(table, key, what, fmt::format("add {} = \"...\"", key));
+  return as(Value::Kind::text, value, fmt::format("the {} of {}", key, what), "write it in quotes").text;
+}
+
+Span Reader::key_span(const Value& table, std::string_view key) const {
+  const Entry* entry = table.entry(key);
+  return entry == nullptr ? table.span : entry->span;
+}
+
+std::string Reader::tex_of(const Value& table, const std::string& what) const {
+  const Value* value = table.find("tex");
+  if (value == nullptr) return "";
+  as(Value::Kind::text, *value, fmt::format("the tex of {}", what), "write it in quotes, such as '\\theta_{1}'");
+  if (const auto problem = illegal_tex(value->text)) {
+    source_.fail(value->span, fmt::format("the tex of {} is refused: {}", what, *problem),
+                 "letters, digits, blanks, _ ^ { } , ' and commands for Greek letters, accents and text styles are allowed");
+  }
+  return value->text;
+}
+
+MeasuredUnit Reader::any_unit(const Value& value, const std::string& what) const {
+  as(Value::Kind::text, value, fmt::format("the unit of {}", what), "write it in quotes, such as \"m/s\"");
+  const auto unit = parse_unit(value.text);
+  if (!unit) {
+    const std::string hint = unit_hint(value.text);
+    source_.fail(value.span, fmt::format("{} is not a unit", quote(value.text)),
+                 hint.empty() ? "units are listed in docs/model-format.md" : hint);
+  }
+  return *unit;
+}
+
+Unit Reader::si_unit(const Value& value, const std::string& what) const {
+  const MeasuredUnit unit = any_unit(value, what);
+  if (unit.scale != 1 || unit.pi_power != 0) {
+    source_.fail(value.span, fmt::format("{} is measured in SI units, and {} is none", what, quote(value.text)),
+                 fmt::format("state {}; single values may have any unit, as in \"30 deg\" or \"5 mm\"", text_of(unit.dimension)));
+  }
+  return Unit{unit.text, unit.dimension};
+}
+
+}  // namespace eomgen::model

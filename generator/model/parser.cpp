@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A precedence-climbing parser: sums of products of signed powers of atoms.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/names.hpp"
+#include "model/syntax.hpp"
+
+namespace eomgen::model {
+namespace {
+
+struct Term {
+  bool inverse = false;  // subtracted, or a divisor
+  std::uint32_t node = 0;
+  Span span;  // of the operator
+};
+
+class Parser {
+ public:
+  explicit Parser(const Text& text) : text_(text), tokens_(tokens_of(text)) {}
+
+  Syntax all() {
+    if (now().kind == TokenKind::end) fail(now(), "an expression is missing", "write a number, a name or an expression");
+    syntax_.root = sum();
+    if (now().kind != TokenKind::end) unexpected();
+    return std::move(syntax_);
+  }
+
+ private:
+  const Token& now() const { return tokens_[at_]; }
+  bool is(std::string_view symbol) const { return now().kind == TokenKind::symbol && now().text == symbol; }
+  bool take(std::string_view symbol) {
+    if (!is(symbol)) return false;
+    ++at_;
+    return true;
+  }
+  Span span(const Token& token) const { return text_.span(token.at, token.length); }
+
+  [[noreturn]] void fail(const Token& token, std::string what, std::string remedy) const {
+    text_.source->fail(span(token), std::move(what), std::move(remedy));
+  }
+
+  [[noreturn]] void unexpected() const {
+    const Token& token = now();
+    if (token.kind == TokenKind::end) fail(token, "the expression ends too early", "something is missing at its end");
+    const bool operand_before = at_ > 0 && (tokens_[at_ - 1].kind != TokenKind::symbol || tokens_[at_ - 1].text == ")");
+    if (operand_before && (token.kind != TokenKind::symbol || token.text == "(")) {
+      fail(token, fmt::format("an operator is missing before {}", quote(token.text)),
+           "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 m/s^2\"");
+    }
+    fail(token, fmt::format("{} does not fit here", quote(token.text)),
+         token.text == ")" ? "there is no open parenthesis for it" : "check the expression up to this place");
+  }
+
+  std::uint32_t add(SyntaxKind kind, Span place, std::vector<std::uint32_t> children) {
+    SyntaxNode node;
+    node.kind = kind;
+    node.span = place;
+    node.children = std::move(children);
+    syntax_.nodes.push_back(std::move(node));
+    return static_cast<std::uint32_t>(syntax_.nodes.size() - 1);
+  }
+
+  std::uint32_t sum() {
+    std::vector<Term> terms{{false, product(), {}}};
+    while (is("+") || is("-")) {
+      const Token& token = tokens_[at_++];
+      terms.push_back({token.text == "-", product(), span(token)});
+    }
+    return combine(terms, SyntaxKind::add);
+  }
+
+  std::uint32_t product() {
+    std::vector<Term> terms{{false, signed_power(), {}}};
+    while (is("*") || is("/")) {
+      const Token& token = tokens_[at_++];
+      terms.push_back({token.text == "/", signed_power(), span(token)});
+    }
+    return combine(terms, SyntaxKind::multiply);
+  }
+
+  // Left to right, but long sums and products become trees of runs, so that no walk of them goes deep.
+  std::uint32_t combine(std::vector<Term> terms, SyntaxKind kind) {
+    constexpr std::size_t run = 16;
+    const bool sum = kind == SyntaxKind::add;
+    const SyntaxKind inverse = sum ? SyntaxKind::subtract : SyntaxKind::divide;
+    while (true) {
+      std::vector<Term> runs;
+      for (std::size_t begin = 0; begin < terms.size(); begin += run) {
+        Term result = terms[begin];
+        if (result.inverse && begin > 0) {  // a run that starts with -x or /x
+          result.node = sum ? add(SyntaxKind::negate, result.span, {result.node})
+                            : add(SyntaxKind::divide, result.span, {one(result.span), result.node});
+          result.inverse = false;
+        }
+        for (std::size_t k = begin + 1; k < std::min(begin + run, terms.size()); ++k) {
+          result.node = add(terms[k].inverse ? inverse : kind, terms[k].span, {result.node, terms[k].node});
+        }
+        runs.push_back(result);
+      }
+      if (runs.size() == 1) return runs[0].node;
+      terms = std::move(runs);
+    }
+  }
+
+  std::uint32_t one(Span place) {
+    const std::uint32_t id = add(SyntaxKind::number, place, {});
+    syntax_.nodes[id].value = 1;
+    return id;
+  }
+
+  std::uint32_t signed_power() {
+    if (++depth_ > max_nesting) {
+      fail(now(), fmt::format("the expression is nested more than {} deep", max_nesting), "split it with [definitions]");
+    }
+    std::uint32_t result = 0;
+    const Token& token = now();
+    if (take("-")) {
+      result = add(SyntaxKind::negate, span(token), {signed_power()});
+    } else if (take("+")) {
+      result = signed_power();
+    } else {
+      result = power();
+    }
+    --depth_;
+    return result;
+  }
+
+  std::uint32_t power() {
+    const std::uint32_t base = atom();
+    const Token& token = now();
+    if (token.kind == TokenKind::symbol && token.text == "*" && tokens_[at_ + 1].text == "*") {
+      fail(token, "'**' is no operator", "write a^b for a power");
+    }
+    if (!take("^")) return base;
+    return add(SyntaxKind::power, span(token), {base, signed_power()});
+  }
+
+  std::uint32_t atom() {
+    const Token& token = now();
+    if (token.kind == TokenKind::number) {
+      ++at_;
+      const std::uint32_t id = add(SyntaxKind::number, span(token), {});
+      syntax_.nodes[id].value = token.value;
+      syntax_.nodes[id].unit = token.unit;
+      return id;
+    }
+    if (token.kind == TokenKind::name) {
+      return tokens_[at_ + 1].kind == TokenKind::symbol && tokens_[at_ + 1].text == "(" ? call() : name();
+    }
+    if (!take("(")) unexpected();
+    const std::uint32_t inside = sum();
+    if (!take(")")) {
+      if (now().kind == TokenKind::end) fail(token, "this parenthesis is not closed", "add the missing ')'");
+      unexpected();
+    }
+    return inside;
+  }
+
+  std::uint32_t name() {
+    const Token& first = tokens_[at_++];
+    std::vector<std::string> parts{std::string(first.text)};
+    std::size_t primes = 0;
+    while (take(".")) {
+      if (now().kind != TokenKind::name) fail(now(), "a name is missing after '.'", "write NAME.part, such as P.e_theta");
+      parts.emplace_back(tokens_[at_++].text);
+    }
+    while (take("'")) ++primes;
+    const Token& last = tokens_[at_ - 1];
+    const std::uint32_t id = add(SyntaxKind::name, text_.span(first.at, last.at + last.length - first.at), {});
+    syntax_.nodes[id].parts = std::move(parts);
+    syntax_.nodes[id].primes = primes;
+    return id;
+  }
+
+  std::uint32_t call() {
+    const Token& function = tokens_[at_];
+    at_ += 2;
+    std::vector<std::uint32_t> arguments;
+    if (!take(")")) {
+      arguments.push_back(argument());
+      while (take(",")) arguments.push_back(argument());
+      if (!take(")")) {
+        if (now().kind == TokenKind::end) fail(function, "this call is not closed", "add the missing ')'");
+        unexpected();
+      }
+    }
+    const std::uint32_t id = add(SyntaxKind::call, span(function), std::move(arguments));
+    syntax_.nodes[id].parts = {std::string(function.text)};
+    return id;
+  }
+
+  // Of if(): a comparison; elsewhere the resolver refuses one.
+  std::uint32_t argument() {
+    const std::uint32_t left = sum();
+    const Token& token = now();
+    SyntaxKind kind = SyntaxKind::less;
+    if (is("<=")) kind = SyntaxKind::less_equal;
+    if (is(">")) kind = SyntaxKind::greater;
+    if (is(">=")) kind = SyntaxKind::greater_equal;
+    if (kind == SyntaxKind::less && !is("<")) return left;
+    ++at_;
+    return add(kind, span(token), {left, sum()});
+  }
+
+  const Text& text_;
+  std::vector<Token> tokens_;
+  std::size_t at_ = 0;
+  int depth_ = 0;
+  Syntax syntax_;
+};
+
+bool ends_an_operand(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == ')' || c == ']' || c == '_' || c == '\'';
+}
+
+}  // namespace
+
+Syntax parse_expression(const Text& text) { return Parser(text).all(); }
+
+Syntax parse_quantity(const Text& text) {
+  std::string_view all = text.text;
+  while (!all.empty() && std::string_view(" \t\r\n").find(all.back()) != std::string_view::npos) all.remove_suffix(1);
+  const std::size_t blank = all.find_last_of(" \t\r\n");
+  const std::size_t value_end = blank == std::string_view::npos ? blank : all.find_last_not_of(" \t\r\n", blank);
+  if (value_end == std::string_view::npos || !ends_an_operand(all[value_end])) return parse_expression(text);
+  const std::string_view tail = all.substr(blank + 1);
+  auto unit = parse_unit(tail);
+  if (!unit) {
+    // "2 fm/s": what could only be a unit is told as one.
+    const bool unit_like = !tail.empty() && std::isalpha(static_cast<unsigned char>(tail[0])) != 0 &&
+                           tail.find_first_of("(),+-<>.") == std::string_view::npos;
+    if (unit_like) {
+      const std::string hint = unit_hint(tail);
+      text.source->fail(text.span(blank + 1, tail.size()), fmt::format("{} is not a unit", quote(tail)),
+                        hint.empty() ? "write a unit such as m/s^2, N*m, rad/s, or an operator before the name" : hint);
+    }
+    return parse_expression(text);
+  }
+  Text value = text;
+  value.text = all.substr(0, value_end + 1);
+  Syntax syntax = parse_expression(value);
+  syntax.unit = std::move(unit);
+  syntax.unit_span = text.span(blank + 1, tail.size());
+  return syntax;
+}
+
+}  // namespace eomgen::model

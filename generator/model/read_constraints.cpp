@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// [[constraint]] and [energy].
+#include <fmt/format.h>
+
+#include "model/reader.hpp"
+
+namespace eomgen::model {
+
+void Reader::declare_constraints() {
+  for (const Value* table : sections("constraint")) {
+    check_keys(*table, {"[[constraint]]", {"name", "holonomic", "holds"}, {"velocity", "rolling", "sliding", "friction", "restitution", "shape"}});
+    const std::string name = text_of_key(*table, "name", "this [[constraint]]");
+    Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
+    symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
+    Constraint constraint;
+    constraint.name = name;
+    constraint.span = table->find("name")->span;
+    model_.constraints.push_back(std::move(constraint));
+  }
+}
+
+void Reader::read_constraints() {
+  std::size_t index = 0;
+  for (const Value* table : sections("constraint")) {
+    Constraint& constraint = model_.constraints[index++];
+    const std::string what = fmt::format("the constraint '{}'", constraint.name);
+    if (const Value* holds = table->find("holds")) {
+      as(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\"");
+      if (holds->text == "unilateral") not_yet(holds->span, "holds = \"unilateral\"");
+      if (holds->text != "bilateral") {
+        source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)), "write holds = \"bilateral\"");
+      }
+    }
+    read_holonomic(constraint, needed(*table, "holonomic", what, "add holonomic = \"psi\", the expression that is 0"));
+  }
+}
+
+void Reader::read_holonomic(Constraint& constraint, const Value& value) {
+  const std::string what = fmt::format("the constraint '{}'", constraint.name);
+  Context context{what, on_motion, Shape::either, std::nullopt,
+                  "a holonomic constraint is made of coordinates, functions of time, parameters and t; "
+                  "constraints on velocities come with a later version"};
+  const auto with_motion = [&](const Typed& typed, Span span) {
+    if (typed.facts & on_coordinate) return;
+    source_.fail(span, fmt::format("{} contains no coordinate, so that it cannot hold anything", what),
+                 "write the expression of coordinates that is to be 0, such as \"R - L\"");
+  };
+  if (!value.is(Value::Kind::array) || value.items.size() == 3) {
+    const Typed typed = resolver_.value(value, context);
+    with_motion(typed, value.span);
+    if (!typed.vector) {
+      constraint.psi.push_back(typed.node);
+      return;
+    }
+    for (std::uint32_t axis = 0; axis < 3; ++axis) constraint.psi.push_back(resolver_.component(typed, axis, value.span).node);
+    return;
+  }
+  if (value.items.empty() || value.items.size() > 3) {
+    source_.fail(value.span, fmt::format("{} has {} equations", what, value.items.size()),
+                 "write one expression, two for a curve, or a vector for three");
+  }
+  context.shape = Shape::scalar;
+  constraint.curve = value.items.size() == 2;
+  for (const Value& item : value.items) {
+    const Typed typed = resolver_.value(item, context);
+    with_motion(typed, item.span);
+    constraint.psi.push_back(typed.node);
+  }
+}
+
+void Reader::read_energy() {
+  const Value* table = section("energy");
+  if (table == nullptr) return;
+  check_keys(*table, {"[energy]", {"kinetic", "potential"}, {}});
+  if (table->entries.empty()) source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
+  const auto energy = [&](const char* key, Facts allowed, const char* remedy) {
+    const Value* value = table->find(key);
+    if (value == nullptr) return no_node;
+    return resolver_.value(*value, Context{fmt::format("the {} energy", key), allowed, Shape::scalar, dimension_of("J"), remedy}).node;
+  };
+  model_.energy.kinetic = energy("kinetic", on_motion | on_velocity,
+                                 "energies are made of coordinates, velocities, functions of time and parameters; an input acts through a [[force]]");
+  model_.energy.potential = energy("potential", on_motion,
+                                   "a potential is made of coordinates, functions of time and parameters; what depends on velocities "
+                                   "belongs to kinetic, and an input acts through a [[force]]");
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/reader.hpp"
+
+#include <fmt/format.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "model/content_hash.hpp"
+
+namespace eomgen::model {
+
+Reader::Reader(const Source& source, const Value& root)
+    : source_(source), root_(root), scope_(source), resolver_(source, model_, scope_, [this](Symbol& symbol) { return define(symbol); }) {}
+
+Model Reader::read() {
+  check_keys(root_, {"a model",
+                     {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions", "energy", "particle", "point",
+                      "chain", "force", "constraint", "scene"},
+                     {"body", "frame", "joint", "event"}});
+  const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
+  if (!format.is(Value::Kind::integer) || format.text != "1") {
+    source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");
+  }
+  for (const char* key : {"title", "notes"}) {
+    if (root_.find(key) != nullptr) (key[0] == 't' ? model_.title : model_.notes) = text_of_key(root_, key, "the model");
+  }
+  Place origin;
+  origin.name = "origin";
+  origin.position = resolver_.meet(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""}).node;
+  model_.places.push_back(std::move(origin));
+  place_sources_.emplace_back();
+
+  declare_names();
+  declare_places();
+  declare_constraints();
+  declare_forces();
+  declare_coordinates();
+
+  for (const SymbolKind kind : {SymbolKind::parameter, SymbolKind::function, SymbolKind::input}) {
+    for (Symbol* symbol : scope_.all(kind)) resolver_.symbol(*symbol, symbol->span);
+  }
+  read_ranges();
+  read_particles();
+  for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
+  read_energy();
+  read_forces();
+  read_constraints();
+  if (model_.particles.empty() && model_.energy.kinetic == no_node) {
+    source_.fail(root_.span, "nothing moves: the model has no particle and no kinetic energy", "add a [[particle]], or kinetic = \"..\" in [energy]");
+  }
+  if (model_.coordinates.empty()) {
+    source_.fail(root_.span, "nothing moves: the model has no coordinate", "name coordinates in a position or in [coordinates]");
+  }
+  read_scenes();
+  warn_unused();
+  return std::move(model_);
+}
+
+Model read_model_text(const std::string& text, const std::string& file) {
+  const Source source(file, text);
+  const Value root = read_document(source);
+  Model model = Reader(source, root).read();
+  model.file = file;
+  model.id = std::filesystem::path(file).stem().string();
+  model.lines = source.lines();
+  model.content_hash = content_hash(text);
+  return model;
+}
+
+Model read_model(const std::string& path) {
+  const auto fail = [&](const std::string& what, const std::string& remedy) -> void {
+    throw Error("model", Where{path, 0, 0, 1, ""}, what, remedy);
+  };
+  std::error_code problem;
+  const auto status = std::filesystem::status(path, problem);
+  if (!std::filesystem::exists(status)) fail("there is no such file", "check the path; models are .toml files");
+  if (std::filesystem::is_directory(status)) fail("this is a directory", "name a model file, such as models/cart_pendulum.toml");
+  std::ifstream stream(path, std::ios::binary);
+  if (!stream) fail("the file cannot be read", "check its permissions");
+  std::string text(max_file_bytes + 1, '\0');  // one byte more than allowed tells that there is too much
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  if (stream.bad()) fail("the file cannot be read", "check the file");
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > max_file_bytes) fail(fmt::format("the file has more than {} bytes", max_file_bytes), "check that this is a model file");
+  return read_model_text(text, path);
+}
+
+Where Model::where(const Span& span) const { return where_in(file, lines, span); }
+
+const Scene& Model::scene(const std::string& name) const {
+  std::vector<std::string> names;
+  for (const Scene& candidate : scenes) {
+    if (candidate.name == name) return candidate;
+    names.push_back(candidate.name);
+  }
+  const std::string hint = did_you_mean(name, names);
+  throw Error("model", Where{file, 0, 0, 1, ""}, fmt::format("there is no scene {}", quote(name)),
+              hint.empty() ? fmt::format("the scenes are {}", fmt::join(names, ", ")) : hint);
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Reads a model section by section. First every name of the file is declared, then expressions are resolved; a name
+// that is needed is resolved on the way, so that the order of the file does not matter.
+// In: the Value tree. Out: Model. Format: docs/model-format.md.
+#pragma once
+
+#include <initializer_list>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "coordinates/coordinate_system.hpp"
+#include "model/resolver.hpp"
+
+namespace eomgen::model {
+
+inline constexpr std::size_t max_places = 1000;
+inline constexpr std::size_t max_coordinates = 1000;
+inline constexpr std::size_t max_scenes = 100;
+inline constexpr long max_chain = 64;
+
+/// The keys of one kind of table: those that exist, and those that a later version brings.
+struct Keys {
+  std::string what;  // "[[particle]]"
+  std::vector<std::string_view> known;
+  std::vector<std::string_view> later;
+};
+
+class Reader {
+ public:
+  Reader(const Source& source, const Value& root);
+  Model read();
+
+ private:
+  // keys.cpp
+  void check_keys(const Value& table, const Keys& keys) const;
+  const Value& needed(const Value& table, std::string_view key, const std::string& what, const std::string& remedy) const;
+  const Value& as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const;
+  const Value* section(std::string_view name) const;                     // [name], checked to be a table
+  std::vector<const Value*> sections(std::string_view name) const;       // [[name]]
+  std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;
+  Span key_span(const Value& table, std::string_view key) const;
+  [[noreturn]] void not_yet(Span span, const std::string& what) const;
+  std::string tex_of(const Value& table, const std::string& what) const;
+  /// A unit that values are given in: SI without a factor.
+  Unit si_unit(const Value& value, const std::string& what) const;
+  MeasuredUnit any_unit(const Value& value, const std::string& what) const;
+
+  // read_names.cpp: [parameters] [functions] [inputs] [coordinates] [definitions]
+  void declare_names();
+  void declare_coordinates();
+  std::uint32_t declare_coordinate(const std::string& name, Span span, const Entry* entry);
+  Typed define(Symbol& symbol);
+  Typed define_parameter(Symbol& symbol);
+  Typed define_function(Symbol& symbol);
+  Typed define_input(Symbol& symbol);
+  Typed define_definition(Symbol& symbol);
+  void read_coordinate(const Entry& entry);
+  void read_ranges();
+  void warn_misspelt(const std::string& name, Span span);
+  void warn_unused();
+
+  // read_places.cpp: [[particle]] [[point]], positions; chain.cpp: [[chain]]
+  struct PlaceSource {
+    const Value* table = nullptr;
+    bool particle = false;
+    std::uint32_t chain = 0;  // index + 1 into chains_, for links
+    long link = 0;            // from 1
+  };
+  struct Chain {
+    const Value* table = nullptr;
+    std::string name;
+    long n = 0;
+    bool relative = false;
+    std::vector<std::uint32_t> coordinates, places;
+  };
+  void declare_places();
+  std::uint32_t declare_place(const std::string& name, Span span, PlaceSource where);
+  void declare_chain(const Value& table);
+  void declare_entries(const Value& position);
+  Typed define_place(Symbol& symbol);
+  Typed chart_position(std::uint32_t place, const Value& table);
+  const coordinates::CoordinateSystem& system_of(const Value& table, const Entry*& entries) const;
+  std::array<Typed, 3> chart_entries(const coordinates::CoordinateSystem& system, const Value& entries);
+  Typed chain_position(const PlaceSource& where);
+  Typed chain_entry(const Value& table, std::string_view key, long link, const Context& context);
+  void read_particles();
+  std::uint32_t place_named(const Value& value, const std::string& what);
+
+  // read_forces.cpp, force_kinds.cpp: [[force]]
+  void declare_forces();
+  void read_forces();
+  Force read_force(const Value& table, const std::string& name);
+  AppliedForce read_applied(const Value& table, const std::string& what);
+  CentralGravity read_central_gravity(const Value& table, const std::string& what);
+  Spring read_spring(const Value& table, const std::string& what);
+  Damper read_damper(const Value& table, const std::string& what);
+  Torsion read_torsion(const Value& table, const std::string& what);
+  Drag read_drag(const Value& table, const std::string& what);
+  Generalized read_generalized(const Value& table, const std::string& what);
+  std::array<NodeId, 2> read_between(const Value& table, const std::string& what);
+  NodeId read_scalar(const Value& table, std::string_view key, const std::string& what, std::string_view unit, Facts allowed);
+  NodeId read_point(const Value& value, const std::string& what);
+
+  // read_constraints.cpp: [[constraint]], [energy]
+  void declare_constraints();
+  void read_constraints();
+  void read_holonomic(Constraint& constraint, const Value& value);
+  void read_energy();
+
+  // read_scenes.cpp, scene_values.cpp, scene_outputs.cpp: [scene.NAME]
+  void read_scenes();
+  std::vector<const Entry*> merged(const Entry& scene, std::vector<std::string>& from) const;
+  void read_scene(const Entry& entry);
+  void read_span(Scene& scene, const Value& value);
+  void read_initial(Scene& scene, const std::vector<const Entry*>& entries, bool guess);
+  void read_solve(Scene& scene, const Value& value);
+  void read_scene_parameters(Scene& scene, const std::vector<const Entry*>& entries);
+  void read_scene_inputs(Scene& scene, const std::vector<const Entry*>& entries);
+  InputTable read_input_table(const Value& table, const Symbol& input);
+  void read_solver(Scene& scene, const Value& value);
+  void read_outputs(Scene& scene, const Value& value);
+  void check_output(const Value& value);
+  NodeId positive_number(const Value& value, const std::string& what, std::string_view unit);
+  Symbol& coordinate_of_key(const Entry& entry, const std::string& what, std::uint8_t& order);
+
+  const Source& source_;
+  const Value& root_;
+  Model model_;
+  Scope scope_;
+  Resolver resolver_;
+  std::vector<PlaceSource> place_sources_;     // per Model::places
+  std::vector<Chain> chains_;
+  std::set<std::uint32_t> ranged_, measured_;  // coordinates whose range or unit [coordinates] states
+};
+
+}  // namespace eomgen::model

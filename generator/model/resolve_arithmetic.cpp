@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sums, products, powers and units: exact constants within bounds, dimensions, scalars and vectors.
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/resolver.hpp"
+
+namespace eomgen::model {
+namespace {
+
+constexpr long largest_exponent = 64;      // of a constant power
+constexpr double largest_nested = 4096;    // product of exponents on top of one another
+constexpr std::size_t largest_bits = 4096; // of a constant
+
+std::size_t bits(const Rational& value) {
+  return cln::integer_length(cln::numerator(value)) + cln::integer_length(cln::denominator(value));
+}
+
+// 2*x, x/2 and x/12 are pure numbers times x; 0.3*x may be a stiffness times x.
+bool pure_factor(const Rational& factor) {
+  const Rational size = cln::abs(factor);
+  if (size == 1 || size == 2) return true;
+  return cln::numerator(size) == 1 && cln::denominator(size) <= 12;
+}
+
+std::string side(const std::optional<Dimension>& dimension) { return dimension ? text_of(*dimension) : "unknown"; }
+
+}  // namespace
+
+void Resolver::check_size(Typed& typed, Span span) {
+  if (typed.constant && bits(*typed.constant) > largest_bits) {
+    source_.fail(span, fmt::format("this number has more than {} bits", largest_bits), "use a number that fits a double");
+  }
+}
+
+void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, std::string_view relation) {
+  const bool known_a = a.dimension.has_value(), known_b = b.dimension.has_value();
+  const bool loose = (known_a && a.loose) || (known_b && b.loose);
+  if (known_a && known_b && !same(*a.dimension, *b.dimension)) {
+    clash(span, fmt::format("{} on one side and {} on the other side of {}", side(a.dimension), side(b.dimension), relation), loose);
+    result.dimension = a.loose ? b.dimension : a.dimension;
+    result.loose = a.loose && b.loose;
+    return;
+  }
+  const bool literal = a.literal && b.literal;
+  if (known_a || known_b) {
+    // A name of unknown dimension is taken to fit the other side.
+    result.dimension = known_a ? a.dimension : b.dimension;
+    result.loose = (!known_a || a.loose) && (!known_b || b.loose);
+  }
+  result.literal = literal;
+}
+
+Typed Resolver::apply_unit(Typed typed, const MeasuredUnit& unit, Span span) {
+  if (typed.vector) {
+    if (typed.dimension && !is_one(*typed.dimension)) {
+      source_.fail(span, fmt::format("the units clash: this has the dimension {} already", text_of(*typed.dimension)), "leave the unit out");
+    }
+  } else if (typed.dimension && !is_one(*typed.dimension)) {
+    clash(span, fmt::format("the value has the dimension {} already, and {} is put to it", text_of(*typed.dimension), unit.text), typed.loose);
+  }
+  Typed result = typed;
+  if (typed.literal && typed.constant && !typed.vector) {
+    result = number(*typed.constant * unit.scale, model_.arena[typed.node].span);
+  } else if (unit.scale != 1) {
+    result = multiply(typed, number(unit.scale, span), span);
+  }
+  if (unit.pi_power != 0) {
+    Typed pi = make(Op::pi, false, {}, span);
+    const Typed factor = std::abs(unit.pi_power) == 1 ? pi : power(pi, number(std::abs(unit.pi_power), span), span);
+    result = unit.pi_power > 0 ? multiply(result, factor, span) : divide(result, factor, span);
+  }
+  result.dimension = unit.dimension;
+  result.literal = false;
+  result.loose = false;
+  return result;
+}
+
+Typed Resolver::with_unit(const Typed& typed, const MeasuredUnit& unit, Span span) {
+  const bool has_it = typed.dimension && !is_one(unit.dimension) && same(*typed.dimension, unit.dimension);
+  if (has_it && unit.scale == 1 && unit.pi_power == 0) return typed;
+  return apply_unit(typed, unit, span);
+}
+
+Typed Resolver::number_node(const SyntaxNode& node) {
+  Typed result = number(node.value, node.span);
+  return node.unit ? apply_unit(result, *node.unit, node.span) : result;
+}
+
+Typed Resolver::negate(const Typed& a, Span span) {
+  if (a.literal && a.constant && !a.vector) return number(-*a.constant, span);  // keeps -1 one number
+  Typed result = make(Op::negate, a.vector, {a}, span);
+  result.dimension = a.dimension;
+  result.literal = a.literal;
+  if (a.constant) result.constant = -*a.constant;
+  return result;
+}
+
+Typed Resolver::add(SyntaxKind kind, Typed a, Typed b, Span span) {
+  const auto zero = [](const Typed& typed) { return typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant); };
+  for (Typed* side : {&a, &b}) {
+    const Typed& other = side == &a ? b : a;
+    if (side->vector || !other.vector) continue;
+    if (!zero(*side)) {
+      source_.fail(span, "a vector and a scalar cannot be added", "multiply the scalar by a direction such as E1, or take a component dot(a, E1)");
+    }
+    *side = make(Op::zero_vector, true, {}, span);
+    side->literal = true;
+  }
+  Typed result = make(kind == SyntaxKind::add ? Op::add : Op::subtract, a.vector, {a, b}, span);
+  agree(result, a, b, span, kind == SyntaxKind::add ? "'+'" : "'-'");
+  if (a.constant && b.constant) {
+    result.constant = kind == SyntaxKind::add ? *a.constant + *b.constant : *a.constant - *b.constant;
+    check_size(result, span);
+  }
+  return result;
+}
+
+Typed Resolver::multiply(const Typed& a, const Typed& b, Span span) {
+  if (a.vector && b.vector) {
+    source_.fail(span, "two vectors are multiplied with '*'", "write dot(a, b) or cross(a, b)");
+  }
+  Typed result = make(Op::multiply, a.vector || b.vector, {a, b}, span);
+  if (a.literal && b.literal) {
+    result.literal = true;
+  } else if (a.literal || b.literal) {
+    const Typed& factor = a.literal ? a : b;
+    result.dimension = (a.literal ? b : a).dimension;
+    result.loose = result.loose || !factor.constant || !pure_factor(*factor.constant);
+  } else if (a.dimension && b.dimension) {
+    result.dimension = product(*a.dimension, *b.dimension);
+  }
+  if (a.constant && b.constant) {
+    result.constant = *a.constant * *b.constant;
+    check_size(result, span);
+  }
+  return result;
+}
+
+Typed Resolver::divide(const Typed& a, const Typed& b, Span span) {
+  if (b.vector) source_.fail(span, "something is divided by a vector", "divide by norm(a) or by a component");
+  if (b.constant && cln::zerop(*b.constant) && b.literal) {
+    source_.fail(span, "this is a division by zero", "check the denominator");
+  }
+  Typed result = make(Op::divide, a.vector, {a, b}, span);
+  if (a.literal && b.literal) {
+    result.literal = true;
+  } else if (b.literal) {
+    result.dimension = a.dimension;
+    result.loose = result.loose || !b.constant || !pure_factor(1 / *b.constant);
+  } else if (b.dimension && (a.literal || a.dimension)) {
+    result.dimension = quotient(a.literal ? Dimension{} : *a.dimension, *b.dimension);
+    if (a.literal) result.loose = result.loose || !a.constant || !pure_factor(*a.constant);
+  }
+  if (a.constant && b.constant && !cln::zerop(*b.constant)) {
+    result.constant = *a.constant / *b.constant;
+    check_size(result, span);
+  }
+  return result;
+}
+
+Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
+  if (a.vector || b.vector) source_.fail(span, "a vector stands in a power", "write dot(a, a) or norm(a)^2");
+  if (b.dimension && !is_one(*b.dimension)) {
+    clash(span, fmt::format("an exponent is a pure number, and this one is in {}", text_of(*b.dimension)), b.loose);
+  }
+  Typed result = make(Op::power, false, {a, b}, span);
+  result.literal = a.literal && b.literal;
+  if (!b.constant) {
+    if (a.dimension && is_one(*a.dimension)) result.dimension = a.dimension;
+    return result;
+  }
+  const Rational exponent = *b.constant;
+  if (cln::abs(exponent) > largest_exponent || cln::denominator(exponent) > largest_exponent) {
+    source_.fail(span, fmt::format("this exponent is larger than {} or too fine", largest_exponent),
+                 fmt::format("constant exponents have numerators and denominators up to {}", largest_exponent));
+  }
+  result.exponents = std::max(1.0, cln::double_approx(cln::abs(exponent))) * a.exponents;
+  if (result.exponents > largest_nested) {
+    source_.fail(span, fmt::format("powers on top of one another come to an exponent above {}", largest_nested), "write a smaller power");
+  }
+  if (b.literal && a.dimension) result.dimension = raised(*a.dimension, exponent);
+  if (!a.constant || cln::denominator(exponent) != 1) return result;
+  const cln::cl_I whole = cln::numerator(exponent);
+  if (cln::zerop(*a.constant) && cln::minusp(whole)) {
+    if (a.literal) source_.fail(span, "this is a division by zero", "check the base of the power");
+    return result;
+  }
+  if (static_cast<std::size_t>(cln::cl_I_to_int(cln::abs(whole))) * bits(*a.constant) > largest_bits) {
+    source_.fail(span, fmt::format("this number has more than {} bits", largest_bits), "use a number that fits a double");
+  }
+  result.constant = cln::expt(*a.constant, whole);
+  return result;
+}
+
+}  // namespace eomgen::model

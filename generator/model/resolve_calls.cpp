@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Functions: scalar ones, if, derivatives, and those of vectors and places.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/resolver.hpp"
+
+namespace eomgen::model {
+
+void Resolver::arity(const SyntaxNode& node, std::size_t least, std::size_t most) {
+  const std::size_t count = node.children.size();
+  if (count >= least && count <= most) return;
+  const std::string wanted = least == most ? std::to_string(least) : fmt::format("{} to {}", least, most);
+  source_.fail(node.span, fmt::format("{}() takes {} argument{}, not {}", node.parts[0], wanted, wanted == "1" ? "" : "s", count),
+               "see docs/model-format.md for the functions");
+}
+
+Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
+  const std::string& name = node.parts[0];
+  if (const FunctionName* function = find_function(name)) return scalar_call(syntax, node, *function);
+  if (name == "if") return conditional(syntax, node);
+  if (name == "ddt") return time_derivative(syntax, node);
+  if (name == "diff") return partial_derivative(syntax, node);
+  if (name == "dot" || name == "cross" || name == "norm" || name == "unit") return vector_call(syntax, node);
+  if (name == "position" || name == "velocity" || name == "acceleration") return place_call(syntax, node);
+  if (name == "integral" || name == "initial" || name == "omega") {
+    source_.fail(node.span, fmt::format("{}() is not supported yet", name),
+                 name == "omega"      ? "rigid bodies come with a later version; models of particles work now"
+                 : name == "initial" ? "give the start value a name in [parameters] and use that in the scene too"
+                                     : "state the antiderivative as a function of t in [functions]");
+  }
+  const std::string hint = did_you_mean(name, function_names());
+  const bool value = scope_.find(name) != nullptr;
+  source_.fail(node.span, fmt::format("there is no function {}", quote(name)),
+               value ? fmt::format("'{}' is a name: write {}*(...) for a product", name, name)
+               : hint.empty() ? "the functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign min max, if, ddt, diff, dot, cross, norm, unit, position, velocity, acceleration"
+                              : hint);
+}
+
+Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const FunctionName& function) {
+  arity(node, function.least, function.most);
+  std::vector<Typed> arguments;
+  for (const std::uint32_t child : node.children) {
+    arguments.push_back(this->node(syntax, child));
+    if (arguments.back().vector) {
+      source_.fail(syntax.nodes[child].span, fmt::format("{}() takes scalars, and this is a vector", function.name), "take norm(a) or a component dot(a, E1)");
+    }
+  }
+  const bool same_kind = function.fn == Fn::min || function.fn == Fn::max || function.fn == Fn::atan2;
+  const bool keeps = function.fn == Fn::abs || function.fn == Fn::min || function.fn == Fn::max;
+  Typed result = arguments[0];
+  for (std::size_t k = 0; k < arguments.size(); ++k) {
+    const Typed& a = arguments[k];
+    if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension && !is_one(*a.dimension)) {
+      clash(syntax.nodes[node.children[k]].span, fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)), a.loose);
+    }
+    if (k == 0 && arguments.size() > 1) continue;
+    // min and max of many are nested pairs.
+    Typed next = arguments.size() == 1 ? make(Op::call, false, {a}, node.span) : make(Op::call, false, {result, a}, node.span);
+    model_.arena.nodes[next.node].fn = function.fn;
+    if (same_kind) agree(next, result, a, node.span, fmt::format("{}()", function.name));
+    result = next;
+  }
+  const Typed& first = arguments[0];
+  if (!same_kind) {
+    result.dimension = Dimension{};
+    result.loose = false;
+    if (function.fn == Fn::abs || function.fn == Fn::sqrt) {
+      result.loose = first.loose;
+      result.dimension = first.dimension;
+      if (function.fn == Fn::sqrt && first.dimension) result.dimension = raised(*first.dimension, Rational(1) / 2);
+      result.literal = first.literal;
+    }
+  } else if (function.fn == Fn::atan2) {
+    result.dimension = Dimension{};
+    result.loose = false;
+    result.literal = false;
+  }
+  return result;
+}
+
+Typed Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 3, 3);
+  const SyntaxNode& test = syntax.nodes[node.children[0]];
+  const bool comparison = test.kind == SyntaxKind::less || test.kind == SyntaxKind::less_equal ||
+                          test.kind == SyntaxKind::greater || test.kind == SyntaxKind::greater_equal;
+  if (!comparison) source_.fail(test.span, "the first argument of if() is a comparison", "write if(a < b, x, y)");
+  Typed a = this->node(syntax, test.children[0]);
+  Typed b = this->node(syntax, test.children[1]);
+  Typed x = this->node(syntax, node.children[1]);
+  Typed y = this->node(syntax, node.children[2]);
+  if (a.vector || b.vector) source_.fail(test.span, "vectors cannot be compared", "compare norm(a) or components");
+  if (x.vector != y.vector) source_.fail(node.span, "one branch of if() is a vector and the other is not", "make both vectors or both scalars");
+  Typed compared;
+  agree(compared, a, b, test.span, "the comparison");
+  // a > b is b < a; a <= b is not (b < a)
+  if (test.kind == SyntaxKind::greater || test.kind == SyntaxKind::less_equal) std::swap(a, b);
+  const bool swapped = test.kind == SyntaxKind::less_equal || test.kind == SyntaxKind::greater_equal;
+  Typed result = make(Op::conditional, x.vector, {a, b, swapped ? y : x, swapped ? x : y}, node.span);
+  result.loose = false;
+  agree(result, x, y, node.span, "the branches of if()");
+  return result;
+}
+
+Typed Resolver::time_derivative(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 1, 1);
+  const Typed inner = this->node(syntax, node.children[0]);
+  if (inner.facts & on_input) {
+    source_.fail(node.span, "an input has no time derivative", "declare the derivative as an input of its own");
+  }
+  if (inner.facts & on_acceleration) {
+    source_.fail(node.span, "third time derivatives of coordinates are not supported", "take ddt of positions and velocities only");
+  }
+  Typed result = make(Op::total_derivative, inner.vector, {inner}, node.span);
+  if (inner.facts & on_coordinate) result.facts |= on_velocity;
+  if (inner.facts & on_velocity) result.facts |= on_acceleration;
+  if (inner.dimension) result.dimension = quotient(*inner.dimension, dimension_of("s"));
+  allow(result.facts, node.span, "ddt() here");
+  return result;
+}
+
+Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 2, 2);
+  const Typed inner = this->node(syntax, node.children[0]);
+  const SyntaxNode& by = syntax.nodes[node.children[1]];
+  const Typed variable = this->node(syntax, node.children[1]);
+  const Op op = model_.arena[variable.node].op;
+  if (by.kind != SyntaxKind::name || (op != Op::coordinate && op != Op::function && op != Op::parameter && op != Op::time && op != Op::input)) {
+    source_.fail(by.span, "diff() takes a derivative with respect to a name", "write diff(e, x) with a coordinate, a velocity, a function, a parameter, an input or t");
+  }
+  Typed result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
+  result.loose = inner.loose;
+  if (inner.dimension && variable.dimension) result.dimension = quotient(*inner.dimension, *variable.dimension);
+  return result;
+}
+
+Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
+  const std::string& name = node.parts[0];
+  const bool two = name == "dot" || name == "cross";
+  arity(node, two ? 2 : 1, two ? 2 : 1);
+  std::vector<Typed> arguments;
+  for (const std::uint32_t child : node.children) {
+    arguments.push_back(this->node(syntax, child));
+    if (!arguments.back().vector) {
+      source_.fail(syntax.nodes[child].span, fmt::format("{}() takes vectors, and this is a scalar", name), "a vector is made of E1, E2, E3, P.e_q, or the name of a particle");
+    }
+  }
+  const Typed& a = arguments[0];
+  if (!two) {
+    Typed result = make(name == "norm" ? Op::norm : Op::unit, name == "unit", {a}, node.span);
+    result.dimension = name == "norm" ? a.dimension : Dimension{};
+    result.loose = name == "norm" && a.loose;
+    return result;
+  }
+  const Typed& b = arguments[1];
+  Typed result = make(name == "dot" ? Op::dot : Op::cross, name == "cross", {a, b}, node.span);
+  if (a.dimension && b.dimension) result.dimension = product(*a.dimension, *b.dimension);
+  return result;
+}
+
+Typed Resolver::place_call(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 1, 1);
+  const std::string& name = node.parts[0];
+  const SyntaxNode& argument = syntax.nodes[node.children[0]];
+  Symbol* symbol = argument.kind == SyntaxKind::name && argument.parts.size() == 1 ? scope_.find(argument.parts[0]) : nullptr;
+  const bool origin = argument.kind == SyntaxKind::name && argument.parts[0] == "origin";
+  if (argument.kind == SyntaxKind::name && symbol == nullptr && !origin) unknown_name(argument);
+  if (!origin && (symbol == nullptr || symbol->kind != SymbolKind::place)) {
+    source_.fail(argument.span, fmt::format("{}() takes the name of a particle or point", name), "write ddt(...) for the derivative of a vector expression");
+  }
+  if (symbol != nullptr) symbol->used = true;
+  Typed result = place(origin ? 0 : symbol->index, node.span);
+  Node& made = model_.arena.nodes[result.node];
+  if (name == "velocity") made.op = Op::place_velocity;
+  if (name == "acceleration") made.op = Op::place_acceleration;
+  if (name != "position" && (result.facts & on_coordinate)) result.facts |= on_velocity;
+  if (name == "acceleration" && (result.facts & on_coordinate)) result.facts |= on_acceleration;
+  if (name != "position" && result.dimension) {
+    result.dimension = quotient(*result.dimension, dimension_of(name == "velocity" ? "s" : "s^2"));
+  }
+  allow(result.facts, node.span, fmt::format("{}()", name));
+  return result;
+}
+
+}  // namespace eomgen::model

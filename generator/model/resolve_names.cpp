@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Names: leaves, derivatives by name, and NAME.part.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/resolver.hpp"
+
+namespace eomgen::model {
+namespace {
+
+std::string joined(const std::vector<std::string>& parts) { return fmt::format("{}", fmt::join(parts, ".")); }
+
+}  // namespace
+
+Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
+  const SyntaxNode& node = syntax.nodes[id];
+  const auto child = [&](std::size_t k) { return this->node(syntax, node.children[k]); };
+  switch (node.kind) {
+    case SyntaxKind::number: return number_node(node);
+    case SyntaxKind::name: return name(node);
+    case SyntaxKind::call: return call(syntax, node);
+    case SyntaxKind::negate: return negate(child(0), node.span);
+    case SyntaxKind::add:
+    case SyntaxKind::subtract: {
+      const Typed a = child(0);
+      return add(node.kind, a, child(1), node.span);
+    }
+    case SyntaxKind::multiply: {
+      const Typed a = child(0);
+      return multiply(a, child(1), node.span);
+    }
+    case SyntaxKind::divide: {
+      const Typed a = child(0);
+      return divide(a, child(1), node.span);
+    }
+    case SyntaxKind::power: {
+      const Typed a = child(0);
+      return power(a, child(1), node.span);
+    }
+    default:
+      source_.fail(node.span, "a comparison stands where a value is asked", "write if(a < b, x, y)");
+  }
+}
+
+Typed Resolver::name(const SyntaxNode& node) {
+  if (node.parts.size() == 1 && node.primes == 0) return plain_name(node);
+  Symbol* symbol = scope_.find(node.parts[0]);
+  if (symbol == nullptr) unknown_name(node);
+  symbol->used = true;
+  if (symbol->kind != SymbolKind::place) {
+    source_.fail(node.span, fmt::format("'{}' is {} and has no parts", symbol->name, kind_name(symbol->kind)),
+                 "NAME.part reaches into particles and points: P.e_theta, P.a_r, P.g_r");
+  }
+  if (node.parts.size() > 2 || node.primes > 0) {
+    source_.fail(node.span, fmt::format("{} has no part of this form", quote(symbol->name)),
+                 "a particle has P.e_q, P.a_q and P.g_q for its coordinates q");
+  }
+  return basis_vector(node, *symbol);
+}
+
+Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
+  const std::string& part = node.parts[1];
+  const Symbol* coordinate_symbol = part.size() > 2 && part[1] == '_' ? scope_.find(part.substr(2)) : nullptr;
+  const bool basis = coordinate_symbol != nullptr && coordinate_symbol->kind == SymbolKind::coordinate &&
+                     (part[0] == 'e' || part[0] == 'a' || part[0] == 'g');
+  std::vector<std::string> known;
+  const Typed position = this->symbol(symbol, node.span);
+  for (const auto& [index, order] : coordinates_in(position.node)) {
+    if (order == 0) known.push_back(model_.coordinates[index].name);
+  }
+  if (!basis || std::find(known.begin(), known.end(), coordinate_symbol->name) == known.end()) {
+    std::vector<std::string> parts;
+    for (const std::string& name : known) parts.insert(parts.end(), {"e_" + name, "a_" + name, "g_" + name});
+    const std::string hint = did_you_mean(part, parts);
+    source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)),
+                 !hint.empty()  ? hint
+                 : known.empty() ? fmt::format("the position of '{}' depends on no coordinate", symbol.name)
+                                 : fmt::format("its parts are e_q, a_q and g_q for q = {}", fmt::join(known, ", ")));
+  }
+  if (part[0] == 'g') {
+    const auto& chart = model_.places[symbol.index].chart;
+    bool slot = chart.has_value();
+    for (std::size_t k = 0; slot && k < (chart->planar ? 2u : 3u); ++k) slot = model_.arena[chart->entries[k]].op == Op::coordinate;
+    if (!slot) {
+      source_.fail(node.span, fmt::format("'{}' needs a position whose entries are all coordinates", joined(node.parts)),
+                   "the contravariant basis exists for a full set of coordinates; use a_q or e_q");
+    }
+  }
+  allow(position.facts, node.span, fmt::format("'{}'", joined(node.parts)));
+  const Typed leaf = coordinate(coordinate_symbol->index, 0, node.span);
+  const Op op = part[0] == 'e' ? Op::unit_basis : part[0] == 'a' ? Op::covariant_basis : Op::contravariant_basis;
+  Typed result = make(op, true, {leaf}, node.span);
+  model_.arena.nodes[result.node].index = symbol.index;
+  result.facts = position.facts;
+  result.depth = position.depth + 2;
+  if (op == Op::unit_basis) {
+    result.dimension = Dimension{};
+  } else if (leaf.dimension && position.dimension) {
+    const Dimension covariant = quotient(*position.dimension, *leaf.dimension);
+    result.dimension = op == Op::covariant_basis ? covariant : raised(covariant, -1);
+  }
+  return result;
+}
+
+Typed Resolver::plain_name(const SyntaxNode& node) {
+  const std::string& name = node.parts[0];
+  if (local_ != nullptr) {
+    if (const auto found = local_->find(name); found != local_->end()) return found->second;
+  }
+  if (name == "pi") {
+    Typed result = make(Op::pi, false, {}, node.span);
+    result.dimension = Dimension{};
+    return result;
+  }
+  if (name == "t") {
+    allow(on_time, node.span, "'t'");
+    Typed result = make(Op::time, false, {}, node.span);
+    result.facts = on_time;
+    result.dimension = dimension_of("s");
+    return result;
+  }
+  if (name == "origin" || name == "ground") {
+    if (name == "ground") {
+      source_.fail(node.span, "'ground' stands only where a contact or a joint asks for a body", "write origin for the fixed origin");
+    }
+    return place(0, node.span);
+  }
+  if (name.size() == 2 && name[0] == 'E' && name[1] >= '1' && name[1] <= '3') {
+    Typed result = make(Op::fixed_basis, true, {}, node.span);
+    model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(name[1] - '1');
+    result.dimension = Dimension{};
+    return result;
+  }
+  if (Symbol* symbol = scope_.find(name)) return leaf(*symbol, 0, node.span);
+  const Derivative derivative = split_derivative(name);
+  Symbol* base = derivative.order > 0 ? scope_.find(derivative.base) : nullptr;
+  if (base == nullptr) unknown_name(node);
+  if (base->kind != SymbolKind::coordinate && base->kind != SymbolKind::function) {
+    source_.fail(node.span, fmt::format("'{}' is {}: there is no '{}'", base->name, kind_name(base->kind), name),
+                 "_dot and _ddot exist for coordinates and functions of time; otherwise write ddt(...)");
+  }
+  return leaf(*base, derivative.order, node.span);
+}
+
+Typed Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
+  symbol.used = true;
+  if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force) {
+    source_.fail(span, fmt::format("'{}' is {}, not a value", symbol.name, kind_name(symbol.kind)),
+                 "name a parameter, coordinate, function, input, definition, particle or point");
+  }
+  if (symbol.kind == SymbolKind::coordinate) {
+    Typed result = coordinate(symbol.index, order, span);
+    const std::string name = symbol.name + (order == 0 ? "" : order == 1 ? "_dot" : "_ddot");
+    allow(result.facts, span, fmt::format("'{}'", name));
+    return result;
+  }
+  if (symbol.kind == SymbolKind::place) {
+    const Typed result = place(symbol.index, span);
+    allow(result.facts, span, fmt::format("'{}'", symbol.name));
+    return result;
+  }
+  const Typed known = this->symbol(symbol, span);
+  const Op op = symbol.kind == SymbolKind::parameter  ? Op::parameter
+                : symbol.kind == SymbolKind::function ? Op::function
+                : symbol.kind == SymbolKind::input    ? Op::input
+                                                      : Op::definition;
+  Typed result = make(op, known.vector, {}, span);
+  model_.arena.nodes[result.node].index = symbol.index;
+  model_.arena.nodes[result.node].order = order;
+  result.dimension = known.dimension;
+  result.loose = known.loose;
+  result.facts = known.facts;
+  result.depth = known.depth + 1;
+  result.exponents = known.exponents;
+  if (op == Op::parameter) result.constant = known.constant;
+  if (op == Op::function) result.facts |= on_time;
+  if (op == Op::input) result.facts = on_input;
+  if (order > 0 && result.dimension) result.dimension = quotient(*result.dimension, raised(dimension_of("s"), order));
+  allow(result.facts, span, fmt::format("'{}'", symbol.name));
+  return result;
+}
+
+void Resolver::unknown_name(const SyntaxNode& node) {
+  const std::string name = node.parts[0];
+  std::vector<std::string> candidates = scope_.names();
+  for (const char* word : {"pi", "origin", "E1", "E2", "E3"}) candidates.emplace_back(word);
+  const Derivative derivative = split_derivative(name);
+  std::string hint;
+  if (derivative.order > 0) {
+    if (const auto meant = nearest(derivative.base, candidates)) {
+      hint = fmt::format("did you mean '{}{}'?", *meant, name.substr(derivative.base.size()));
+    }
+  }
+  if (hint.empty()) hint = did_you_mean(name, candidates);
+  if (hint.empty() && is_reserved(name)) hint = fmt::format("'{}' is a function: write {}(...)", name, name);
+  if (hint.empty()) {
+    hint = "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in [definitions]";
+  }
+  source_.fail(node.span, fmt::format("the name {} is not declared", quote(name)), hint);
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values, contexts, and the nodes that the reader makes itself.
+#include "model/resolver.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace eomgen::model {
+namespace {
+
+// Sets a member for the time of one call, also when the call throws.
+template <class T>
+class Hold {
+ public:
+  Hold(T& member, T value) : member_(member), before_(member) { member_ = value; }
+  ~Hold() { member_ = before_; }
+  Hold(const Hold&) = delete;
+  Hold& operator=(const Hold&) = delete;
+
+ private:
+  T& member_;
+  T before_;
+};
+
+std::string facts_text(Facts facts) {
+  std::vector<std::string> words;
+  if (facts & on_time) words.emplace_back("time");
+  if (facts & on_input) words.emplace_back("inputs");
+  if (facts & on_coordinate) words.emplace_back("coordinates");
+  if (facts & on_velocity) words.emplace_back("velocities");
+  if (facts & on_acceleration) words.emplace_back("accelerations");
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+}  // namespace
+
+Typed Resolver::value(const Value& value, const Context& context) {
+  static const std::map<std::string, Typed> nothing;
+  return value_with(value, nothing, context);
+}
+
+Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed>& local, const Context& context) {
+  const Hold<const Context*> hold_context(context_, &context);
+  const Hold<const std::map<std::string, Typed>*> hold_local(local_, &local);
+  switch (value.kind) {
+    case Value::Kind::integer:
+    case Value::Kind::real: {
+      const ExactNumber exact = exact_number(value.text);
+      if (!exact.problem.empty()) {
+        source_.fail(value.span, fmt::format("{} cannot be {}: {}", quote(value.text), context.what, exact.problem),
+                     "write a finite number");
+      }
+      return meet(number(exact.value, value.span), value.span, context);
+    }
+    case Value::Kind::text: return syntax(parse_quantity(text_in(source_, value)), context);
+    case Value::Kind::array: {
+      if (context.shape == Shape::scalar || value.items.size() != 3) {
+        source_.fail(value.span,
+                     context.shape == Shape::scalar ? fmt::format("{} is a scalar, not an array", context.what)
+                                                    : fmt::format("a vector has three components, not {}", value.items.size()),
+                     "a scalar is a number or \"expression\"; a vector is \"expression\" or [x, y, z]");
+      }
+      Context component = context;
+      component.shape = Shape::scalar;
+      std::array<Typed, 3> parts;
+      for (std::size_t k = 0; k < 3; ++k) parts[k] = this->value_with(value.items[k], local, component);
+      return meet(array_of(parts, value.span), value.span, context);
+    }
+    default:
+      source_.fail(value.span, fmt::format("{} cannot be {}", context.what, kind_name(value.kind)),
+                   "write a number, \"expression\" or \"expression unit\"");
+  }
+}
+
+Typed Resolver::text(std::string_view text, const std::map<std::string, Typed>& local, Span span, const Context& context) {
+  const Hold<const std::map<std::string, Typed>*> hold_local(local_, &local);
+  return syntax(parse_expression(Text{text, &source_, nullptr, 0, span}), context);
+}
+
+Typed Resolver::syntax(const Syntax& syntax, const Context& context) {
+  const Hold<const Context*> hold_context(context_, &context);
+  Typed result = node(syntax, syntax.root);
+  const Span span = syntax.nodes[syntax.root].span;
+  if (syntax.unit) result = apply_unit(result, *syntax.unit, syntax.unit_span);
+  return meet(result, span, context);
+}
+
+Typed Resolver::meet(Typed typed, Span span, const Context& context) {
+  const bool zero = typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant);
+  if (zero && context.shape == Shape::vector) {
+    typed = make(Op::zero_vector, true, {}, span);
+    typed.literal = true;
+    return typed;
+  }
+  if (context.shape == Shape::vector && !typed.vector) {
+    source_.fail(span, fmt::format("{} is a vector, and this is a scalar", context.what),
+                 "multiply by a direction such as E1 or P.e_theta, or write [x, y, z]");
+  }
+  if (context.shape == Shape::scalar && typed.vector) {
+    source_.fail(span, fmt::format("{} is a scalar, and this is a vector", context.what),
+                 "take dot(a, b), norm(a), or a component dot(a, E1)");
+  }
+  if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
+    clash(span, fmt::format("{} is asked in {}, and this is in {}", context.what, text_of(*context.dimension),
+                            text_of(*typed.dimension)),
+          typed.loose);
+  }
+  return typed;
+}
+
+void Resolver::clash(Span span, std::string what, bool loose) {
+  if (loose) {
+    warn(span, std::move(what), "a bare number in it may carry the missing unit; state it, as in \"0.3[N/m]*x\"");
+    return;
+  }
+  source_.fail(span, "the units clash: " + what, "check the formula and the units of the names in it");
+}
+
+void Resolver::warn(Span span, std::string message, std::string remedy) {
+  constexpr std::size_t most = 200;
+  if (model_.warnings.size() < most) {
+    model_.warnings.push_back(Warning{source_.where(span), std::move(message), std::move(remedy)});
+  }
+}
+
+void Resolver::allow(Facts facts, Span span, std::string_view what) {
+  const auto excess = static_cast<Facts>(facts & static_cast<Facts>(~context_->allowed));
+  if (excess == 0) return;
+  std::string remedy = context_->remedy;
+  if (remedy.empty()) {
+    remedy = context_->allowed == 0 ? "use numbers and parameters only"
+                                    : fmt::format("use numbers, parameters and {} only", facts_text(context_->allowed));
+  }
+  source_.fail(span, fmt::format("{} depends on {}, which {} cannot", what, facts_text(excess), context_->what), remedy);
+}
+
+const Typed& Resolver::symbol(Symbol& symbol, Span asked) {
+  if (symbol.state == Symbol::State::done) return symbol.typed;
+  if (symbol.state == Symbol::State::open) {
+    const auto first = std::find(open_.begin(), open_.end(), symbol.name);
+    std::vector<std::string> ring(first, open_.end());
+    ring.push_back(symbol.name);
+    if (ring.size() > 8) ring.erase(ring.begin() + 4, ring.end() - 3);
+    source_.fail(asked, fmt::format("'{}' is defined by itself: {}", symbol.name, fmt::join(ring, " -> ")),
+                 "break the circle: one of these names has to be given without the others");
+  }
+  constexpr std::size_t deepest = 200;
+  if (open_.size() >= deepest) {
+    source_.fail(asked, fmt::format("names refer to one another more than {} deep", deepest),
+                 "state the names that are used first before the others, or use fewer steps");
+  }
+  symbol.state = Symbol::State::open;
+  open_.push_back(symbol.name);
+  {
+    const Hold<const Context*> hold_context(context_, nullptr);
+    const Hold<const std::map<std::string, Typed>*> hold_local(local_, nullptr);
+    symbol.typed = definer_(symbol);
+  }
+  open_.pop_back();
+  symbol.state = Symbol::State::done;
+  return symbol.typed;
+}
+
+NodeId Resolver::push(Node node) {
+  if (model_.arena.nodes.size() >= max_nodes) {
+    source_.fail(node.span, fmt::format("the model has more than {} operations", max_nodes), "a model of this size cannot be handled");
+  }
+  model_.arena.nodes.push_back(std::move(node));
+  return static_cast<NodeId>(model_.arena.nodes.size() - 1);
+}
+
+Typed Resolver::make(Op op, bool vector, std::initializer_list<Typed> children, Span span) {
+  Node node;
+  node.op = op;
+  node.vector = vector;
+  node.span = span;
+  Typed result;
+  result.vector = vector;
+  std::size_t k = 0;
+  for (const Typed& child : children) {
+    node.args[k++] = child.node;
+    result.facts |= child.facts;
+    result.depth = std::max(result.depth, child.depth + 1);
+    result.exponents = std::max(result.exponents, child.exponents);
+    result.loose = result.loose || child.loose;
+  }
+  if (result.depth > max_depth) {
+    source_.fail(span, fmt::format("the expression, with all that it refers to, is nested more than {} deep", max_depth),
+                 "use fewer definitions on top of one another");
+  }
+  result.node = push(std::move(node));
+  return result;
+}
+
+Typed Resolver::number(const Rational& value, Span span) {
+  Typed result = make(Op::number, false, {}, span);
+  model_.arena.nodes[result.node].value = value;
+  result.literal = true;
+  result.constant = value;
+  return result;
+}
+
+Typed Resolver::coordinate(std::uint32_t index, std::uint8_t order, Span span) {
+  Typed result = make(Op::coordinate, false, {}, span);
+  model_.arena.nodes[result.node].index = index;
+  model_.arena.nodes[result.node].order = order;
+  result.facts = order == 0 ? on_coordinate : order == 1 ? on_velocity : on_acceleration;
+  result.dimension = model_.coordinates[index].unit.dimension;
+  if (result.dimension) result.dimension = quotient(*result.dimension, raised(dimension_of("s"), order));
+  return result;
+}
+
+Typed Resolver::array_of(const std::array<Typed, 3>& components, Span span) {
+  Typed result = make(Op::array, true, {components[0], components[1], components[2]}, span);
+  Typed sum = components[0];
+  for (std::size_t k = 1; k < 3; ++k) agree(sum, sum, components[k], span, "components of one vector");
+  result.dimension = sum.dimension;
+  result.loose = sum.loose;
+  result.literal = sum.literal;
+  return result;
+}
+
+Typed Resolver::extension(Span span) {
+  Typed result = make(Op::extension, false, {}, span);
+  result.dimension = dimension_of("m");
+  return result;
+}
+
+Typed Resolver::sum_of(const Typed& a, const Typed& b, Span span) { return add(SyntaxKind::add, a, b, span); }
+
+Typed Resolver::component(const Typed& vector, std::uint32_t axis, Span span) {
+  Typed direction = make(Op::fixed_basis, true, {}, span);
+  model_.arena.nodes[direction.node].index = axis;
+  Typed result = make(Op::dot, false, {vector, direction}, span);
+  result.dimension = vector.dimension;
+  return result;
+}
+
+Typed Resolver::place(std::uint32_t index, Span span) {
+  Typed result = make(Op::place, true, {}, span);
+  model_.arena.nodes[result.node].index = index;
+  if (index == 0) return result;  // the origin: zero fits every dimension
+  const Typed& position = symbol(*scope_.find(model_.places[index].name), span);
+  result.facts = position.facts;
+  result.depth = position.depth + 1;
+  result.dimension = position.dimension;
+  result.loose = position.loose;
+  return result;
+}
+
+bool Resolver::uses_parameters(NodeId root) const {
+  std::vector<NodeId> stack{root};
+  while (!stack.empty()) {
+    const NodeId id = stack.back();
+    stack.pop_back();
+    if (id == no_node) continue;
+    if (model_.arena[id].op == Op::parameter) return true;
+    for (const NodeId child : model_.arena[id].args) stack.push_back(child);
+  }
+  return false;
+}
+
+std::vector<std::pair<std::uint32_t, std::uint8_t>> Resolver::coordinates_in(NodeId root) const {
+  std::set<std::pair<std::uint32_t, std::uint8_t>> found;
+  std::vector<bool> seen(model_.arena.nodes.size());
+  std::vector<std::pair<NodeId, std::uint8_t>> stack{{root, 0}};
+  while (!stack.empty()) {
+    const auto [id, order] = stack.back();
+    stack.pop_back();
+    if (id == no_node || (seen[id] && order == 0)) continue;
+    seen[id] = true;
+    const Node& node = model_.arena[id];
+    if (node.op == Op::coordinate) {
+      for (std::uint8_t k = 0; k <= order; ++k) found.insert({node.index, static_cast<std::uint8_t>(node.order + k)});
+    }
+    std::uint8_t inner = order;
+    if (node.op == Op::total_derivative) inner = static_cast<std::uint8_t>(std::min(2, inner + 1));
+    if (node.op == Op::definition) stack.push_back({model_.definitions[node.index].is, inner});
+    if (node.op == Op::place || node.op == Op::place_velocity || node.op == Op::place_acceleration ||
+        node.op == Op::unit_basis || node.op == Op::covariant_basis || node.op == Op::contravariant_basis) {
+      const int more = node.op == Op::place_velocity ? 1 : node.op == Op::place_acceleration ? 2 : 0;
+      if (node.index > 0) stack.push_back({model_.places[node.index].position, static_cast<std::uint8_t>(std::min(2, inner + more))});
+    }
+    for (const NodeId child : node.args) stack.push_back({child, inner});
+  }
+  return {found.begin(), found.end()};
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Gives written expressions their meaning: names become indices, scalars and vectors are told apart, dimensions are
+// checked. In: Syntax and the Scope of declared names. Out: nodes in Model::arena.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "model/scope.hpp"
+#include "model/syntax.hpp"
+
+namespace eomgen::model {
+
+inline constexpr std::size_t max_nodes = 200000;  // of one model
+inline constexpr int max_depth = 2000;            // of an expression with all that it refers to
+
+/// What an expression may depend on, as a set.
+using Facts = std::uint8_t;
+inline constexpr Facts on_time = 1, on_input = 2, on_coordinate = 4, on_velocity = 8, on_acceleration = 16;
+inline constexpr Facts on_motion = on_time | on_coordinate;
+inline constexpr Facts on_anything = 31;
+
+enum class Shape { scalar, vector, either };
+
+/// Where an expression stands and what is asked of it.
+struct Context {
+  std::string what;  // "the mass of 'P'"
+  Facts allowed = on_anything;
+  Shape shape = Shape::scalar;
+  std::optional<Dimension> dimension;  // asked
+  std::string remedy;                  // for what is not allowed
+};
+
+class Resolver {
+ public:
+  /// Reads the declaration of a symbol that is needed now (the reader's business).
+  using Definer = std::function<Typed(Symbol&)>;
+
+  Resolver(const Source& source, Model& model, Scope& scope, Definer definer)
+      : source_(source), model_(model), scope_(scope), definer_(std::move(definer)) {}
+
+  /// A TOML value (number, expression, expression with unit, array of three) as asked by the context.
+  Typed value(const Value& value, const Context& context);
+  /// An expression of the program's own (of a coordinate system), with names of its own.
+  Typed text(std::string_view text, const std::map<std::string, Typed>& local, Span span, const Context& context);
+  /// `local` names that hold in the next calls only (`extension`).
+  Typed value_with(const Value& value, const std::map<std::string, Typed>& local, const Context& context);
+  /// Resolves a declared name, and all that it needs, if that is not done yet.
+  const Typed& symbol(Symbol& symbol, Span asked);
+
+  // Nodes made by the reader itself.
+  Typed coordinate(std::uint32_t index, std::uint8_t order, Span span);
+  Typed number(const Rational& value, Span span);
+  Typed array_of(const std::array<Typed, 3>& components, Span span);
+  Typed sum_of(const Typed& a, const Typed& b, Span span);
+  Typed component(const Typed& vector, std::uint32_t axis, Span span);
+  Typed place(std::uint32_t index, Span span);
+  Typed extension(Span span);
+  /// The value times a unit; a value that has the unit's dimension already keeps it, if the unit has no factor.
+  Typed with_unit(const Typed& typed, const MeasuredUnit& unit, Span span);
+
+  /// Checks shape, dimension and dependence of a finished expression against the context.
+  Typed meet(Typed typed, Span span, const Context& context);
+  /// Coordinates (index, order) on which an expression depends, definitions and places included.
+  std::vector<std::pair<std::uint32_t, std::uint8_t>> coordinates_in(NodeId node) const;
+
+  bool uses_parameters(NodeId node) const;
+
+  const Source& source() const { return source_; }
+  void warn(Span span, std::string message, std::string remedy);
+
+ private:
+  Typed syntax(const Syntax& syntax, const Context& context);
+  Typed node(const Syntax& syntax, std::uint32_t id);
+  Typed number_node(const SyntaxNode& node);
+  Typed apply_unit(Typed typed, const MeasuredUnit& unit, Span span);
+
+  Typed negate(const Typed& a, Span span);
+  Typed add(SyntaxKind kind, Typed a, Typed b, Span span);
+  Typed multiply(const Typed& a, const Typed& b, Span span);
+  Typed divide(const Typed& a, const Typed& b, Span span);
+  Typed power(const Typed& a, const Typed& b, Span span);
+
+  Typed name(const SyntaxNode& node);
+  Typed plain_name(const SyntaxNode& node);
+  Typed basis_vector(const SyntaxNode& node, Symbol& symbol);
+  Typed leaf(Symbol& symbol, std::uint8_t order, Span span);
+  [[noreturn]] void unknown_name(const SyntaxNode& node);
+
+  Typed call(const Syntax& syntax, const SyntaxNode& node);
+  Typed scalar_call(const Syntax& syntax, const SyntaxNode& node, const FunctionName& function);
+  Typed conditional(const Syntax& syntax, const SyntaxNode& node);
+  Typed time_derivative(const Syntax& syntax, const SyntaxNode& node);
+  Typed partial_derivative(const Syntax& syntax, const SyntaxNode& node);
+  Typed vector_call(const Syntax& syntax, const SyntaxNode& node);
+  Typed place_call(const Syntax& syntax, const SyntaxNode& node);
+
+  NodeId push(Node node);
+  Typed make(Op op, bool vector, std::initializer_list<Typed> children, Span span);
+  /// The dimension of a sum: both must agree as far as they are known.
+  void agree(Typed& result, const Typed& a, const Typed& b, Span span, std::string_view relation);
+  void clash(Span span, std::string what, bool loose);
+  void allow(Facts facts, Span span, std::string_view what);
+  void check_size(Typed& typed, Span span);
+  void arity(const SyntaxNode& node, std::size_t least, std::size_t most);
+
+  const Source& source_;
+  Model& model_;
+  Scope& scope_;
+  Definer definer_;
+  const Context* context_ = nullptr;
+  const std::map<std::string, Typed>* local_ = nullptr;
+  std::vector<std::string> open_;  // names being resolved, for cycles
+};
+
+}  // namespace eomgen::model

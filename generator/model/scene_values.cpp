@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene sets and asks for: parameters, inputs, the solver, outputs.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+
+#include "model/reader.hpp"
+
+namespace eomgen::model {
+namespace {
+
+constexpr std::array<std::string_view, 5> solvers{"auto", "rk4", "dopri5", "tsit5", "dop853"};
+constexpr std::array<std::string_view, 6> later_solvers{"taylor", "radau5", "rodas", "midpoint", "variational2", "variational4"};
+constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
+
+std::vector<std::string> split_at_dots(const std::string& text) {
+  std::vector<std::string> parts{""};
+  for (const char c : text) {
+    if (c == '.') {
+      parts.emplace_back();
+    } else {
+      parts.back() += c;
+    }
+  }
+  return parts;
+}
+
+bool is_axis(const std::string& part, std::string_view name) {
+  return part.size() == name.size() + 1 && part.starts_with(name) && part.back() >= '1' && part.back() <= '3';
+}
+
+}  // namespace
+
+void Reader::read_scene_parameters(Scene& scene, const std::vector<const Entry*>& entries) {
+  for (const Entry* entry : entries) {
+    const Symbol* symbol = scope_.find(entry->key);
+    if (symbol == nullptr || symbol->kind != SymbolKind::parameter) {
+      const std::string hint = did_you_mean(entry->key, scope_.names(SymbolKind::parameter));
+      source_.fail(entry->span, fmt::format("{} is not a parameter", quote(entry->key)), hint.empty() ? "the keys of 'parameters' are names of [parameters]" : hint);
+    }
+    const Parameter& parameter = model_.parameters[symbol->index];
+    const Context context{fmt::format("the value of '{}'", entry->key), 0, Shape::scalar, symbol->typed.dimension, ""};
+    const Typed typed = resolver_.value(entry->value, context);
+    if (resolver_.uses_parameters(typed.node)) {
+      source_.fail(entry->value.span, fmt::format("the value of '{}' uses parameters", entry->key), "a scene sets parameters to numbers, with units if you like");
+    }
+    if (parameter.positive && typed.constant && !cln::plusp(*typed.constant)) {
+      source_.fail(entry->value.span, fmt::format("the parameter '{}' is declared positive", entry->key), "write a value greater than 0");
+    }
+    scene.parameters.emplace_back(symbol->index, typed.node);
+  }
+}
+
+void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& entries) {
+  for (const Entry* entry : entries) {
+    const Symbol* symbol = scope_.find(entry->key);
+    if (symbol == nullptr || symbol->kind != SymbolKind::input) {
+      const std::string hint = did_you_mean(entry->key, scope_.names(SymbolKind::input));
+      source_.fail(entry->span, fmt::format("{} is not an input", quote(entry->key)), hint.empty() ? "the keys of 'inputs' are names of [inputs]" : hint);
+    }
+    SceneInput input;
+    input.input = symbol->index;
+    input.span = entry->span;
+    if (entry->value.is(Value::Kind::table)) {
+      input.signal = read_input_table(entry->value, *symbol);
+    } else {
+      const Context context{fmt::format("the input '{}'", entry->key), on_time, Shape::scalar, symbol->typed.dimension, ""};
+      input.signal = resolver_.value(entry->value, context).node;
+    }
+    scene.inputs.push_back(std::move(input));
+  }
+}
+
+InputTable Reader::read_input_table(const Value& table, const Symbol& input) {
+  const std::string what = fmt::format("the table of the input '{}'", input.name);
+  const std::string remedy = "write { t = [0, 1, 2], value = [0, 5, 0] }: value[k] holds from t[k] on";
+  check_keys(table, {what, {"t", "value"}, {}});
+  const Value& times = as(Value::Kind::array, needed(table, "t", what, remedy), "'t'", remedy);
+  const Value& values = as(Value::Kind::array, needed(table, "value", what, remedy), "'value'", remedy);
+  if (times.items.empty() || times.items.size() != values.items.size()) {
+    source_.fail(values.span, fmt::format("{} has {} times and {} values", what, times.items.size(), values.items.size()), remedy);
+  }
+  InputTable result;
+  std::optional<Rational> last;
+  const Context at{"a time of " + what, 0, Shape::scalar, dimension_of("s"), ""};
+  const Context value{"a value of " + what, 0, Shape::scalar, input.typed.dimension, ""};
+  for (std::size_t k = 0; k < times.items.size(); ++k) {
+    const Typed t = resolver_.value(times.items[k], at);
+    if (last && t.constant && *t.constant <= *last) source_.fail(times.items[k].span, fmt::format("the times of {} do not grow", what), remedy);
+    last = t.constant;
+    result.t.push_back(t.node);
+    result.value.push_back(resolver_.value(values.items[k], value).node);
+  }
+  return result;
+}
+
+void Reader::read_solver(Scene& scene, const Value& value) {
+  as(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
+  if (std::find(later_solvers.begin(), later_solvers.end(), value.text) != later_solvers.end()) {
+    not_yet(value.span, fmt::format("the solver '{}'", value.text));
+  }
+  if (std::find(solvers.begin(), solvers.end(), value.text) == solvers.end()) {
+    const std::vector<std::string> names(solvers.begin(), solvers.end());
+    const std::string hint = did_you_mean(value.text, names);
+    source_.fail(value.span, fmt::format("there is no solver {}", quote(value.text)), hint.empty() ? fmt::format("the solvers are {}", fmt::join(names, ", ")) : hint);
+  }
+  scene.solver = value.text;
+}
+
+void Reader::read_outputs(Scene& scene, const Value& value) {
+  as(Value::Kind::array, value, "'outputs'", "write outputs = [\"energy\", \"reaction.NAME\"]");
+  for (const Value& item : value.items) {
+    as(Value::Kind::text, item, "an output", "write outputs = [\"energy\", \"reaction.NAME\"]");
+    check_output(item);
+    const bool again = std::any_of(scene.outputs.begin(), scene.outputs.end(), [&](const Named& known) { return known.name == item.text; });
+    if (again) {
+      resolver_.warn(item.span, fmt::format("the output '{}' is asked for twice", item.text), "name it once");
+      continue;
+    }
+    scene.outputs.push_back(Named{item.text, item.span});
+  }
+}
+
+void Reader::check_output(const Value& value) {
+  const std::vector<std::string> parts = split_at_dots(value.text);
+  if (parts.size() == 1 && std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end()) return;
+  if (parts[0] == "friction" || parts[0] == "mode" || (parts.size() == 2 && is_axis(parts[1], "omega"))) {
+    not_yet(value.span, fmt::format("the output {}", quote(value.text)));
+  }
+  std::vector<std::string> candidates(built_in_outputs.begin(), built_in_outputs.end());
+  const Symbol* symbol = scope_.find(parts.size() == 1 ? std::string(split_derivative(value.text).base) : parts[0]);
+  if (parts.size() == 1 && symbol != nullptr) {
+    const std::uint8_t order = split_derivative(value.text).order;
+    if (symbol->kind == SymbolKind::coordinate && order <= 1) return;
+    if (symbol->kind == SymbolKind::definition && order == 0) {
+      if (!model_.definitions[symbol->index].vector) return;
+      source_.fail(value.span, fmt::format("the definition '{}' is a vector, and an output is a scalar", value.text), "define its components, such as dot(a, E1)");
+    }
+  }
+  if (parts.size() == 2 && symbol != nullptr && symbol->kind == SymbolKind::place && (is_axis(parts[1], "position") || is_axis(parts[1], "velocity"))) return;
+  if (parts[0] == "reaction" && (parts.size() == 2 || parts.size() == 3)) {
+    const Symbol* constraint = scope_.find(parts[1]);
+    if (constraint != nullptr && constraint->kind == SymbolKind::constraint) {
+      const std::size_t count = model_.constraints[constraint->index].psi.size();
+      if (parts.size() == 2) return;
+      if (count > 1 && parts[2].size() == 1 && parts[2][0] >= '1' && static_cast<std::size_t>(parts[2][0] - '0') <= count) return;
+      source_.fail(value.span, fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
+                   count == 1 ? fmt::format("write reaction.{}", parts[1]) : fmt::format("write reaction.{0} or reaction.{0}.1 to reaction.{0}.{1}", parts[1], count));
+    }
+  }
+  for (const std::string& name : scope_.names(SymbolKind::constraint)) candidates.push_back("reaction." + name);
+  for (const SymbolKind kind : {SymbolKind::definition, SymbolKind::coordinate}) {
+    for (const std::string& name : scope_.names(kind)) candidates.push_back(name);
+  }
+  for (const std::string& name : scope_.names(SymbolKind::place)) candidates.insert(candidates.end(), {name + ".position1", name + ".velocity1"});
+  const std::string hint = did_you_mean(value.text, candidates);
+  source_.fail(value.span, fmt::format("there is no output {}", quote(value.text)),
+               hint.empty() ? "outputs are energy, kinetic, potential, power, P.position1, P.velocity1, reaction.NAME, scalar definitions, coordinates, all" : hint);
+}
+
+}  // namespace eomgen::model
