@@ -112,6 +112,12 @@ TEST_CASE_TEMPLATE_DEFINE("tableaux: c holds the row sums of a, which is strictl
   }
 }
 
+TEST_CASE_TEMPLATE_DEFINE("tableaux: the weights sum to 1 as exactly as binary64 can, so that no run drifts", T, tableau_weight_sum) {
+  long double sum = -1;
+  for (std::size_t j = 0; j < T::stages; ++j) sum += static_cast<long double>(T::a[T::stages][j]);
+  CHECK(std::abs(static_cast<double>(sum)) < tolerances::weight_sum);
+}
+
 TEST_CASE_TEMPLATE_DEFINE("tableaux: the weights meet all order conditions up to the order, and not one more", T, tableau_claim_2) {
   CAPTURE(T::name);
   const auto trees = rooted_trees(T::order + 1);
@@ -155,3 +161,4 @@ TEST_CASE_TEMPLATE_APPLY(tableau_claim_1, Registry);
 TEST_CASE_TEMPLATE_APPLY(tableau_claim_2, Registry);
 TEST_CASE_TEMPLATE_APPLY(tableau_claim_3, Registry);
 TEST_CASE_TEMPLATE_APPLY(tableau_claim_4, Registry);
+TEST_CASE_TEMPLATE_APPLY(tableau_weight_sum, Registry);
