@@ -2,15 +2,15 @@
 // The program in a few lines: model -> mechanics -> equation systems -> certificate -> program -> sources.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "derive/conserved.hpp"
-#include "derive/routes.hpp"
 #include "emit/context.hpp"
+#include "emit/targets.hpp"
 #include "mechanics/mechanics.hpp"
-#include "program/build.hpp"
-#include "reading/reading.hpp"
+#include "program/build_program.hpp"
 #include "run/scene.hpp"
 #include "verify/certificate.hpp"
 
@@ -27,17 +27,34 @@ ApproachChoice approach_choice(const std::string& text);  // "auto", "I", "II"; 
 struct Derived {
   model::Model model;
   mechanics::Mechanics mechanics;
-  std::vector<system::EquationSystem> candidates;
-  std::vector<derive::Conserved> conserved;  // of the first candidate
+  std::vector<system::EquationSystem> candidates;  // routes that apply, in the approaches asked for
+  std::vector<derive::Conserved> conserved;
   Timings seconds;
 };
-/// Reads, builds, derives by every route that applies, in the approaches asked for.
+
+/// Reads, builds, derives. On the heap, since Mechanics points to its Model.
 std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach);
 
-/// Every route against the judge; reading form, optimised program included.
-verify::Certificate certify(Derived& derived, int digits, int points, std::uint64_t seed, const program::Program* program);
+/// The cheapest program of the candidates; counts its time.
+program::Program make_program(Derived& derived, const program::Request& request);
 
-/// Throws Error{Fault::check} that shows the certificate where it is negative: such a model is not emitted.
+/// Every route, both reading forms and the optimised program against the judge.
+struct Verification {
+  int digits = 50;
+  std::size_t points = 20;
+  std::uint64_t seed = 1;
+  const verify::CompiledForm* compiled = nullptr;
+};
+verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
+
+/// Shows the certificate and throws Error{Fault::check} where it is negative: such a model is not emitted.
 void require_pass(const verify::Certificate& certificate, const model::Model& model);
+
+/// What the sources say about the model; start and parameters of the default scene.
+emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
+                                       const verify::Certificate& certificate);
+
+/// How many points are checked each time that code is emitted; `verify` checks more.
+inline constexpr std::size_t emission_points = 5;
 
 }  // namespace eomgen::cli

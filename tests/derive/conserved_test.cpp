@@ -20,7 +20,7 @@ std::vector<std::string> names(const std::string& text) {
   return result;
 }
 
-const std::string spherical_pendulum = R"(format = 1
+const std::string spherical_pendulum = R"toml(format = 1
 [parameters]
 m = 1
 g = 9.81
@@ -36,7 +36,7 @@ gravity = "-g*E3"
 [[constraint]]
 name = "rod"
 holonomic = "R - L"
-)";
+)toml";
 
 std::string with(std::string text, const std::string& what, const std::string& by) {
   return text.replace(text.find(what), what.size(), by);
@@ -53,7 +53,7 @@ TEST_CASE("conserved: of varying length it keeps h_z only") {
 }
 
 TEST_CASE("conserved: a bead on a hoop that turns at a constant rate keeps the Jacobi integral, not the energy") {
-  const std::vector<std::string> found = names(R"(format = 1
+  const std::vector<std::string> found = names(R"toml(format = 1
 [parameters]
 m = 1
 g = 9.81
@@ -71,12 +71,12 @@ holonomic = "R - L"
 [[constraint]]
 name = "turn"
 holonomic = "theta - W*t"
-)");
+)toml");
   CHECK(found == std::vector<std::string>{"jacobi"});
 }
 
 TEST_CASE("conserved: a damper leaves nothing") {
-  const std::vector<std::string> found = names(R"(format = 1
+  const std::vector<std::string> found = names(R"toml(format = 1
 [parameters]
 m = 1
 c = 1
@@ -89,6 +89,6 @@ on = "P"
 force = "-c*x_dot*E1"
 [coordinates]
 x = {}
-)");
+)toml");
   CHECK(found.empty());
 }

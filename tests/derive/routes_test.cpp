@@ -32,7 +32,7 @@ void for_each_route(const model::Model& model,
 }  // namespace
 
 TEST_CASE("routes: P7 moves as (2.109) says and its reaction is (2.111)") {
-  const model::Model model = model::read_model_text(R"(format = 1
+  const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m = 2
 g = 9.81
@@ -54,7 +54,7 @@ force = "D*R*P.e_theta"
 [[constraint]]
 name = "sphere"
 holonomic = "R - d"
-)", "P7");
+)toml", "P7");
   const double m = 2, g = 9.81, D = 0.3, phi = 1.1, dphi = -0.4, dtheta = 1.7, t = 0.3;
   const double d = 1 + 0.1 * std::sin(2 * t), d1 = 0.2 * std::cos(2 * t), d2 = -0.4 * std::sin(2 * t);
   const double s = std::sin(phi), c = std::cos(phi);
@@ -81,7 +81,7 @@ holonomic = "R - d"
 }
 
 TEST_CASE("routes: the cart and pendulum from its energies, with an input and friction on the cart") {
-  const model::Model model = model::read_model_text(R"(format = 1
+  const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 M = 2
 m = 0.5
@@ -98,7 +98,7 @@ kinetic = "(M + m)/2*x_dot^2 + m*l*x_dot*theta_dot*cos(theta) + m*l^2/2*theta_do
 potential = "-m*g*l*cos(theta)"
 [[force]]
 generalized = { x = "F - c*x_dot" }
-)", "cart");
+)toml", "cart");
   const double M = 2, m = 0.5, l = 0.8, g = 9.81, c = 0.1, F = 3, v = 0.4, th = 0.9, w = -1.2;
   // Solved by hand for the accelerations.
   const double right_x = F - c * v + m * l * w * w * std::sin(th), right_th = -m * g * l * std::sin(th);
@@ -119,7 +119,7 @@ generalized = { x = "F - c*x_dot" }
 }
 
 TEST_CASE("routes: a rod between a particle and the origin as a quadratic constraint keeps its multiplier") {
-  const model::Model model = model::read_model_text(R"(format = 1
+  const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m = 1.5
 g = 9.81
@@ -133,7 +133,7 @@ gravity = "-g*E2"
 [[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
-)", "rod");
+)toml", "rod");
   const double m = 1.5, g = 9.81, L = 2, th = 0.6, w = 1.3;
   const double x = L * std::sin(th), y = -L * std::cos(th), vx = L * w * std::cos(th), vy = L * w * std::sin(th);
   // Planar pendulum: the rod pulls with N = m L w^2 + m g cos(th) towards the origin; lambda grad psi = 2 lambda r.
@@ -152,7 +152,7 @@ holonomic = "x^2 + y^2 - L^2"
 
 TEST_CASE("routes: a mass that grows and a position that moves by prescription keep the power balance") {
   // dE/dt from the energy itself, differentiated along the motion that the equations give.
-  const model::Model model = model::read_model_text(R"(format = 1
+  const model::Model model = model::read_model_text(R"toml(format = 1
 [parameters]
 m0 = 1
 k = 3
@@ -170,7 +170,7 @@ on = "P"
 force = "-x_dot*E1 + E3"
 [coordinates]
 x = {}
-)", "power");
+)toml", "power");
   for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     test::Point point(mechanics, {{"t", 0.4}, {"m0", 1}, {"k", 3}, {"x", 0.8}, {"x_dot", -0.5}});
     point.solve(system);

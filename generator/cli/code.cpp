@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/code.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace eomgen::cli {
+
+CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& program)
+    : compiled_(std::move(compiled)),
+      outputs_(program.outputs),
+      free_(program.free),
+      active_(program.active_constraints) {}
+
+verify::CompiledForm CompiledCode::form() const {
+  const emit::RhsFunction rhs = compiled_.model.rhs;
+  const std::size_t size = 2 * free_.size();
+  return {"emitted code", [rhs, size](double t, const std::vector<double>& x, const std::vector<double>& p,
+                                      const std::vector<double>& u) -> std::optional<std::vector<double>> {
+            std::vector<double> dx(size);
+            if (rhs(t, x.data(), p.data(), u.data(), 0, dx.data()) != 0) return std::nullopt;
+            return dx;
+          }};
+}
+
+run::Code CompiledCode::for_run() const {
+  const emit::LoadedModel& model = compiled_.model;
+  return {model.rhs, model.outputs, model.mass, model.constraints, outputs_, free_, active_};
+}
+
+CompiledCode compile(const program::Program& program, const emit::EmissionContext& context) {
+  const std::string name = emit::mangled_id(context.id);
+  std::string source, header;
+  for (const emit::EmittedFile& file : emit::emit(program, context, "cpp")) {
+    if (file.name == name + ".c") source = file.text;
+    if (file.name == name + ".h") header = file.text;
+  }
+  if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
+  return {emit::compile_and_load(source, header, name), program};
+}
+
+CompiledCode compile_for_check(Derived& derived, const program::Program& program) {
+  const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                              derived.model.scene("default"), {});
+  verify::Certificate pending;
+  return compile(program, emission_context(derived, program, scene, pending));
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emitted C, compiled and loaded, as `verify` and `run` use it.
+#pragma once
+
+#include "cli/pipeline.hpp"
+#include "emit/shared_library/loaded_model.hpp"
+#include "run/runner.hpp"
+
+namespace eomgen::cli {
+
+class CompiledCode {
+ public:
+  CompiledCode(emit::Compiled compiled, const program::Program& program);
+
+  verify::CompiledForm form() const;
+  run::Code for_run() const;
+  const emit::Compiled& compiled() const { return compiled_; }
+
+ private:
+  emit::Compiled compiled_;
+  std::vector<std::string> outputs_;
+  std::vector<std::uint32_t> free_;
+  std::size_t active_;
+};
+
+/// Emits C with `context` and compiles it (cached by content).
+CompiledCode compile(const program::Program& program, const emit::EmissionContext& context);
+
+/// The same without a certificate, which is being made from it.
+CompiledCode compile_for_check(Derived& derived, const program::Program& program);
+
+}  // namespace eomgen::cli

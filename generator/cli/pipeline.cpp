@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/pipeline.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "cli/locate.hpp"
+#include "derive/routes.hpp"
+#include "print/render.hpp"
+#include "program/interpret.hpp"
+#include "reading/reading.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::vector<system::Approach> approaches(const mechanics::Mechanics& m, ApproachChoice choice) {
+  if (choice == ApproachChoice::one) return {system::Approach::one};
+  // With nothing to eliminate the two are the same equations.
+  if (choice == ApproachChoice::two || m.fixed.empty()) return {system::Approach::two};
+  return {system::Approach::two, system::Approach::one};
+}
+
+verify::ProgramForm program_form(const program::Program& program, int digits) {
+  const program::Function& rhs = program.functions.front();
+  return {"optimised program", [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x,
+                                              const std::vector<verify::Real>& p, const std::vector<verify::Real>& u) {
+            return program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u}, digits).results.front();
+          }};
+}
+
+// States for the self test: the start, and two beside it, so that a vanishing term cannot hide.
+std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context) {
+  std::vector<emit::TestVector> result;
+  constexpr int digits = 40;
+  for (const int k : {0, 1, 2}) {
+    emit::TestVector vector;
+    vector.t = context.start_time + 0.125 * k;
+    for (std::size_t i = 0; i < context.start.size(); ++i) {
+      // Dyadic offsets: exact in binary64, different for every component.
+      vector.x.push_back(context.start[i] + k * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
+    }
+    for (const emit::Quantity& parameter : context.parameters) vector.p.push_back(parameter.value);
+    for (const emit::Quantity& input : context.inputs) vector.u.push_back(input.value + k * 0.25);
+    program::Arguments<cln::cl_R> arguments;
+    arguments.t = cln::cl_R(vector.t);
+    for (const double x : vector.x) arguments.x.push_back(cln::cl_R(x));
+    for (const double p : vector.p) arguments.p.push_back(cln::cl_R(p));
+    for (const double u : vector.u) arguments.u.push_back(cln::cl_R(u));
+    try {
+      const auto values = program::interpret(program.functions.front(), arguments, digits);
+      for (const cln::cl_R& dx : values.results.front()) vector.dx.push_back(cln::double_approx(dx));
+    } catch (const std::domain_error&) {
+      continue;  // a state beside the start may lie outside the chart; the others remain
+    }
+    result.push_back(std::move(vector));
+  }
+  return result;
+}
+
+}  // namespace
+
+ApproachChoice approach_choice(const std::string& text) {
+  if (text == "auto") return ApproachChoice::automatic;
+  if (text == "I") return ApproachChoice::one;
+  if (text == "II") return ApproachChoice::two;
+  throw Error("cli", {}, fmt::format("there is no approach '{}'", text), "choose auto, I or II");
+}
+
+std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach) {
+  auto derived = std::make_unique<Derived>();
+  Stopwatch watch;
+  derived->model = load_model(name);
+  derived->seconds.read = watch.lap();
+  derived->mechanics = mechanics::build_mechanics(derived->model);
+  for (const system::Approach a : approaches(derived->mechanics, approach)) {
+    for (const derive::RouteEntry& route : derive::routes()) {
+      if (route.applies(derived->mechanics, a)) derived->candidates.push_back(route.derive(derived->mechanics, a));
+    }
+  }
+  // All candidates must offer the same outputs, whichever is chosen.
+  for (system::EquationSystem& system : derived->candidates) {
+    derived->conserved = derive::conserved_quantities(derived->mechanics, system);
+  }
+  derived->seconds.derive = watch.lap();
+  return derived;
+}
+
+program::Program make_program(Derived& derived, const program::Request& request) {
+  Stopwatch watch;
+  program::Request complete = request;
+  complete.parameters = derived.model.parameters.size();
+  program::Program program = program::build_program(derived.candidates, complete);
+  derived.seconds.optimise += watch.lap();
+  return program;
+}
+
+verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
+  Stopwatch watch;
+  verify::Subjects subjects;
+  subjects.systems = verify::all_routes(derived.mechanics);
+  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+    const reading::ReadingForm form = reading::derive_reading(derived.mechanics, approach);
+    subjects.reading.push_back({fmt::format("reading form {}", system::name(approach)),
+                                reading::residuals_on_dag(form, derived.mechanics)});
+  }
+  subjects.programs.push_back(program_form(program, options.digits));
+  if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);
+  const verify::Certificate certificate =
+      verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed});
+  derived.seconds.verify += watch.lap();
+  return certificate;
+}
+
+void require_pass(const verify::Certificate& certificate, const model::Model& model) {
+  if (certificate.pass) return;
+  std::string failures;
+  for (const verify::Comparison& c : certificate.comparisons) {
+    if (!c.pass) failures += fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
+  }
+  throw Error("verify", Where{model.file, 0, 0, 1, ""},
+              fmt::format("the derivations of this model disagree ({}), so nothing is emitted", failures),
+              "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons", Fault::check);
+}
+
+emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
+                                       const verify::Certificate& certificate) {
+  const model::Model& model = derived.model;
+  emit::EmissionContext context;
+  context.id = model.id;
+  context.title = model.title;
+  context.content_hash = model.content_hash;
+  context.verdict = certificate.summary();
+  for (const model::Coordinate& c : model.coordinates) context.coordinates.push_back({c.name, c.unit.text, "", 0});
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const model::Parameter& p = model.parameters[i];
+    context.parameters.push_back({p.name, p.unit.text, p.note, scene.parameters[i]});
+  }
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    const model::Input& input = model.inputs[i];
+    context.inputs.push_back({input.name, input.unit.text, "", scene.inputs[i](scene.t0, scene.t0)});
+  }
+  const reading::ReadingForm form = reading::derive_reading(derived.mechanics, system::Approach::two);
+  for (const print::Item& item : print::render(derived.mechanics, form, {"singular"})) context.singular.push_back(item.text);
+  context.start_time = scene.t0;
+  for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
+  for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);
+  context.tests = test_vectors(program, context);
+  return context;
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models that read well but whose mechanics make no sense: each is refused with its place.
+#include <doctest/doctest.h>
+
+#include "mechanics/mechanics.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+const std::string planar = R"toml(format = 1
+[parameters]
+m = 1
+g = 9.81
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+)toml";
+
+struct Refusal {
+  std::string message;
+  std::uint32_t line;
+};
+
+Refusal refusal(const std::string& text) {
+  const model::Model model = model::read_model_text(text, "wrong.toml");
+  try {
+    mechanics::build_mechanics(model);
+  } catch (const Error& error) {
+    CHECK(error.stage() == "mechanics");
+    CHECK_FALSE(error.remedy().empty());
+    return {error.message(), error.where().line};
+  }
+  return {"accepted", 0};
+}
+
+}  // namespace
+
+TEST_CASE("mechanics refuses: gravity across the plane of motion changes no equation") {
+  const Refusal r = refusal(planar + "[[force]]\ngravity = \"-g*E3\"\n");
+  CHECK(r.message == "'force 1' changes no equation of motion: it does no work in any motion of the coordinates");
+  CHECK((r.line == 9 || r.line == 10));
+}
+
+TEST_CASE("mechanics refuses: a constraint that follows from the one before it") {
+  const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
+                                     "[[constraint]]\nname = \"b\"\nholonomic = \"2*x - 2\"\n");
+  CHECK(r.message == "constraint 'b' follows from the constraints before it");
+}
+
+TEST_CASE("mechanics refuses: a constraint that contradicts the one before it") {
+  const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
+                                     "[[constraint]]\nname = \"b\"\nholonomic = \"x - 2\"\n");
+  CHECK(r.message.starts_with("constraint 'b' fixes nothing"));
+}
+
+TEST_CASE("mechanics refuses: a coordinate that moves no mass") {
+  const Refusal r = refusal(planar + "[coordinates]\ns = {}\n[[force]]\non = \"P\"\nforce = \"-s*E1\"\n");
+  CHECK(r.message.find("coordinate 's'") != std::string::npos);
+}
+
+TEST_CASE("mechanics accepts: a force that acts only beyond a kink") {
+  CHECK(refusal(planar + "[[force]]\non = \"P\"\nforce = \"-max(0, x - 50)*E1\"\n").message == "accepted");
+}
