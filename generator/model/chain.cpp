@@ -16,12 +16,14 @@ void Reader::declare_chain(const Value& table) {
   as(Value::Kind::integer, n, "the number of links", fmt::format("write a whole number from 1 to {}", max_chain));
   chain.n = n.text.size() > 4 ? 0 : std::stol(n.text);
   if (chain.n < 1 || chain.n > max_chain) {
-    source_.fail(n.span, fmt::format("a chain of {} links", quote(n.text)), fmt::format("write a whole number from 1 to {}", max_chain));
+    source_.fail(n.span, fmt::format("a chain of {} links", quote(n.text)),
+                 fmt::format("write a whole number from 1 to {}", max_chain));
   }
   if (table.find("angles") != nullptr) {
     const std::string angles = text_of_key(table, "angles", what);
     if (angles != "absolute" && angles != "relative") {
-      source_.fail(table.find("angles")->span, fmt::format("the angles of a chain cannot be {}", quote(angles)), "write \"absolute\" or \"relative\"");
+      source_.fail(table.find("angles")->span, fmt::format("the angles of a chain cannot be {}", quote(angles)),
+                   "write \"absolute\" or \"relative\"");
     }
     chain.relative = angles == "relative";
   }
@@ -38,7 +40,8 @@ void Reader::declare_chain(const Value& table) {
     known->used = true;
     chain.coordinates.push_back(known->index);
     if (measured_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
-    chain.places.push_back(declare_place(fmt::format("{}{}", chain.name, k), table.find("name")->span, PlaceSource{&table, true, index, k}));
+    chain.places.push_back(declare_place(fmt::format("{}{}", chain.name, k), table.find("name")->span,
+                                         PlaceSource{&table, true, index, k}));
   }
   chains_.push_back(std::move(chain));
 }
@@ -46,11 +49,14 @@ void Reader::declare_chain(const Value& table) {
 // "m" for all links, or an array with one entry for each.
 Typed Reader::chain_entry(const Value& table, std::string_view key, long link, const Context& context) {
   const std::string what = "this [[chain]]";
-  const Value& value = needed(table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
+  const Value& value =
+      needed(table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
   if (!value.is(Value::Kind::array)) return resolver_.value(value, context);
-  const Chain& chain = chains_[place_sources_[scope_.find(table.find("name")->text + std::to_string(link))->index].chain - 1];
+  const Chain& chain =
+      chains_[place_sources_[scope_.find(table.find("name")->text + std::to_string(link))->index].chain - 1];
   if (value.items.size() != static_cast<std::size_t>(chain.n)) {
-    source_.fail(value.span, fmt::format("'{}' has {} entries, and the chain has {} links", key, value.items.size(), chain.n),
+    source_.fail(value.span,
+                 fmt::format("'{}' has {} entries, and the chain has {} links", key, value.items.size(), chain.n),
                  "give one value for all links, or one for each");
   }
   return resolver_.value(value.items[static_cast<std::size_t>(link - 1)], context);
@@ -67,13 +73,15 @@ Typed Reader::chain_position(const PlaceSource& where) {
   Typed angle = resolver_.coordinate(chain.coordinates[k], 0, span);
   if (chain.relative) {
     angle = resolver_.coordinate(chain.coordinates[0], 0, span);
-    for (std::size_t j = 1; j <= k; ++j) angle = resolver_.sum_of(angle, resolver_.coordinate(chain.coordinates[j], 0, span), span);
+    for (std::size_t j = 1; j <= k; ++j)
+      angle = resolver_.sum_of(angle, resolver_.coordinate(chain.coordinates[j], 0, span), span);
   }
   local["angle"] = angle;
   const Context scalar{"the position of a link", on_motion, Shape::scalar, std::nullopt, ""};
-  const Typed step = resolver_.array_of({resolver_.text("length*sin(angle)", local, span, scalar),
-                                         resolver_.text("-length*cos(angle)", local, span, scalar), resolver_.number(0, span)},
-                                        span);
+  const Typed step =
+      resolver_.array_of({resolver_.text("length*sin(angle)", local, span, scalar),
+                          resolver_.text("-length*cos(angle)", local, span, scalar), resolver_.number(0, span)},
+                         span);
   std::uint32_t base = 0;
   if (k > 0) {
     base = chain.places[k - 1];

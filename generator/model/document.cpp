@@ -15,7 +15,7 @@ std::size_t offset_of(const Source& source, const toml::source_position& place) 
 
 // Walks a TOML string in the source beside its decoded bytes, so that every byte knows where it came from.
 class StringWalk {
- public:
+public:
   StringWalk(const std::string& source, std::size_t begin, const std::string& decoded)
       : source_(source), at_(begin), decoded_(decoded) {}
 
@@ -44,7 +44,7 @@ class StringWalk {
     return result;
   }
 
- private:
+private:
   // Should the walk and toml++ ever disagree, the start of the string is still a place.
   std::vector<std::size_t> fallback() const { return std::vector<std::size_t>(decoded_.size() + 1, begin_); }
 
@@ -154,13 +154,19 @@ const Value* Value::find(std::string_view key) const {
 
 const char* kind_name(Value::Kind kind) {
   switch (kind) {
-    case Value::Kind::text: return "a string";
+    case Value::Kind::text:
+      return "a string";
     case Value::Kind::integer:
-    case Value::Kind::real: return "a number";
-    case Value::Kind::boolean: return "true or false";
-    case Value::Kind::date: return "a date or time";
-    case Value::Kind::array: return "an array";
-    case Value::Kind::table: return "a table";
+    case Value::Kind::real:
+      return "a number";
+    case Value::Kind::boolean:
+      return "true or false";
+    case Value::Kind::date:
+      return "a date or time";
+    case Value::Kind::array:
+      return "an array";
+    case Value::Kind::table:
+      return "a table";
   }
   return "a value";
 }
@@ -172,8 +178,9 @@ Value read_document(const Source& source) {
     root.span = source.span(0, 1);
     return root;
   } catch (const toml::parse_error& error) {
-    source.fail(source.span(offset_of(source, error.source().begin), 1), clean_description(error.description()),
-                "a model is a TOML 1.0 file: key = value, [section], [[entry]]; texts in quotes (docs/model-format.md)");
+    source.fail(
+        source.span(offset_of(source, error.source().begin), 1), clean_description(error.description()),
+        "a model is a TOML 1.0 file: key = value, [section], [[entry]]; texts in quotes (docs/model-format.md)");
   }
 }
 

@@ -12,7 +12,8 @@ void Reader::check_keys(const Value& table, const Keys& keys) const {
   for (const Entry& entry : table.entries) {
     if (std::find(keys.known.begin(), keys.known.end(), entry.key) != keys.known.end()) continue;
     if (std::find(keys.later.begin(), keys.later.end(), entry.key) != keys.later.end()) {
-      not_yet(entry.span, fmt::format("'{}' in {}", entry.key, keys.what));
+      not_yet(entry.span,
+              &table == &root_ ? fmt::format("[[{}]]", entry.key) : fmt::format("'{}' in {}", entry.key, keys.what));
     }
     std::vector<std::string> candidates(keys.known.begin(), keys.known.end());
     candidates.insert(candidates.end(), keys.later.begin(), keys.later.end());
@@ -27,15 +28,19 @@ void Reader::not_yet(Span span, const std::string& what) const {
                "a later version brings it; docs/model-format.md lists what works now");
 }
 
-const Value& Reader::needed(const Value& table, std::string_view key, const std::string& what, const std::string& remedy) const {
+const Value& Reader::needed(const Value& table, std::string_view key, const std::string& what,
+                            const std::string& remedy) const {
   const Value* value = table.find(key);
   if (value == nullptr) source_.fail(table.span, fmt::format("{} has no {}", what, key), remedy);
   return *value;
 }
 
-const Value& Reader::as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const {
+const Value& Reader::as(Value::Kind kind, const Value& value, const std::string& what,
+                        const std::string& remedy) const {
   if (!value.is(kind)) {
-    source_.fail(value.span, fmt::format("{} is {}, and {} is asked", what, model::kind_name(value.kind), model::kind_name(kind)), remedy);
+    source_.fail(value.span,
+                 fmt::format("{} is {}, and {} is asked", what, model::kind_name(value.kind), model::kind_name(kind)),
+                 remedy);
   }
   return value;
 }
@@ -43,7 +48,8 @@ const Value& Reader::as(Value::Kind kind, const Value& value, const std::string&
 const Value* Reader::section(std::string_view name) const {
   const Entry* entry = root_.entry(name);
   if (entry == nullptr) return nullptr;
-  return &as(Value::Kind::table, entry->value, fmt::format("[{}]", name), fmt::format("write [{}] and its keys below", name));
+  return &as(Value::Kind::table, entry->value, fmt::format("[{}]", name),
+             fmt::format("write [{}] and its keys below", name));
 }
 
 std::vector<const Value*> Reader::sections(std::string_view name) const {
@@ -54,7 +60,8 @@ std::vector<const Value*> Reader::sections(std::string_view name) const {
   if (!entry->value.is(Value::Kind::array)) {
     source_.fail(entry->span, fmt::format("[{}] is a list of entries", name), remedy);
   }
-  for (const Value& item : entry->value.items) result.push_back(&as(Value::Kind::table, item, fmt::format("[[{}]]", name), remedy));
+  for (const Value& item : entry->value.items)
+    result.push_back(&as(Value::Kind::table, item, fmt::format("[[{}]]", name), remedy));
   return result;
 }
 
@@ -73,8 +80,9 @@ std::string Reader::tex_of(const Value& table, const std::string& what) const {
   if (value == nullptr) return "";
   as(Value::Kind::text, *value, fmt::format("the tex of {}", what), "write it in quotes, such as '\\theta_{1}'");
   if (const auto problem = illegal_tex(value->text)) {
-    source_.fail(value->span, fmt::format("the tex of {} is refused: {}", what, *problem),
-                 "letters, digits, blanks, _ ^ { } , ' and commands for Greek letters, accents and text styles are allowed");
+    source_.fail(
+        value->span, fmt::format("the tex of {} is refused: {}", what, *problem),
+        "letters, digits, blanks, _ ^ { } , ' and commands for Greek letters, accents and text styles are allowed");
   }
   return value->text;
 }
@@ -93,8 +101,9 @@ MeasuredUnit Reader::any_unit(const Value& value, const std::string& what) const
 Unit Reader::si_unit(const Value& value, const std::string& what) const {
   const MeasuredUnit unit = any_unit(value, what);
   if (unit.scale != 1 || unit.pi_power != 0) {
-    source_.fail(value.span, fmt::format("{} is measured in SI units, and {} is none", what, quote(value.text)),
-                 fmt::format("state {}; single values may have any unit, as in \"30 deg\" or \"5 mm\"", text_of(unit.dimension)));
+    source_.fail(value.span, fmt::format("{} is measured in SI units, and {} is not one", what, quote(value.text)),
+                 fmt::format("state {}; single values may have any unit, as in \"30 deg\" or \"5 mm\"",
+                             is_one(unit.dimension) ? "rad" : text_of(unit.dimension)));
   }
   return Unit{unit.text, unit.dimension};
 }

@@ -16,18 +16,17 @@ namespace {
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
 bool digit(char c) { return c >= '0' && c <= '9'; }
 
-cln::cl_I integer_of(const std::string& digits) {
-  return digits.empty() ? cln::cl_I(0) : cln::cl_I(digits.c_str());
-}
+cln::cl_I integer_of(const std::string& digits) { return digits.empty() ? cln::cl_I(0) : cln::cl_I(digits.c_str()); }
 
 class Lexer {
- public:
+public:
   explicit Lexer(const Text& text) : text_(text) {}
 
   std::vector<Token> all() {
     std::vector<Token> result;
     while (true) {
-      while (at_ < text_.text.size() && std::string_view(" \t\r\n").find(text_.text[at_]) != std::string_view::npos) ++at_;
+      while (at_ < text_.text.size() && std::string_view(" \t\r\n").find(text_.text[at_]) != std::string_view::npos)
+        ++at_;
       if (result.size() > max_tokens) {
         fail(at_, 1, fmt::format("the expression has more than {} parts", max_tokens), "split it with [definitions]");
       }
@@ -38,7 +37,7 @@ class Lexer {
     return result;
   }
 
- private:
+private:
   char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.text.size() ? text_.text[at_ + ahead] : '\0'; }
 
   [[noreturn]] void fail(std::size_t at, std::size_t length, std::string what, std::string remedy) const {
@@ -66,7 +65,8 @@ class Lexer {
     const char c = peek();
     std::string remedy = "expressions are made of numbers, names, + - * / ^ ( ) and functions";
     if (c == '=') remedy = "an expression is a value, not an equation: write what is to be 0, such as \"R - d\"";
-    if (c == '[') remedy = "a unit in brackets follows a number at once, as in 1.7e-5[m]; a vector is a TOML array of three";
+    if (c == '[')
+      remedy = "a unit in brackets follows a number at once, as in 1.7e-5[m]; a vector is a TOML array of three";
     fail(at_, length, fmt::format("{} cannot be used in an expression", quote(text_.text.substr(at_, length))), remedy);
   }
 
@@ -97,7 +97,8 @@ class Lexer {
            fmt::format("there is no implicit multiplication: write {}*{}", token.text, peek()));
     }
     const ExactNumber exact = exact_number(token.text);
-    if (!exact.problem.empty()) fail(begin, at_ - begin, exact.problem, "a number has to fit a double: from 1e-300 to 1e300");
+    if (!exact.problem.empty())
+      fail(begin, at_ - begin, exact.problem, "a number has to fit a double: from 1e-300 to 1e300");
     token.value = exact.value;
     if (peek() == '[') bracket(token);
     return token;
@@ -106,7 +107,8 @@ class Lexer {
   void bracket(Token& token) {
     const std::size_t open = at_;
     const std::size_t close = text_.text.find(']', open);
-    if (close == std::string_view::npos) fail(open, 1, "the unit is not closed with ']'", "write a unit as in 1.7e-5[m]");
+    if (close == std::string_view::npos)
+      fail(open, 1, "the unit is not closed with ']'", "write a unit as in 1.7e-5[m]");
     const std::string_view unit = text_.text.substr(open + 1, close - open - 1);
     token.unit = parse_unit(unit);
     if (!token.unit) {
@@ -155,7 +157,8 @@ ExactNumber exact_number(std::string_view text) {
     if (fraction) --exponent;
   }
   if (digits.empty()) return {0, "this is not a number"};
-  if (digits.size() > max_number_digits) return {0, fmt::format("the number has more than {} digits", max_number_digits)};
+  if (digits.size() > max_number_digits)
+    return {0, fmt::format("the number has more than {} digits", max_number_digits)};
   if (at < text.size()) {
     ++at;
     const bool below = at < text.size() && text[at] == '-';
@@ -166,7 +169,8 @@ ExactNumber exact_number(std::string_view text) {
       if (!digit(text[at])) return {0, "this is not a number"};
       stated = std::min(10 * stated + (text[at] - '0'), 10 * max_number_exponent);
     }
-    if (stated > max_number_exponent) return {0, fmt::format("the exponent of the number is beyond {}", max_number_exponent)};
+    if (stated > max_number_exponent)
+      return {0, fmt::format("the exponent of the number is beyond {}", max_number_exponent)};
     exponent += below ? -stated : stated;
   }
   const Rational value = integer_of(digits) * cln::expt(Rational(10), cln::cl_I(exponent));

@@ -12,15 +12,27 @@ namespace {
 
 constexpr std::size_t many = 64;
 constexpr std::array<FunctionName, 17> scalar_functions{{
-    {"sin", Fn::sin, 1, 1},     {"cos", Fn::cos, 1, 1},     {"tan", Fn::tan, 1, 1},   {"asin", Fn::asin, 1, 1},
-    {"acos", Fn::acos, 1, 1},   {"atan", Fn::atan, 1, 1},   {"atan2", Fn::atan2, 2, 2}, {"sinh", Fn::sinh, 1, 1},
-    {"cosh", Fn::cosh, 1, 1},   {"tanh", Fn::tanh, 1, 1},   {"exp", Fn::exp, 1, 1},   {"log", Fn::log, 1, 1},
-    {"sqrt", Fn::sqrt, 1, 1},   {"abs", Fn::abs, 1, 1},     {"sign", Fn::sign, 1, 1}, {"min", Fn::min, 2, many},
+    {"sin", Fn::sin, 1, 1},
+    {"cos", Fn::cos, 1, 1},
+    {"tan", Fn::tan, 1, 1},
+    {"asin", Fn::asin, 1, 1},
+    {"acos", Fn::acos, 1, 1},
+    {"atan", Fn::atan, 1, 1},
+    {"atan2", Fn::atan2, 2, 2},
+    {"sinh", Fn::sinh, 1, 1},
+    {"cosh", Fn::cosh, 1, 1},
+    {"tanh", Fn::tanh, 1, 1},
+    {"exp", Fn::exp, 1, 1},
+    {"log", Fn::log, 1, 1},
+    {"sqrt", Fn::sqrt, 1, 1},
+    {"abs", Fn::abs, 1, 1},
+    {"sign", Fn::sign, 1, 1},
+    {"min", Fn::min, 2, many},
     {"max", Fn::max, 2, many},
 }};
 constexpr std::array<std::string_view, 13> other_functions{
-    "if",   "ddt",  "diff", "integral", "initial", "position", "velocity",
-    "acceleration", "omega", "dot",     "cross",   "norm",     "unit"};
+    "if",           "ddt",   "diff", "integral", "initial", "position", "velocity",
+    "acceleration", "omega", "dot",  "cross",    "norm",    "unit"};
 constexpr std::array<std::string_view, 7> reserved_names{"t", "pi", "origin", "ground", "E1", "E2", "E3"};
 
 bool letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -94,14 +106,22 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
 
 bool looks_misspelt(std::string_view name, std::string_view known) {
   if (std::min(name.size(), known.size()) < 2 || std::max(name.size(), known.size()) < 3) return false;
-  if (edit_distance(name, known, 1) != 1) return false;
-  // The place where they part: different numbers are different names, and so are phi and psi.
-  std::size_t k = 0;
-  while (k < name.size() && k < known.size() && name[k] == known[k]) ++k;
-  if ((k < name.size() && digit(name[k])) || (k < known.size() && digit(known[k]))) return false;
-  if (name.size() != known.size()) return true;
-  const bool transposed = k + 1 < name.size() && name[k] == known[k + 1] && name[k + 1] == known[k];
-  return transposed || name.size() >= 4;
+  const std::size_t shortest = std::min(name.size(), known.size());
+  // What is left between the common start and the common end.
+  while (!name.empty() && !known.empty() && name.front() == known.front()) {
+    name.remove_prefix(1);
+    known.remove_prefix(1);
+  }
+  while (!name.empty() && !known.empty() && name.back() == known.back()) {
+    name.remove_suffix(1);
+    known.remove_suffix(1);
+  }
+  const bool transposed = name.size() == 2 && known.size() == 2 && name[0] == known[1] && name[1] == known[0];
+  if (transposed) return true;
+  if (name.size() > 1 || known.size() > 1) return false;
+  // Different numbers are different names, and so are phi and psi.
+  if ((!name.empty() && digit(name[0])) || (!known.empty() && digit(known[0]))) return false;
+  return name.size() != known.size() || shortest >= 4;
 }
 
 std::string quote(std::string_view text) {

@@ -17,17 +17,20 @@ struct Term {
 };
 
 class Parser {
- public:
+public:
   explicit Parser(const Text& text) : text_(text), tokens_(tokens_of(text)) {}
 
   Syntax all() {
-    if (now().kind == TokenKind::end) fail(now(), "an expression is missing", "write a number, a name or an expression");
+    if (now().kind == TokenKind::end)
+      fail(now(), "an expression is missing", "write a number, a name or an expression");
     syntax_.root = sum();
     if (now().kind != TokenKind::end) unexpected();
+    const Token& last = tokens_[tokens_.size() - 2];
+    syntax_.whole = text_.span(tokens_[0].at, last.at + last.length - tokens_[0].at);
     return std::move(syntax_);
   }
 
- private:
+private:
   const Token& now() const { return tokens_[at_]; }
   bool is(std::string_view symbol) const { return now().kind == TokenKind::symbol && now().text == symbol; }
   bool take(std::string_view symbol) {
@@ -47,7 +50,8 @@ class Parser {
     const bool operand_before = at_ > 0 && (tokens_[at_ - 1].kind != TokenKind::symbol || tokens_[at_ - 1].text == ")");
     if (operand_before && (token.kind != TokenKind::symbol || token.text == "(")) {
       fail(token, fmt::format("an operator is missing before {}", quote(token.text)),
-           "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 m/s^2\"");
+           "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 "
+           "m/s^2\"");
     }
     fail(token, fmt::format("{} does not fit here", quote(token.text)),
          token.text == ")" ? "there is no open parenthesis for it" : "check the expression up to this place");
@@ -112,7 +116,8 @@ class Parser {
 
   std::uint32_t signed_power() {
     if (++depth_ > max_nesting) {
-      fail(now(), fmt::format("the expression is nested more than {} deep", max_nesting), "split it with [definitions]");
+      fail(now(), fmt::format("the expression is nested more than {} deep", max_nesting),
+           "split it with [definitions]");
     }
     std::uint32_t result = 0;
     const Token& token = now();
@@ -163,7 +168,8 @@ class Parser {
     std::vector<std::string> parts{std::string(first.text)};
     std::size_t primes = 0;
     while (take(".")) {
-      if (now().kind != TokenKind::name) fail(now(), "a name is missing after '.'", "write NAME.part, such as P.e_theta");
+      if (now().kind != TokenKind::name)
+        fail(now(), "a name is missing after '.'", "write NAME.part, such as P.e_theta");
       parts.emplace_back(tokens_[at_++].text);
     }
     while (take("'")) ++primes;

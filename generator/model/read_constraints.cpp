@@ -8,7 +8,9 @@ namespace eomgen::model {
 
 void Reader::declare_constraints() {
   for (const Value* table : sections("constraint")) {
-    check_keys(*table, {"[[constraint]]", {"name", "holonomic", "holds"}, {"velocity", "rolling", "sliding", "friction", "restitution", "shape"}});
+    check_keys(*table, {"[[constraint]]",
+                        {"name", "holonomic", "holds"},
+                        {"velocity", "rolling", "sliding", "friction", "restitution", "shape"}});
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
     Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
@@ -28,7 +30,8 @@ void Reader::read_constraints() {
       as(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\"");
       if (holds->text == "unilateral") not_yet(holds->span, "holds = \"unilateral\"");
       if (holds->text != "bilateral") {
-        source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)), "write holds = \"bilateral\"");
+        source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)),
+                     "write holds = \"bilateral\"");
       }
     }
     read_holonomic(constraint, needed(*table, "holonomic", what, "add holonomic = \"psi\", the expression that is 0"));
@@ -52,7 +55,8 @@ void Reader::read_holonomic(Constraint& constraint, const Value& value) {
       constraint.psi.push_back(typed.node);
       return;
     }
-    for (std::uint32_t axis = 0; axis < 3; ++axis) constraint.psi.push_back(resolver_.component(typed, axis, value.span).node);
+    for (std::uint32_t axis = 0; axis < 3; ++axis)
+      constraint.psi.push_back(resolver_.component(typed, axis, value.span).node);
     return;
   }
   if (value.items.empty() || value.items.size() > 3) {
@@ -72,17 +76,22 @@ void Reader::read_energy() {
   const Value* table = section("energy");
   if (table == nullptr) return;
   check_keys(*table, {"[energy]", {"kinetic", "potential"}, {}});
-  if (table->entries.empty()) source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
+  if (table->entries.empty())
+    source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
   const auto energy = [&](const char* key, Facts allowed, const char* remedy) {
     const Value* value = table->find(key);
     if (value == nullptr) return no_node;
-    return resolver_.value(*value, Context{fmt::format("the {} energy", key), allowed, Shape::scalar, dimension_of("J"), remedy}).node;
+    return resolver_
+        .value(*value, Context{fmt::format("the {} energy", key), allowed, Shape::scalar, dimension_of("J"), remedy})
+        .node;
   };
   model_.energy.kinetic = energy("kinetic", on_motion | on_velocity,
-                                 "energies are made of coordinates, velocities, functions of time and parameters; an input acts through a [[force]]");
-  model_.energy.potential = energy("potential", on_motion,
-                                   "a potential is made of coordinates, functions of time and parameters; what depends on velocities "
-                                   "belongs to kinetic, and an input acts through a [[force]]");
+                                 "energies are made of coordinates, velocities, functions of time and parameters; an "
+                                 "input acts through a [[force]]");
+  model_.energy.potential =
+      energy("potential", on_motion,
+             "a potential is made of coordinates, functions of time and parameters; what depends on velocities "
+             "belongs to kinetic, and an input acts through a [[force]]");
 }
 
 }  // namespace eomgen::model

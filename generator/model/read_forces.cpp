@@ -52,26 +52,32 @@ Force Reader::read_force(const Value& table, const std::string& name) {
   for (const Entry& entry : table.entries) {
     if (entry.key == "name" || entry.key == "on") continue;
     if (kind != nullptr) {
-      source_.fail(entry.span, fmt::format("one [[force]] is both '{}' and '{}'", kind->key, entry.key), "write one [[force]] for each");
+      source_.fail(entry.span, fmt::format("one [[force]] is both '{}' and '{}'", kind->key, entry.key),
+                   "write one [[force]] for each");
     }
     kind = &entry;
   }
   if (kind == nullptr) {
-    source_.fail(table.span, "this [[force]] says no kind of force", fmt::format("add one of {}", fmt::join(kinds(), ", ")));
+    source_.fail(table.span, "this [[force]] says no kind of force",
+                 fmt::format("add one of {}", fmt::join(kinds(), ", ")));
   }
   if (kind->key != "force" && table.find("on") != nullptr) {
-    source_.fail(key_span(table, "on"), fmt::format("'on' does not belong to '{}'", kind->key), "'on' says where a force vector acts: force = \"<vector>\", on = P");
+    source_.fail(key_span(table, "on"), fmt::format("'on' does not belong to '{}'", kind->key),
+                 "'on' says where a force vector acts: force = \"<vector>\", on = P");
   }
-  const std::string what = table.find("name") != nullptr ? fmt::format("'{}'", name) : fmt::format("this '{}'", kind->key);
+  const std::string what =
+      table.find("name") != nullptr ? fmt::format("'{}'", name) : fmt::format("this {}", kind->key);
   const Value& value = kind->value;
   Force force;
   if (kind->key == "gravity") {
-    const Context context{"gravity", on_time, Shape::vector, dimension_of("m/s^2"),
-                          "gravity is one acceleration for all masses; write force = \"<vector>\" with on = P, or central_gravity"};
+    const Context context{
+        "gravity", on_time, Shape::vector, dimension_of("m/s^2"),
+        "gravity is one acceleration for all masses; write force = \"<vector>\" with on = P, or central_gravity"};
     force.kind = Gravity{resolver_.value(value, context).node};
   } else if (kind->key == "force") {
     force.kind = read_applied(table, what);
-  } else if (as(Value::Kind::table, value, what, fmt::format("write {} = {{ ... }}", kind->key)); kind->key == "central_gravity") {
+  } else if (as(Value::Kind::table, value, what, fmt::format("write {} = {{ ... }}", kind->key));
+             kind->key == "central_gravity") {
     force.kind = read_central_gravity(value, what);
   } else if (kind->key == "gravitation") {
     check_keys(value, {what, {"G"}, {}});
@@ -90,7 +96,8 @@ Force Reader::read_force(const Value& table, const std::string& name) {
   return force;
 }
 
-NodeId Reader::read_scalar(const Value& table, std::string_view key, const std::string& what, std::string_view unit, Facts allowed) {
+NodeId Reader::read_scalar(const Value& table, std::string_view key, const std::string& what, std::string_view unit,
+                           Facts allowed) {
   const Value& value = needed(table, key, what, fmt::format("add {} = \"..\"", key));
   const Context context{fmt::format("the {} of {}", key, what), allowed, Shape::scalar, dimension_of(unit), ""};
   return resolver_.value(value, context).node;
@@ -98,7 +105,8 @@ NodeId Reader::read_scalar(const Value& table, std::string_view key, const std::
 
 NodeId Reader::read_point(const Value& value, const std::string& what) {
   // A misspelt name of a particle deserves to be told as one.
-  if (value.is(Value::Kind::text) && is_identifier(value.text) && scope_.find(value.text) == nullptr && value.text != "origin" && !is_reserved(value.text)) {
+  if (value.is(Value::Kind::text) && is_identifier(value.text) && scope_.find(value.text) == nullptr &&
+      value.text != "origin" && !is_reserved(value.text)) {
     place_named(value, what);
   }
   const Context context{what, on_motion, Shape::vector, dimension_of("m"), ""};
@@ -107,7 +115,8 @@ NodeId Reader::read_point(const Value& value, const std::string& what) {
 
 AppliedForce Reader::read_applied(const Value& table, const std::string& what) {
   const Value& on = needed(table, "on", what, "add on = \"P\", the particle or point on which the force acts");
-  const Context context{fmt::format("the force of {}", what), on_state, Shape::vector, dimension_of("N"), ""};
+  const Context context{what == "this force" ? what : fmt::format("the force {}", what), on_state, Shape::vector,
+                        dimension_of("N"), ""};
   AppliedForce result{};
   result.force = resolver_.value(*table.find("force"), context).node;
   result.at = read_point(on, "the point where a force acts");
@@ -134,12 +143,14 @@ std::array<NodeId, 2> Reader::read_between(const Value& table, const std::string
   const std::string remedy = "write between = [\"P\", \"Q\"] with particles, points, \"origin\" or vectors";
   const Value& between = needed(table, "between", what, remedy);
   as(Value::Kind::array, between, "'between'", remedy);
-  if (between.items.size() != 2) source_.fail(between.span, fmt::format("'between' has {} entries", between.items.size()), remedy);
+  if (between.items.size() != 2)
+    source_.fail(between.span, fmt::format("'between' has {} entries", between.items.size()), remedy);
   const auto& ends = between.items;
   if (ends[0].is(Value::Kind::text) && ends[1].is(Value::Kind::text) && ends[0].text == ends[1].text) {
     source_.fail(between.span, fmt::format("both ends of {} are the same point", what), remedy);
   }
-  return {read_point(ends[0], fmt::format("an end of {}", what)), read_point(ends[1], fmt::format("an end of {}", what))};
+  return {read_point(ends[0], fmt::format("an end of {}", what)),
+          read_point(ends[1], fmt::format("an end of {}", what))};
 }
 
 Spring Reader::read_spring(const Value& table, const std::string& what) {
@@ -148,7 +159,8 @@ Spring Reader::read_spring(const Value& table, const std::string& what) {
   Spring result{ends[0], ends[1], no_node, no_node, no_node};
   const bool has_energy = table.find("energy") != nullptr;
   if (has_energy && table.find("stiffness") != nullptr) {
-    source_.fail(key_span(table, "energy"), fmt::format("{} has both a stiffness and an energy", what), "keep one of them");
+    source_.fail(key_span(table, "energy"), fmt::format("{} has both a stiffness and an energy", what),
+                 "keep one of them");
   }
   result.length = table.find("length") != nullptr ? read_scalar(table, "length", what, "m", on_time)
                                                   : resolver_.number(0, table.span).node;
@@ -158,7 +170,8 @@ Spring Reader::read_spring(const Value& table, const std::string& what) {
   }
   const Value& energy = *table.find("energy");
   if (const Symbol* other = scope_.find("extension")) {
-    source_.fail(energy.span, "'extension' means the extension of this spring here, and it is also declared in the model",
+    source_.fail(energy.span,
+                 "'extension' means the extension of this spring here, and it is also declared in the model",
                  fmt::format("rename {} 'extension' of line {}", model::kind_name(other->kind), other->span.line));
   }
   Typed extension = resolver_.extension(energy.span);
@@ -180,14 +193,17 @@ Torsion Reader::read_torsion(const Value& table, const std::string& what) {
   Torsion result{no_node, no_node, no_node, no_node};
   result.angle = read_scalar(table, "angle", what, "rad", on_motion);
   if (table.find("stiffness") == nullptr && table.find("coefficient") == nullptr) {
-    source_.fail(table.span, fmt::format("{} has neither a stiffness nor a coefficient", what), "add stiffness (a spring) or coefficient (a damper)");
+    source_.fail(table.span, fmt::format("{} has neither a stiffness nor a coefficient", what),
+                 "add stiffness (a spring) or coefficient (a damper)");
   }
   if (table.find("rest") != nullptr && table.find("stiffness") == nullptr) {
-    source_.fail(key_span(table, "rest"), fmt::format("{} has a rest angle and no stiffness", what), "add stiffness, or leave rest out");
+    source_.fail(key_span(table, "rest"), fmt::format("{} has a rest angle and no stiffness", what),
+                 "add stiffness, or leave rest out");
   }
   if (table.find("stiffness") != nullptr) result.stiffness = read_scalar(table, "stiffness", what, "N*m", on_time);
   if (table.find("rest") != nullptr) result.rest = read_scalar(table, "rest", what, "rad", on_time);
-  if (table.find("coefficient") != nullptr) result.coefficient = read_scalar(table, "coefficient", what, "N*m*s", on_state);
+  if (table.find("coefficient") != nullptr)
+    result.coefficient = read_scalar(table, "coefficient", what, "N*m*s", on_state);
   return result;
 }
 
@@ -204,14 +220,17 @@ Drag Reader::read_drag(const Value& table, const std::string& what) {
 
 Generalized Reader::read_generalized(const Value& table, const std::string& what) {
   Generalized result;
-  if (table.entries.empty()) source_.fail(table.span, fmt::format("{} names no coordinate", what), "write generalized = { x = \"F\" }");
+  if (table.entries.empty())
+    source_.fail(table.span, fmt::format("{} names no coordinate", what), "write generalized = { x = \"F\" }");
   for (const Entry& entry : table.entries) {
     const Symbol* symbol = scope_.find(entry.key);
     if (symbol == nullptr || symbol->kind != SymbolKind::coordinate) {
       const std::string hint = did_you_mean(entry.key, scope_.names(SymbolKind::coordinate));
-      source_.fail(entry.span, fmt::format("{} is not a coordinate", quote(entry.key)), hint.empty() ? "the keys of 'generalized' are coordinates" : hint);
+      source_.fail(entry.span, fmt::format("{} is not a coordinate", quote(entry.key)),
+                   hint.empty() ? "the keys of 'generalized' are coordinates" : hint);
     }
-    Context context{fmt::format("the generalized force along '{}'", entry.key), on_state, Shape::scalar, std::nullopt, ""};
+    Context context{fmt::format("the generalized force along '{}'", entry.key), on_state, Shape::scalar, std::nullopt,
+                    ""};
     const auto& dimension = model_.coordinates[symbol->index].unit.dimension;
     if (dimension) context.dimension = quotient(dimension_of("J"), *dimension);
     result.components.emplace_back(symbol->index, resolver_.value(entry.value, context).node);

@@ -41,7 +41,8 @@ void Reader::declare_names() {
 std::uint32_t Reader::declare_coordinate(const std::string& name, Span span, const Entry* entry) {
   Symbol& symbol = scope_.declare(SymbolKind::coordinate, name, span, entry);
   if (model_.coordinates.size() >= max_coordinates) {
-    source_.fail(span, fmt::format("the model has more than {} coordinates", max_coordinates), "a model of this size cannot be handled");
+    source_.fail(span, fmt::format("the model has more than {} coordinates", max_coordinates),
+                 "a model of this size cannot be handled");
   }
   symbol.index = static_cast<std::uint32_t>(model_.coordinates.size());
   symbol.state = Symbol::State::done;
@@ -60,7 +61,8 @@ void Reader::read_coordinate(const Entry& entry) {
   if (entry.value.is(Value::Kind::text)) {
     unit = &entry.value;
   } else {
-    as(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what), "write x = \"m\", x = {} or x = { unit = \"m\" }");
+    as(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what),
+       "write x = \"m\", x = {} or x = { unit = \"m\" }");
     check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range"}, {}});
     unit = entry.value.find("unit");
     coordinate.tex = tex_of(entry.value, what);
@@ -79,8 +81,10 @@ void Reader::read_ranges() {
     const Value* range = entry.value.find("range");
     if (range == nullptr) continue;
     Coordinate& coordinate = model_.coordinates[scope_.find(entry.key)->index];
-    as(Value::Kind::array, *range, fmt::format("the range of '{}'", entry.key), "write range = [0, \"pi\"]; inf means no bound");
-    if (range->items.size() != 2) source_.fail(range->span, "a range has two ends", "write range = [0, \"pi\"]; inf means no bound");
+    as(Value::Kind::array, *range, fmt::format("the range of '{}'", entry.key),
+       "write range = [0, \"pi\"]; inf means no bound");
+    if (range->items.size() != 2)
+      source_.fail(range->span, "a range has two ends", "write range = [0, \"pi\"]; inf means no bound");
     const Context context{fmt::format("the range of '{}'", entry.key), 0, Shape::scalar, coordinate.unit.dimension, ""};
     std::array<std::optional<Rational>, 2> ends;
     for (std::size_t k = 0; k < 2; ++k) {
@@ -99,12 +103,18 @@ void Reader::read_ranges() {
 
 Typed Reader::define(Symbol& symbol) {
   switch (symbol.kind) {
-    case SymbolKind::parameter: return define_parameter(symbol);
-    case SymbolKind::function: return define_function(symbol);
-    case SymbolKind::input: return define_input(symbol);
-    case SymbolKind::definition: return define_definition(symbol);
-    case SymbolKind::place: return define_place(symbol);
-    default: return Typed{};
+    case SymbolKind::parameter:
+      return define_parameter(symbol);
+    case SymbolKind::function:
+      return define_function(symbol);
+    case SymbolKind::input:
+      return define_input(symbol);
+    case SymbolKind::definition:
+      return define_definition(symbol);
+    case SymbolKind::place:
+      return define_place(symbol);
+    default:
+      return Typed{};
   }
 }
 
@@ -130,7 +140,8 @@ Typed Reader::define_parameter(Symbol& symbol) {
   Typed typed = resolver_.value(*value, context);
   if (stated) typed = resolver_.with_unit(typed, *stated, declared.find("unit")->span);
   if (parameter.positive && typed.constant && !cln::plusp(*typed.constant)) {
-    source_.fail(value->span, fmt::format("{} is declared positive and is not", what), "correct the value, or leave positive out");
+    source_.fail(value->span, fmt::format("{} is declared positive and is not", what),
+                 "correct the value, or leave positive out");
   }
   parameter.value = typed.node;
   parameter.unit = stated_or(stated ? stated : trailing_unit(*value), typed.dimension);
@@ -182,7 +193,8 @@ Typed Reader::define_input(Symbol& symbol) {
   if (const Value* unit = declared.find("unit")) input.unit = si_unit(*unit, what);
   result.dimension = input.unit.dimension;
   if (const Value* fallback = declared.find("default")) {
-    const Context context{fmt::format("the default of '{}'", symbol.name), on_time, Shape::scalar, input.unit.dimension, ""};
+    const Context context{fmt::format("the default of '{}'", symbol.name), on_time, Shape::scalar, input.unit.dimension,
+                          ""};
     input.fallback = resolver_.value(*fallback, context).node;
   } else {
     input.fallback = resolver_.number(0, declared.span).node;
@@ -221,13 +233,16 @@ void Reader::warn_unused() {
   for (Parameter& parameter : model_.parameters) {
     parameter.used = scope_.find(parameter.name)->used;
     if (parameter.used) continue;
-    resolver_.warn(parameter.span, fmt::format("the parameter '{}' is not used", parameter.name), "use it or take it out");
+    resolver_.warn(parameter.span, fmt::format("the parameter '{}' is not used", parameter.name),
+                   "use it or take it out");
   }
   for (const SymbolKind kind : {SymbolKind::function, SymbolKind::input}) {
     for (const Symbol* symbol : scope_.all(kind)) {
       if (symbol->used) continue;
-      resolver_.warn(symbol->span, fmt::format("{} '{}' is not used", kind == SymbolKind::input ? "the input" : "the function", symbol->name),
-                     "use it or take it out");
+      resolver_.warn(
+          symbol->span,
+          fmt::format("{} '{}' is not used", kind == SymbolKind::input ? "the input" : "the function", symbol->name),
+          "use it or take it out");
     }
   }
 }

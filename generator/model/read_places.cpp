@@ -16,7 +16,8 @@ bool is_bare_name(const Value& value) { return value.is(Value::Kind::text) && is
 std::uint32_t Reader::declare_place(const std::string& name, Span span, PlaceSource where) {
   Symbol& symbol = scope_.declare(SymbolKind::place, name, span);
   if (model_.places.size() > max_places) {
-    source_.fail(span, fmt::format("the model has more than {} particles and points", max_places), "a model of this size cannot be handled");
+    source_.fail(span, fmt::format("the model has more than {} particles and points", max_places),
+                 "a model of this size cannot be handled");
   }
   symbol.index = static_cast<std::uint32_t>(model_.places.size());
   Place place;
@@ -38,7 +39,8 @@ void Reader::declare_places() {
     for (const Value* table : sections(name)) items.push_back({table, kind});
     ++kind;
   }
-  std::stable_sort(items.begin(), items.end(), [](const Item& a, const Item& b) { return a.table->begin < b.table->begin; });
+  std::stable_sort(items.begin(), items.end(),
+                   [](const Item& a, const Item& b) { return a.table->begin < b.table->begin; });
   for (const auto& [table, which] : items) {
     if (which == 2) {
       declare_chain(*table);
@@ -69,7 +71,9 @@ void Reader::declare_entries(const Value& position) {
       if (!is_bare_name(entry)) continue;
       const Symbol* known = scope_.find(entry.text);
       if (known == nullptr) {
-        if (is_reserved(entry.text)) continue;
+        const Derivative derivative = split_derivative(entry.text);
+        if (is_reserved(entry.text) || (derivative.order > 0 && scope_.find(derivative.base) != nullptr))
+          continue;  // told later
         declare_coordinate(entry.text, entry.span, nullptr);
         warn_misspelt(entry.text, entry.span);
         known = scope_.find(entry.text);
@@ -90,7 +94,8 @@ Typed Reader::define_place(Symbol& symbol) {
     position = chain_position(where);
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);
-    const Value& value = needed(*where.table, "position", what, "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
+    const Value& value = needed(*where.table, "position", what,
+                                "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
     if (value.is(Value::Kind::table)) {
       position = chart_position(symbol.index, value);
     } else {
@@ -103,7 +108,7 @@ Typed Reader::define_place(Symbol& symbol) {
 }
 
 const coordinates::CoordinateSystem& Reader::system_of(const Value& table, const Entry*& entries) const {
-  Keys keys{"position", {"from"}, {"axes", "parabolic", "helical", "oblique", "custom", "pitch", "angle", "x", "q"}};
+  Keys keys{"a position", {"from"}, {"axes", "parabolic", "helical", "oblique", "custom", "pitch", "angle", "x", "q"}};
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     keys.known.push_back(system->name);
     std::erase(keys.later, system->name);
@@ -122,14 +127,16 @@ const coordinates::CoordinateSystem& Reader::system_of(const Value& table, const
     entries = &entry;
   }
   if (found == nullptr) {
-    source_.fail(table.span, "the position names no coordinate system", "write position = { cartesian = [\"x\", \"y\", \"z\"] } or { spherical = [..] }");
+    source_.fail(table.span, "the position names no coordinate system",
+                 "write position = { cartesian = [\"x\", \"y\", \"z\"] } or { spherical = [..] }");
   }
   return *found;
 }
 
 std::array<Typed, 3> Reader::chart_entries(const coordinates::CoordinateSystem& system, const Value& entries) {
-  const std::string remedy = fmt::format("write {} = [\"{}\", \"{}\", \"{}\"]{}", system.name, system.slots[0].name, system.slots[1].name,
-                                         system.slots[2].name, system.planar ? ", or the first two in the plane" : "");
+  const std::string remedy =
+      fmt::format("write {} = [\"{}\", \"{}\", \"{}\"]{}", system.name, system.slots[0].name, system.slots[1].name,
+                  system.slots[2].name, system.planar ? ", or the first two in the plane" : "");
   as(Value::Kind::array, entries, fmt::format("'{}'", system.name), remedy);
   const std::size_t count = entries.items.size();
   if (count != 3 && !(count == 2 && system.planar)) {
@@ -142,7 +149,8 @@ std::array<Typed, 3> Reader::chart_entries(const coordinates::CoordinateSystem& 
       continue;
     }
     const coordinates::Slot& slot = system.slots[k];
-    Context context{fmt::format("the {} entry of the position", slot.name), on_motion, Shape::scalar, dimension_of(slot.unit), ""};
+    Context context{fmt::format("the {} entry of the position", slot.name), on_motion, Shape::scalar,
+                    dimension_of(slot.unit), ""};
     const Value& item = entries.items[k];
     const Symbol* symbol = is_bare_name(item) ? scope_.find(item.text) : nullptr;
     const bool bare = symbol != nullptr && symbol->kind == SymbolKind::coordinate;
@@ -201,7 +209,8 @@ std::uint32_t Reader::place_named(const Value& value, const std::string& what) {
     const std::string hint = did_you_mean(value.text, places);
     source_.fail(value.span,
                  symbol == nullptr ? fmt::format("there is no particle or point {}", quote(value.text))
-                                   : fmt::format("{} is {}, not a particle or point", quote(value.text), model::kind_name(symbol->kind)),
+                                   : fmt::format("{} is {}, not a particle or point", quote(value.text),
+                                                 model::kind_name(symbol->kind)),
                  hint.empty() ? "name a particle or point, or \"origin\"" : hint);
   }
   symbol->used = true;
@@ -223,7 +232,8 @@ void Reader::read_particles() {
     const Typed mass = where.chain > 0 ? chain_entry(*where.table, "mass", where.link, context)
                                        : resolver_.value(*where.table->find("mass"), context);
     if (mass.constant && !cln::plusp(*mass.constant)) {
-      source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
+      source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what),
+                   "a mass is greater than 0");
     }
     particle.mass = mass.node;
     model_.particles.push_back(particle);

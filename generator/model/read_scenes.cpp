@@ -12,14 +12,17 @@ namespace {
 
 constexpr std::array<std::string_view, 5> merging{"initial", "guess", "parameters", "inputs", "from"};
 
-Context plain(std::string what, std::string_view unit) { return Context{std::move(what), 0, Shape::scalar, dimension_of(unit), ""}; }
+Context plain(std::string what, std::string_view unit) {
+  return Context{std::move(what), 0, Shape::scalar, dimension_of(unit), ""};
+}
 
 }  // namespace
 
 void Reader::read_scenes() {
   const Value* table = section("scene");
   if (table != nullptr && table->entries.size() > max_scenes) {
-    source_.fail(table->entries[max_scenes].span, fmt::format("the model has more than {} scenes", max_scenes), "put further scenes into another file");
+    source_.fail(table->entries[max_scenes].span, fmt::format("the model has more than {} scenes", max_scenes),
+                 "put further scenes into another file");
   }
   if (table == nullptr || table->find("default") == nullptr) {
     Scene scene;
@@ -41,11 +44,14 @@ std::vector<const Entry*> Reader::merged(const Entry& scene, std::vector<std::st
   const std::string what = fmt::format("[scene.{}]", scene.key);
   as(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
   check_keys(scene.value, {what,
-                           {"from", "t", "initial", "solve", "guess", "parameters", "inputs", "outputs", "solver", "rtol", "atol", "step", "every"},
+                           {"from", "t", "initial", "solve", "guess", "parameters", "inputs", "outputs", "solver",
+                            "rtol", "atol", "step", "every"},
                            {"stop"}});
   if (std::find(from.begin(), from.end(), scene.key) != from.end()) {
-    source_.fail(scene.value.find("from")->span, fmt::format("the scene '{}' starts from itself: {} -> {}", scene.key, fmt::join(from, " -> "), scene.key),
-                 "break the circle of 'from'");
+    source_.fail(
+        scene.value.find("from")->span,
+        fmt::format("the scene '{}' starts from itself: {} -> {}", scene.key, fmt::join(from, " -> "), scene.key),
+        "break the circle of 'from'");
   }
   from.push_back(scene.key);
   std::vector<const Entry*> result;
@@ -56,7 +62,8 @@ std::vector<const Entry*> Reader::merged(const Entry& scene, std::vector<std::st
       std::vector<std::string> names;
       for (const Entry& entry : section("scene")->entries) names.push_back(entry.key);
       const std::string hint = did_you_mean(base->text, names);
-      source_.fail(base->span, fmt::format("there is no scene {}", quote(base->text)), hint.empty() ? "name a [scene.NAME] of this file" : hint);
+      source_.fail(base->span, fmt::format("there is no scene {}", quote(base->text)),
+                   hint.empty() ? "name a [scene.NAME] of this file" : hint);
     }
     result = merged(*other, from);
   }
@@ -73,14 +80,15 @@ namespace {
 // The tables of one key, earlier scenes first; a later value replaces an earlier one in its place.
 std::vector<const Entry*> merged_table(const std::vector<const Entry*>& scene, std::string_view key) {
   std::vector<const Entry*> result;
+  std::map<std::string_view, std::size_t> at;
   for (const Entry* table : scene) {
     if (table->key != key) continue;
     for (const Entry& entry : table->value.entries) {
-      const auto old = std::find_if(result.begin(), result.end(), [&](const Entry* known) { return known->key == entry.key; });
-      if (old == result.end()) {
+      const auto [known, added] = at.emplace(entry.key, result.size());
+      if (added) {
         result.push_back(&entry);
       } else {
-        *old = &entry;
+        result[known->second] = &entry;
       }
     }
   }
@@ -91,7 +99,8 @@ std::vector<const Entry*> merged_table(const std::vector<const Entry*>& scene, s
 
 void Reader::read_scene(const Entry& entry) {
   if (!is_identifier(entry.key) || entry.key.size() > max_name_length) {
-    source_.fail(entry.span, fmt::format("{} cannot be the name of a scene", quote(entry.key)), "use letters, digits and underscores");
+    source_.fail(entry.span, fmt::format("{} cannot be the name of a scene", quote(entry.key)),
+                 "use letters, digits and underscores");
   }
   std::vector<std::string> from;
   const std::vector<const Entry*> entries = merged(entry, from);
@@ -104,7 +113,8 @@ void Reader::read_scene(const Entry& entry) {
     const Value& value = item->value;
     const std::string& key = item->key;
     if (std::find(merging.begin(), merging.end(), key) != merging.end()) {
-      if (key != "from") as(Value::Kind::table, value, fmt::format("'{}'", key), fmt::format("write {} = {{ name = value }}", key));
+      if (key != "from")
+        as(Value::Kind::table, value, fmt::format("'{}'", key), fmt::format("write {} = {{ name = value }}", key));
     } else if (key == "t") {
       read_span(scene, value);
     } else if (key == "solve") {
@@ -132,7 +142,8 @@ void Reader::read_span(Scene& scene, const Value& value) {
   if (value.items.size() != 2) source_.fail(value.span, fmt::format("'t' has {} entries", value.items.size()), remedy);
   const Typed t0 = resolver_.value(value.items[0], plain("the start of the run", "s"));
   const Typed t1 = resolver_.value(value.items[1], plain("the end of the run", "s"));
-  if (t0.constant && t1.constant && *t0.constant >= *t1.constant) source_.fail(value.span, "the run ends before it starts", remedy);
+  if (t0.constant && t1.constant && *t0.constant >= *t1.constant)
+    source_.fail(value.span, "the run ends before it starts", remedy);
   scene.t0 = t0.node;
   scene.t1 = t1.node;
 }
@@ -140,7 +151,8 @@ void Reader::read_span(Scene& scene, const Value& value) {
 NodeId Reader::positive_number(const Value& value, const std::string& what, std::string_view unit) {
   if (value.is(Value::Kind::array)) not_yet(value.span, fmt::format("{} with a value for each coordinate", what));
   const Typed typed = resolver_.value(value, plain(what, unit == "1" ? "1" : unit));
-  if (typed.constant && !cln::plusp(*typed.constant)) source_.fail(value.span, fmt::format("{} is not positive", what), "write a number greater than 0");
+  if (typed.constant && !cln::plusp(*typed.constant))
+    source_.fail(value.span, fmt::format("{} is not positive", what), "write a number greater than 0");
   return typed.node;
 }
 
@@ -148,13 +160,16 @@ Symbol& Reader::coordinate_of_key(const Entry& entry, const std::string& what, s
   const Derivative derivative = split_derivative(entry.key);
   Symbol* symbol = scope_.find(derivative.base);
   order = derivative.order;
-  if (entry.key.find('.') != std::string::npos && entry.key.ends_with(".omega")) not_yet(entry.span, "an initial angular velocity");
+  if (entry.key.find('.') != std::string::npos && entry.key.ends_with(".omega"))
+    not_yet(entry.span, "an initial angular velocity");
   if (symbol != nullptr && symbol->kind == SymbolKind::coordinate && order <= 1) return *symbol;
   std::vector<std::string> candidates;
-  for (const std::string& name : scope_.names(SymbolKind::coordinate)) candidates.insert(candidates.end(), {name, name + "_dot"});
+  for (const std::string& name : scope_.names(SymbolKind::coordinate))
+    candidates.insert(candidates.end(), {name, name + "_dot"});
   const std::string hint = did_you_mean(entry.key, candidates);
   if (symbol != nullptr && symbol->kind == SymbolKind::coordinate) {
-    source_.fail(entry.span, fmt::format("{} is an acceleration, which {} cannot state", quote(entry.key), what), "accelerations follow from the equations");
+    source_.fail(entry.span, fmt::format("{} is an acceleration, which {} cannot state", quote(entry.key), what),
+                 "accelerations follow from the equations");
   }
   source_.fail(entry.span, fmt::format("{} names {}, which is no coordinate or velocity", what, quote(entry.key)),
                hint.empty() ? "the keys are coordinates q and their rates q_dot" : hint);
@@ -172,18 +187,23 @@ void Reader::read_initial(Scene& scene, const std::vector<const Entry*>& entries
     initial.coordinate = symbol.index;
     initial.span = entry->span;
     if (guess && given.count({initial.coordinate, initial.order}) > 0) {
-      source_.fail(entry->span, fmt::format("'{}' is given in 'initial' and guessed too", entry->key), "keep one of them");
+      source_.fail(entry->span, fmt::format("'{}' is given in 'initial' and guessed too", entry->key),
+                   "keep one of them");
     }
-    Context context{fmt::format("the start value of '{}'", entry->key), on_time | on_coordinate | on_velocity, Shape::scalar,
-                    model_.coordinates[symbol.index].unit.dimension,
-                    "start values are made of numbers, parameters, functions at the start, definitions and values given before"};
+    Context context{
+        fmt::format("the start value of '{}'", entry->key), on_time | on_coordinate | on_velocity, Shape::scalar,
+        model_.coordinates[symbol.index].unit.dimension,
+        "start values are made of numbers, parameters, functions at the start, definitions and values given before"};
     if (context.dimension && initial.order == 1) context.dimension = quotient(*context.dimension, dimension_of("s"));
     initial.value = resolver_.value(entry->value, context).node;
     for (const auto& used : resolver_.coordinates_in(initial.value)) {
       if (given.count(used) > 0) continue;
       source_.fail(entry->value.span,
                    fmt::format("the start value of '{}' uses '{}{}', which is not given before it", entry->key,
-                               model_.coordinates[used.first].name, used.second == 0 ? "" : used.second == 1 ? "_dot" : "_ddot"),
+                               model_.coordinates[used.first].name,
+                               used.second == 0   ? ""
+                               : used.second == 1 ? "_dot"
+                                                  : "_ddot"),
                    "give that value first, or write the number");
     }
     if (!guess) given.insert({initial.coordinate, initial.order});

@@ -11,23 +11,29 @@
 namespace eomgen::model {
 
 Reader::Reader(const Source& source, const Value& root)
-    : source_(source), root_(root), scope_(source), resolver_(source, model_, scope_, [this](Symbol& symbol) { return define(symbol); }) {}
+    : source_(source),
+      root_(root),
+      scope_(source),
+      resolver_(source, model_, scope_, [this](Symbol& symbol) { return define(symbol); }) {}
 
 Model Reader::read() {
   check_keys(root_, {"a model",
-                     {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions", "energy", "particle", "point",
-                      "chain", "force", "constraint", "scene"},
+                     {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
+                      "energy", "particle", "point", "chain", "force", "constraint", "scene"},
                      {"body", "frame", "joint", "event"}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");
   }
   for (const char* key : {"title", "notes"}) {
-    if (root_.find(key) != nullptr) (key[0] == 't' ? model_.title : model_.notes) = text_of_key(root_, key, "the model");
+    if (root_.find(key) != nullptr)
+      (key[0] == 't' ? model_.title : model_.notes) = text_of_key(root_, key, "the model");
   }
   Place origin;
   origin.name = "origin";
-  origin.position = resolver_.meet(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""}).node;
+  origin.position =
+      resolver_.meet(resolver_.number(0, Span{}), Span{}, Context{"the origin", 0, Shape::vector, std::nullopt, ""})
+          .node;
   model_.places.push_back(std::move(origin));
   place_sources_.emplace_back();
 
@@ -47,10 +53,12 @@ Model Reader::read() {
   read_forces();
   read_constraints();
   if (model_.particles.empty() && model_.energy.kinetic == no_node) {
-    source_.fail(root_.span, "nothing moves: the model has no particle and no kinetic energy", "add a [[particle]], or kinetic = \"..\" in [energy]");
+    source_.fail(root_.span, "nothing moves: the model has no particle and no kinetic energy",
+                 "add a [[particle]], or kinetic = \"..\" in [energy]");
   }
   if (model_.coordinates.empty()) {
-    source_.fail(root_.span, "nothing moves: the model has no coordinate", "name coordinates in a position or in [coordinates]");
+    source_.fail(root_.span, "nothing moves: the model has no coordinate",
+                 "name coordinates in a position or in [coordinates]");
   }
   read_scenes();
   warn_unused();
@@ -75,14 +83,16 @@ Model read_model(const std::string& path) {
   std::error_code problem;
   const auto status = std::filesystem::status(path, problem);
   if (!std::filesystem::exists(status)) fail("there is no such file", "check the path; models are .toml files");
-  if (std::filesystem::is_directory(status)) fail("this is a directory", "name a model file, such as models/cart_pendulum.toml");
+  if (std::filesystem::is_directory(status))
+    fail("this is a directory", "name a model file, such as models/cart_pendulum.toml");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail("the file cannot be read", "check its permissions");
   std::string text(max_file_bytes + 1, '\0');  // one byte more than allowed tells that there is too much
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   if (stream.bad()) fail("the file cannot be read", "check the file");
   text.resize(static_cast<std::size_t>(stream.gcount()));
-  if (text.size() > max_file_bytes) fail(fmt::format("the file has more than {} bytes", max_file_bytes), "check that this is a model file");
+  if (text.size() > max_file_bytes)
+    fail(fmt::format("the file has more than {} bytes", max_file_bytes), "check that this is a model file");
   return read_model_text(text, path);
 }
 

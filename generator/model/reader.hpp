@@ -29,17 +29,18 @@ struct Keys {
 };
 
 class Reader {
- public:
+public:
   Reader(const Source& source, const Value& root);
   Model read();
 
- private:
+private:
   // keys.cpp
   void check_keys(const Value& table, const Keys& keys) const;
-  const Value& needed(const Value& table, std::string_view key, const std::string& what, const std::string& remedy) const;
+  const Value& needed(const Value& table, std::string_view key, const std::string& what,
+                      const std::string& remedy) const;
   const Value& as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const;
-  const Value* section(std::string_view name) const;                     // [name], checked to be a table
-  std::vector<const Value*> sections(std::string_view name) const;       // [[name]]
+  const Value* section(std::string_view name) const;                // [name], checked to be a table
+  std::vector<const Value*> sections(std::string_view name) const;  // [[name]]
   std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;
   Span key_span(const Value& table, std::string_view key) const;
   [[noreturn]] void not_yet(Span span, const std::string& what) const;
@@ -101,7 +102,8 @@ class Reader {
   Drag read_drag(const Value& table, const std::string& what);
   Generalized read_generalized(const Value& table, const std::string& what);
   std::array<NodeId, 2> read_between(const Value& table, const std::string& what);
-  NodeId read_scalar(const Value& table, std::string_view key, const std::string& what, std::string_view unit, Facts allowed);
+  NodeId read_scalar(const Value& table, std::string_view key, const std::string& what, std::string_view unit,
+                     Facts allowed);
   NodeId read_point(const Value& value, const std::string& what);
 
   // read_constraints.cpp: [[constraint]], [energy]
@@ -131,7 +133,7 @@ class Reader {
   Model model_;
   Scope scope_;
   Resolver resolver_;
-  std::vector<PlaceSource> place_sources_;     // per Model::places
+  std::vector<PlaceSource> place_sources_;  // per Model::places
   std::vector<Chain> chains_;
   std::set<std::uint32_t> ranged_, measured_;  // coordinates whose range or unit [coordinates] states
 };

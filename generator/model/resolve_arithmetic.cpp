@@ -11,9 +11,9 @@
 namespace eomgen::model {
 namespace {
 
-constexpr long largest_exponent = 64;      // of a constant power
-constexpr double largest_nested = 4096;    // product of exponents on top of one another
-constexpr std::size_t largest_bits = 4096; // of a constant
+constexpr long largest_exponent = 64;       // of a constant power
+constexpr double largest_nested = 4096;     // product of exponents on top of one another
+constexpr std::size_t largest_bits = 4096;  // of a constant
 
 std::size_t bits(const Rational& value) {
   return cln::integer_length(cln::numerator(value)) + cln::integer_length(cln::denominator(value));
@@ -32,7 +32,8 @@ std::string side(const std::optional<Dimension>& dimension) { return dimension ?
 
 void Resolver::check_size(Typed& typed, Span span) {
   if (typed.constant && bits(*typed.constant) > largest_bits) {
-    source_.fail(span, fmt::format("this number has more than {} bits", largest_bits), "use a number that fits a double");
+    source_.fail(span, fmt::format("this number has more than {} bits", largest_bits),
+                 "use a number that fits a double");
   }
 }
 
@@ -40,7 +41,9 @@ void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, s
   const bool known_a = a.dimension.has_value(), known_b = b.dimension.has_value();
   const bool loose = (known_a && a.loose) || (known_b && b.loose);
   if (known_a && known_b && !same(*a.dimension, *b.dimension)) {
-    clash(span, fmt::format("{} on one side and {} on the other side of {}", side(a.dimension), side(b.dimension), relation), loose);
+    clash(span,
+          fmt::format("{} on one side and {} on the other side of {}", side(a.dimension), side(b.dimension), relation),
+          loose);
     result.dimension = a.loose ? b.dimension : a.dimension;
     result.loose = a.loose && b.loose;
     return;
@@ -57,10 +60,14 @@ void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, s
 Typed Resolver::apply_unit(Typed typed, const MeasuredUnit& unit, Span span) {
   if (typed.vector) {
     if (typed.dimension && !is_one(*typed.dimension)) {
-      source_.fail(span, fmt::format("the units clash: this has the dimension {} already", text_of(*typed.dimension)), "leave the unit out");
+      source_.fail(span, fmt::format("the units clash: this has the dimension {} already", text_of(*typed.dimension)),
+                   "leave the unit out");
     }
   } else if (typed.dimension && !is_one(*typed.dimension)) {
-    clash(span, fmt::format("the value has the dimension {} already, and {} is put to it", text_of(*typed.dimension), unit.text), typed.loose);
+    clash(span,
+          fmt::format("the value has the dimension {} already, and {} is put to it", text_of(*typed.dimension),
+                      unit.text),
+          typed.loose);
   }
   Typed result = typed;
   if (typed.literal && typed.constant && !typed.vector) {
@@ -100,12 +107,15 @@ Typed Resolver::negate(const Typed& a, Span span) {
 }
 
 Typed Resolver::add(SyntaxKind kind, Typed a, Typed b, Span span) {
-  const auto zero = [](const Typed& typed) { return typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant); };
+  const auto zero = [](const Typed& typed) {
+    return typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant);
+  };
   for (Typed* side : {&a, &b}) {
     const Typed& other = side == &a ? b : a;
     if (side->vector || !other.vector) continue;
     if (!zero(*side)) {
-      source_.fail(span, "a vector and a scalar cannot be added", "multiply the scalar by a direction such as E1, or take a component dot(a, E1)");
+      source_.fail(span, "a vector and a scalar cannot be added",
+                   "multiply the scalar by a direction such as E1, or take a component dot(a, E1)");
     }
     *side = make(Op::zero_vector, true, {}, span);
     side->literal = true;
@@ -180,7 +190,8 @@ Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
   }
   result.exponents = std::max(1.0, cln::double_approx(cln::abs(exponent))) * a.exponents;
   if (result.exponents > largest_nested) {
-    source_.fail(span, fmt::format("powers on top of one another come to an exponent above {}", largest_nested), "write a smaller power");
+    source_.fail(span, fmt::format("powers on top of one another come to an exponent above {}", largest_nested),
+                 "write a smaller power");
   }
   if (b.literal && a.dimension) result.dimension = raised(*a.dimension, exponent);
   if (!a.constant || cln::denominator(exponent) != 1) return result;
@@ -190,7 +201,8 @@ Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
     return result;
   }
   if (static_cast<std::size_t>(cln::cl_I_to_int(cln::abs(whole))) * bits(*a.constant) > largest_bits) {
-    source_.fail(span, fmt::format("this number has more than {} bits", largest_bits), "use a number that fits a double");
+    source_.fail(span, fmt::format("this number has more than {} bits", largest_bits),
+                 "use a number that fits a double");
   }
   result.constant = cln::expt(*a.constant, whole);
   return result;

@@ -12,7 +12,8 @@ void Resolver::arity(const SyntaxNode& node, std::size_t least, std::size_t most
   const std::size_t count = node.children.size();
   if (count >= least && count <= most) return;
   const std::string wanted = least == most ? std::to_string(least) : fmt::format("{} to {}", least, most);
-  source_.fail(node.span, fmt::format("{}() takes {} argument{}, not {}", node.parts[0], wanted, wanted == "1" ? "" : "s", count),
+  source_.fail(node.span,
+               fmt::format("{}() takes {} argument{}, not {}", node.parts[0], wanted, wanted == "1" ? "" : "s", count),
                "see docs/model-format.md for the functions");
 }
 
@@ -26,15 +27,16 @@ Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
   if (name == "position" || name == "velocity" || name == "acceleration") return place_call(syntax, node);
   if (name == "integral" || name == "initial" || name == "omega") {
     source_.fail(node.span, fmt::format("{}() is not supported yet", name),
-                 name == "omega"      ? "rigid bodies come with a later version; models of particles work now"
+                 name == "omega"     ? "rigid bodies come with a later version; models of particles work now"
                  : name == "initial" ? "give the start value a name in [parameters] and use that in the scene too"
                                      : "state the antiderivative as a function of t in [functions]");
   }
   const std::string hint = did_you_mean(name, function_names());
   const bool value = scope_.find(name) != nullptr;
   source_.fail(node.span, fmt::format("there is no function {}", quote(name)),
-               value ? fmt::format("'{}' is a name: write {}*(...) for a product", name, name)
-               : hint.empty() ? "the functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs sign min max, if, ddt, diff, dot, cross, norm, unit, position, velocity, acceleration"
+               value          ? fmt::format("'{}' is a name: write {}*(...) for a product", name, name)
+               : hint.empty() ? "the functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs "
+                                "sign min max, if, ddt, diff, dot, cross, norm, unit, position, velocity, acceleration"
                               : hint);
 }
 
@@ -44,7 +46,8 @@ Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const 
   for (const std::uint32_t child : node.children) {
     arguments.push_back(this->node(syntax, child));
     if (arguments.back().vector) {
-      source_.fail(syntax.nodes[child].span, fmt::format("{}() takes scalars, and this is a vector", function.name), "take norm(a) or a component dot(a, E1)");
+      source_.fail(syntax.nodes[child].span, fmt::format("{}() takes scalars, and this is a vector", function.name),
+                   "take norm(a) or a component dot(a, E1)");
     }
   }
   const bool same_kind = function.fn == Fn::min || function.fn == Fn::max || function.fn == Fn::atan2;
@@ -52,12 +55,15 @@ Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const 
   Typed result = arguments[0];
   for (std::size_t k = 0; k < arguments.size(); ++k) {
     const Typed& a = arguments[k];
-    if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension && !is_one(*a.dimension)) {
-      clash(syntax.nodes[node.children[k]].span, fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)), a.loose);
+    if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension &&
+        !is_one(*a.dimension)) {
+      clash(syntax.nodes[node.children[k]].span,
+            fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)), a.loose);
     }
     if (k == 0 && arguments.size() > 1) continue;
     // min and max of many are nested pairs.
-    Typed next = arguments.size() == 1 ? make(Op::call, false, {a}, node.span) : make(Op::call, false, {result, a}, node.span);
+    Typed next =
+        arguments.size() == 1 ? make(Op::call, false, {a}, node.span) : make(Op::call, false, {result, a}, node.span);
     model_.arena.nodes[next.node].fn = function.fn;
     if (same_kind) agree(next, result, a, node.span, fmt::format("{}()", function.name));
     result = next;
@@ -91,7 +97,8 @@ Typed Resolver::conditional(const Syntax& syntax, const SyntaxNode& node) {
   Typed x = this->node(syntax, node.children[1]);
   Typed y = this->node(syntax, node.children[2]);
   if (a.vector || b.vector) source_.fail(test.span, "vectors cannot be compared", "compare norm(a) or components");
-  if (x.vector != y.vector) source_.fail(node.span, "one branch of if() is a vector and the other is not", "make both vectors or both scalars");
+  if (x.vector != y.vector)
+    source_.fail(node.span, "one branch of if() is a vector and the other is not", "make both vectors or both scalars");
   Typed compared;
   agree(compared, a, b, test.span, "the comparison");
   // a > b is b < a; a <= b is not (b < a)
@@ -110,7 +117,8 @@ Typed Resolver::time_derivative(const Syntax& syntax, const SyntaxNode& node) {
     source_.fail(node.span, "an input has no time derivative", "declare the derivative as an input of its own");
   }
   if (inner.facts & on_acceleration) {
-    source_.fail(node.span, "third time derivatives of coordinates are not supported", "take ddt of positions and velocities only");
+    source_.fail(node.span, "third time derivatives of coordinates are not supported",
+                 "take ddt of positions and velocities only");
   }
   Typed result = make(Op::total_derivative, inner.vector, {inner}, node.span);
   if (inner.facts & on_coordinate) result.facts |= on_velocity;
@@ -126,8 +134,10 @@ Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node)
   const SyntaxNode& by = syntax.nodes[node.children[1]];
   const Typed variable = this->node(syntax, node.children[1]);
   const Op op = model_.arena[variable.node].op;
-  if (by.kind != SyntaxKind::name || (op != Op::coordinate && op != Op::function && op != Op::parameter && op != Op::time && op != Op::input)) {
-    source_.fail(by.span, "diff() takes a derivative with respect to a name", "write diff(e, x) with a coordinate, a velocity, a function, a parameter, an input or t");
+  if (by.kind != SyntaxKind::name ||
+      (op != Op::coordinate && op != Op::function && op != Op::parameter && op != Op::time && op != Op::input)) {
+    source_.fail(by.span, "diff() takes a derivative with respect to a name",
+                 "write diff(e, x) with a coordinate, a velocity, a function, a parameter, an input or t");
   }
   Typed result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
   result.loose = inner.loose;
@@ -143,7 +153,8 @@ Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
   for (const std::uint32_t child : node.children) {
     arguments.push_back(this->node(syntax, child));
     if (!arguments.back().vector) {
-      source_.fail(syntax.nodes[child].span, fmt::format("{}() takes vectors, and this is a scalar", name), "a vector is made of E1, E2, E3, P.e_q, or the name of a particle");
+      source_.fail(syntax.nodes[child].span, fmt::format("{}() takes vectors, and this is a scalar", name),
+                   "a vector is made of E1, E2, E3, P.e_q, or the name of a particle");
     }
   }
   const Typed& a = arguments[0];
@@ -163,11 +174,13 @@ Typed Resolver::place_call(const Syntax& syntax, const SyntaxNode& node) {
   arity(node, 1, 1);
   const std::string& name = node.parts[0];
   const SyntaxNode& argument = syntax.nodes[node.children[0]];
-  Symbol* symbol = argument.kind == SyntaxKind::name && argument.parts.size() == 1 ? scope_.find(argument.parts[0]) : nullptr;
+  Symbol* symbol =
+      argument.kind == SyntaxKind::name && argument.parts.size() == 1 ? scope_.find(argument.parts[0]) : nullptr;
   const bool origin = argument.kind == SyntaxKind::name && argument.parts[0] == "origin";
   if (argument.kind == SyntaxKind::name && symbol == nullptr && !origin) unknown_name(argument);
   if (!origin && (symbol == nullptr || symbol->kind != SymbolKind::place)) {
-    source_.fail(argument.span, fmt::format("{}() takes the name of a particle or point", name), "write ddt(...) for the derivative of a vector expression");
+    source_.fail(argument.span, fmt::format("{}() takes the name of a particle or point", name),
+                 "write ddt(...) for the derivative of a vector expression");
   }
   if (symbol != nullptr) symbol->used = true;
   Typed result = place(origin ? 0 : symbol->index, node.span);

@@ -17,10 +17,14 @@ Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
   const SyntaxNode& node = syntax.nodes[id];
   const auto child = [&](std::size_t k) { return this->node(syntax, node.children[k]); };
   switch (node.kind) {
-    case SyntaxKind::number: return number_node(node);
-    case SyntaxKind::name: return name(node);
-    case SyntaxKind::call: return call(syntax, node);
-    case SyntaxKind::negate: return negate(child(0), node.span);
+    case SyntaxKind::number:
+      return number_node(node);
+    case SyntaxKind::name:
+      return name(node);
+    case SyntaxKind::call:
+      return call(syntax, node);
+    case SyntaxKind::negate:
+      return negate(child(0), node.span);
     case SyntaxKind::add:
     case SyntaxKind::subtract: {
       const Typed a = child(0);
@@ -66,7 +70,7 @@ Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
                      (part[0] == 'e' || part[0] == 'a' || part[0] == 'g');
   std::vector<std::string> known;
   const Typed position = this->symbol(symbol, node.span);
-  for (const auto& [index, order] : coordinates_in(position.node)) {
+  for (const auto& [index, order] : coordinates_of(position.node)) {
     if (order == 0) known.push_back(model_.coordinates[index].name);
   }
   if (!basis || std::find(known.begin(), known.end(), coordinate_symbol->name) == known.end()) {
@@ -74,16 +78,18 @@ Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
     for (const std::string& name : known) parts.insert(parts.end(), {"e_" + name, "a_" + name, "g_" + name});
     const std::string hint = did_you_mean(part, parts);
     source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)),
-                 !hint.empty()  ? hint
+                 !hint.empty()   ? hint
                  : known.empty() ? fmt::format("the position of '{}' depends on no coordinate", symbol.name)
                                  : fmt::format("its parts are e_q, a_q and g_q for q = {}", fmt::join(known, ", ")));
   }
   if (part[0] == 'g') {
     const auto& chart = model_.places[symbol.index].chart;
     bool slot = chart.has_value();
-    for (std::size_t k = 0; slot && k < (chart->planar ? 2u : 3u); ++k) slot = model_.arena[chart->entries[k]].op == Op::coordinate;
+    for (std::size_t k = 0; slot && k < (chart->planar ? 2u : 3u); ++k)
+      slot = model_.arena[chart->entries[k]].op == Op::coordinate;
     if (!slot) {
-      source_.fail(node.span, fmt::format("'{}' needs a position whose entries are all coordinates", joined(node.parts)),
+      source_.fail(node.span,
+                   fmt::format("'{}' needs a position whose entries are all coordinates", joined(node.parts)),
                    "the contravariant basis exists for a full set of coordinates; use a_q or e_q");
     }
   }
@@ -122,7 +128,8 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
   }
   if (name == "origin" || name == "ground") {
     if (name == "ground") {
-      source_.fail(node.span, "'ground' stands only where a contact or a joint asks for a body", "write origin for the fixed origin");
+      source_.fail(node.span, "'ground' stands only where a contact or a joint asks for a body",
+                   "write origin for the fixed origin");
     }
     return place(0, node.span);
   }
@@ -195,7 +202,9 @@ void Resolver::unknown_name(const SyntaxNode& node) {
   if (hint.empty()) hint = did_you_mean(name, candidates);
   if (hint.empty() && is_reserved(name)) hint = fmt::format("'{}' is a function: write {}(...)", name, name);
   if (hint.empty()) {
-    hint = "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in [definitions]";
+    hint =
+        "declare it: a coordinate in [coordinates] or in a position, a constant in [parameters], a value in "
+        "[definitions]";
   }
   source_.fail(node.span, fmt::format("the name {} is not declared", quote(name)), hint);
 }

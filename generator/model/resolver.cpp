@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 namespace eomgen::model {
 namespace {
@@ -13,13 +12,13 @@ namespace {
 // Sets a member for the time of one call, also when the call throws.
 template <class T>
 class Hold {
- public:
+public:
   Hold(T& member, T value) : member_(member), before_(member) { member_ = value; }
   ~Hold() { member_ = before_; }
   Hold(const Hold&) = delete;
   Hold& operator=(const Hold&) = delete;
 
- private:
+private:
   T& member_;
   T before_;
 };
@@ -54,12 +53,14 @@ Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed
       }
       return meet(number(exact.value, value.span), value.span, context);
     }
-    case Value::Kind::text: return syntax(parse_quantity(text_in(source_, value)), context);
+    case Value::Kind::text:
+      return syntax(parse_quantity(text_in(source_, value)), context);
     case Value::Kind::array: {
       if (context.shape == Shape::scalar || value.items.size() != 3) {
         source_.fail(value.span,
-                     context.shape == Shape::scalar ? fmt::format("{} is a scalar, not an array", context.what)
-                                                    : fmt::format("a vector has three components, not {}", value.items.size()),
+                     context.shape == Shape::scalar
+                         ? fmt::format("{} is a scalar, not an array", context.what)
+                         : fmt::format("a vector has three components, not {}", value.items.size()),
                      "a scalar is a number or \"expression\"; a vector is \"expression\" or [x, y, z]");
       }
       Context component = context;
@@ -74,7 +75,8 @@ Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed
   }
 }
 
-Typed Resolver::text(std::string_view text, const std::map<std::string, Typed>& local, Span span, const Context& context) {
+Typed Resolver::text(std::string_view text, const std::map<std::string, Typed>& local, Span span,
+                     const Context& context) {
   const Hold<const std::map<std::string, Typed>*> hold_local(local_, &local);
   return syntax(parse_expression(Text{text, &source_, nullptr, 0, span}), context);
 }
@@ -82,9 +84,8 @@ Typed Resolver::text(std::string_view text, const std::map<std::string, Typed>& 
 Typed Resolver::syntax(const Syntax& syntax, const Context& context) {
   const Hold<const Context*> hold_context(context_, &context);
   Typed result = node(syntax, syntax.root);
-  const Span span = syntax.nodes[syntax.root].span;
   if (syntax.unit) result = apply_unit(result, *syntax.unit, syntax.unit_span);
-  return meet(result, span, context);
+  return meet(result, syntax.whole, context);
 }
 
 Typed Resolver::meet(Typed typed, Span span, const Context& context) {
@@ -103,8 +104,9 @@ Typed Resolver::meet(Typed typed, Span span, const Context& context) {
                  "take dot(a, b), norm(a), or a component dot(a, E1)");
   }
   if (context.dimension && typed.dimension && !same(*context.dimension, *typed.dimension)) {
-    clash(span, fmt::format("{} is asked in {}, and this is in {}", context.what, text_of(*context.dimension),
-                            text_of(*typed.dimension)),
+    clash(span,
+          fmt::format("{} is asked in {}, and this is in {}", context.what, text_of(*context.dimension),
+                      text_of(*typed.dimension)),
           typed.loose);
   }
   return typed;
@@ -119,7 +121,7 @@ void Resolver::clash(Span span, std::string what, bool loose) {
 }
 
 void Resolver::warn(Span span, std::string message, std::string remedy) {
-  constexpr std::size_t most = 200;
+  constexpr std::size_t most = 100;
   if (model_.warnings.size() < most) {
     model_.warnings.push_back(Warning{source_.where(span), std::move(message), std::move(remedy)});
   }
@@ -133,7 +135,8 @@ void Resolver::allow(Facts facts, Span span, std::string_view what) {
     remedy = context_->allowed == 0 ? "use numbers and parameters only"
                                     : fmt::format("use numbers, parameters and {} only", facts_text(context_->allowed));
   }
-  source_.fail(span, fmt::format("{} depends on {}, which {} cannot", what, facts_text(excess), context_->what), remedy);
+  source_.fail(span, fmt::format("{} depends on {}, which {} cannot", what, facts_text(excess), context_->what),
+               remedy);
 }
 
 const Typed& Resolver::symbol(Symbol& symbol, Span asked) {
@@ -165,7 +168,8 @@ const Typed& Resolver::symbol(Symbol& symbol, Span asked) {
 
 NodeId Resolver::push(Node node) {
   if (model_.arena.nodes.size() >= max_nodes) {
-    source_.fail(node.span, fmt::format("the model has more than {} operations", max_nodes), "a model of this size cannot be handled");
+    source_.fail(node.span, fmt::format("the model has more than {} operations", max_nodes),
+                 "a model of this size cannot be handled");
   }
   model_.arena.nodes.push_back(std::move(node));
   return static_cast<NodeId>(model_.arena.nodes.size() - 1);
@@ -187,7 +191,8 @@ Typed Resolver::make(Op op, bool vector, std::initializer_list<Typed> children, 
     result.loose = result.loose || child.loose;
   }
   if (result.depth > max_depth) {
-    source_.fail(span, fmt::format("the expression, with all that it refers to, is nested more than {} deep", max_depth),
+    source_.fail(span,
+                 fmt::format("the expression, with all that it refers to, is nested more than {} deep", max_depth),
                  "use fewer definitions on top of one another");
   }
   result.node = push(std::move(node));
@@ -262,30 +267,59 @@ bool Resolver::uses_parameters(NodeId root) const {
   return false;
 }
 
-std::vector<std::pair<std::uint32_t, std::uint8_t>> Resolver::coordinates_in(NodeId root) const {
-  std::set<std::pair<std::uint32_t, std::uint8_t>> found;
-  std::vector<bool> seen(model_.arena.nodes.size());
+const CoordinateSet& Resolver::coordinates_of(NodeId reference) {
+  const auto known = coordinates_of_.find(reference);
+  if (known != coordinates_of_.end()) return known->second;
+  return coordinates_of_.emplace(reference, coordinates_in(reference)).first->second;
+}
+
+// Expressions are trees apart from the places and definitions that they name, and those are remembered.
+CoordinateSet Resolver::coordinates_in(NodeId root) {
+  CoordinateSet found;
+  const auto insert = [&](std::pair<std::uint32_t, std::uint8_t> coordinate, std::uint8_t shift) {
+    for (int k = coordinate.second; k <= std::min(2, coordinate.second + shift); ++k) {
+      found.insert({coordinate.first, static_cast<std::uint8_t>(k)});
+    }
+  };
   std::vector<std::pair<NodeId, std::uint8_t>> stack{{root, 0}};
   while (!stack.empty()) {
-    const auto [id, order] = stack.back();
+    const auto [id, shift] = stack.back();
     stack.pop_back();
-    if (id == no_node || (seen[id] && order == 0)) continue;
-    seen[id] = true;
-    const Node& node = model_.arena[id];
-    if (node.op == Op::coordinate) {
-      for (std::uint8_t k = 0; k <= order; ++k) found.insert({node.index, static_cast<std::uint8_t>(node.order + k)});
+    if (id == no_node) continue;
+    const Node node = model_.arena[id];
+    std::uint8_t inner = shift;
+    NodeId reference = no_node;
+    switch (node.op) {
+      case Op::coordinate:
+        insert({node.index, node.order}, shift);
+        break;
+      case Op::total_derivative:
+        inner = 1;
+        break;
+      case Op::definition:
+        reference = model_.definitions[node.index].is;
+        break;
+      case Op::place_velocity:
+      case Op::place_acceleration:
+        inner = node.op == Op::place_velocity ? 1 : 2;
+        [[fallthrough]];
+      case Op::place:
+      case Op::unit_basis:
+      case Op::covariant_basis:
+      case Op::contravariant_basis:
+        reference = model_.places[node.index].position;
+        break;
+      default:
+        break;
     }
-    std::uint8_t inner = order;
-    if (node.op == Op::total_derivative) inner = static_cast<std::uint8_t>(std::min(2, inner + 1));
-    if (node.op == Op::definition) stack.push_back({model_.definitions[node.index].is, inner});
-    if (node.op == Op::place || node.op == Op::place_velocity || node.op == Op::place_acceleration ||
-        node.op == Op::unit_basis || node.op == Op::covariant_basis || node.op == Op::contravariant_basis) {
-      const int more = node.op == Op::place_velocity ? 1 : node.op == Op::place_acceleration ? 2 : 0;
-      if (node.index > 0) stack.push_back({model_.places[node.index].position, static_cast<std::uint8_t>(std::min(2, inner + more))});
+    inner = static_cast<std::uint8_t>(
+        std::min(2, node.op == Op::total_derivative ? shift + inner : std::max(shift, inner)));
+    if (reference != no_node) {
+      for (const auto& coordinate : coordinates_of(reference)) insert(coordinate, inner);
     }
     for (const NodeId child : node.args) stack.push_back({child, inner});
   }
-  return {found.begin(), found.end()};
+  return found;
 }
 
 }  // namespace eomgen::model

@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,9 @@ inline constexpr Facts on_time = 1, on_input = 2, on_coordinate = 4, on_velocity
 inline constexpr Facts on_motion = on_time | on_coordinate;
 inline constexpr Facts on_anything = 31;
 
+/// Coordinates and the order of their derivatives.
+using CoordinateSet = std::set<std::pair<std::uint32_t, std::uint8_t>>;
+
 enum class Shape { scalar, vector, either };
 
 /// Where an expression stands and what is asked of it.
@@ -36,7 +40,7 @@ struct Context {
 };
 
 class Resolver {
- public:
+public:
   /// Reads the declaration of a symbol that is needed now (the reader's business).
   using Definer = std::function<Typed(Symbol&)>;
 
@@ -66,14 +70,16 @@ class Resolver {
   /// Checks shape, dimension and dependence of a finished expression against the context.
   Typed meet(Typed typed, Span span, const Context& context);
   /// Coordinates (index, order) on which an expression depends, definitions and places included.
-  std::vector<std::pair<std::uint32_t, std::uint8_t>> coordinates_in(NodeId node) const;
+  CoordinateSet coordinates_in(NodeId node);
+  /// The same, remembered: for the expressions of places and definitions.
+  const CoordinateSet& coordinates_of(NodeId reference);
 
   bool uses_parameters(NodeId node) const;
 
   const Source& source() const { return source_; }
   void warn(Span span, std::string message, std::string remedy);
 
- private:
+private:
   Typed syntax(const Syntax& syntax, const Context& context);
   Typed node(const Syntax& syntax, std::uint32_t id);
   Typed number_node(const SyntaxNode& node);
@@ -114,7 +120,8 @@ class Resolver {
   Definer definer_;
   const Context* context_ = nullptr;
   const std::map<std::string, Typed>* local_ = nullptr;
-  std::vector<std::string> open_;  // names being resolved, for cycles
+  std::map<NodeId, CoordinateSet> coordinates_of_;  // of places and definitions
+  std::vector<std::string> open_;                   // names being resolved, for cycles
 };
 
 }  // namespace eomgen::model

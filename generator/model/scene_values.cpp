@@ -11,7 +11,8 @@ namespace eomgen::model {
 namespace {
 
 constexpr std::array<std::string_view, 5> solvers{"auto", "rk4", "dopri5", "tsit5", "dop853"};
-constexpr std::array<std::string_view, 6> later_solvers{"taylor", "radau5", "rodas", "midpoint", "variational2", "variational4"};
+constexpr std::array<std::string_view, 6> later_solvers{"taylor",   "radau5",       "rodas",
+                                                        "midpoint", "variational2", "variational4"};
 constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
 
 std::vector<std::string> split_at_dots(const std::string& text) {
@@ -37,16 +38,19 @@ void Reader::read_scene_parameters(Scene& scene, const std::vector<const Entry*>
     const Symbol* symbol = scope_.find(entry->key);
     if (symbol == nullptr || symbol->kind != SymbolKind::parameter) {
       const std::string hint = did_you_mean(entry->key, scope_.names(SymbolKind::parameter));
-      source_.fail(entry->span, fmt::format("{} is not a parameter", quote(entry->key)), hint.empty() ? "the keys of 'parameters' are names of [parameters]" : hint);
+      source_.fail(entry->span, fmt::format("{} is not a parameter", quote(entry->key)),
+                   hint.empty() ? "the keys of 'parameters' are names of [parameters]" : hint);
     }
     const Parameter& parameter = model_.parameters[symbol->index];
     const Context context{fmt::format("the value of '{}'", entry->key), 0, Shape::scalar, symbol->typed.dimension, ""};
     const Typed typed = resolver_.value(entry->value, context);
     if (resolver_.uses_parameters(typed.node)) {
-      source_.fail(entry->value.span, fmt::format("the value of '{}' uses parameters", entry->key), "a scene sets parameters to numbers, with units if you like");
+      source_.fail(entry->value.span, fmt::format("the value of '{}' uses parameters", entry->key),
+                   "a scene sets parameters to numbers, with units if you like");
     }
     if (parameter.positive && typed.constant && !cln::plusp(*typed.constant)) {
-      source_.fail(entry->value.span, fmt::format("the parameter '{}' is declared positive", entry->key), "write a value greater than 0");
+      source_.fail(entry->value.span, fmt::format("the parameter '{}' is declared positive", entry->key),
+                   "write a value greater than 0");
     }
     scene.parameters.emplace_back(symbol->index, typed.node);
   }
@@ -57,7 +61,8 @@ void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& en
     const Symbol* symbol = scope_.find(entry->key);
     if (symbol == nullptr || symbol->kind != SymbolKind::input) {
       const std::string hint = did_you_mean(entry->key, scope_.names(SymbolKind::input));
-      source_.fail(entry->span, fmt::format("{} is not an input", quote(entry->key)), hint.empty() ? "the keys of 'inputs' are names of [inputs]" : hint);
+      source_.fail(entry->span, fmt::format("{} is not an input", quote(entry->key)),
+                   hint.empty() ? "the keys of 'inputs' are names of [inputs]" : hint);
     }
     SceneInput input;
     input.input = symbol->index;
@@ -65,7 +70,8 @@ void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& en
     if (entry->value.is(Value::Kind::table)) {
       input.signal = read_input_table(entry->value, *symbol);
     } else {
-      const Context context{fmt::format("the input '{}'", entry->key), on_time, Shape::scalar, symbol->typed.dimension, ""};
+      const Context context{fmt::format("the input '{}'", entry->key), on_time, Shape::scalar, symbol->typed.dimension,
+                            ""};
       input.signal = resolver_.value(entry->value, context).node;
     }
     scene.inputs.push_back(std::move(input));
@@ -79,7 +85,8 @@ InputTable Reader::read_input_table(const Value& table, const Symbol& input) {
   const Value& times = as(Value::Kind::array, needed(table, "t", what, remedy), "'t'", remedy);
   const Value& values = as(Value::Kind::array, needed(table, "value", what, remedy), "'value'", remedy);
   if (times.items.empty() || times.items.size() != values.items.size()) {
-    source_.fail(values.span, fmt::format("{} has {} times and {} values", what, times.items.size(), values.items.size()), remedy);
+    source_.fail(values.span,
+                 fmt::format("{} has {} times and {} values", what, times.items.size(), values.items.size()), remedy);
   }
   InputTable result;
   std::optional<Rational> last;
@@ -87,7 +94,8 @@ InputTable Reader::read_input_table(const Value& table, const Symbol& input) {
   const Context value{"a value of " + what, 0, Shape::scalar, input.typed.dimension, ""};
   for (std::size_t k = 0; k < times.items.size(); ++k) {
     const Typed t = resolver_.value(times.items[k], at);
-    if (last && t.constant && *t.constant <= *last) source_.fail(times.items[k].span, fmt::format("the times of {} do not grow", what), remedy);
+    if (last && t.constant && *t.constant <= *last)
+      source_.fail(times.items[k].span, fmt::format("the times of {} do not grow", what), remedy);
     last = t.constant;
     result.t.push_back(t.node);
     result.value.push_back(resolver_.value(values.items[k], value).node);
@@ -103,7 +111,8 @@ void Reader::read_solver(Scene& scene, const Value& value) {
   if (std::find(solvers.begin(), solvers.end(), value.text) == solvers.end()) {
     const std::vector<std::string> names(solvers.begin(), solvers.end());
     const std::string hint = did_you_mean(value.text, names);
-    source_.fail(value.span, fmt::format("there is no solver {}", quote(value.text)), hint.empty() ? fmt::format("the solvers are {}", fmt::join(names, ", ")) : hint);
+    source_.fail(value.span, fmt::format("there is no solver {}", quote(value.text)),
+                 hint.empty() ? fmt::format("the solvers are {}", fmt::join(names, ", ")) : hint);
   }
   scene.solver = value.text;
 }
@@ -113,7 +122,8 @@ void Reader::read_outputs(Scene& scene, const Value& value) {
   for (const Value& item : value.items) {
     as(Value::Kind::text, item, "an output", "write outputs = [\"energy\", \"reaction.NAME\"]");
     check_output(item);
-    const bool again = std::any_of(scene.outputs.begin(), scene.outputs.end(), [&](const Named& known) { return known.name == item.text; });
+    const bool again = std::any_of(scene.outputs.begin(), scene.outputs.end(),
+                                   [&](const Named& known) { return known.name == item.text; });
     if (again) {
       resolver_.warn(item.span, fmt::format("the output '{}' is asked for twice", item.text), "name it once");
       continue;
@@ -124,7 +134,9 @@ void Reader::read_outputs(Scene& scene, const Value& value) {
 
 void Reader::check_output(const Value& value) {
   const std::vector<std::string> parts = split_at_dots(value.text);
-  if (parts.size() == 1 && std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end()) return;
+  if (parts.size() == 1 &&
+      std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end())
+    return;
   if (parts[0] == "friction" || parts[0] == "mode" || (parts.size() == 2 && is_axis(parts[1], "omega"))) {
     not_yet(value.span, fmt::format("the output {}", quote(value.text)));
   }
@@ -135,28 +147,38 @@ void Reader::check_output(const Value& value) {
     if (symbol->kind == SymbolKind::coordinate && order <= 1) return;
     if (symbol->kind == SymbolKind::definition && order == 0) {
       if (!model_.definitions[symbol->index].vector) return;
-      source_.fail(value.span, fmt::format("the definition '{}' is a vector, and an output is a scalar", value.text), "define its components, such as dot(a, E1)");
+      source_.fail(value.span, fmt::format("the definition '{}' is a vector, and an output is a scalar", value.text),
+                   "define its components, such as dot(a, E1)");
     }
   }
-  if (parts.size() == 2 && symbol != nullptr && symbol->kind == SymbolKind::place && (is_axis(parts[1], "position") || is_axis(parts[1], "velocity"))) return;
+  if (parts.size() == 2 && symbol != nullptr && symbol->kind == SymbolKind::place &&
+      (is_axis(parts[1], "position") || is_axis(parts[1], "velocity")))
+    return;
   if (parts[0] == "reaction" && (parts.size() == 2 || parts.size() == 3)) {
     const Symbol* constraint = scope_.find(parts[1]);
     if (constraint != nullptr && constraint->kind == SymbolKind::constraint) {
       const std::size_t count = model_.constraints[constraint->index].psi.size();
       if (parts.size() == 2) return;
-      if (count > 1 && parts[2].size() == 1 && parts[2][0] >= '1' && static_cast<std::size_t>(parts[2][0] - '0') <= count) return;
-      source_.fail(value.span, fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
-                   count == 1 ? fmt::format("write reaction.{}", parts[1]) : fmt::format("write reaction.{0} or reaction.{0}.1 to reaction.{0}.{1}", parts[1], count));
+      if (count > 1 && parts[2].size() == 1 && parts[2][0] >= '1' &&
+          static_cast<std::size_t>(parts[2][0] - '0') <= count)
+        return;
+      source_.fail(
+          value.span, fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
+          count == 1 ? fmt::format("write reaction.{}", parts[1])
+                     : fmt::format("write reaction.{0} or reaction.{0}.1 to reaction.{0}.{1}", parts[1], count));
     }
   }
   for (const std::string& name : scope_.names(SymbolKind::constraint)) candidates.push_back("reaction." + name);
   for (const SymbolKind kind : {SymbolKind::definition, SymbolKind::coordinate}) {
     for (const std::string& name : scope_.names(kind)) candidates.push_back(name);
   }
-  for (const std::string& name : scope_.names(SymbolKind::place)) candidates.insert(candidates.end(), {name + ".position1", name + ".velocity1"});
+  for (const std::string& name : scope_.names(SymbolKind::place))
+    candidates.insert(candidates.end(), {name + ".position1", name + ".velocity1"});
   const std::string hint = did_you_mean(value.text, candidates);
   source_.fail(value.span, fmt::format("there is no output {}", quote(value.text)),
-               hint.empty() ? "outputs are energy, kinetic, potential, power, P.position1, P.velocity1, reaction.NAME, scalar definitions, coordinates, all" : hint);
+               hint.empty() ? "outputs are energy, kinetic, potential, power, P.position1, P.velocity1, reaction.NAME, "
+                              "scalar definitions, coordinates, all"
+                            : hint);
 }
 
 }  // namespace eomgen::model

@@ -7,14 +7,22 @@ namespace eomgen::model {
 
 const char* kind_name(SymbolKind kind) {
   switch (kind) {
-    case SymbolKind::parameter: return "a parameter";
-    case SymbolKind::function: return "a function of time";
-    case SymbolKind::input: return "an input";
-    case SymbolKind::coordinate: return "a coordinate";
-    case SymbolKind::definition: return "a definition";
-    case SymbolKind::place: return "a particle or point";
-    case SymbolKind::constraint: return "a constraint";
-    case SymbolKind::force: return "a force";
+    case SymbolKind::parameter:
+      return "a parameter";
+    case SymbolKind::function:
+      return "a function of time";
+    case SymbolKind::input:
+      return "an input";
+    case SymbolKind::coordinate:
+      return "a coordinate";
+    case SymbolKind::definition:
+      return "a definition";
+    case SymbolKind::place:
+      return "a particle or point";
+    case SymbolKind::constraint:
+      return "a constraint";
+    case SymbolKind::force:
+      return "a force";
   }
   return "a name";
 }
@@ -27,6 +35,10 @@ Symbol& Scope::declare(SymbolKind kind, const std::string& name, Span span, cons
     source_.fail(span, fmt::format("'{}' is declared twice", name),
                  fmt::format("it is {} on line {}; all names share one scope: choose another", kind_name(other->kind),
                              other->span.line));
+  }
+  if (order_.size() >= max_names) {
+    source_.fail(span, fmt::format("the model has more than {} names", max_names),
+                 "a model of this size cannot be handled");
   }
   Symbol symbol;
   symbol.kind = kind;

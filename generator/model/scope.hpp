@@ -13,6 +13,8 @@
 
 namespace eomgen::model {
 
+inline constexpr std::size_t max_names = 5000;
+
 /// An expression of the arena with all that is known of it.
 struct Typed {
   NodeId node = no_node;
@@ -34,7 +36,7 @@ struct Symbol {
   SymbolKind kind = SymbolKind::parameter;
   std::string name;
   Span span;
-  std::uint32_t index = 0;       // in the list of the model; parameters, functions and definitions get theirs when done
+  std::uint32_t index = 0;  // in the list of the model; parameters, functions and definitions get theirs when done
   State state = State::fresh;
   bool used = false;
   Typed typed;                   // when done: value of a parameter, position of a place, ...
@@ -42,7 +44,7 @@ struct Symbol {
 };
 
 class Scope {
- public:
+public:
   explicit Scope(const Source& source) : source_(source) {}
   /// Throws Error if the name is illegal or taken.
   Symbol& declare(SymbolKind kind, const std::string& name, Span span, const Entry* entry = nullptr);
@@ -52,7 +54,7 @@ class Scope {
   /// All symbols of one kind in the order of declaration.
   std::vector<Symbol*> all(SymbolKind kind);
 
- private:
+private:
   const Source& source_;
   std::map<std::string, Symbol, std::less<>> symbols_;
   std::vector<std::string> order_;

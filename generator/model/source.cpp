@@ -10,7 +10,9 @@ namespace {
 
 // Length of the UTF-8 sequence at `at`, 0 if it is none (overlong forms and surrogates are none).
 std::size_t utf8_length(const std::string& text, std::size_t at) {
-  const auto byte = [&](std::size_t i) -> unsigned { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u; };
+  const auto byte = [&](std::size_t i) -> unsigned {
+    return i < text.size() ? static_cast<unsigned char>(text[i]) : 0u;
+  };
   const unsigned first = byte(at);
   const auto follows = [&](std::size_t count) {
     for (std::size_t k = 1; k <= count; ++k) {
@@ -49,6 +51,11 @@ Source::Source(std::string file, std::string text) : file_(std::move(file)), tex
   check_bytes();
   for (std::size_t k = 0; k < starts_.size(); ++k) {
     const std::size_t end = k + 1 < starts_.size() ? starts_[k + 1] - 1 : text_.size();
+    if (end - starts_[k] > max_line_bytes) {
+      throw Error("model", Where{file_, static_cast<std::uint32_t>(k + 1), 1, 1, ""},
+                  fmt::format("the line has more than {} bytes", max_line_bytes),
+                  "a TOML text may have several lines: \"\"\"...\"\"\"");
+    }
     lines_.push_back(text_.substr(starts_[k], end - starts_[k]));
     if (!lines_.back().empty() && lines_.back().back() == '\r') lines_.back().pop_back();
   }

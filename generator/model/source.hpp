@@ -14,11 +14,13 @@ namespace eomgen::model {
 
 /// Largest model file, in bytes.
 inline constexpr std::size_t max_file_bytes = std::size_t{1} << 20;
+/// Longest line, in bytes.
+inline constexpr std::size_t max_line_bytes = 200000;
 /// Deepest nesting of TOML arrays and inline tables, and most parts of a dotted key.
 inline constexpr std::size_t max_toml_depth = 24;
 
 class Source {
- public:
+public:
   /// Throws Error if the text is too large, is not UTF-8, holds control characters, or is nested too deeply.
   Source(std::string file, std::string text);
 
@@ -33,7 +35,7 @@ class Source {
   Where where(const Span& span) const;
   [[noreturn]] void fail(const Span& span, std::string what, std::string remedy) const;
 
- private:
+private:
   void check_bytes();
   void check_nesting() const;
 

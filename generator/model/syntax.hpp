@@ -13,8 +13,8 @@
 
 namespace eomgen::model {
 
-inline constexpr std::size_t max_tokens = 20000;       // in one expression
-inline constexpr int max_nesting = 256;                // of parentheses, signs, powers and calls
+inline constexpr std::size_t max_tokens = 20000;  // in one expression
+inline constexpr int max_nesting = 256;           // of parentheses, signs, powers and calls
 inline constexpr std::size_t max_number_digits = 400;
 inline constexpr long max_number_exponent = 400;
 
@@ -49,20 +49,33 @@ struct ExactNumber {
 ExactNumber exact_number(std::string_view text);
 
 enum class SyntaxKind {
-  number, name, call, negate, add, subtract, multiply, divide, power, less, less_equal, greater, greater_equal,
+  number,
+  name,
+  call,
+  negate,
+  add,
+  subtract,
+  multiply,
+  divide,
+  power,
+  less,
+  less_equal,
+  greater,
+  greater_equal,
 };
 struct SyntaxNode {
   SyntaxKind kind = SyntaxKind::number;
   Span span;
-  Rational value = 0;                  // number
-  std::optional<MeasuredUnit> unit;    // number
-  std::vector<std::string> parts;      // name: dotted parts; call: the function
-  std::size_t primes = 0;              // name
+  Rational value = 0;                // number
+  std::optional<MeasuredUnit> unit;  // number
+  std::vector<std::string> parts;    // name: dotted parts; call: the function
+  std::size_t primes = 0;            // name
   std::vector<std::uint32_t> children;
 };
 struct Syntax {
   std::vector<SyntaxNode> nodes;
   std::uint32_t root = 0;
+  Span whole;                        // of the expression, without a unit
   std::optional<MeasuredUnit> unit;  // "9.81 m/s^2"
   Span unit_span;
 };

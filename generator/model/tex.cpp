@@ -12,12 +12,14 @@ namespace eomgen::model {
 namespace {
 
 constexpr std::array<std::string_view, 71> commands{
-    "alpha",   "beta",    "gamma",   "delta",    "epsilon", "varepsilon", "zeta",    "eta",      "theta",    "vartheta", "iota",   "kappa",
-    "lambda",  "mu",      "nu",      "xi",       "pi",      "varpi",      "rho",     "varrho",   "sigma",    "varsigma", "tau",    "upsilon",
-    "phi",     "varphi",  "chi",     "psi",      "omega",   "Gamma",      "Delta",   "Theta",    "Lambda",   "Xi",       "Pi",     "Sigma",
-    "Upsilon", "Phi",     "Psi",     "Omega",    "bar",     "hat",        "tilde",   "vec",      "check",    "breve",    "acute",  "grave",
-    "overline", "underline", "widehat", "widetilde", "mathrm", "mathbf",  "mathit",  "mathsf",   "mathcal",  "mathbb",   "mathfrak", "boldsymbol",
-    "text",    "ell",     "hbar",    "prime",    "star",    "ast",        "circ",    "parallel", "perp",     "infty",    "varkappa"};
+    "alpha",    "beta",   "gamma",   "delta",    "epsilon",   "varepsilon", "zeta",      "eta",     "theta",
+    "vartheta", "iota",   "kappa",   "lambda",   "mu",        "nu",         "xi",        "pi",      "varpi",
+    "rho",      "varrho", "sigma",   "varsigma", "tau",       "upsilon",    "phi",       "varphi",  "chi",
+    "psi",      "omega",  "Gamma",   "Delta",    "Theta",     "Lambda",     "Xi",        "Pi",      "Sigma",
+    "Upsilon",  "Phi",    "Psi",     "Omega",    "bar",       "hat",        "tilde",     "vec",     "check",
+    "breve",    "acute",  "grave",   "overline", "underline", "widehat",    "widetilde", "mathrm",  "mathbf",
+    "mathit",   "mathsf", "mathcal", "mathbb",   "mathfrak",  "boldsymbol", "text",      "ell",     "hbar",
+    "prime",    "star",   "ast",     "circ",     "parallel",  "perp",       "infty",     "varkappa"};
 
 }  // namespace
 
@@ -44,7 +46,8 @@ std::optional<std::string> illegal_tex(std::string_view tex) {
     }
     if (c == '{') ++depth;
     if (c == '}' && --depth < 0) return "a '}' has no '{'";
-    const bool fine = std::isalnum(static_cast<unsigned char>(c)) != 0 || std::string_view("_^{} ,'*+-").find(c) != std::string_view::npos;
+    const bool fine = std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+                      std::string_view("_^{} ,'*+-").find(c) != std::string_view::npos;
     if (!fine) return fmt::format("the character {} is not allowed", quote(std::string_view(&c, 1)));
   }
   if (depth != 0) return "a '{' is not closed";

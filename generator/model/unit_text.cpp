@@ -49,7 +49,8 @@ std::string base_text(const Dimension& dimension) {
 }  // namespace
 
 std::string text_of(const Dimension& dimension) {
-  for (const char* familiar : {"N", "J", "W", "N/m", "N*s/m", "N*s", "N*m*s", "N*m^2", "Pa", "Pa*s", "N/m^3", "W/m^2"}) {
+  for (const char* familiar :
+       {"N", "J", "W", "N/m", "N*s/m", "N*s", "N*m*s", "N*m^2", "Pa", "Pa*s", "N/m^3", "W/m^2"}) {
     if (same(dimension, dimension_of(familiar))) return familiar;
   }
   return base_text(dimension);

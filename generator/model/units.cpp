@@ -68,9 +68,10 @@ struct Prefix {
   std::string_view name;
   int exponent;
 };
-constexpr std::array<Prefix, 20> prefixes{{{"da", 1}, {"Y", 24}, {"Z", 21}, {"E", 18}, {"P", 15}, {"T", 12}, {"G", 9},
-                                           {"M", 6}, {"k", 3}, {"h", 2}, {"d", -1}, {"c", -2}, {"m", -3}, {"u", -6},
-                                           {"n", -9}, {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}}};
+constexpr std::array<Prefix, 20> prefixes{{{"da", 1},  {"Y", 24},  {"Z", 21},  {"E", 18},  {"P", 15},
+                                           {"T", 12},  {"G", 9},   {"M", 6},   {"k", 3},   {"h", 2},
+                                           {"d", -1},  {"c", -2},  {"m", -3},  {"u", -6},  {"n", -9},
+                                           {"p", -12}, {"f", -15}, {"a", -18}, {"z", -21}, {"y", -24}}};
 
 Rational ten_to(int exponent) { return cln::expt(Rational(10), cln::cl_I(exponent)); }
 
@@ -97,7 +98,7 @@ std::optional<MeasuredUnit> single_unit(std::string_view name) {
 
 // unit = factor { ("*"|"/") factor }, factor = (name | "(" unit ")") [ "^" ["-"|"+"] digits ]
 class UnitParser {
- public:
+public:
   explicit UnitParser(std::string_view text) : text_(text) {}
 
   std::optional<MeasuredUnit> all() {
@@ -107,14 +108,15 @@ class UnitParser {
     return result;
   }
 
- private:
+private:
   std::optional<MeasuredUnit> unit(int depth) {
     auto result = factor(depth);
     while (result && at_ < text_.size() && (text_[at_] == '*' || text_[at_] == '/')) {
       const bool over = text_[at_++] == '/';
       const auto next = factor(depth);
       if (!next) return std::nullopt;
-      result->dimension = over ? quotient(result->dimension, next->dimension) : product(result->dimension, next->dimension);
+      result->dimension =
+          over ? quotient(result->dimension, next->dimension) : product(result->dimension, next->dimension);
       result->scale = over ? result->scale / next->scale : result->scale * next->scale;
       result->pi_power += over ? -next->pi_power : next->pi_power;
     }
