@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "symbolic/evaluate.hpp"
+#include "verify/motion.hpp"
 #include "verify/plain_forces.hpp"
 #include "verify/system_values.hpp"
 
@@ -91,7 +92,8 @@ void compare_energies(const EquationSystem& s, const SystemValues& v, const Judg
   tally.note("energies of " + name, judge_name, false,
              worst({relative(v.kinetic - e.kinetic, e.scale), relative(v.potential - e.potential, e.scale),
                     relative(v.energy - e.kinetic - e.potential, e.scale)}));
-  const Real scale = e.rate_scale + cln::abs(v.power);
+  Real scale = e.rate_scale + cln::abs(v.power);  // and the power of every term of the equations
+  for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
   tally.note("power of " + name, judge_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
   const Real rate = energy_rate(s, judge, v, tally.digits());
   tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale));
@@ -148,18 +150,34 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
   }
 }
 
-/// Each residual relative to the sum of the absolute values of its terms.
-double reading_residual(const ReadingForm& form, const symbolic::Dag& dag, const SystemValues& v, const Judge& judge) {
-  Lookup lookup(judge, v.state);
-  lookup.lambda = v.lambda;
+/// The largest residual, each relative to the sum of the absolute values of its terms.
+double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Judge& judge) {
   double largest = 0;
   for (const Ref residual : form.residuals) {
     std::vector<Ref> roots{residual};
     top_level_terms(dag, residual, roots);
-    const std::vector<Real> value = symbolic::evaluate(dag, roots, lookup, judge.digits());
+    const std::vector<Real> value = symbolic::evaluate(dag, roots, at, judge.digits());
     Real scale = 0;
     for (std::size_t i = 1; i < value.size(); ++i) scale = scale + cln::abs(value[i]);
     largest = std::max(largest, relative(value[0], scale));
+  }
+  return largest;
+}
+
+/// Residuals of the reading form for the motion by the judge. It also has to notice when an acceleration is wrong:
+/// 0 = 0 holds for every motion.
+double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mechanics, const Motion& motion,
+                        const Judge& judge, bool try_wrong_ones) {
+  Lookup lookup(judge, motion.state);
+  lookup.lambda = motion.lambda;
+  const double largest = largest_residual(form, *mechanics.dag, lookup, judge);
+  for (const std::uint32_t i : mechanics.free) {
+    if (!try_wrong_ones) break;
+    const Real right = lookup.state.qddot[i];
+    lookup.state.qddot[i] = 2 * right + 1;
+    const bool noticed = largest_residual(form, *mechanics.dag, lookup, judge) > 1e-9;
+    lookup.state.qddot[i] = right;
+    if (!noticed) return 1;
   }
   return largest;
 }
@@ -240,11 +258,14 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
     for (std::size_t k = 0; k < i; ++k)
       tally.note(name_of(subjects.systems[k]), name_of(s), true, difference(values[k], values[i]));
   }
+  if (!subjects.reading.empty()) {
+    const Motion motion = motion_at(judge, state);
+    for (const ReadingForm& form : subjects.reading)
+      tally.note(form.name, judge_name, false, reading_residual(form, mechanics, motion, judge, tally.points() == 0));
+  }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
   const SystemValues& v = values.front();
-  for (const ReadingForm& form : subjects.reading)
-    tally.note(form.name, name_of(first), false, reading_residual(form, *mechanics.dag, v, judge));
   for (const ProgramForm& form : subjects.programs) {
     const std::vector<Real> x = state_vector(first, v.state);
     const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs);

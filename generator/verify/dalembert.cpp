@@ -14,6 +14,9 @@ namespace {
 // such as ddt(d_ddot) two more.
 constexpr std::size_t function_orders = 4;
 
+/// Size of a vector, as the sum of its components' sizes.
+Real length(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()); }
+
 /// All mixed slopes of `jet` on the levels 1 .. top: the top-th time derivative.
 Jet nested_slope(Jet jet, unsigned top) {
   for (unsigned level = top; level >= 1; --level) jet = jet.slope(level, 0);
@@ -26,9 +29,9 @@ Vector slope(const Vector& v, unsigned level, std::size_t i) {
 
 }  // namespace
 
-void Residual::add(const Real& term) {
+void Residual::add(const Real& term, const Real& size) {
   value = value + term;
-  scale = scale + cln::abs(term);
+  scale = scale + size;
 }
 
 double relative(const Real& difference, const Real& scale) {
@@ -119,31 +122,54 @@ Real Judge::value(model::NodeId expression, const State& state) const {
 
 namespace {
 
-/// sum over particles of d(m v)/dt . dr/dq_i, term by term.
-void add_inertia(const model::Model& model, Interpreter& now, std::vector<Residual>& sums) {
+/// sum over particles of d(m v)/dt . dr/dq_i. In curvilinear coordinates d(m v)/dt is itself a sum that may cancel
+/// (of a free particle, to nothing), so that the size of a term is that of its factors:
+/// |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all the rest|).
+void add_inertia(const model::Model& model, const State& state, Interpreter& now, std::vector<Residual>& sums) {
   Interpreter& by_q = now.by_coordinates(false);
   Interpreter& later = now.along_time();
   Interpreter& twice = later.along_time();
+  const std::size_t n = sums.size();
   for (const model::Particle& particle : model.particles) {
     const Vector v = slope(twice.place(particle.place), twice.level(), 0);  // v + a eps
-    const Vector momentum = later.scalar(particle.mass) * v;
-    const Vector rate = slope(momentum, later.level(), 0);
+    const Jet mass = later.scalar(particle.mass);
+    const Vector rate = slope(mass * v, later.level(), 0);
     const Vector r = by_q.place(particle.place);
-    for (std::size_t i = 0; i < sums.size(); ++i)
-      for (std::size_t k = 0; k < 3; ++k) sums[i].add((rate[k] * r[k].slope(by_q.level(), i)).real());
+    Vector rest = rate;
+    Real size = 0;
+    std::vector<Vector> tangent;
+    for (std::size_t i = 0; i < n; ++i) {
+      tangent.push_back(slope(r, by_q.level(), i));
+      const Vector part = mass.value(later.level()) * Jet(state.qddot[i]) * tangent.back();
+      rest = rest - part;
+      size = size + length(part);
+    }
+    size = size + length(rest);
+    for (std::size_t i = 0; i < n; ++i) sums[i].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
   }
 }
 
-/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model gives as such.
-void add_energies(const model::Model& model, Interpreter& now, std::vector<Residual>& sums) {
+/// d(dT/dqdot_i)/dt along the path.
+std::vector<Real> momentum_rates(const model::Model& model, Interpreter& now, std::size_t n) {
+  Interpreter& later = now.along_time();
+  Interpreter& varied = later.by_coordinates(true);
+  const Jet T = varied.scalar(model.energy.kinetic);
+  std::vector<Real> rates;
+  for (std::size_t i = 0; i < n; ++i) rates.push_back(T.slope(varied.level(), n + i).slope(later.level(), 0).real());
+  return rates;
+}
+
+/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model gives as such. The size of the first term is
+/// that of its part in qddot and that of the rest.
+void add_energies(const model::Model& model, Interpreter& now, Interpreter& unaccelerated, std::vector<Residual>& sums) {
   const std::size_t n = sums.size();
   if (model.energy.kinetic != model::no_node) {
-    Interpreter& later = now.along_time();
-    Interpreter& varied = later.by_coordinates(true);
-    const Jet T = varied.scalar(model.energy.kinetic);
+    const std::vector<Real> rate = momentum_rates(model, now, n), rest = momentum_rates(model, unaccelerated, n);
+    Interpreter& by_q = now.by_coordinates(false);
+    const Jet T = by_q.scalar(model.energy.kinetic);
     for (std::size_t i = 0; i < n; ++i) {
-      sums[i].add(T.slope(varied.level(), n + i).slope(later.level(), 0).real());
-      sums[i].add((-T.slope(varied.level(), i)).real());
+      sums[i].add(rate[i], cln::abs(rate[i] - rest[i]) + cln::abs(rest[i]));
+      sums[i].add(-T.slope(by_q.level(), i).real());
     }
   }
   if (model.energy.potential != model::no_node) {
@@ -158,8 +184,11 @@ void add_energies(const model::Model& model, Interpreter& now, std::vector<Resid
 std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin) const {
   Interpreter now = interpreter(state, margin);
   std::vector<Residual> sums(state.q.size());
-  add_inertia(model_, now, sums);
-  add_energies(model_, now, sums);
+  State coasting = state;
+  coasting.qddot.assign(state.q.size(), Real(0));
+  Interpreter unaccelerated = interpreter(coasting);
+  add_inertia(model_, state, now, sums);
+  add_energies(model_, now, unaccelerated, sums);
   subtract_forces(model_, precision_, now, sums);
   Interpreter& by_q = now.by_coordinates(false);
   for (std::size_t k = 0; k < psi_.size(); ++k) {

@@ -22,11 +22,12 @@ struct State {
   std::vector<Real> parameters, inputs;
 };
 
-/// A sum that should vanish, and the sum of the absolute values of its terms.
+/// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.
 struct Residual {
   Real value = 0;
   Real scale = 0;
-  void add(const Real& term);
+  void add(const Real& term) { add(term, cln::abs(term)); }
+  void add(const Real& term, const Real& size);
   double relative() const;  // |value| / scale; 0 where both are 0
 };
 

@@ -22,7 +22,7 @@ Real inverse_magnitude(const Real& x) {
 struct Elimination {
   std::size_t n;
   std::vector<Real>& A;
-  std::vector<Real>& b;
+  std::vector<std::vector<Real>>& B;
   std::vector<std::size_t> column;  // of the unknown that sits in each place
   std::vector<Real> column_scale;
 
@@ -34,7 +34,7 @@ struct Elimination {
       for (std::size_t k = 0; k < n; ++k) largest = cln::max(largest, cln::abs(at(i, k)));
       const Real s = inverse_magnitude(largest);
       for (std::size_t k = 0; k < n; ++k) at(i, k) = at(i, k) * s;
-      b[i] = b[i] * s;
+      for (std::vector<Real>& b : B) b[i] = b[i] * s;
     }
     for (std::size_t k = 0; k < n; ++k) {
       Real largest = 0;
@@ -50,7 +50,7 @@ struct Elimination {
         if (cln::abs(at(i, k)) > cln::abs(at(row, col))) row = i, col = k;
     if (row != step) {
       for (std::size_t k = 0; k < n; ++k) std::swap(at(row, k), at(step, k));
-      std::swap(b[row], b[step]);
+      for (std::vector<Real>& b : B) std::swap(b[row], b[step]);
     }
     if (col != step) {
       for (std::size_t i = 0; i < n; ++i) std::swap(at(i, col), at(i, step));
@@ -62,16 +62,26 @@ struct Elimination {
       if (cln::zerop(at(i, step))) continue;
       const Real factor = at(i, step) / at(step, step);
       for (std::size_t k = step + 1; k < n; ++k) at(i, k) = at(i, k) - factor * at(step, k);
-      b[i] = b[i] - factor * b[step];
+      for (std::vector<Real>& b : B) b[i] = b[i] - factor * b[step];
     }
+  }
+  std::vector<Real> substitute_back(const std::vector<Real>& b) {
+    std::vector<Real> y(n), x(n);
+    for (std::size_t i = n; i-- > 0;) {
+      Real sum = b[i];
+      for (std::size_t k = i + 1; k < n; ++k) sum = sum - at(i, k) * y[k];
+      y[i] = sum / at(i, i);
+    }
+    for (std::size_t i = 0; i < n; ++i) x[column[i]] = y[i] * column_scale[column[i]];
+    return x;
   }
 };
 
 }  // namespace
 
-Solution solve(std::vector<Real> A, std::vector<Real> b) {
-  const std::size_t n = b.size();
-  Elimination e{n, A, b, std::vector<std::size_t>(n), {}};
+Solution solve(std::vector<Real> A, std::vector<std::vector<Real>> B) {
+  const std::size_t n = B.front().size();
+  Elimination e{n, A, B, std::vector<std::size_t>(n), {}};
   std::iota(e.column.begin(), e.column.end(), std::size_t{0});
   e.equilibrate();
   Solution solution;
@@ -88,14 +98,7 @@ Solution solve(std::vector<Real> A, std::vector<Real> b) {
     e.eliminate(step);
   }
   if (n > 0) solution.condition = largest / smallest;
-  std::vector<Real> y(n);
-  for (std::size_t i = n; i-- > 0;) {
-    Real sum = b[i];
-    for (std::size_t k = i + 1; k < n; ++k) sum = sum - e.at(i, k) * y[k];
-    y[i] = sum / e.at(i, i);
-  }
-  solution.x.resize(n);
-  for (std::size_t i = 0; i < n; ++i) solution.x[e.column[i]] = y[i] * e.column_scale[e.column[i]];
+  for (const std::vector<Real>& b : B) solution.columns.push_back(e.substitute_back(b));
   return solution;
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/plain_forces.hpp"
 
+#include <cln/real.h>
+
 #include "verify/uses.hpp"
 
 namespace eomgen::verify {
@@ -85,9 +87,16 @@ class Forces {
   }
 
  private:
-  /// F . dr/dq_i
+  /// F . dr/dq_i; the size of the term is that of its factors
   void apply(const Vector& force, const Vector& r) {
-    for (std::size_t k = 0; k < 3; ++k) work(force[k], r[k]);
+    Real size = 0;
+    for (const Jet& component : force) size = size + cln::abs(component.real());
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const Vector tangent = slope(r, by_q_.level(), i);
+      Real length = 0;
+      for (const Jet& component : tangent) length = length + cln::abs(component.real());
+      sums_[i].add(-dot(force, tangent).real(), size * length);
+    }
   }
   /// F dx/dq_i of one component
   void work(const Jet& force, const Jet& x) {

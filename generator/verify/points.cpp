@@ -173,10 +173,10 @@ std::vector<Real> Points::correction(const State& state, const std::vector<Real>
         gram[i * rows + k] = gram[i * rows + k] + c.gradient[i][j] * weight[j] * c.gradient[k][j];
   }
   const Solution y = solve(std::move(gram), std::move(right));
-  if (y.x.empty() || y.condition > singular_constraints) throw Unfit("the constraints lose rank");
+  if (!y.exists() || y.condition > singular_constraints) throw Unfit("the constraints lose rank");
   std::vector<Real> change(n, Real(0));
   for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t i = 0; i < rows; ++i) change[j] = change[j] + weight[j] * c.gradient[i][j] * y.x[i];
+    for (std::size_t i = 0; i < rows; ++i) change[j] = change[j] + weight[j] * c.gradient[i][j] * y.x()[i];
   return change;
 }
 

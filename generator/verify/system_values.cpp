@@ -22,7 +22,7 @@ namespace {
 constexpr double worst_condition = 1e8;
 
 struct Solved {
-  std::vector<Real> matrix;  // [M A^T; A 0], row-major
+  std::vector<std::vector<Real>> inverse;  // columns of [M A^T; A 0]^-1, where asked for
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
   double condition = 1;
@@ -34,7 +34,8 @@ std::vector<Ref> concatenate(std::initializer_list<const std::vector<Ref>*> list
   return all;
 }
 
-Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits) {
+/// [M A^T; A 0][qddot; -lambda] = [f; -gamma]
+Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, bool with_inverse) {
   const std::vector<Ref> roots = concatenate({&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma});
   const std::vector<Real> value = symbolic::evaluate(*s.dag, roots, lookup, digits);
   auto next = value.begin();
@@ -47,22 +48,28 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits) {
   const std::vector<Real> M = take(n * n), f = take(n);
   Solved out;
   out.psi = take(m), out.A = take(m * n), out.b = take(m), out.gamma = take(m);
-  out.matrix.assign(size * size, Real(0));
+  std::vector<Real> matrix(size * size, Real(0));
   std::vector<Real> right = f;
   for (std::size_t i = 0; i < n; ++i)
-    for (std::size_t k = 0; k < n; ++k) out.matrix[i * size + k] = M[i * n + k];
+    for (std::size_t k = 0; k < n; ++k) matrix[i * size + k] = M[i * n + k];
   for (std::size_t k = 0; k < m; ++k) {
     for (std::size_t i = 0; i < n; ++i) {
-      out.matrix[i * size + n + k] = out.A[k * n + i];
-      out.matrix[(n + k) * size + i] = out.A[k * n + i];
+      matrix[i * size + n + k] = out.A[k * n + i];
+      matrix[(n + k) * size + i] = out.A[k * n + i];
     }
     right.push_back(-out.gamma[k]);
   }
-  const Solution solution = solve(out.matrix, right);
+  std::vector<std::vector<Real>> columns{right};
+  for (std::size_t i = 0; i < size && with_inverse; ++i) {
+    columns.emplace_back(size, Real(0));
+    columns.back()[i] = 1;
+  }
+  Solution solution = solve(std::move(matrix), std::move(columns));
   out.condition = solution.condition;
-  if (solution.x.empty() || solution.condition > worst_condition) throw Singular("the mass matrix is nearly singular");
-  out.qddot.assign(solution.x.begin(), solution.x.begin() + static_cast<std::ptrdiff_t>(n));
-  for (std::size_t k = 0; k < m; ++k) out.lambda.push_back(-solution.x[n + k]);
+  if (!solution.exists() || solution.condition > worst_condition) throw Singular("the mass matrix is nearly singular");
+  for (std::size_t i = 0; i < n; ++i) out.qddot.push_back(solution.x()[i]);
+  for (std::size_t k = 0; k < m; ++k) out.lambda.push_back(-solution.x()[n + k]);
+  out.inverse.assign(solution.columns.begin() + 1, solution.columns.end());
   return out;
 }
 
@@ -78,22 +85,16 @@ void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& 
     right.push_back(-c.psi_ddot[row.constraint]);
   }
   const Solution solution = solve(std::move(matrix), std::move(right));
-  if (solution.x.empty()) throw Singular("the constraints lose rank");
-  for (std::size_t i = 0; i < count; ++i) state.qddot[mechanics.fixed[i].coordinate] = solution.x[i];
+  if (!solution.exists()) throw Singular("the constraints lose rank");
+  for (std::size_t i = 0; i < count; ++i) state.qddot[mechanics.fixed[i].coordinate] = solution.x()[i];
 }
 
-/// sum_k |K^-1|_ik scale_k in binary64, for the unknowns of the solve.
+/// sum_k |K^-1|_ik scale_k for the unknowns of the solve.
 std::vector<double> propagate(const Solved& solved, const std::vector<double>& row_scale) {
-  const std::size_t size = row_scale.size();
-  std::vector<Real> rough;
-  for (const Real& x : solved.matrix) rough.emplace_back(cln::cl_DF(cln::double_approx(x)));
-  std::vector<double> scale(size, 0.0);
-  for (std::size_t k = 0; k < size; ++k) {
-    std::vector<Real> unit(size, Real(cln::cl_DF(0.0)));
-    unit[k] = cln::cl_DF(row_scale[k]);
-    const Solution column = solve(rough, std::move(unit));
-    for (std::size_t i = 0; i < column.x.size(); ++i) scale[i] += std::fabs(cln::double_approx(column.x[i]));
-  }
+  std::vector<double> scale(row_scale.size(), 0.0);
+  for (std::size_t k = 0; k < scale.size(); ++k)
+    for (std::size_t i = 0; i < scale.size(); ++i)
+      scale[i] += std::fabs(cln::double_approx(solved.inverse[k][i])) * row_scale[k];
   return scale;
 }
 
@@ -144,7 +145,7 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
 SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Judge& judge,
                        const State& state) {
   Lookup lookup(judge, state);
-  const Solved solved = solve_system(s, lookup, judge.digits());
+  const Solved solved = solve_system(s, lookup, judge.digits(), true);
   for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];
   for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
   complete_accelerations(mechanics, judge, lookup.state);
@@ -167,7 +168,7 @@ SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mech
 }
 
 std::vector<Real> right_hand_side(const EquationSystem& s, const Judge& judge, const State& state) {
-  const Solved solved = solve_system(s, Lookup(judge, state), judge.digits());
+  const Solved solved = solve_system(s, Lookup(judge, state), judge.digits(), false);
   std::vector<Real> dx;
   for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
   dx.insert(dx.end(), solved.qddot.begin(), solved.qddot.end());

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/motion.hpp"
+
+#include "verify/linear_solve.hpp"
+
+namespace eomgen::verify {
+
+Motion motion_at(const Judge& judge, const State& at) {
+  Motion motion{at, {}};
+  State& s = motion.state;
+  const std::size_t n = s.q.size(), m = judge.constraints().size(), size = n + m;
+  const std::vector<Real> no_forces(m, Real(0));
+  s.qddot.assign(n, Real(0));
+  const std::vector<Residual> rest = judge.dalembert(s, no_forces);
+  const ConstraintValues c = judge.constraint_values(s);
+  std::vector<Real> matrix(size * size, Real(0)), right(size, Real(0));
+  for (std::size_t j = 0; j < n; ++j) {
+    s.qddot[j] = 1;
+    const std::vector<Residual> column = judge.dalembert(s, no_forces);
+    s.qddot[j] = 0;
+    for (std::size_t i = 0; i < n; ++i) matrix[i * size + j] = column[i].value - rest[i].value;
+    right[j] = -rest[j].value;
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    right[n + k] = -c.psi_ddot[k];
+    for (std::size_t i = 0; i < n; ++i) {
+      matrix[i * size + n + k] = -c.gradient[k][i];
+      matrix[(n + k) * size + i] = c.gradient[k][i];
+    }
+  }
+  const Solution solution = solve(std::move(matrix), std::move(right));
+  if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
+  for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
+  for (std::size_t k = 0; k < m; ++k) motion.lambda.push_back(solution.x()[n + k]);
+  return motion;
+}
+
+}  // namespace eomgen::verify

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The motion by the judge alone: accelerations and multipliers for which d'Alembert's residuals and psi_ddot vanish.
+#pragma once
+
+#include "verify/dalembert.hpp"
+
+namespace eomgen::verify {
+
+struct Motion {
+  State state;               // with qddot
+  std::vector<Real> lambda;  // per scalar constraint
+};
+
+/// The residuals are affine in qddot and lambda: N + 1 evaluations and one solve. Throws Singular where qddot and
+/// lambda are not determined.
+Motion motion_at(const Judge& judge, const State& state);
+
+}  // namespace eomgen::verify
