@@ -42,7 +42,12 @@ const std::map<std::string, json>& right_documents() {
           {"singular", {{{"set", "sin(phi) = 0"}, {"approach", "II"}}}},
           {"units", "checked"},
           {"warnings", json::array()}}},
-        {"derive", {{"format", 1}, {"approach", "I"}, {"equations", {equation}}, {"reactions", {reaction}}}},
+        {"derive",
+         {{"format", 1},
+          {"approach", "I"},
+          {"equations", {equation}},
+          {"reactions", {reaction}},
+          {"constraints", {formula}}}},
         {"verify",
          {{"format", 1},
           {"routes", {{{"a", "lagrange"}, {"b", "judge"}, {"shares_code", false}, {"max_relative_difference", 1e-48}}}},
@@ -96,8 +101,7 @@ TEST_CASE("every schema of docs/schema takes a right document and refuses it wit
       without.erase(key);
       refused += support::schema_errors(without, schema).empty() ? 0 : 1;
     }
-    // Keys that a document may do without, among those above: equations, reactions, error_estimate.
-    const std::size_t free = schema == "derive" ? 2 : schema == "run" ? 1 : 0;
+    const std::size_t free = schema == "run" || schema == "derive" ? 1 : 0;  // error_estimate, constraints
     CHECK(refused == right.size() - free);
   }
 }
@@ -136,6 +140,7 @@ TEST_CASE("wrong values are refused, each at its place") {
       {"derive", "/approach", "auto"},
       {"derive", "/equations/0/latex", ""},
       {"derive", "/equations/0", "m*x_ddot = 0"},
+      {"derive", "/constraints/0/text", ""},
       {"verify", "/verdict", "told"},
       {"verify", "/points", 0},
       {"verify", "/routes", json::array()},
@@ -145,6 +150,7 @@ TEST_CASE("wrong values are refused, each at its place") {
       {"emit", "/route", "fastest"},
       {"emit", "/operations/mul", -3},
       {"emit", "/operations", json::object()},
+      {"emit", "/tried/0/operations", 14},
       {"emit", "/seconds/derive", "0.1"},
       {"run", "/solver", "auto"},
       {"run", "/outcome", "ok"},
@@ -170,6 +176,11 @@ TEST_CASE("a run that failed numerically may hold values that are not finite") {
   json failed = changed("run", "/final/x", nullptr);
   failed["outcome"] = "not_finite";
   CHECK(support::schema_errors(failed, "run").empty());
+}
+
+TEST_CASE("emit: a document needs no counts, sources do") {
+  CHECK(support::schema_errors({{"format", 1}, {"files", {"P7.tex"}}}, "emit").empty());
+  CHECK_FALSE(support::schema_errors({{"format", 1}, {"files", {"code/P7.c"}}}, "emit").empty());
 }
 
 TEST_CASE("a schema that is not there is an error, not a pass") {
