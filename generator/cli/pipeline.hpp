@@ -10,7 +10,7 @@
 #include "emit/context.hpp"
 #include "emit/targets.hpp"
 #include "mechanics/mechanics.hpp"
-#include "program/build_program.hpp"
+#include "program/build.hpp"
 #include "run/scene.hpp"
 #include "verify/certificate.hpp"
 

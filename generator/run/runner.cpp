@@ -113,7 +113,7 @@ void estimate_error(const RunRequest& request, const eom::Result& first, const e
   }
   Integration again(request, result.solver);
   const eom::ErrorEstimate estimate =
-      eom::estimate_error(order, first, options, [&](const eom::Options& tighter) { return again.run(tighter, {}); });
+      eom::estimate_error(order, request.scene.t0, first, options, [&](const eom::Options& tighter) { return again.run(tighter, {}); });
   double largest = 0;
   for (std::size_t i = 0; i < request.state_names.size(); ++i) {
     result.error_estimate.emplace_back(request.state_names[i], estimate.x[i]);

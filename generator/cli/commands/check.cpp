@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands/commands.hpp"
+#include "cli/locate.hpp"
+#include "derive/conservative.hpp"
+#include "derive/conserved.hpp"
+#include "derive/routes.hpp"
+#include "print/render.hpp"
+#include "reading/reading.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+json constraints_of(const mechanics::Mechanics& m) {
+  json result = json::array();
+  for (const mechanics::Constraint& c : m.constraints) {
+    std::string use = "keeps a multiplier";
+    for (const mechanics::FixedCoordinate& fixed : m.fixed) {
+      if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
+    }
+    // A holonomic constraint is its own integral; those that repeat others are refused before this.
+    result.push_back({{"name", c.label}, {"kind", "holonomic"}, {"integrable", "yes"},
+                      {"integral", print::expression(m, c.psi).text + " = 0"}, {"redundant", false}, {"use", use}});
+  }
+  return result;
+}
+
+json forces_of(mechanics::Mechanics& m) {
+  json result = json::array();
+  for (const derive::ForceClass& force : derive::classify_forces(m)) {
+    const json potential = force.has_potential ? json(print::expression(m, force.potential).text) : json(nullptr);
+    result.push_back({{"name", force.name}, {"conservative", derive::name(force.conservative)}, {"potential", potential},
+                      {"reason", force.reason}});
+  }
+  return result;
+}
+
+json singular_of(const mechanics::Mechanics& m) {
+  // Told per approach: a set that names a fixed coordinate is none of Approach II.
+  std::map<std::string, std::string> sets;
+  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+    const reading::ReadingForm form = reading::derive_reading(m, approach);
+    for (const print::Item& item : print::render(m, form, {"singular"})) {
+      const auto [found, inserted] = sets.emplace(item.text, system::name(approach));
+      if (!inserted) found->second = "both";
+    }
+  }
+  json result = json::array();
+  for (const auto& [set, approach] : sets) result.push_back({{"set", set}, {"approach", approach}});
+  return result;
+}
+
+json examine(const model::Model& model) {
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  system::EquationSystem system = derive::routes().front().derive(m, system::Approach::two);
+  json coordinates = json::array(), parameters = json::array(), conserved = json::array(), warnings = json::array();
+  bool every_unit = true;
+  for (std::uint32_t i = 0; i < model.coordinates.size(); ++i) {
+    const model::Coordinate& c = model.coordinates[i];
+    coordinates.push_back({{"name", c.name}, {"unit", c.unit.text}, {"eliminated", m.is_eliminated(i)}});
+    every_unit = every_unit && c.unit.dimension.has_value();
+  }
+  for (const model::Parameter& p : model.parameters) {
+    parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", print::expression(m, m.parameter_value[parameters.size()]).text}});
+    every_unit = every_unit && p.unit.dimension.has_value();
+  }
+  for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
+    conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", print::expression(m, c.expression).text}});
+  }
+  for (const Warning& w : model.warnings) {
+    warnings.push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
+  }
+  return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
+          {"dof", static_cast<long>(m.free.size()) - static_cast<long>(m.active.size())}, {"parameters", parameters},
+          {"constraints", constraints_of(m)}, {"forces", forces_of(m)}, {"conserved", conserved},
+          {"singular", singular_of(m)},
+          {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
+}
+
+std::string text(const json& value) { return value.get<std::string>(); }
+
+void print_readable(const json& found) {
+  const auto heading = [](const char* name) { fmt::print("\n{}\n", name); };
+  fmt::print("{}{}{}\n", text(found["model"]), text(found["title"]).empty() ? "" : ": ", text(found["title"]));
+  heading("coordinates");
+  for (const json& c : found["coordinates"]) {
+    fmt::print("  {:<20} {}{}\n", text(c["name"]), text(c["unit"]), c["eliminated"].get<bool>() ? "  (fixed by a constraint)" : "");
+  }
+  fmt::print("  {} degrees of freedom\n", found["dof"].get<long>());
+  heading("parameters");
+  for (const json& p : found["parameters"]) fmt::print("  {:<20} {} {}\n", text(p["name"]), text(p["value"]), text(p["unit"]));
+  if (!found["constraints"].empty()) heading("constraints");
+  for (const json& c : found["constraints"]) {
+    fmt::print("  {:<20} {}   ({}, {})\n", text(c["name"]), text(c["integral"]), text(c["kind"]), text(c["use"]));
+  }
+  if (!found["forces"].empty()) heading("forces");
+  for (const json& f : found["forces"]) {
+    fmt::print("  {:<20} conservative: {}", text(f["name"]), text(f["conservative"]));
+    if (!f["potential"].is_null()) fmt::print(", U = {}", text(f["potential"]));
+    if (!text(f["reason"]).empty()) fmt::print(" ({})", text(f["reason"]));
+    fmt::print("\n");
+  }
+  if (!found["conserved"].empty()) heading("conserved");
+  for (const json& c : found["conserved"]) fmt::print("  {:<20} {} = {}\n", text(c["name"]), text(c["title"]), text(c["expression"]));
+  if (!found["singular"].empty()) heading("singular sets");
+  for (const json& s : found["singular"]) fmt::print("  {:<20} (approach {})\n", text(s["set"]), text(s["approach"]));
+  fmt::print("\nunits: {}\n", text(found["units"]));
+}
+
+}  // namespace
+
+Execute declare_check(CLI::App& app) {
+  auto name = std::make_shared<std::string>();
+  app.add_option("MODEL", *name, "a model file, or the name of one in models/")->required();
+  return [name](const Common& common) {
+    const model::Model model = load_model(*name);
+    const json found = examine(model);
+    if (common.json) {
+      fmt::print("{}\n", found.dump(2));
+    } else {
+      print_readable(found);
+    }
+    return 0;
+  };
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/code.hpp"
+#include "cli/commands/commands.hpp"
+#include "cli/operations.hpp"
+#include "cli/pipeline.hpp"
+#include "emit/write_files.hpp"
+#include "print/latex_document.hpp"
+#include "reading/reading.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct Options {
+  std::string model, folder, target = "cpp", approach = "auto", form = "auto";
+  std::vector<std::string> with, fix, outputs;
+};
+
+program::Request request_of(const Options& options, Derived& derived, const run::Scene& scene) {
+  program::Request request;
+  for (const std::string& name : options.with) {
+    if (name == "energy") {
+      request.outputs.push_back("energy");
+    } else if (name == "outputs") {
+      request.outputs.insert(request.outputs.end(), scene.outputs.begin(), scene.outputs.end());
+    } else {
+      request.with.push_back(name);
+    }
+  }
+  std::vector<model::Named> wanted;
+  for (const std::string& name : options.outputs) wanted.push_back({name, {}});
+  for (const std::string& name : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted)) {
+    request.outputs.push_back(name);
+  }
+  std::vector<std::string> unique;
+  for (const std::string& name : request.outputs) {
+    if (std::find(unique.begin(), unique.end(), name) == unique.end()) unique.push_back(name);
+  }
+  request.outputs = unique;
+  for (const std::string& name : options.fix) {
+    const auto& parameters = derived.model.parameters;
+    const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
+    if (found == parameters.end()) {
+      throw Error("emit", {}, fmt::format("there is no parameter '{}' to fix", name), "eomgen check MODEL lists the parameters");
+    }
+    const auto index = static_cast<std::uint32_t>(found - parameters.begin());
+    request.fix[index] = cln::rational(cln::cl_R(scene.parameters[index]));
+  }
+  return request;
+}
+
+void require_form(const std::string& form) {
+  if (form == "auto" || form == "multipliers") return;
+  const bool known = form == "nullspace" || form == "chaplygin" || form == "routh";
+  throw Error("emit", {}, known ? fmt::format("form '{}' is not supported yet", form) : fmt::format("there is no form '{}'", form),
+              "choose auto or multipliers");
+}
+
+int emit_document(const Options& options, const Common& common) {
+  const auto derived = derive_model(options.model, ApproachChoice::automatic);
+  const reading::ReadingForm one = reading::derive_reading(derived->mechanics, system::Approach::one);
+  const reading::ReadingForm two = reading::derive_reading(derived->mechanics, system::Approach::two);
+  const std::string name = emit::mangled_id(derived->model.id) + ".tex";
+  const std::vector<std::string> files =
+      emit::write_files(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}});
+  if (common.json) {
+    fmt::print("{}\n", json{{"format", 1}, {"files", files}}.dump(2));
+  } else {
+    for (const std::string& file : files) fmt::print("wrote {}\n", file);
+  }
+  return 0;
+}
+
+int execute(const Options& options, const Common& common) {
+  require_form(options.form);
+  const ApproachChoice approach = approach_choice(options.approach);
+  if (options.target == "latex") return emit_document(options, common);
+  const auto derived = derive_model(options.model, approach);
+  const run::Scene scene =
+      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
+  const program::Program program = make_program(*derived, request_of(options, *derived, scene));
+  const verify::Certificate certificate = certify(*derived, program, {50, emission_points, common.seed, nullptr});
+  require_pass(certificate, derived->model);
+  const emit::EmissionContext context = emission_context(*derived, program, scene, certificate);
+  const std::vector<std::string> files =
+      emit::write_files(options.folder, emit::emit(program, context, options.target));
+  const Timings& seconds = derived->seconds;
+  if (common.json) {
+    json tried = json::array();
+    for (const program::Tried& t : program.tried) tried.push_back({{"route", t.route}, {"operations", to_json(t.operations)}});
+    const json document{{"format", 1}, {"files", files}, {"route", program.route}, {"approach", system::name(program.approach)},
+                        {"tried", tried}, {"operations", to_json(program.functions.front().operations)},
+                        {"certificate", certificate.summary()},
+                        {"seconds", {{"read", seconds.read}, {"derive", seconds.derive}, {"optimise", seconds.optimise},
+                                     {"verify", seconds.verify}, {"print", seconds.print}}}};
+    fmt::print("{}\n", document.dump(2));
+    return 0;
+  }
+  fmt::print("route       {}, approach {}\n", program.route, system::name(program.approach));
+  fmt::print("operations  {}\n", to_text(program.functions.front().operations));
+  for (const program::Tried& t : program.tried) {
+    fmt::print("tried       {:<10} {}\n", t.route, to_text(t.operations));
+  }
+  fmt::print("certificate {}\n", certificate.summary());
+  for (const std::string& file : files) fmt::print("wrote {}\n", file);
+  return 0;
+}
+
+}  // namespace
+
+Execute declare_emit(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("-o", options->folder, "the folder for the sources; it is made if need be")->required();
+  app.add_option("--target", options->target, "cpp, or latex for a document")->capture_default_str();
+  app.add_option("--with", options->with,
+                 "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), energy")
+      ->delimiter(',');
+  app.add_option("--output", options->outputs, "names for the function outputs")->delimiter(',');
+  app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
+  app.add_option("--form", options->form, "auto or multipliers")->capture_default_str();
+  app.add_option("--fix", options->fix, "parameters that become numbers")->delimiter(',');
+  return [options](const Common& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli

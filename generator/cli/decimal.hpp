@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+
+#include <string>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::cli {
+
+/// "9.81", "-1e-3": exactly, as a rational. `shown` is what the error quotes. Throws Error for anything else, also for
+/// more than 400 digits or an exponent beyond 400.
+symbolic::Rational parse_decimal(const std::string& text, const std::string& shown);
+
+}  // namespace eomgen::cli
