@@ -17,22 +17,25 @@ using json = nlohmann::ordered_json;
 json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
 // What `final` holds: coordinates, energy, reactions and what was asked for; the rest served the watches.
-bool is_final(const RunReport& report, const std::string& name) {
-  for (const model::Coordinate& c : report.derived.model.coordinates) {
+bool is_final(const Simulation& simulation, const std::string& name) {
+  for (const model::Coordinate& c : simulation.derived->model.coordinates) {
     if (name == c.name || name == c.name + "_dot") return true;
   }
-  const auto& wanted = report.scene.outputs;
+  const auto& wanted = simulation.scene.outputs;
   return name == "energy" || name.starts_with("reaction.") || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
 }  // namespace
 
 std::string RunReport::json() const {
+  const auto& [derived_model, scene, program, certificate, code, result] = simulation;
+  const Derived& derived = *derived_model;
+  const emit::Compiled& compiled = code.compiled();
   const Timings& seconds = derived.seconds;
   nlohmann::ordered_json final = nlohmann::ordered_json::object(), estimate = nullptr;
   nlohmann::ordered_json invariants = nlohmann::ordered_json::object(), events = nlohmann::ordered_json::array();
   for (const auto& [name, value] : result.final) {
-    if (is_final(*this, name)) final[name] = number(value);
+    if (is_final(simulation, name)) final[name] = number(value);
   }
   if (!result.error_estimate.empty()) estimate = nlohmann::ordered_json::object();
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : 1e308;
@@ -73,6 +76,9 @@ std::string RunReport::json() const {
 }
 
 std::string RunReport::text() const {
+  const auto& [derived_model, scene, program, certificate, code, result] = simulation;
+  const Derived& derived = *derived_model;
+  const emit::Compiled& compiled = code.compiled();
   std::string out;
   const auto line = [&out](const std::string& label, const std::string& value) { out += fmt::format("{:<18}{}\n", label, value); };
   const Timings& seconds = derived.seconds;
@@ -86,7 +92,7 @@ std::string RunReport::text() const {
   line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps, result.statistics.rejected, result.statistics.rhs_evaluations));
   out += "\n";
   for (const auto& [name, value] : result.final) {
-    if (!is_final(*this, name)) continue;
+    if (!is_final(simulation, name)) continue;
     const auto found = std::find_if(result.error_estimate.begin(), result.error_estimate.end(), [&](const auto& e) { return e.first == name; });
     const std::string error = found == result.error_estimate.end() ? "" : fmt::format("   +- {:.1e}", found->second);
     out += fmt::format("  {:<24} {:>24.16g}{}\n", name, value, error);

@@ -4,19 +4,12 @@
 
 #include <string>
 
-#include "cli/pipeline.hpp"
-#include "emit/shared_library/loaded_model.hpp"
-#include "run/runner.hpp"
+#include "cli/simulate.hpp"
 
 namespace eomgen::cli {
 
 struct RunReport {
-  const Derived& derived;
-  const run::Scene& scene;
-  const run::RunResult& result;
-  const verify::Certificate& certificate;
-  const program::Program& program;
-  const emit::Compiled& compiled;
+  const Simulation& simulation;
 
   std::string text() const;
   std::string json() const;

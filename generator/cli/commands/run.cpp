@@ -6,14 +6,14 @@
 #include <cmath>
 #include <eom/output/csv.hpp>
 #include <eom/output/svg_plot.hpp>
-#include <nlohmann/json.hpp>
+#include <filesystem>
+#include <optional>
 
-#include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/pipeline.hpp"
 #include "cli/run_report.hpp"
+#include "cli/simulate.hpp"
 #include "emit/write_files.hpp"
 
 namespace eomgen::cli {
@@ -27,7 +27,6 @@ struct Options {
   bool no_error_estimate = false;
 };
 
-constexpr double default_rows = 500;       // in a CSV file whose interval is not given
 constexpr double progress_after = 2;       // seconds
 
 run::Overrides overrides_of(const Options& options) {
@@ -49,29 +48,13 @@ run::Overrides overrides_of(const Options& options) {
   return o;
 }
 
-/// All that the compiled code gives: coordinates, energies, what is watched, reactions, what is asked for.
-std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& scene, bool watch_power) {
-  std::vector<std::string> names;
-  const auto add = [&](const std::string& name) {
-    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
-  };
-  for (const model::Coordinate& c : derived.model.coordinates) {
-    add(c.name);
-    add(c.name + "_dot");
-  }
-  for (const char* name : {"energy", "kinetic", "potential"}) add(name);
-  if (watch_power) add("power");
-  for (const derive::Conserved& c : derived.conserved) add(c.name);
-  for (const system::Reaction& r : derived.candidates.front().reactions) add("reaction." + r.label);
-  for (const std::string& name : scene.outputs) add(name);
-  return names;
-}
-
 /// Rows to the CSV file and to the plot.
 class Rows {
  public:
-  Rows(const Options& options, const Derived& derived, const run::Scene& scene, const std::vector<std::string>& code) {
-    for (const model::Coordinate& c : derived.model.coordinates) {
+  Rows(const std::string& csv, bool keep, const model::Model& model, const run::Scene& scene,
+       const std::vector<std::string>& code)
+      : keep_(keep), coordinates_(model.coordinates.size()) {
+    for (const model::Coordinate& c : model.coordinates) {
       columns_.push_back(c.name);
       columns_.push_back(c.name + "_dot");
     }
@@ -80,9 +63,7 @@ class Rows {
       index_.push_back(static_cast<std::size_t>(std::find(code.begin(), code.end(), column) - code.begin()));
     }
     values_.resize(columns_.size());
-    if (!options.out.empty()) csv_.emplace(options.out, columns_);
-    keep_ = !options.plot.empty();
-    coordinates_ = derived.model.coordinates.size();
+    if (!csv.empty()) csv_.emplace(csv, columns_);
   }
 
   void operator()(double t, std::span<const double> y) {
@@ -140,48 +121,32 @@ std::function<void(double)> progress_bar() {
   };
 }
 
-std::vector<std::string> state_names(const Derived& derived) {
-  std::vector<std::string> names;
-  for (const char* suffix : {"", "_dot"}) {
-    for (const std::uint32_t i : derived.mechanics.free) names.push_back(derived.model.coordinates[i].name + suffix);
-  }
-  return names;
-}
-
 int execute(const Options& options, const Common& common) {
-  const run::Overrides overrides = overrides_of(options);
-  const auto derived = derive_model(options.model, approach_choice(options.approach));
-  const system::EquationSystem& system = derived->candidates.front();
-  const run::Scene scene = run::resolve_scene(derived->mechanics, system, derived->model.scene(options.scene), overrides);
-  run::choose_solver(scene.solver, scene);  // a wrong name is told before anything is compiled
-  const bool watch_power = std::none_of(derived->conserved.begin(), derived->conserved.end(),
-                                        [](const derive::Conserved& c) { return c.name == "energy"; });
-  program::Request request;
-  request.outputs = code_outputs(*derived, scene, watch_power);
-  if (!system.active.empty()) request.with = {"mass", "constraints"};
-  const program::Program program = make_program(*derived, request);
-  const verify::Certificate certificate = certify(*derived, program, {50, emission_points, common.seed, nullptr});
-  require_pass(certificate, derived->model);
-  const run::Scene defaults = run::resolve_scene(derived->mechanics, system, derived->model.scene("default"), {});
-  const CompiledCode code = compile(program, emission_context(*derived, program, defaults, certificate));
-
-  const run::Code functions = code.for_run();
-  Rows rows(options, *derived, scene, functions.output_names);
+  SimulationRequest request;
+  request.model = options.model;
+  request.scene = options.scene;
+  request.overrides = overrides_of(options);
+  request.approach = approach_choice(options.approach);
+  request.estimate = !options.no_error_estimate;
+  request.seed = common.seed;
+  request.progress = progress_bar();
   Interrupt interrupt;
-  run::RunRequest run{functions, scene, state_names(*derived), {}, watch_power, !options.no_error_estimate, 0, {}, {}, {}};
-  for (const derive::Conserved& c : derived->conserved) run.conserved.push_back(c.name);
-  const bool wants_rows = !options.out.empty() || !options.plot.empty();
-  if (wants_rows) run.every = scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
-  run.row = [&rows](double t, std::span<const double> y) { rows(t, y); };
-  run.progress = progress_bar();
-  run.interrupt = interrupt.flag();
-  const run::RunResult result = run::integrate_scene(run);
-  rows.finish(result.outcome);
-  if (!options.plot.empty()) rows.plot(options.plot, derived->model.title.empty() ? derived->model.id : derived->model.title);
-
-  const RunReport report{*derived, scene, result, certificate, program, code.compiled()};
+  request.interrupt = interrupt.flag();
+  std::optional<Rows> rows;
+  if (!options.out.empty() || !options.plot.empty()) {
+    request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
+      rows.emplace(options.out, !options.plot.empty(), derived.model, scene, names);
+    };
+    request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
+  }
+  const Simulation simulation = simulate(request);
+  const model::Model& model = simulation.derived->model;
+  if (rows) rows->finish(simulation.result.outcome);
+  if (!options.plot.empty()) rows->plot(options.plot, model.title.empty() ? model.id : model.title);
+  const RunReport report{simulation};
   fmt::print("{}", common.json ? report.json() : report.text());
-  return result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event ? 0 : 3;
+  const eom::Outcome outcome = simulation.result.outcome;
+  return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }
 
 }  // namespace

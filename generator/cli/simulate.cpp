@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/simulate.hpp"
+
+#include <algorithm>
+
+namespace eomgen::cli {
+namespace {
+
+/// All that the compiled code gives: coordinates, energies, what is watched, reactions, what is asked for.
+std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& scene, bool watch_power) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const model::Coordinate& c : derived.model.coordinates) {
+    add(c.name);
+    add(c.name + "_dot");
+  }
+  for (const char* name : {"energy", "kinetic", "potential"}) add(name);
+  if (watch_power) add("power");
+  for (const derive::Conserved& c : derived.conserved) add(c.name);
+  for (const system::Reaction& r : derived.candidates.front().reactions) add("reaction." + r.label);
+  for (const std::string& name : scene.outputs) add(name);
+  return names;
+}
+
+std::vector<std::string> state_names(const Derived& derived) {
+  std::vector<std::string> names;
+  for (const char* suffix : {"", "_dot"}) {
+    for (const std::uint32_t i : derived.mechanics.free) names.push_back(derived.model.coordinates[i].name + suffix);
+  }
+  return names;
+}
+
+bool energy_is_conserved(const Derived& derived) {
+  return std::any_of(derived.conserved.begin(), derived.conserved.end(),
+                     [](const derive::Conserved& c) { return c.name == "energy"; });
+}
+
+}  // namespace
+
+Simulation simulate(const SimulationRequest& request) {
+  std::unique_ptr<Derived> derived = derive_model(request.model, request.approach);
+  mechanics::Mechanics& mechanics = derived->mechanics;
+  const system::EquationSystem& system = derived->candidates.front();
+  run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), request.overrides);
+  run::choose_solver(scene.solver, scene);  // a wrong name is told before anything is compiled
+
+  const bool watch_power = !energy_is_conserved(*derived);
+  program::Request wanted;
+  wanted.outputs = code_outputs(*derived, scene, watch_power);
+  if (!system.active.empty()) wanted.with = {"mass", "constraints"};
+  program::Program program = make_program(*derived, wanted);
+  verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
+  require_pass(certificate, derived->model);
+  // The sources carry the default scene, so that every scene runs the same library.
+  const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), {});
+  CompiledCode code = compile(program, emission_context(*derived, program, defaults, certificate));
+
+  const run::Code functions = code.for_run();
+  run::RunRequest run{functions, scene, state_names(*derived), {}, watch_power, request.estimate, 0, {}, {}, {}};
+  for (const derive::Conserved& c : derived->conserved) run.conserved.push_back(c.name);
+  if (request.begin) {
+    run.every = scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
+    request.begin(*derived, scene, functions.output_names);
+  }
+  run.row = request.row;
+  run.progress = request.progress;
+  run.interrupt = request.interrupt;
+  run::RunResult result = run::integrate_scene(run);
+  return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result)};
+}
+
+}  // namespace eomgen::cli

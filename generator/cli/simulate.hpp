@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From a model's name to a finished run: derive, verify, emit, compile (cached by content), integrate. The command `run`
+// and the tests of the models are made of this.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+
+#include "cli/code.hpp"
+#include "cli/pipeline.hpp"
+#include "run/runner.hpp"
+
+namespace eomgen::cli {
+
+struct SimulationRequest {
+  std::string model, scene = "default";
+  run::Overrides overrides;
+  ApproachChoice approach = ApproachChoice::automatic;
+  bool estimate = true;
+  std::uint64_t seed = 1;
+  /// Called before the first row with the names of all that the rows hold (at least the coordinates with their rates,
+  /// energy, kinetic, potential, reactions and what the scene asks for). Left out: no rows.
+  std::function<void(const Derived&, const run::Scene&, const std::vector<std::string>& names)> begin;
+  std::function<void(double t, std::span<const double> values)> row;
+  std::function<void(double fraction)> progress;
+  const std::atomic<bool>* interrupt = nullptr;
+};
+
+struct Simulation {
+  std::unique_ptr<Derived> derived;
+  run::Scene scene;
+  program::Program program;
+  verify::Certificate certificate;
+  CompiledCode code;
+  run::RunResult result;
+};
+
+/// Rows of a file or plot where no interval is given.
+inline constexpr double default_rows = 500;
+
+Simulation simulate(const SimulationRequest& request);
+
+}  // namespace eomgen::cli
