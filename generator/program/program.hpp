@@ -32,14 +32,19 @@ struct Instruction {
   symbolic::Op op = symbolic::Op::add;  // no symbol, constant, neg
   std::vector<Operand> operands;        // add and mul may have more than two
   long exponent = 0;                    // of Op::power
-  std::string name;                     // a name that means something ("M_12", "sin_theta"), or empty
+  std::string name;                     // a name that means something, or empty; "{3}_ddot": {3} is coordinate 3's
   std::string section;                  // heading that starts here, or empty
 };
 
-/// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix.
+/// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix. Where the scale
+/// is the constant 0 the pivot must only differ from zero.
 struct PivotTest {
   Operand pivot, scale;
 };
+
+/// What is left of a diagonal entry by the subtractions of an elimination carries their rounding, some 1e-16 of the
+/// entry times the number of rows: below 1e-13 of it no more than two or three digits are right.
+inline constexpr double pivot_tolerance = 1e-13;
 
 struct Function {
   std::string name;  // of the ABI: "rhs", "mass", ...

@@ -87,7 +87,7 @@ class Schedule {
       section_ = label.section;
       walk.from(label.value, take);
     }
-    section_ = "results";
+    section_ = "values";
     walk.from_results(take);
     finish(shape);
     return std::move(function_);

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/c/c.hpp"
+
+#include <fmt/format.h>
+
+#include "emit/metadata.hpp"
+#include "emit/text.hpp"
+#include "skeletons/c_model_c.hpp"
+#include "skeletons/c_model_h.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+Dialect c_dialect() {
+  Dialect dialect;
+  dialect.real = "double";
+  dialect.constant = [](const symbolic::Rational& value) { return decimal(nearest_double(value)); };
+  dialect.value = decimal;
+  dialect.pi = "3.141592653589793";
+  dialect.absolute = "fabs";
+  return dialect;
+}
+
+/// The prototype with the argument names of docs/abi.md, whatever the model's own names are.
+std::string prototype(const std::string& name, const program::Function& function) {
+  FunctionText text;
+  for (const auto& result : function.results) text.results.push_back(result.first);
+  ModelNames names;
+  names.x = "x";
+  names.p = "p";
+  names.u = "u";
+  names.mode = "mode";
+  return function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double");
+}
+
+std::string sizes(const std::string& name, const program::Program& program, const EmissionContext& context) {
+  const std::pair<const char*, std::size_t> entries[] = {
+      {"states", 2 * program.free.size()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
+      {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
+      {"output_count", program.outputs.size()}};
+  std::vector<std::string> lines;
+  for (const auto& [what, count] : entries) lines.push_back(fmt::format("  {}_{} = {}", name, what, count));
+  return fmt::format("{}", fmt::join(lines, ",\n"));
+}
+
+}  // namespace
+
+std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionContext& context) {
+  require_consistent(program, context);
+  const Dialect dialect = c_dialect();
+  const std::string name = mangled_id(context.id);
+  const ModelNames names = model_names(program, context);
+  std::vector<std::vector<std::pair<std::string, std::string>>> functions;
+  for (const program::Function& function : program.functions) {
+    const FunctionText text = print_function(function, names, context, dialect);
+    functions.push_back({{"purpose", purpose(function.name)},
+                         {"prototype", prototype(name, function)},
+                         {"head", function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double")},
+                         {"body", text.body}});
+  }
+  const std::vector<std::pair<std::string, std::string>> values = {
+      {"banner", banner(program, context, "/* ", " * ", " */")},
+      {"name", name},
+      {"sizes", sizes(name, program, context)},
+      {"info", string_literal(info_json(program, context), "      ")},
+      {"defaults", defaults_body(program, context, dialect)},
+      {"selftest", selftest_body(program, context, fmt::format("{}_rhs", name), "0", dialect)}};
+  return {{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
+          {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, functions)}};
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/cpp/cpp.hpp"
+
+#include <cln/integer.h>
+#include <cln/integer_io.h>
+#include <cln/rational.h>
+#include <fmt/format.h>
+
+#include <sstream>
+
+#include "emit/c/c.hpp"
+#include "emit/metadata.hpp"
+#include "emit/text.hpp"
+#include "skeletons/cpp_model_hpp.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+std::string text_of(const cln::cl_I& value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+bool fits_double(const cln::cl_I& value) { return cln::integer_length(value) <= 53; }
+bool fits_int(const cln::cl_I& value) { return cln::integer_length(value) <= 31; }
+
+/// Exact for every Real where a quotient of two exact numbers can say it: Real(981)/Real(100).
+std::string real_constant(const symbolic::Rational& value) {
+  const cln::cl_I above = cln::numerator(value), below = cln::denominator(value);
+  const auto whole = [](const cln::cl_I& n) { return "Real(" + text_of(n) + (fits_int(n) ? ")" : ".0)"); };
+  if (!fits_double(above) || !fits_double(below)) return "Real(" + decimal(nearest_double(value)) + ")";
+  if (below == 1) return whole(above);
+  if (cln::power2p(below) != 0) return "Real(" + decimal(nearest_double(value)) + ")";
+  return whole(above) + "/" + whole(below);
+}
+
+Dialect cpp_dialect() {
+  Dialect dialect;
+  dialect.real = "Real";
+  dialect.constant = real_constant;
+  dialect.value = [](double value) { return "Real(" + decimal(value) + ")"; };
+  dialect.pi = "Real(3.141592653589793238462643383279502884L)";
+  dialect.absolute = "abs";
+  dialect.line_comments = true;
+  dialect.using_std = true;
+  return dialect;
+}
+
+/// Named indices into the arrays: x[State::theta].
+std::string enums(const ModelNames& names) {
+  std::string result;
+  const auto add = [&result](const char* type, const char* count, const std::vector<std::string>& entries) {
+    if (!entries.empty()) {
+      std::string list;
+      for (const std::string& entry : entries) list += (list.empty() ? "" : ", ") + entry;
+      result += wrapped(fmt::format("struct {} {{ enum : std::size_t {{ {} }}; }};", type, list), "    ") + "\n";
+    }
+    result += fmt::format("inline constexpr std::size_t {} = {};\n", count, entries.size());
+  };
+  add("State", "state_count", names.state);
+  add("Parameter", "parameter_count", names.parameters);
+  add("Input", "input_count", names.inputs);
+  add("Output", "output_count", names.outputs);
+  add("Reaction", "reaction_count", names.reactions);
+  result.pop_back();
+  return result;
+}
+
+}  // namespace
+
+std::vector<EmittedFile> emit_cpp(const program::Program& program, const EmissionContext& context) {
+  require_consistent(program, context);
+  const Dialect dialect = cpp_dialect();
+  const std::string name = mangled_id(context.id);
+  const ModelNames names = model_names(program, context);
+  std::vector<std::vector<std::pair<std::string, std::string>>> functions;
+  for (const program::Function& function : program.functions) {
+    const FunctionText text = print_function(function, names, context, dialect);
+    functions.push_back({{"purpose", purpose(function.name)},
+                         {"head", function_head(function.name, function, text, names, "Real")},
+                         {"body", text.body}});
+  }
+  std::vector<EmittedFile> files = {
+      {name + ".hpp",
+       rendered(skeleton::cpp_model_hpp,
+                {{"banner", banner(program, context, "// ", "// ", "")},
+                 {"name", name},
+                 {"enums", enums(names)},
+                 {"info", string_literal(info_json(program, context), "      ")},
+                 {"defaults", defaults_body(program, context, dialect)},
+                 {"selftest", selftest_body(program, context, "rhs<double>", "nullptr", dialect)}},
+                functions)}};
+  for (EmittedFile& file : emit_c(program, context)) files.push_back(std::move(file));
+  return files;
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A Function as statements of C or C++; everything but the function's head, which targets write themselves.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emit/context.hpp"
+#include "program/program.hpp"
+
+namespace eomgen::emit {
+
+/// How a language of the C family writes what differs.
+struct Dialect {
+  std::string real;                                  // "double", "Real"
+  std::string (*constant)(const symbolic::Rational&);  // of a number that is not negative
+  std::string (*value)(double);                      // of a default
+  std::string pi;
+  std::string absolute;                              // name of the function |x|
+  bool line_comments = false;
+  bool using_std = false;                            // `using std::sin;` before calls
+};
+
+/// Identifiers of one model: the same in all its functions.
+struct ModelNames {
+  std::vector<std::string> state;       // of x: coordinates, then velocities
+  std::vector<std::string> parameters, inputs, outputs, reactions;
+  std::vector<std::string> acceleration;     // "theta_ddot", of the free coordinates
+  std::vector<std::string> all_coordinates;  // of the model, also eliminated ones (for names that a Program suggests)
+  std::string arguments_t = "t", x, p, u, mode;  // names of the arguments that are left
+};
+ModelNames model_names(const program::Program& program, const EmissionContext& context);
+
+struct FunctionText {
+  std::vector<std::string> results;  // names of the result arguments, in order
+  std::string body;                  // statements, without braces
+};
+
+/// `checks_finite`: code 5 where an entry of the results' lower half is not finite.
+FunctionText print_function(const program::Function& function, const ModelNames& names, const EmissionContext& context,
+                            const Dialect& dialect);
+
+}  // namespace eomgen::emit

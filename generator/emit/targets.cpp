@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/targets.hpp"
+
+#include "emit/c/c.hpp"
+#include "emit/cpp/cpp.hpp"
+#include "error.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+constexpr TargetEntry registry[] = {
+    {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
+    {"c", "C11 sources with the C ABI", emit_c},
+};
+
+}  // namespace
+
+std::span<const TargetEntry> targets() { return registry; }
+
+std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context, const std::string& target) {
+  std::string known;
+  for (const TargetEntry& entry : registry) {
+    if (entry.name == target) return entry.emit(program, context);
+    known += (known.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw Error("emit", {}, "there is no target `" + target + "`", "targets: " + known);
+}
+
+}  // namespace eomgen::emit

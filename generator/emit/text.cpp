@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/text.hpp"
+
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace eomgen::emit {
+
+std::string comment_text(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const char previous = result.empty() ? ' ' : result.back();
+    if (byte < 0x20 || byte >= 0x7f || c == '\\') {
+      result += '?';
+      if (previous == '?') result.back() = '.';  // no trigraph
+    } else if ((c == '/' && previous == '*') || (c == '*' && previous == '/') || (c == '/' && previous == '/')) {
+      result += ' ';
+      result += c;
+    } else if (c == '?' && previous == '?') {
+      result += '.';
+    } else {
+      result += c;
+    }
+  }
+  // The end of a comment must not be completed by what comes after.
+  if (!result.empty() && (result.back() == '*' || result.back() == '/')) result += ' ';
+  return result;
+}
+
+std::string string_literal(const std::string& text, const std::string& indent) {
+  constexpr std::size_t line_length = 96;
+  std::string result = "\"";
+  std::size_t length = 0;
+  for (const char c : text) {
+    if (length >= line_length) {
+      result += "\"\n" + indent + "\"";
+      length = 0;
+    }
+    const auto byte = static_cast<unsigned char>(c);
+    std::string piece(1, c);
+    if (c == '"' || c == '\\' || c == '?') piece = std::string("\\") + c;
+    else if (byte < 0x20 || byte >= 0x7f) piece = fmt::format("\\{:03o}", byte);
+    result += piece;
+    length += piece.size();
+  }
+  return result + "\"";
+}
+
+std::string decimal(double value) {
+  if (std::isnan(value)) return "(0.0/0.0)";
+  if (std::isinf(value)) return value > 0 ? "HUGE_VAL" : "(-HUGE_VAL)";
+  char buffer[64];
+  const auto end = std::to_chars(buffer, buffer + sizeof buffer, value).ptr;
+  std::string result(buffer, end);
+  if (result.find_first_of(".e") == std::string::npos) result += ".0";
+  return result;
+}
+
+// Exact: the quotient is scaled to 53 bits and rounded once, to even.
+double nearest_double(const symbolic::Rational& value) {
+  if (cln::zerop(value)) return 0;
+  const symbolic::Rational size = cln::abs(value);
+  const cln::cl_I numerator = cln::numerator(size), denominator = cln::denominator(size);
+  const auto bits = static_cast<long>(cln::integer_length(numerator)) - static_cast<long>(cln::integer_length(denominator));
+  // 2^(bits-1) < size < 2^(bits+1); the last place of the result is 2^exponent, not below that of the subnormals.
+  if (bits > 1100) return cln::minusp(value) ? -HUGE_VAL : HUGE_VAL;
+  long exponent = std::max(bits - 53, -1074L);
+  const auto quotient = [&](long e) {
+    return e >= 0 ? cln::round1(numerator / symbolic::Rational(denominator * (cln::cl_I(1) << e)))
+                  : cln::round1(symbolic::Rational(numerator * (cln::cl_I(1) << -e)) / denominator);
+  };
+  cln::cl_I mantissa = quotient(exponent);
+  while (cln::integer_length(mantissa) > 53) mantissa = quotient(++exponent);
+  const double result = std::ldexp(cln::double_approx(mantissa), static_cast<int>(exponent));
+  return cln::minusp(value) ? -result : result;
+}
+
+std::string wrapped(const std::string& line, const std::string& indent, std::size_t width) {
+  std::string result, rest = line;
+  while (rest.size() > width) {
+    const std::size_t blank = rest.rfind(' ', width);
+    const std::size_t first = rest.find_first_not_of(' ');
+    if (blank == std::string::npos || blank <= first) break;
+    result += rest.substr(0, blank) + "\n";
+    rest = indent + rest.substr(blank + 1);
+  }
+  return result + rest;
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Text that cannot break out of where it is put, and numbers.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::emit {
+
+/// For the inside of a /* comment */ or a // line: printable ASCII without comment ends, trigraphs and backslashes.
+std::string comment_text(const std::string& text);
+
+/// A C string literal with its quotes; long ones are split over lines.
+std::string string_literal(const std::string& text, const std::string& indent);
+
+/// The shortest decimal that reads back as this number, with a point: "9.81", "1e-07", "3.0".
+std::string decimal(double value);
+
+/// The double nearest to an exact number.
+double nearest_double(const symbolic::Rational& value);
+
+/// Lines no longer than `width`, broken at blanks; what goes on is indented by `indent`.
+std::string wrapped(const std::string& line, const std::string& indent, std::size_t width = 110);
+
+}  // namespace eomgen::emit
