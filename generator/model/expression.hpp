@@ -61,7 +61,23 @@ enum class Op : std::uint8_t {
 };
 
 enum class Fn : std::uint8_t {
-  sin, cos, tan, asin, acos, atan, atan2, sinh, cosh, tanh, exp, log, sqrt, abs, sign, min, max,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  atan2,
+  sinh,
+  cosh,
+  tanh,
+  exp,
+  log,
+  sqrt,
+  abs,
+  sign,
+  min,
+  max,
 };
 
 using NodeId = std::uint32_t;

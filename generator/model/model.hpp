@@ -65,8 +65,8 @@ struct Definition {
 /// Coordinates of a place, as the user wrote them: which system, which entries; `position` of the Place is the same
 /// thing already spelled out as a vector.
 struct Chart {
-  std::string system;                   // name in coordinates::registry()
-  std::array<NodeId, 3> entries{no_node, no_node, no_node};  // scalar expressions for the slots (third 0 if planar)
+  std::string system;                                           // name in coordinates::registry()
+  std::array<NodeId, 3> entries{no_node, no_node, no_node};     // scalar expressions for the slots (third 0 if planar)
   std::array<NodeId, 3> unit_basis{no_node, no_node, no_node};  // vector expressions e_1, e_2, e_3; no_node: normalise
   bool planar = false;
 };
@@ -75,7 +75,7 @@ struct Place {
   std::string name;
   NodeId position = no_node;  // absolute
   std::optional<Chart> chart;
-  std::uint32_t from = 0;     // place that the chart measures from
+  std::uint32_t from = 0;  // place that the chart measures from
   Span span;
 };
 struct Particle {
@@ -84,19 +84,41 @@ struct Particle {
   Span span;
 };
 
-struct Gravity { NodeId acceleration; };
-struct CentralGravity { NodeId GM; NodeId center; };  // order 0; center is a vector
-struct Gravitation { NodeId G; };                     // mutual, all masses
-struct AppliedForce { NodeId force; NodeId at; };     // both vectors; `at` is the point of application
-struct Spring {                                       // energy is of Op::extension; stiffness form has it no_node
+struct Gravity {
+  NodeId acceleration;
+};
+struct CentralGravity {
+  NodeId GM;
+  NodeId center;
+};  // order 0; center is a vector
+struct Gravitation {
+  NodeId G;
+};  // mutual, all masses
+struct AppliedForce {
+  NodeId force;
+  NodeId at;
+};               // both vectors; `at` is the point of application
+struct Spring {  // energy is of Op::extension; stiffness form has it no_node
   NodeId a, b;
   NodeId stiffness, length;
   NodeId energy;
 };
-struct Damper { NodeId a, b; NodeId coefficient; };
-struct Torsion { NodeId angle; NodeId stiffness, rest; NodeId coefficient; };  // no_node where not given
-struct Drag { NodeId on; NodeId density, area, coefficient; };
-struct Generalized { std::vector<std::pair<std::uint32_t, NodeId>> components; };  // coordinate, force
+struct Damper {
+  NodeId a, b;
+  NodeId coefficient;
+};
+struct Torsion {
+  NodeId angle;
+  NodeId stiffness, rest;
+  NodeId coefficient;
+};  // no_node where not given
+struct Drag {
+  NodeId on;
+  NodeId density, area, coefficient;
+};
+struct Generalized {
+  std::vector<std::pair<std::uint32_t, NodeId>> components;
+};  // coordinate, force
 struct Force {
   std::string name;  // given, or "force 2"
   std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized> kind;
@@ -146,27 +168,27 @@ struct Scene {
 };
 
 struct Model {
-  std::string file;                 // as given
-  std::string id;                   // file name without .toml
+  std::string file;  // as given
+  std::string id;    // file name without .toml
   std::string title, notes;
-  std::vector<std::string> lines;   // the source, for carets
-  std::string content_hash;         // of the file's bytes, hexadecimal
+  std::vector<std::string> lines;  // the source, for carets
+  std::string content_hash;        // of the file's bytes, hexadecimal
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
   std::vector<Input> inputs;
   std::vector<Coordinate> coordinates;  // in order of declaration or first appearance
   std::vector<Definition> definitions;
-  std::vector<Place> places;            // [0] is the origin
+  std::vector<Place> places;  // [0] is the origin
   std::vector<Particle> particles;
   Energy energy;
   std::vector<Force> forces;
   std::vector<Constraint> constraints;
-  std::vector<Scene> scenes;            // scenes[0] is "default" (made up if the file has none)
+  std::vector<Scene> scenes;  // scenes[0] is "default" (made up if the file has none)
   std::vector<Warning> warnings;
 
-  Where where(const Span& span) const;                      // for Error
-  const Scene& scene(const std::string& name) const;        // throws Error with did-you-mean
+  Where where(const Span& span) const;                // for Error
+  const Scene& scene(const std::string& name) const;  // throws Error with did-you-mean
 };
 
 /// Reads and checks a model file. Throws Error{stage "model"}.

@@ -225,30 +225,49 @@ bool ends_an_operand(char c) {
 
 Syntax parse_expression(const Text& text) { return Parser(text).all(); }
 
+namespace {
+
+// The last word of a text that has an operand before it: "m/s^2" of "9.81 m/s^2", nothing of "a + b".
+struct LastWord {
+  std::string_view before, word;
+};
+std::optional<LastWord> last_word(std::string_view all) {
+  constexpr std::string_view blanks = " \t\r\n";
+  while (!all.empty() && blanks.find(all.back()) != std::string_view::npos) all.remove_suffix(1);
+  const std::size_t blank = all.find_last_of(blanks);
+  const std::size_t end = blank == std::string_view::npos ? blank : all.find_last_not_of(blanks, blank);
+  if (end == std::string_view::npos || !ends_an_operand(all[end])) return std::nullopt;
+  return LastWord{all.substr(0, end + 1), all.substr(blank + 1)};
+}
+
+}  // namespace
+
+std::optional<MeasuredUnit> trailing_unit(std::string_view text) {
+  const auto last = last_word(text);
+  return last ? parse_unit(last->word) : std::nullopt;
+}
+
 Syntax parse_quantity(const Text& text) {
-  std::string_view all = text.text;
-  while (!all.empty() && std::string_view(" \t\r\n").find(all.back()) != std::string_view::npos) all.remove_suffix(1);
-  const std::size_t blank = all.find_last_of(" \t\r\n");
-  const std::size_t value_end = blank == std::string_view::npos ? blank : all.find_last_not_of(" \t\r\n", blank);
-  if (value_end == std::string_view::npos || !ends_an_operand(all[value_end])) return parse_expression(text);
-  const std::string_view tail = all.substr(blank + 1);
-  auto unit = parse_unit(tail);
+  const auto last = last_word(text.text);
+  if (!last) return parse_expression(text);
+  const auto at = static_cast<std::size_t>(last->word.data() - text.text.data());
+  auto unit = parse_unit(last->word);
   if (!unit) {
     // "2 fm/s": what could only be a unit is told as one.
-    const bool unit_like = !tail.empty() && std::isalpha(static_cast<unsigned char>(tail[0])) != 0 &&
-                           tail.find_first_of("(),+-<>.") == std::string_view::npos;
+    const bool unit_like = std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
+                           last->word.find_first_of("(),+-<>.") == std::string_view::npos;
     if (unit_like) {
-      const std::string hint = unit_hint(tail);
-      text.source->fail(text.span(blank + 1, tail.size()), fmt::format("{} is not a unit", quote(tail)),
+      const std::string hint = unit_hint(last->word);
+      text.source->fail(text.span(at, last->word.size()), fmt::format("{} is not a unit", quote(last->word)),
                         hint.empty() ? "write a unit such as m/s^2, N*m, rad/s, or an operator before the name" : hint);
     }
     return parse_expression(text);
   }
   Text value = text;
-  value.text = all.substr(0, value_end + 1);
+  value.text = last->before;
   Syntax syntax = parse_expression(value);
   syntax.unit = std::move(unit);
-  syntax.unit_span = text.span(blank + 1, tail.size());
+  syntax.unit_span = text.span(at, last->word.size());
   return syntax;
 }
 

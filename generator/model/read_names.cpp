@@ -14,10 +14,8 @@ Unit stated_or(const std::optional<MeasuredUnit>& stated, const std::optional<Di
 }
 
 // "9.81 m/s^2" keeps the words of the user.
-std::optional<MeasuredUnit> trailing_unit(const Value& value) {
-  if (!value.is(Value::Kind::text)) return std::nullopt;
-  const std::size_t blank = value.text.find_last_of(" \t");
-  return blank == std::string::npos ? std::nullopt : parse_unit(value.text.substr(blank + 1));
+std::optional<MeasuredUnit> unit_in(const Value& value) {
+  return value.is(Value::Kind::text) ? trailing_unit(value.text) : std::nullopt;
 }
 
 }  // namespace
@@ -144,7 +142,7 @@ Typed Reader::define_parameter(Symbol& symbol) {
                  "correct the value, or leave positive out");
   }
   parameter.value = typed.node;
-  parameter.unit = stated_or(stated ? stated : trailing_unit(*value), typed.dimension);
+  parameter.unit = stated_or(stated ? stated : unit_in(*value), typed.dimension);
   symbol.index = static_cast<std::uint32_t>(model_.parameters.size());
   model_.parameters.push_back(std::move(parameter));
   return typed;
@@ -170,7 +168,7 @@ Typed Reader::define_function(Symbol& symbol) {
     typed.dimension = context.dimension;
     typed.loose = false;
   } else {
-    function.unit = stated_or(trailing_unit(*is), typed.dimension);
+    function.unit = stated_or(unit_in(*is), typed.dimension);
   }
   typed.literal = false;
   typed.constant.reset();

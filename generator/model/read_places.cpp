@@ -156,7 +156,8 @@ std::array<Typed, 3> Reader::chart_entries(const coordinates::CoordinateSystem& 
     const bool bare = symbol != nullptr && symbol->kind == SymbolKind::coordinate;
     if (bare) context.dimension.reset();  // [coordinates] may state another
     result[k] = resolver_.value(item, context);
-    if (!bare || !ranged_.insert(symbol->index).second) continue;
+    const bool bounded = !slot.lower.empty() || !slot.upper.empty();
+    if (!bare || !bounded || !ranged_.insert(symbol->index).second) continue;
     const auto bound = [&](std::string_view text) {
       return text.empty() ? no_node : resolver_.text(text, {}, item.span, context).node;
     };

@@ -3,12 +3,33 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
 #include "model/content_hash.hpp"
 
 namespace eomgen::model {
+
+namespace {
+
+// A model without any unit is not checked for units: its coordinates' metres and radians are then mere words.
+bool states_units(const Value& value, std::string_view section, std::string_view key) {
+  if (value.is(Value::Kind::text)) {
+    if (key == "unit" || section == "coordinates") return true;
+    return value.text.find('[') != std::string::npos || trailing_unit(value.text).has_value();
+  }
+  const auto words = [](std::string_view name) {
+    return name == "title" || name == "notes" || name == "note" || name == "tex" || name == "name" || name == "scene";
+  };
+  return std::any_of(value.items.begin(), value.items.end(),
+                     [&](const Value& item) { return states_units(item, section, key); }) ||
+         std::any_of(value.entries.begin(), value.entries.end(), [&](const Entry& entry) {
+           return !words(entry.key) && states_units(entry.value, section.empty() ? entry.key : section, entry.key);
+         });
+}
+
+}  // namespace
 
 Reader::Reader(const Source& source, const Value& root)
     : source_(source),
@@ -29,6 +50,7 @@ Model Reader::read() {
     if (root_.find(key) != nullptr)
       (key[0] == 't' ? model_.title : model_.notes) = text_of_key(root_, key, "the model");
   }
+  resolver_.units_stated(states_units(root_, "", ""));
   Place origin;
   origin.name = "origin";
   origin.position =

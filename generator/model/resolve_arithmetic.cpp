@@ -19,10 +19,11 @@ std::size_t bits(const Rational& value) {
   return cln::integer_length(cln::numerator(value)) + cln::integer_length(cln::denominator(value));
 }
 
-// 2*x, x/2 and x/12 are pure numbers times x; 0.3*x may be a stiffness times x.
+// Numbers that hardly stand for a quantity: 2*x, x/2 and x/12 are pure numbers times x; 0.3*x may be a stiffness times
+// x.
 bool pure_factor(const Rational& factor) {
   const Rational size = cln::abs(factor);
-  if (size == 1 || size == 2) return true;
+  if (size == 0 || size == 1 || size == 2) return true;
   return cln::numerator(size) == 1 && cln::denominator(size) <= 12;
 }
 
@@ -55,6 +56,25 @@ void Resolver::agree(Typed& result, const Typed& a, const Typed& b, Span span, s
     result.loose = (!known_a || a.loose) && (!known_b || b.loose);
   }
   result.literal = literal;
+  result.pure = literal && a.pure && b.pure;
+  result.bare_time = (a.bare_time || a.literal) && (b.bare_time || b.literal) && !literal;
+}
+
+// The dimension of a*b or a/b; of scalars, and of dot and cross products too.
+void Resolver::combine(Typed& result, const Typed& a, const Typed& b, bool quotient_of) {
+  const bool bare_a = a.bare_time || a.literal, bare_b = b.bare_time || b.literal;
+  if (a.literal && b.literal) {
+    result.literal = true;
+    result.pure = a.pure && b.pure;
+    return;
+  }
+  result.bare_time = bare_a && bare_b;
+  if ((a.literal || a.dimension) && (b.literal || b.dimension)) {
+    const Dimension left = a.literal ? Dimension{} : *a.dimension;
+    const Dimension right = b.literal ? Dimension{} : *b.dimension;
+    result.dimension = quotient_of ? quotient(left, right) : product(left, right);
+  }
+  result.loose = result.loose || (a.literal && !a.pure) || (b.literal && !b.pure);
 }
 
 Typed Resolver::apply_unit(Typed typed, const MeasuredUnit& unit, Span span) {
@@ -83,6 +103,7 @@ Typed Resolver::apply_unit(Typed typed, const MeasuredUnit& unit, Span span) {
   result.dimension = unit.dimension;
   result.literal = false;
   result.loose = false;
+  result.bare_time = false;
   return result;
 }
 
@@ -97,11 +118,22 @@ Typed Resolver::number_node(const SyntaxNode& node) {
   return node.unit ? apply_unit(result, *node.unit, node.span) : result;
 }
 
+Typed Resolver::number(const Rational& value, Span span) {
+  Typed result = make(Op::number, false, {}, span);
+  model_.arena.nodes[result.node].value = value;
+  result.literal = true;
+  result.pure = pure_factor(value);
+  result.constant = value;
+  return result;
+}
+
 Typed Resolver::negate(const Typed& a, Span span) {
   if (a.literal && a.constant && !a.vector) return number(-*a.constant, span);  // keeps -1 one number
   Typed result = make(Op::negate, a.vector, {a}, span);
   result.dimension = a.dimension;
   result.literal = a.literal;
+  result.pure = a.pure;
+  result.bare_time = a.bare_time;
   if (a.constant) result.constant = -*a.constant;
   return result;
 }
@@ -118,12 +150,13 @@ Typed Resolver::add(SyntaxKind kind, Typed a, Typed b, Span span) {
                    "multiply the scalar by a direction such as E1, or take a component dot(a, E1)");
     }
     *side = make(Op::zero_vector, true, {}, span);
-    side->literal = true;
+    side->literal = side->pure = true;
   }
   Typed result = make(kind == SyntaxKind::add ? Op::add : Op::subtract, a.vector, {a, b}, span);
   agree(result, a, b, span, kind == SyntaxKind::add ? "'+'" : "'-'");
   if (a.constant && b.constant) {
     result.constant = kind == SyntaxKind::add ? *a.constant + *b.constant : *a.constant - *b.constant;
+    result.pure = result.literal && pure_factor(*result.constant);
     check_size(result, span);
   }
   return result;
@@ -134,17 +167,10 @@ Typed Resolver::multiply(const Typed& a, const Typed& b, Span span) {
     source_.fail(span, "two vectors are multiplied with '*'", "write dot(a, b) or cross(a, b)");
   }
   Typed result = make(Op::multiply, a.vector || b.vector, {a, b}, span);
-  if (a.literal && b.literal) {
-    result.literal = true;
-  } else if (a.literal || b.literal) {
-    const Typed& factor = a.literal ? a : b;
-    result.dimension = (a.literal ? b : a).dimension;
-    result.loose = result.loose || !factor.constant || !pure_factor(*factor.constant);
-  } else if (a.dimension && b.dimension) {
-    result.dimension = product(*a.dimension, *b.dimension);
-  }
+  combine(result, a, b, false);
   if (a.constant && b.constant) {
     result.constant = *a.constant * *b.constant;
+    result.pure = result.literal && pure_factor(*result.constant);
     check_size(result, span);
   }
   return result;
@@ -156,17 +182,12 @@ Typed Resolver::divide(const Typed& a, const Typed& b, Span span) {
     source_.fail(span, "this is a division by zero", "check the denominator");
   }
   Typed result = make(Op::divide, a.vector, {a, b}, span);
-  if (a.literal && b.literal) {
-    result.literal = true;
-  } else if (b.literal) {
-    result.dimension = a.dimension;
-    result.loose = result.loose || !b.constant || !pure_factor(1 / *b.constant);
-  } else if (b.dimension && (a.literal || a.dimension)) {
-    result.dimension = quotient(a.literal ? Dimension{} : *a.dimension, *b.dimension);
-    if (a.literal) result.loose = result.loose || !a.constant || !pure_factor(*a.constant);
-  }
+  Typed divisor = b;
+  if (b.literal && b.constant) divisor.pure = pure_factor(1 / *b.constant);  // x/12 is as pure as x/2
+  combine(result, a, divisor, true);
   if (a.constant && b.constant && !cln::zerop(*b.constant)) {
     result.constant = *a.constant / *b.constant;
+    result.pure = result.literal && pure_factor(*result.constant);
     check_size(result, span);
   }
   return result;
@@ -179,6 +200,7 @@ Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
   }
   Typed result = make(Op::power, false, {a, b}, span);
   result.literal = a.literal && b.literal;
+  result.bare_time = a.bare_time && b.literal;
   if (!b.constant) {
     if (a.dimension && is_one(*a.dimension)) result.dimension = a.dimension;
     return result;
@@ -205,6 +227,7 @@ Typed Resolver::power(const Typed& a, const Typed& b, Span span) {
                  "use a number that fits a double");
   }
   result.constant = cln::expt(*a.constant, whole);
+  result.pure = result.literal && pure_factor(*result.constant);
   return result;
 }
 

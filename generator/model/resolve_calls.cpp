@@ -58,7 +58,8 @@ Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const 
     if (!same_kind && !keeps && function.fn != Fn::sqrt && function.fn != Fn::sign && a.dimension &&
         !is_one(*a.dimension)) {
       clash(syntax.nodes[node.children[k]].span,
-            fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)), a.loose);
+            fmt::format("{}() takes a pure number, and this is in {}", function.name, text_of(*a.dimension)),
+            a.loose || a.bare_time);
     }
     if (k == 0 && arguments.size() > 1) continue;
     // min and max of many are nested pairs.
@@ -71,17 +72,18 @@ Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const 
   const Typed& first = arguments[0];
   if (!same_kind) {
     result.dimension = Dimension{};
-    result.loose = false;
+    result.loose = result.bare_time = false;
     if (function.fn == Fn::abs || function.fn == Fn::sqrt) {
       result.loose = first.loose;
       result.dimension = first.dimension;
       if (function.fn == Fn::sqrt && first.dimension) result.dimension = raised(*first.dimension, Rational(1) / 2);
       result.literal = first.literal;
+      result.pure = first.pure && function.fn == Fn::abs;
+      result.bare_time = first.bare_time;
     }
   } else if (function.fn == Fn::atan2) {
     result.dimension = Dimension{};
-    result.loose = false;
-    result.literal = false;
+    result.loose = result.literal = result.bare_time = false;
   }
   return result;
 }
@@ -160,13 +162,15 @@ Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
   const Typed& a = arguments[0];
   if (!two) {
     Typed result = make(name == "norm" ? Op::norm : Op::unit, name == "unit", {a}, node.span);
-    result.dimension = name == "norm" ? a.dimension : Dimension{};
+    result.literal = name == "unit" || a.literal;
+    result.pure = name == "unit" || a.pure;
+    result.dimension = name == "norm" ? a.dimension : std::nullopt;
     result.loose = name == "norm" && a.loose;
     return result;
   }
   const Typed& b = arguments[1];
   Typed result = make(name == "dot" ? Op::dot : Op::cross, name == "cross", {a, b}, node.span);
-  if (a.dimension && b.dimension) result.dimension = product(*a.dimension, *b.dimension);
+  combine(result, a, b, false);
   return result;
 }
 

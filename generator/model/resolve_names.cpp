@@ -101,7 +101,7 @@ Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
   result.facts = position.facts;
   result.depth = position.depth + 2;
   if (op == Op::unit_basis) {
-    result.dimension = Dimension{};
+    result.literal = result.pure = true;
   } else if (leaf.dimension && position.dimension) {
     const Dimension covariant = quotient(*position.dimension, *leaf.dimension);
     result.dimension = op == Op::covariant_basis ? covariant : raised(covariant, -1);
@@ -123,6 +123,7 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
     allow(on_time, node.span, "'t'");
     Typed result = make(Op::time, false, {}, node.span);
     result.facts = on_time;
+    result.bare_time = true;
     result.dimension = dimension_of("s");
     return result;
   }
@@ -136,7 +137,7 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
   if (name.size() == 2 && name[0] == 'E' && name[1] >= '1' && name[1] <= '3') {
     Typed result = make(Op::fixed_basis, true, {}, node.span);
     model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(name[1] - '1');
-    result.dimension = Dimension{};
+    result.literal = result.pure = true;
     return result;
   }
   if (Symbol* symbol = scope_.find(name)) return leaf(*symbol, 0, node.span);

@@ -92,7 +92,7 @@ Typed Resolver::meet(Typed typed, Span span, const Context& context) {
   const bool zero = typed.literal && !typed.vector && typed.constant && cln::zerop(*typed.constant);
   if (zero && context.shape == Shape::vector) {
     typed = make(Op::zero_vector, true, {}, span);
-    typed.literal = true;
+    typed.literal = typed.pure = true;
     return typed;
   }
   if (context.shape == Shape::vector && !typed.vector) {
@@ -113,6 +113,7 @@ Typed Resolver::meet(Typed typed, Span span, const Context& context) {
 }
 
 void Resolver::clash(Span span, std::string what, bool loose) {
+  if (!units_stated_) return;
   if (loose) {
     warn(span, std::move(what), "a bare number in it may carry the missing unit; state it, as in \"0.3[N/m]*x\"");
     return;
@@ -199,14 +200,6 @@ Typed Resolver::make(Op op, bool vector, std::initializer_list<Typed> children, 
   return result;
 }
 
-Typed Resolver::number(const Rational& value, Span span) {
-  Typed result = make(Op::number, false, {}, span);
-  model_.arena.nodes[result.node].value = value;
-  result.literal = true;
-  result.constant = value;
-  return result;
-}
-
 Typed Resolver::coordinate(std::uint32_t index, std::uint8_t order, Span span) {
   Typed result = make(Op::coordinate, false, {}, span);
   model_.arena.nodes[result.node].index = index;
@@ -224,6 +217,7 @@ Typed Resolver::array_of(const std::array<Typed, 3>& components, Span span) {
   result.dimension = sum.dimension;
   result.loose = sum.loose;
   result.literal = sum.literal;
+  result.pure = sum.literal && sum.pure;
   return result;
 }
 

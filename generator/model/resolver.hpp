@@ -76,7 +76,8 @@ public:
 
   bool uses_parameters(NodeId node) const;
 
-  const Source& source() const { return source_; }
+  /// Whether the model states any unit; without, nothing is checked.
+  void units_stated(bool stated) { units_stated_ = stated; }
   void warn(Span span, std::string message, std::string remedy);
 
 private:
@@ -108,6 +109,7 @@ private:
   NodeId push(Node node);
   Typed make(Op op, bool vector, std::initializer_list<Typed> children, Span span);
   /// The dimension of a sum: both must agree as far as they are known.
+  void combine(Typed& result, const Typed& a, const Typed& b, bool quotient_of);
   void agree(Typed& result, const Typed& a, const Typed& b, Span span, std::string_view relation);
   void clash(Span span, std::string what, bool loose);
   void allow(Facts facts, Span span, std::string_view what);
@@ -118,6 +120,7 @@ private:
   Model& model_;
   Scope& scope_;
   Definer definer_;
+  bool units_stated_ = true;
   const Context* context_ = nullptr;
   const std::map<std::string, Typed>* local_ = nullptr;
   std::map<NodeId, CoordinateSet> coordinates_of_;  // of places and definitions

@@ -19,7 +19,9 @@ inline constexpr std::size_t max_names = 5000;
 struct Typed {
   NodeId node = no_node;
   bool vector = false;
-  bool literal = false;                // made of written numbers only: no dimension, fits every one
+  bool literal = false;                // of written numbers and unit vectors: no dimension, fits every one
+  bool pure = false;                   // a literal that hardly carries a unit: 2, 1/12, E1
+  bool bare_time = false;              // of t and written numbers: in sin(2*t) the 2 carries 1/s
   bool loose = false;                  // the dimension is known up to a bare number (0.3*x): mismatches are warnings
   std::optional<Dimension> dimension;  // nothing: unknown
   std::uint8_t facts = 0;              // what it depends on

@@ -82,7 +82,9 @@ struct Syntax {
 
 /// Parses a whole expression. Throws Error.
 Syntax parse_expression(const Text& text);
-/// The same, but a unit may follow after a blank.
+/// The unit after the last blank of "9.81 m/s^2", if that is how the text reads.
+std::optional<MeasuredUnit> trailing_unit(std::string_view text);
+/// The same as parse_expression, but a unit may follow after a blank.
 Syntax parse_quantity(const Text& text);
 
 }  // namespace eomgen::model

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model_support.hpp"
+
+using namespace eomgen::model;
+
+TEST_CASE("a file without scenes has a default one") {
+  const Model model = read(particle(""));
+  REQUIRE(model.scenes.size() == 1);
+  CHECK(model.scenes[0].name == "default");
+  CHECK(exact(model, model.scenes[0].t1) == 10);
+  CHECK(model.scenes[0].solver == "auto");
+  CHECK(model.scenes[0].rtol == no_node);
+}
+
+TEST_CASE("a scene holds times, start values, what may move, settings and outputs") {
+  const Model model = read(particle(R"toml(
+[inputs]
+F = { unit = "N", default = 0 }
+G = { unit = "N" }
+[[force]]
+on = "P"
+force = "(F + G)*E1"
+[definitions]
+h = "dot(P, E3)"
+[[constraint]]
+name = "rod"
+holonomic = ["R - L", "theta"]
+[scene.default]
+t = ["0 s", "2 min"]
+initial = { phi = "30 deg", theta = 1, phi_dot = "2*phi/1[s]", R = "L*cos(theta)" }
+solve = ["theta_dot"]
+guess = { theta_dot = 0.5 }
+parameters = { L = "2 m" }
+inputs = { F = "3[N]*sin(t/1[s])", G = { t = [0, 1], value = ["1 N", 2] } }
+outputs = ["energy", "kinetic", "power", "all", "h", "phi", "phi_dot", "P.position1", "P.velocity3", "reaction.rod", "reaction.rod.2"]
+solver = "dop853"
+rtol = 1e-9
+atol = "1e-12"
+step = "1 ms"
+every = 0.01
+)toml"));
+  const Scene& scene = model.scenes[0];
+  CHECK(exact(model, scene.t1) == 120);
+  REQUIRE(scene.initial.size() == 4);
+  CHECK(scene.initial[2].order == 1);
+  CHECK(model.coordinates[scene.initial[0].coordinate].name == "phi");
+  CHECK(scene.solve[0].second == 1);
+  CHECK(scene.guess.size() == 1);
+  CHECK(exact(model, scene.parameters[0].second) == 2);
+  CHECK(std::get<InputTable>(scene.inputs[1].signal).t.size() == 2);
+  CHECK(scene.outputs.size() == 11);
+  CHECK(scene.solver == "dop853");
+  CHECK(exact(model, scene.rtol) == ratio(1, 1000000000));
+  CHECK(exact(model, scene.step) == ratio(1, 1000));
+}
+
+TEST_CASE("a scene starts from another: tables merge, other keys replace") {
+  const Model model = read(particle(R"toml(
+[scene.b]
+from = "default"
+initial = { phi = 2, theta_dot = 3 }
+outputs = ["kinetic"]
+[scene.c]
+from = "b"
+t = [0, 1]
+[scene.default]
+t = [0, 5]
+initial = { R = 1, phi = 1 }
+outputs = ["energy", "potential"]
+rtol = 1e-8
+)toml"));
+  REQUIRE(model.scenes.size() == 3);
+  CHECK(model.scenes[0].name == "default");
+  const Scene& c = model.scene("c");
+  CHECK(exact(model, c.t1) == 1);
+  REQUIRE(c.initial.size() == 3);
+  CHECK(exact(model, c.initial[1].value) == 2);
+  CHECK(c.outputs.size() == 1);
+  CHECK(exact(model, c.rtol) == ratio(1, 100000000));
+  CHECK(exact(model, model.scene("b").t1) == 5);
+}
+
+TEST_CASE("an unknown scene is told with the one that was meant") {
+  const Model model = read(particle("[scene.default]\n[scene.fast]\nfrom = \"default\"\n"));
+  try {
+    model.scene("fsat");
+    FAIL("accepted");
+  } catch (const eomgen::Error& error) {
+    CHECK(error.message() == "there is no scene 'fsat'");
+    CHECK(error.remedy() == "did you mean 'fast'?");
+    CHECK(error.exit_code() == 2);
+  }
+}
+
+TEST_CASE("start values may use functions at the start and definitions of what is given") {
+  CHECK(refusal(particle("[functions]\nd = \"L + t*1[m/s]\"\n[definitions]\ns = \"R*sin(phi)\"\n[scene.default]\n"
+                         "initial = { R = \"d\", R_dot = \"d_dot\", phi = 1, theta_dot = \"s/L/1[s]\" }\n")) ==
+        "accepted");
+  CHECK(refusal(particle(
+            "[definitions]\ns = \"ddt(R)*1[s]\"\n[scene.default]\ninitial = { R = 1, phi = 1, theta = \"s/L\" }\n")) ==
+        "the start value of 'theta' uses 'R_dot', which is not given before it");
+}
+
+TEST_CASE("an output asked for twice is named once") {
+  const Model model = read(particle("[scene.default]\noutputs = [\"kinetic\", \"kinetic\"]\n"));
+  CHECK(model.scenes[0].outputs.size() == 1);
+  CHECK(model.warnings.front().message == "the output 'kinetic' is asked for twice");
+}

@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/units.hpp"
+
+#include "model_support.hpp"
+
+using namespace eomgen::model;
+
+namespace {
+
+Rational si(const std::string& quantity) {
+  const Model model = with_parameters("p = \"" + quantity + "\"");
+  return exact(model, model.parameters[0].value);
+}
+
+}  // namespace
+
+TEST_CASE("units are converted to SI exactly") {
+  CHECK(si("5 mm") == ratio(5, 1000));
+  CHECK(si("9.81 m/s^2") == ratio(981, 100));
+  CHECK(si("72 km/h") == 20);
+  CHECK(si("250 g") == ratio(1, 4));
+  CHECK(si("3 kN*cm") == 30);
+  CHECK(si("2 uN/mm^2") == 2);
+  CHECK(si("1 dag") == ratio(1, 100));
+  CHECK(si("1 L") == ratio(1, 1000));
+  CHECK(si("2 min") == 120);
+  CHECK(si("1 kg/(m*s^2)") == 1);
+  CHECK(si("4 s^-2") == 4);
+  CHECK(si("5 1/ms") == 5000);
+  CHECK(si("1.7e-5[km]") == ratio(17, 1000));
+  CHECK(si("2[cm] + 1[mm]") == ratio(21, 1000));
+}
+
+TEST_CASE("degrees and turns bring pi as pi") {
+  const Model model =
+      with_parameters("a = \"30 deg\"\nb = \"60 rpm\"\nc = \"1 rev/s\"\nd = \"-2*pi rad/s\"\ne = \"1 deg^2\"");
+  const double pi = std::acos(-1.0);
+  const auto value = [&](std::size_t k) { return approximate(model, model.parameters[k].value); };
+  CHECK(value(0) == doctest::Approx(pi / 6).epsilon(1e-15));
+  CHECK(value(1) == doctest::Approx(2 * pi).epsilon(1e-15));
+  CHECK(value(2) == doctest::Approx(2 * pi).epsilon(1e-15));
+  CHECK(value(3) == doctest::Approx(-2 * pi).epsilon(1e-15));
+  CHECK(model.arena[model.arena[model.parameters[4].value].args[1]].op == Op::power);
+}
+
+TEST_CASE("a unit keeps the user's words where they are SI, and is canonical otherwise") {
+  const Model model = with_parameters(
+      "a = \"2 N*s/m\"\nb = \"2 mm\"\nc = \"a*b\"\nd = 3\ne = { value = 2, unit = \"kN/m\" }\nf = { value = 1, unit = "
+      "\"1\" }");
+  CHECK(model.parameters[0].unit.text == "N*s/m");
+  CHECK(model.parameters[1].unit.text == "m");
+  CHECK(model.parameters[2].unit.text == "N*s");
+  CHECK(model.parameters[3].unit.text.empty());
+  CHECK(!model.parameters[3].unit.dimension);
+  CHECK(model.parameters[4].unit.text == "N/m");
+  CHECK(exact(model, model.parameters[4].value) == 2000);
+  CHECK(model.parameters[5].unit.text == "1");
+}
+
+TEST_CASE("dimensions are written as an engineer would") {
+  CHECK(text_of(dimension_of("kg*m/s^2")) == "N");
+  CHECK(text_of(dimension_of("kg*m^2")) == "kg*m^2");
+  CHECK(text_of(dimension_of("rad")) == "1");
+  CHECK(text_of(dimension_of("m^3/(kg*s^2)")) == "m^3/(kg*s^2)");
+  CHECK(text_of(raised(dimension_of("m"), ratio(1, 2))) == "m^(1/2)");
+}
+
+TEST_CASE("what is no unit is refused") {
+  for (const char* text : {"", "mm m", "foo", "m^", "m^0", "m^12", "m//s", "(m", "m)", "2", "kdeg", "m^1.5", "m-s"}) {
+    CAPTURE(text);
+    CHECK(!parse_unit(text));
+  }
+}
+
+TEST_CASE("a bare number fits every dimension") {
+  CHECK(refusal(particle("[[constraint]]\nname = \"c\"\nholonomic = \"R - 2\"\n")) == "accepted");
+  CHECK(refusal(particle("[definitions]\na = \"R + 1\"\nb = \"a + L\"\n")) == "accepted");
+  CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = [0, 0, 3]\n")) == "accepted");
+}
+
+TEST_CASE("a sum, an argument and what is asked for must agree in dimension") {
+  const auto sum = [](const std::string& expression) {
+    return refusal(particle("[definitions]\na = \"" + expression + "\"\n"));
+  };
+  CHECK(sum("R + t") == "the units clash: m on one side and s on the other side of '+'");
+  CHECK(sum("R/L + theta") == "accepted");
+  CHECK(sum("sqrt(R^2 + L^2) - R") == "accepted");
+  CHECK(sum("R^(1/2)*R^1.5 - L^2") == "accepted");
+  CHECK(sum("exp(R)") == "the units clash: exp() takes a pure number, and this is in m");
+  CHECK(sum("atan2(R, L) + atan2(R, t)") == "the units clash: m on one side and s on the other side of atan2()");
+  CHECK(sum("if(R < t, 1, 2)") == "the units clash: m on one side and s on the other side of the comparison");
+  CHECK(sum("2^R") == "the units clash: an exponent is a pure number, and this one is in m");
+  CHECK(sum("R_dot - ddt(R)") == "accepted");
+  CHECK(sum("R_dot - dot(velocity(P), P.e_R)") == "accepted");
+  CHECK(sum("dot(P.g_theta, P.a_theta) - 1") == "accepted");
+  CHECK(sum("norm(P.a_theta) - R*sin(phi)") == "accepted");
+}
+
+TEST_CASE("a factor that may carry a unit makes a mismatch a warning") {
+  const Model model = read(particle("[[force]]\non = \"P\"\nforce = \"-0.3*R*P.e_R\"\n"));
+  REQUIRE(model.warnings.size() == 3);  // and L, k are not used
+  CHECK(model.warnings[0].message == "this force is asked in N, and this is in m");
+  CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = \"-R/2*P.e_R\"\n")) ==
+        "the units clash: this force is asked in N, and this is in m");
+}
+
+TEST_CASE("in sin(2*t) the 2 carries the unit, and unit vectors carry none") {
+  CHECK(refusal(particle("[functions]\nd = \"L + L/10*sin(2*t)\"\n")) == "accepted");
+  CHECK(refusal(particle("[functions]\nd = \"L*sin(L*t)\"\n")) ==
+        "the units clash: sin() takes a pure number, and this is in m*s");
+  CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = \"E1 + 2*P.e_theta\"\n")) == "accepted");
+  CHECK(refusal(particle("[[force]]\non = \"2*E1\"\nforce = \"m*g*unit(P)\"\n")) == "accepted");
+  CHECK(refusal(particle("[[force]]\non = \"P\"\nforce = \"m*dot(E1, P)*E2\"\n")) ==
+        "the units clash: this force is asked in N, and this is in kg*m");
+}
+
+TEST_CASE("a model that states no unit is not checked for units") {
+  const std::string model = R"toml(format = 1
+title = "a bead on a parabola, 2 m"
+[parameters]
+m = 1
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y", "z"] }
+[[constraint]]
+name = "bowl"
+holonomic = "z - x^2 - y^2 - sin(x)"
+)toml";
+  CHECK(refusal(model) == "accepted");
+  CHECK(read(model).warnings.empty());
+  CHECK(refusal(model + "[functions]\nd = \"2 m\"\n") ==
+        "the units clash: m on one side and m^2 on the other side of '-'");
+}

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Dimensions, vectors and scalars.
+#include "wrong_models.hpp"
+
+namespace eomgen::model {
+
+std::vector<WrongModel> wrong_units() {
+  return {
+      {"a sum of metres and seconds", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - L*t\"\n"),
+       "14:16", "the units clash: m on one side and m*s on the other side of '-'",
+       "check the formula and the units of the names in it"},
+      {"a mass in metres", pendulum({{"mass = \"m\"", "mass = \"L\""}}), "8:9",
+       "the units clash: the mass of 'P' is asked in kg, and this is in m",
+       "check the formula and the units of the names in it"},
+      {"gravity with the unit of a speed", pendulum({{"9.81 m/s^2", "9.81 m/s"}}), "11:12",
+       "the units clash: gravity is asked in m/s^2, and this is in m/s",
+       "check the formula and the units of the names in it"},
+      {"a length as the argument of sin",
+       pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - L*sin(R)\"\n"), "14:24",
+       "the units clash: sin() takes a pure number, and this is in m",
+       "check the formula and the units of the names in it"},
+      {"an energy that is none",
+       "format = 1\n[parameters]\nm = \"2 kg\"\n[coordinates]\nx = \"m\"\n[energy]\nkinetic = \"m*x_dot/2\"\n", "7:12",
+       "the units clash: the kinetic energy is asked in J, and this is in N*s",
+       "check the formula and the units of the names in it"},
+      {"an unknown unit", pendulum({{"9.81 m/s^2", "9.81 m/sec^2"}}), "4:11", "'m/sec^2' is not a unit",
+       "did you mean 'm/s^2'?"},
+      {"a unit with a blank in it", pendulum({{"9.81 m/s^2", "9.81 m / s^2"}}), "4:11",
+       "an operator is missing before 'm'",
+       "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 "
+       "m/s^2\""},
+      {"a coordinate in degrees", pendulum({}, "[coordinates]\ntheta = \"deg\"\n"), "13:9",
+       "'theta' is measured in SI units, and 'deg' is not one",
+       "state rad; single values may have any unit, as in \"30 deg\" or \"5 mm\""},
+      {"a scalar as a force", pendulum({}, "[[force]]\non = \"P\"\nforce = \"m*g\"\n"), "14:10",
+       "this force is a vector, and this is a scalar",
+       "multiply by a direction such as E1 or P.e_theta, or write [x, y, z]"},
+      {"a vector as a constraint sum", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"P - L\"\n"), "14:16",
+       "a vector and a scalar cannot be added",
+       "multiply the scalar by a direction such as E1, or take a component dot(a, E1)"},
+      {"a product of two vectors", pendulum({}, "[definitions]\na = \"P*E1\"\n"), "13:7",
+       "two vectors are multiplied with '*'", "write dot(a, b) or cross(a, b)"},
+      {"division by zero", pendulum({{"L = \"1 m\"", "L = \"1/0\""}}), "5:7", "this is a division by zero",
+       "check the denominator"},
+      {"a table as a number", pendulum({{"L = \"1 m\"", "L = [1, 2]"}}), "5:5",
+       "the parameter 'L' is a scalar, not an array",
+       "a scalar is a number or \"expression\"; a vector is \"expression\" or [x, y, z]"},
+      {"a boolean as a mass", pendulum({{"mass = \"m\"", "mass = true"}}), "8:8",
+       "the mass of 'P' cannot be true or false", "write a number, \"expression\" or \"expression unit\""},
+      {"not a number", pendulum({{"L = \"1 m\"", "L = nan"}}), "5:5",
+       "'nan' cannot be the parameter 'L': this is not a number", "write a finite number"},
+      {"an acceleration in a force", pendulum({}, "[[force]]\non = \"P\"\nforce = \"-m*acceleration(P)\"\n"), "14:13",
+       "acceleration() depends on accelerations, which this force cannot",
+       "use numbers, parameters and time, inputs, coordinates, velocities only"},
+      {"gravity that depends on the place", pendulum({{"-g*E3", "-g*P/L"}}), "11:15",
+       "'P' depends on coordinates, which gravity cannot",
+       "gravity is one acceleration for all masses; write force = \"<vector>\" with on = P, or central_gravity"},
+      {"a range that is empty", pendulum({}, "[coordinates]\nR = { range = [2, 1] }\n"), "13:15", "the range is empty",
+       "write the smaller end first: range = [a, b] with a < b"},
+      {"a unit of a parameter that clashes with its value",
+       pendulum({{"L = \"1 m\"", "L = { value = \"2 s\", unit = \"m\" }"}}), "5:29",
+       "the units clash: the value has the dimension s already, and m is put to it",
+       "check the formula and the units of the names in it"},
+      {"a function whose unit is not the one of its expression",
+       pendulum({}, "[functions]\nf = { is = \"2*L\", unit = \"s\" }\n"), "13:13",
+       "the units clash: the function 'f' is asked in s, and this is in m",
+       "check the formula and the units of the names in it"},
+  };
+}
+
+}  // namespace eomgen::model
