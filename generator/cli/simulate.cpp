@@ -37,6 +37,12 @@ bool energy_is_conserved(const Derived& derived) {
                      [](const derive::Conserved& c) { return c.name == "energy"; });
 }
 
+run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
+  run::RunRequest run{code, scene, state_names(derived), {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
+  for (const derive::Conserved& c : derived.conserved) run.conserved.push_back(c.name);
+  return run;
+}
+
 }  // namespace
 
 Simulation simulate(const SimulationRequest& request) {
@@ -58,8 +64,7 @@ Simulation simulate(const SimulationRequest& request) {
   CompiledCode code = compile(program, emission_context(*derived, program, defaults, certificate));
 
   const run::Code functions = code.for_run();
-  run::RunRequest run{functions, scene, state_names(*derived), {}, watch_power, request.estimate, 0, {}, {}, {}};
-  for (const derive::Conserved& c : derived->conserved) run.conserved.push_back(c.name);
+  run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
   if (request.begin) {
     run.every = scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
     request.begin(*derived, scene, functions.output_names);
@@ -69,6 +74,14 @@ Simulation simulate(const SimulationRequest& request) {
   run.interrupt = request.interrupt;
   run::RunResult result = run::integrate_scene(run);
   return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result)};
+}
+
+run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
+  Derived& derived = *simulation.derived;
+  const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                              derived.model.scene(simulation.scene.name), overrides);
+  const run::Code code = simulation.code.for_run();
+  return run::integrate_scene(run_request(derived, scene, code, estimate));
 }
 
 }  // namespace eomgen::cli

@@ -41,4 +41,8 @@ inline constexpr double default_rows = 500;
 
 Simulation simulate(const SimulationRequest& request);
 
+/// The same compiled code once more, with other values: for sweeps and for tests over tolerances. Parameters, starts and
+/// outputs that the code was made for; what else `overrides` may change. No rows.
+run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);
+
 }  // namespace eomgen::cli
