@@ -136,11 +136,12 @@ TEST_CASE("a stage includes the libraries that its CMakeLists.txt links, and no 
 
 TEST_CASE("no stage needs itself, over whatever way") {
   const Generator generator = read_generator();
-  for (const auto& [name, stage] : generator.stages) {
+  for (const auto& entry : generator.stages) {
+    const Stage& stage = entry.second;
     for (const std::string& need : stage.needs) {
-      CAPTURE(name);
+      CAPTURE(stage.name);
       CAPTURE(need);
-      CHECK(reachable(need, generator.stages).count(name) == 0);
+      CHECK(reachable(need, generator.stages).count(stage.name) == 0);
     }
   }
 }
