@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The statements of a derivation as formulas, before they are printed in any format.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reading/reading.hpp"
+
+namespace eomgen::print {
+
+struct Statement {
+  std::string key, name, coordinate, role;
+  reading::Formula formula;
+};
+
+/// The statements that `show` names, in a fixed order of keys.
+std::vector<Statement> statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                                  const std::vector<std::string>& show);
+
+/// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, as (2.109).
+reading::Formula momentum_form(const reading::Equation& equation);
+/// M qddot + h = Q + lambda grad psi.
+reading::Formula explicit_form(const reading::Equation& equation);
+
+void add_energies(const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_constraints(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys, std::vector<Statement>& out);
+
+}  // namespace eomgen::print

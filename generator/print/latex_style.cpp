@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// LaTeX for amsmath.
+#include <cln/integer_io.h>
+#include <cln/rational.h>
+
+#include <cctype>
+#include <sstream>
+
+#include "print/printer.hpp"
+
+namespace eomgen::print {
+namespace {
+
+using reading::Op;
+
+constexpr std::size_t line_width = 80;  // printed characters, about
+
+std::string integer(const cln::cl_I& value) {
+  std::ostringstream text;
+  text << value;
+  return text.str();
+}
+
+std::string function_name(Op op) {
+  switch (op) {
+    case Op::sin: return "\\sin";
+    case Op::cos: return "\\cos";
+    case Op::tan: return "\\tan";
+    case Op::asin: return "\\arcsin";
+    case Op::acos: return "\\arccos";
+    case Op::atan: return "\\arctan";
+    case Op::sinh: return "\\sinh";
+    case Op::cosh: return "\\cosh";
+    case Op::tanh: return "\\tanh";
+    case Op::exp: return "\\exp";
+    case Op::log: return "\\ln";
+    case Op::sign: return "\\operatorname{sgn}";
+    case Op::atan2: return "\\operatorname{atan2}";
+    case Op::min: return "\\min";
+    case Op::max: return "\\max";
+    default: return "";
+  }
+}
+
+// How many characters a piece shows: commands count as one, braces and blanks not at all.
+std::size_t visible(const std::string& latex) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < latex.size(); ++i) {
+    const char c = latex[i];
+    if (c == '\\') {
+      ++count;
+      if (i + 1 < latex.size() && std::isalpha(static_cast<unsigned char>(latex[i + 1])) == 0) ++i;
+      while (i + 1 < latex.size() && std::isalpha(static_cast<unsigned char>(latex[i + 1])) != 0) ++i;
+    } else if (c != '{' && c != '}' && c != '^' && c != '_' && c != ' ') {
+      ++count;
+    }
+  }
+  return count;
+}
+
+class LatexStyle final : public Style {
+ public:
+  Piece number(const reading::Rational& value) const override {
+    if (reading::is_integer(value)) return {integer(cln::numerator(value)), Piece::atom};
+    return {"\\tfrac{" + integer(cln::numerator(value)) + "}{" + integer(cln::denominator(value)) + "}", Piece::call};
+  }
+  Piece pi() const override { return {"\\pi", Piece::atom}; }
+  Piece symbol(const Glyph& glyph) const override { return {latex(glyph), Piece::atom}; }
+  Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
+    if (word == "[]") return {"[" + lower[0] + "\\," + lower[1] + ",\\," + lower[2] + "]", Piece::atom};
+    std::string text = letter(word);
+    if (!upper.empty()) text += "^{" + joined(upper) + "}";
+    if (!lower.empty()) text += "_{" + joined(lower) + "}";
+    return {text, Piece::atom};
+  }
+  Piece call(Op op, const std::vector<Piece>& args) const override {
+    switch (op) {
+      case Op::sqrt: return {"\\sqrt{" + args[0].text + "}", Piece::atom};
+      case Op::abs: return {"\\left|" + args[0].text + "\\right|", Piece::atom};
+      case Op::exp: return {"e^{" + args[0].text + "}", Piece::call};
+      case Op::select:
+        return {"\\begin{cases} " + args[2].text + " & \\text{if } " + args[0].text + " < " + args[1].text + " \\\\ " +
+                    args[3].text + " & \\text{else} \\end{cases}",
+                Piece::sum};
+      default: return {function_name(op) + arguments(args), Piece::call};
+    }
+  }
+  Piece call_power(Op op, const std::vector<Piece>& args, const std::string& exponent) const override {
+    return {function_name(op) + "^{" + exponent + "}" + arguments(args), Piece::call};
+  }
+  Piece power(const Piece& base, const std::string& exponent) const override {
+    return {base.text + "^{" + exponent + "}", Piece::call};
+  }
+  Piece fraction(const Piece& above, const Piece& below) const override {
+    return {"\\frac{" + above.text + "}{" + below.text + "}", Piece::call};
+  }
+  Piece product(const std::vector<Piece>& factors) const override {
+    std::string text;
+    bool after_call = false;  // a little space keeps what follows out of its argument
+    for (const Piece& factor : factors) {
+      if (!text.empty()) text += after_call ? "\\, " : " ";
+      text += factor.text;
+      after_call = factor.text.starts_with("\\sin") || factor.text.starts_with("\\cos") || factor.text.starts_with("\\tan");
+    }
+    return {text, Piece::product};
+  }
+  Piece rate(const Piece& inside) const override { return {open_rate() + inside.text + close_rate(), Piece::call}; }
+  Piece partial(const Piece& above, const Piece& below) const override {
+    return {"\\frac{\\partial " + above.text + "}{\\partial " + below.text + "}", Piece::call};
+  }
+  Piece dotted(const Piece& base, int dots) const override {
+    return {std::string(dots == 1 ? "\\dot{" : "\\ddot{") + base.text + "}", Piece::atom};
+  }
+  Piece dot_product(const Piece& a, const Piece& b) const override {
+    return {a.text + " \\cdot " + b.text, Piece::product};
+  }
+  Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::call}; }
+  std::string bracket(const std::string& inside) const override { return "\\left(" + inside + "\\right)"; }
+  std::string plus() const override { return " + "; }
+  std::string minus() const override { return " - "; }
+  std::string leading_minus() const override { return "-"; }
+  std::string equals() const override { return " = "; }
+  std::string comma() const override { return ",\\quad "; }
+  std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
+    std::size_t total = 0;
+    for (const std::string& piece : pieces) total += visible(piece);
+    std::string result;
+    if (total <= line_width) {
+      for (const std::string& piece : pieces) result += piece;
+      return result;
+    }
+    std::size_t width = 0;
+    bool broken = false;
+    for (const std::string& piece : pieces) {
+      const std::size_t more = visible(piece);
+      if (width > 0 && width + more > line_width) {
+        result += " \\\\\n&\\quad{}";
+        width = 4;
+        broken = true;
+      }
+      result += piece;
+      width += more;
+    }
+    return broken ? "\\begin{aligned}\n&" + result + "\n\\end{aligned}" : result;
+  }
+  std::string open_rate() const override { return "\\frac{d}{dt}\\!\\bigl("; }
+  std::string close_rate() const override { return "\\bigr)"; }
+
+ private:
+  static std::string letter(const std::string& word) {
+    if (word.size() == 2 && word[1] == '~') return "\\tilde{" + word.substr(0, 1) + "}";
+    if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "\\mathbf{" + word + "}";
+    if (word == "ds^2") return "ds^{2}";
+    if (!greek(word).empty() || word == "det") return "\\" + word;
+    return word;
+  }
+  static std::string joined(const std::vector<std::string>& parts) {
+    std::string result;
+    for (std::size_t i = 0; i < parts.size(); ++i) result += (i > 0 ? " " : "") + parts[i];
+    return result;
+  }
+  static std::string arguments(const std::vector<Piece>& args) {
+    if (args.size() == 1 && args[0].binding >= Piece::atom) {
+      return args[0].text.starts_with("\\") ? args[0].text : " " + args[0].text;
+    }
+    std::string result = "\\left(";
+    for (std::size_t i = 0; i < args.size(); ++i) result += (i > 0 ? ", " : "") + args[i].text;
+    return result + "\\right)";
+  }
+};
+
+}  // namespace
+
+std::unique_ptr<Style> latex_style() { return std::make_unique<LatexStyle>(); }
+
+}  // namespace eomgen::print

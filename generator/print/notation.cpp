@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "print/notation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace eomgen::print {
+namespace {
+
+using symbolic::SymbolKind;
+
+constexpr std::array<std::pair<std::string_view, std::string_view>, 37> letters{{
+    {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ϵ"}, {"varepsilon", "ε"},
+    {"zeta", "ζ"}, {"eta", "η"}, {"theta", "θ"}, {"vartheta", "ϑ"}, {"iota", "ι"}, {"kappa", "κ"},
+    {"lambda", "λ"}, {"mu", "μ"}, {"nu", "ν"}, {"xi", "ξ"}, {"pi", "π"}, {"rho", "ρ"},
+    {"sigma", "σ"}, {"tau", "τ"}, {"upsilon", "υ"}, {"phi", "ϕ"}, {"varphi", "φ"}, {"chi", "χ"},
+    {"psi", "ψ"}, {"omega", "ω"}, {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Theta", "Θ"}, {"Lambda", "Λ"},
+    {"Xi", "Ξ"}, {"Pi", "Π"}, {"Sigma", "Σ"}, {"Upsilon", "Υ"}, {"Phi", "Φ"}, {"Psi", "Ψ"}, {"Omega", "Ω"},
+}};
+
+bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
+bool is_digit(char c) { return std::isdigit(static_cast<unsigned char>(c)) != 0; }
+bool all_digits(std::string_view s) { return !s.empty() && std::all_of(s.begin(), s.end(), is_digit); }
+
+std::string latex_word(std::string_view word) {
+  if (!greek(word).empty()) return "\\" + std::string(word);
+  if (word.size() == 1 || all_digits(word)) return std::string(word);
+  return "\\mathrm{" + std::string(word) + "}";
+}
+
+std::string mathml_word(std::string_view word) {
+  if (all_digits(word)) return "<mn>" + std::string(word) + "</mn>";
+  if (const std::string_view letter = greek(word); !letter.empty()) return "<mi>" + std::string(letter) + "</mi>";
+  return "<mi>" + std::string(word) + "</mi>";
+}
+
+}  // namespace
+
+std::string_view greek(std::string_view name) {
+  const auto found = std::find_if(letters.begin(), letters.end(), [&](const auto& l) { return l.first == name; });
+  return found == letters.end() ? std::string_view() : found->second;
+}
+
+Glyph split_name(std::string_view name) {
+  Glyph glyph;
+  glyph.name = std::string(name);
+  std::size_t end = 0;
+  while (end < name.size() && is_letter(name[end])) ++end;
+  glyph.base = std::string(name.substr(0, end));
+  while (end < name.size()) {
+    if (name[end] == '_') {
+      ++end;
+      continue;
+    }
+    const std::size_t start = end;
+    while (end < name.size() && name[end] != '_' && is_digit(name[end]) == is_digit(name[start])) ++end;
+    glyph.index.emplace_back(name.substr(start, end - start));
+  }
+  return glyph;
+}
+
+Notation::Notation(const mechanics::Mechanics& mechanics)
+    : model_(mechanics.model), multipliers_(mechanics.constraints.size()), multiplier_letter_("lambda") {
+  const auto taken = [](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [](const auto& e) { return split_name(e.name).base == "lambda"; });
+  };
+  if (taken(model_->parameters) || taken(model_->coordinates) || taken(model_->functions) || taken(model_->inputs)) {
+    multiplier_letter_ = "mu";
+  }
+}
+
+Glyph Notation::multiplier(std::uint32_t constraint) const {
+  if (multipliers_ == 1) return split_name(multiplier_letter_);
+  return split_name(multiplier_letter_ + "_" + std::to_string(constraint + 1));
+}
+
+Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
+  static constexpr std::array<const char*, 3> endings{"", "_dot", "_ddot"};
+  const auto named = [&](const std::string& name, const std::string& tex) {
+    Glyph glyph = split_name(name);
+    glyph.tex = tex;
+    glyph.dots = symbol.order;
+    glyph.name += symbol.order < 3 ? endings[symbol.order] : "_d" + std::to_string(symbol.order);
+    return glyph;
+  };
+  switch (symbol.kind) {
+    case SymbolKind::time: return split_name("t");
+    case SymbolKind::parameter: return named(model_->parameters[symbol.index].name, model_->parameters[symbol.index].tex);
+    case SymbolKind::input: return named(model_->inputs[symbol.index].name, model_->inputs[symbol.index].tex);
+    case SymbolKind::function: return named(model_->functions[symbol.index].name, model_->functions[symbol.index].tex);
+    case SymbolKind::coordinate:
+      return named(model_->coordinates[symbol.index].name, model_->coordinates[symbol.index].tex);
+    case SymbolKind::multiplier: return multiplier(symbol.index);
+    case SymbolKind::extra: break;
+  }
+  return split_name("e_" + std::to_string(symbol.index + 1));
+}
+
+std::string latex(const Glyph& glyph) {
+  const auto dotted = [&](std::string base) {
+    switch (glyph.dots) {
+      case 0: return base;
+      case 1: return "\\dot{" + base + "}";
+      case 2: return "\\ddot{" + base + "}";
+      case 3: return "\\dddot{" + base + "}";
+      default: return base + "^{(" + std::to_string(glyph.dots) + ")}";
+    }
+  };
+  if (!glyph.tex.empty()) return glyph.dots == 0 ? "{" + glyph.tex + "}" : dotted(glyph.tex);
+  std::string result = dotted(latex_word(glyph.base));
+  if (glyph.index.empty()) return result;
+  if (glyph.dots > 3) result = "{" + result + "}";
+  result += "_{";
+  for (std::size_t i = 0; i < glyph.index.size(); ++i) result += (i > 0 ? "," : "") + latex_word(glyph.index[i]);
+  return result + "}";
+}
+
+std::string mathml(const Glyph& glyph) {
+  static constexpr std::array<const char*, 4> marks{"", "˙", "¨", "⃛"};
+  std::string base = mathml_word(glyph.base);
+  if (glyph.dots > 0 && glyph.dots <= 3) {
+    base = "<mover accent=\"true\">" + base + "<mo>" + marks[static_cast<std::size_t>(glyph.dots)] + "</mo></mover>";
+  } else if (glyph.dots > 3) {
+    base = "<msup>" + base + "<mrow><mo>(</mo><mn>" + std::to_string(glyph.dots) + "</mn><mo>)</mo></mrow></msup>";
+  }
+  if (glyph.index.empty()) return base;
+  std::string index;
+  for (std::size_t i = 0; i < glyph.index.size(); ++i) index += (i > 0 ? "<mo>,</mo>" : "") + mathml_word(glyph.index[i]);
+  return "<msub>" + base + "<mrow>" + index + "</mrow></msub>";
+}
+
+std::string escape_latex(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '\\': result += "\\textbackslash{}"; break;
+      case '{': case '}': case '$': case '&': case '#': case '%': case '_': result += std::string("\\") + c; break;
+      case '^': result += "\\textasciicircum{}"; break;
+      case '~': result += "\\textasciitilde{}"; break;
+      case '<': result += "\\textless{}"; break;
+      case '>': result += "\\textgreater{}"; break;
+      case '"': result += "''"; break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) result += c;
+        else result += ' ';
+    }
+  }
+  return result;
+}
+
+std::string escape_html(std::string_view text) {
+  std::string result;
+  for (const char c : text) {
+    switch (c) {
+      case '&': result += "&amp;"; break;
+      case '<': result += "&lt;"; break;
+      case '>': result += "&gt;"; break;
+      case '"': result += "&quot;"; break;
+      case '\'': result += "&#39;"; break;
+      default: result += c;
+    }
+  }
+  return result;
+}
+
+}  // namespace eomgen::print

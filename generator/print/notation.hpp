@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// How the names of a model and the letters of mechanics look: theta1_dot is theta with index 1 and a dot over it.
+// Nothing of the user's is copied into LaTeX or MathML but through here (a `tex` override was checked by the reader).
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+
+namespace eomgen::print {
+
+/// A letter or word with indices.
+struct Glyph {
+  std::string base;                // "theta", "x", "length"
+  std::vector<std::string> index;  // "1", "max"
+  int dots = 0;
+  std::string name;                // plain, "theta1_dot"
+  std::string tex;                 // an override of base and index; empty for none
+};
+
+/// "theta1" -> theta, 1; "m_P" -> m, P; "x1_ref" -> x, 1, ref; "length" -> length.
+Glyph split_name(std::string_view name);
+
+/// The names of one model's symbols.
+class Notation {
+ public:
+  explicit Notation(const mechanics::Mechanics& mechanics);
+  Glyph operator()(const symbolic::Symbol& symbol) const;
+  Glyph multiplier(std::uint32_t constraint) const;  // lambda, or lambda_2 where there are several
+
+ private:
+  const model::Model* model_;
+  std::size_t multipliers_;
+  std::string multiplier_letter_;  // mu where a model has a lambda of its own
+};
+
+/// "\theta_{1}", "\dot{\theta}_{1}", "\mathrm{length}".
+std::string latex(const Glyph& glyph);
+/// "<msub><mi>θ</mi><mn>1</mn></msub>".
+std::string mathml(const Glyph& glyph);
+
+/// The Greek letter of that name in UTF-8; empty if there is none.
+std::string_view greek(std::string_view name);
+
+/// Text of the user's inside of a LaTeX or HTML document.
+std::string escape_latex(std::string_view text);
+std::string escape_html(std::string_view text);
+
+}  // namespace eomgen::print

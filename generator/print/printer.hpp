@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Formula -> text, LaTeX, MathML. Brackets are decided in one place (walk), what things look like in one file per
+// format.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "print/notation.hpp"
+#include "reading/formula.hpp"
+
+namespace eomgen::print {
+
+enum class Format {
+  text,      // m d^2 sin^2(phi) theta_dot
+  latex,     // m d^{2} \sin^{2}\phi\, \dot{\theta}
+  mathml,
+  language,  // m*d^2*sin(phi)^2*theta_dot: the language of model files
+};
+
+/// Printed text and how tightly it binds.
+struct Piece {
+  enum Binding { relation, sum, product, call, atom };
+  std::string text;
+  Binding binding = atom;
+};
+
+/// One format. Every operation gets operands that already have the brackets that they need, unless it says otherwise.
+class Style {
+ public:
+  virtual ~Style() = default;
+  virtual Piece number(const reading::Rational& value) const = 0;  // not negative
+  virtual Piece pi() const = 0;
+  virtual Piece symbol(const Glyph& glyph) const = 0;
+  virtual Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const = 0;
+  virtual Piece call(reading::Op op, const std::vector<Piece>& args) const = 0;  // args without brackets
+  virtual Piece call_power(reading::Op op, const std::vector<Piece>& args, const std::string& exponent) const = 0;
+  virtual Piece power(const Piece& base, const std::string& exponent) const = 0;
+  virtual Piece fraction(const Piece& above, const Piece& below) const = 0;  // without brackets
+  virtual Piece product(const std::vector<Piece>& factors) const = 0;
+  virtual Piece rate(const Piece& inside) const = 0;  // d/dt, without brackets
+  virtual Piece partial(const Piece& above, const Piece& below) const = 0;
+  virtual Piece dotted(const Piece& base, int dots) const = 0;
+  virtual Piece dot_product(const Piece& a, const Piece& b) const = 0;
+  virtual Piece differential(const Piece& a) const = 0;
+  virtual std::string bracket(const std::string& inside) const = 0;
+  virtual std::string plus() const = 0;
+  virtual std::string minus() const = 0;         // between terms
+  virtual std::string leading_minus() const = 0;
+  virtual std::string equals() const = 0;
+  virtual std::string comma() const = 0;
+  /// A whole formula from its top-level pieces, broken into lines or elements where it is long. `starts[i]`: piece i
+  /// begins a side of a relation.
+  virtual std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>& starts) const = 0;
+  /// Opening and closing of a derivative whose inside is broken over lines.
+  virtual std::string open_rate() const = 0;
+  virtual std::string close_rate() const = 0;
+};
+
+std::unique_ptr<Style> text_style(bool language);
+std::unique_ptr<Style> latex_style();
+std::unique_ptr<Style> mathml_style();
+
+/// A formula as it stands alone: a display in LaTeX, one or several <math> elements in MathML.
+std::string print(const reading::Formula& formula, const Notation& notation, Format format);
+
+}  // namespace eomgen::print

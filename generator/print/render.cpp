@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "print/render.hpp"
+
+#include "print/formulas.hpp"
+
+namespace eomgen::print {
+
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                         const std::vector<std::string>& show) {
+  const Notation notation(mechanics);
+  std::vector<Item> items;
+  for (const Statement& statement : statements(mechanics, form, show)) {
+    Item item;
+    item.key = statement.key;
+    item.name = statement.name;
+    item.coordinate = statement.coordinate;
+    item.role = statement.role;
+    item.text = print(statement.formula, notation, Format::text);
+    item.latex = print(statement.formula, notation, Format::latex);
+    item.mathml = print(statement.formula, notation, Format::mathml);
+    items.push_back(std::move(item));
+  }
+  return items;
+}
+
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression) {
+  const Notation notation(mechanics);
+  Item item;
+  item.key = std::move(key);
+  item.name = std::move(name);
+  try {
+    const reading::Formula formula = reading::arrange(reading::read(mechanics, expression));
+    item.text = print(formula, notation, Format::text);
+    item.latex = print(formula, notation, Format::latex);
+    item.mathml = print(formula, notation, Format::mathml);
+  } catch (const reading::TermBudget&) {
+    item.text = "(too long to be shown)";
+    item.latex = "\\text{(too long to be shown)}";
+    item.mathml = "<math><mtext>(too long to be shown)</mtext></math>";
+  }
+  return item;
+}
+
+}  // namespace eomgen::print

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `derive`, `check` and documents show. In: Mechanics and ReadingForm. Out: printed items.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "print/printer.hpp"
+#include "reading/reading.hpp"
+
+namespace eomgen::print {
+
+/// One printed formula. `key`: equations (momentum form, one per coordinate), explicit (M qddot + h = Q), reactions,
+/// basis, metric, christoffel, line_element, energies, lagrangian, constraints, singular.
+struct Item {
+  std::string key, name;
+  std::string coordinate;
+  std::string text, latex, mathml;
+  std::string role;
+};
+
+/// The items that `show` names (keys, or "all"); "equations" brings the explicit form along.
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                         const std::vector<std::string>& show);
+
+/// Any expression of the Dag, simplified for reading: potentials, conserved quantities.
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression);
+
+/// A document of its own (article, amsmath): parameters, constraints, both approaches side by side, reactions.
+std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one,
+                           const reading::ReadingForm& two);
+
+}  // namespace eomgen::print

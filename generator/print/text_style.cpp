@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plain text in the model's names, for terminals; and the language of model files, which can be pasted back.
+#include <cln/rational_io.h>
+
+#include <sstream>
+
+#include "print/printer.hpp"
+
+namespace eomgen::print {
+namespace {
+
+using reading::Op;
+
+const char* function_name(Op op) {
+  switch (op) {
+    case Op::sqrt: return "sqrt";
+    case Op::sin: return "sin";
+    case Op::cos: return "cos";
+    case Op::tan: return "tan";
+    case Op::asin: return "asin";
+    case Op::acos: return "acos";
+    case Op::atan: return "atan";
+    case Op::sinh: return "sinh";
+    case Op::cosh: return "cosh";
+    case Op::tanh: return "tanh";
+    case Op::exp: return "exp";
+    case Op::log: return "log";
+    case Op::abs: return "abs";
+    case Op::sign: return "sign";
+    case Op::atan2: return "atan2";
+    case Op::min: return "min";
+    case Op::max: return "max";
+    default: return "if";
+  }
+}
+
+class TextStyle final : public Style {
+ public:
+  explicit TextStyle(bool language) : language_(language) {}
+
+  Piece number(const reading::Rational& value) const override {
+    std::ostringstream text;
+    text << value;
+    return {text.str(), reading::is_integer(value) ? Piece::atom : Piece::product};
+  }
+  Piece pi() const override { return {"pi", Piece::atom}; }
+  Piece symbol(const Glyph& glyph) const override { return {glyph.name, Piece::atom}; }
+  Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
+    if (word == "[]") return {"[" + joined({lower[0], lower[1]}, " ") + ", " + lower[2] + "]", Piece::atom};
+    std::string text = word;
+    if (!upper.empty()) text += "^" + (upper.size() == 1 ? upper[0] : "(" + joined(upper, " ") + ")");
+    if (!lower.empty()) text += "_" + (lower.size() == 1 ? lower[0] : "(" + joined(lower, " ") + ")");
+    return {text, Piece::atom};
+  }
+  Piece call(Op op, const std::vector<Piece>& args) const override {
+    if (op == Op::select) {
+      return {"if(" + args[0].text + " < " + args[1].text + ", " + args[2].text + ", " + args[3].text + ")", Piece::atom};
+    }
+    return {function_name(op) + arguments(args), Piece::atom};
+  }
+  Piece call_power(Op op, const std::vector<Piece>& args, const std::string& exponent) const override {
+    if (language_) return {function_name(op) + arguments(args) + "^" + exponent, Piece::call};
+    return {function_name(op) + ("^" + exponent) + arguments(args), Piece::call};
+  }
+  Piece power(const Piece& base, const std::string& exponent) const override {
+    const bool plain = exponent.find_first_of(" +-*/(") == std::string::npos;
+    return {base.text + "^" + (plain ? exponent : "(" + exponent + ")"), Piece::call};
+  }
+  Piece fraction(const Piece& above, const Piece& below) const override {
+    const std::string top = above.binding < Piece::product ? "(" + above.text + ")" : above.text;
+    const std::string bottom = below.binding <= Piece::product ? "(" + below.text + ")" : below.text;
+    return {top + "/" + bottom, Piece::product};
+  }
+  Piece product(const std::vector<Piece>& factors) const override {
+    std::string text;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      // Only the first factor may be a fraction: a b/c x would read as a b/(c x).
+      const bool bracket_it = i > 0 && factors[i].binding == Piece::product;
+      text += (i > 0 ? (language_ ? "*" : " ") : "") + (bracket_it ? "(" + factors[i].text + ")" : factors[i].text);
+    }
+    return {text, Piece::product};
+  }
+  Piece rate(const Piece& inside) const override {
+    return {(language_ ? "ddt(" : "d/dt(") + inside.text + ")", Piece::atom};
+  }
+  Piece partial(const Piece& above, const Piece& below) const override {
+    return {"d" + above.text + "/d" + below.text, Piece::atom};
+  }
+  Piece dotted(const Piece& base, int dots) const override {
+    return {base.text + (dots == 1 ? "_dot" : dots == 2 ? "_ddot" : ""), Piece::atom};
+  }
+  Piece dot_product(const Piece& a, const Piece& b) const override { return {a.text + " . " + b.text, Piece::product}; }
+  Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
+  std::string bracket(const std::string& inside) const override { return "(" + inside + ")"; }
+  std::string plus() const override { return " + "; }
+  std::string minus() const override { return " - "; }
+  std::string leading_minus() const override { return "-"; }
+  std::string equals() const override { return " = "; }
+  std::string comma() const override { return ", "; }
+  std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
+    return joined(pieces, "");
+  }
+  std::string open_rate() const override { return language_ ? "ddt(" : "d/dt("; }
+  std::string close_rate() const override { return ")"; }
+
+ private:
+  static std::string joined(const std::vector<std::string>& parts, const char* separator) {
+    std::string result;
+    for (std::size_t i = 0; i < parts.size(); ++i) result += (i > 0 ? separator : "") + parts[i];
+    return result;
+  }
+  static std::string arguments(const std::vector<Piece>& args) {
+    std::string result = "(";
+    for (std::size_t i = 0; i < args.size(); ++i) result += (i > 0 ? ", " : "") + args[i].text;
+    return result + ")";
+  }
+  bool language_;
+};
+
+}  // namespace
+
+std::unique_ptr<Style> text_style(bool language) { return std::make_unique<TextStyle>(language); }
+
+}  // namespace eomgen::print

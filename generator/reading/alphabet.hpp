@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The symbols of one model as atoms, with what is known of their signs.
+#pragma once
+
+#include <map>
+
+#include "mechanics/mechanics.hpp"
+#include "reading/sum.hpp"
+
+namespace eomgen::reading {
+
+/// In: a Model (positive parameters, ranges of coordinates). Out: one atom per symbol.
+class Alphabet {
+ public:
+  explicit Alphabet(const model::Model& model) : model_(&model) {}
+  const AtomPtr& atom(const Symbol& symbol);
+  Sum operator()(const Symbol& symbol) { return Sum(atom(symbol)); }
+
+ private:
+  const model::Model* model_;
+  std::map<Symbol, AtomPtr> atoms_;
+};
+
+/// pi as a sum.
+Sum pi();
+
+/// A sum as a Dag node, built in our own order.
+symbolic::Ref to_dag(symbolic::Dag& dag, const Sum& sum);
+
+}  // namespace eomgen::reading

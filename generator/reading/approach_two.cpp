@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Approach II, (2.99)-(2.101): the integrable constraints are substituted into the Lagrangian first; only the free
+// coordinates have equations, and no force of an imposed constraint appears.
+#include "reading/approaches.hpp"
+#include "reading/trig.hpp"
+
+namespace eomgen::reading {
+
+void approach_two(const mechanics::Mechanics& m, Bridge& bridge, ReadingForm& form) {
+  const std::map<Symbol, Sum> values = imposed_values(m, bridge);
+  form.kinetic = simplify(bridge.substitute(kinetic_energy(m, bridge), values));
+  form.potential = bridge.substitute(bridge.sum(m.potential), values);
+  form.lagrangian = form.kinetic - form.potential;
+  form.by_degree = split_by_degree(form.kinetic);
+  for (const std::uint32_t i : m.free) {
+    form.equations.push_back(lagrange_equation(m, bridge, form.lagrangian, i, values));
+  }
+}
+
+}  // namespace eomgen::reading

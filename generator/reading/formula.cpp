@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/formula.hpp"
+
+#include <algorithm>
+
+namespace eomgen::reading {
+
+Formula number(const Rational& value) {
+  Formula f;
+  f.number = cln::abs(value);
+  return cln::minusp(value) ? negative(std::move(f)) : f;
+}
+
+Formula symbol(const Symbol& s) {
+  Formula f;
+  f.form = Form::symbol;
+  f.symbol = s;
+  return f;
+}
+
+Formula mark(std::string word, std::vector<Formula> lower, std::vector<Formula> upper) {
+  Formula f;
+  f.form = Form::mark;
+  f.word = std::move(word);
+  f.lower = std::move(lower);
+  f.upper = std::move(upper);
+  return f;
+}
+
+Formula wrap(Form form, std::vector<Formula> args) {
+  Formula f;
+  f.form = form;
+  f.args = std::move(args);
+  return f;
+}
+
+bool is_zero(const Formula& f) { return f.form == Form::number && cln::zerop(f.number); }
+
+Formula negative(Formula a) {
+  if (a.form == Form::negative) {
+    Formula inside = std::move(a.args[0]);
+    return inside;
+  }
+  if (is_zero(a)) return a;
+  return wrap(Form::negative, {std::move(a)});
+}
+
+Formula product(std::vector<Formula> factors) {
+  bool minus = false;
+  std::vector<Formula> flat;
+  for (Formula& f : factors) {
+    if (f.form == Form::negative) {
+      minus = !minus;
+      Formula inside = std::move(f.args[0]);
+      f = std::move(inside);
+    }
+    if (f.form == Form::number && is_one(f.number)) continue;
+    if (f.form == Form::product) flat.insert(flat.end(), f.args.begin(), f.args.end());
+    else flat.push_back(std::move(f));
+  }
+  if (std::any_of(flat.begin(), flat.end(), [](const Formula& f) { return is_zero(f); })) return number(0);
+  Formula result = flat.empty() ? number(1) : flat.size() == 1 ? flat[0] : wrap(Form::product, std::move(flat));
+  return minus ? negative(std::move(result)) : result;
+}
+
+Formula fraction(Formula above, Formula below) {
+  if (below.form == Form::number && is_one(below.number)) return above;
+  if (above.form == Form::negative) return negative(fraction(std::move(above.args[0]), std::move(below)));
+  return wrap(Form::fraction, {std::move(above), std::move(below)});
+}
+
+Formula sum(std::vector<Formula> terms) {
+  std::vector<Formula> flat;
+  for (Formula& f : terms) {
+    if (is_zero(f)) continue;
+    if (f.form == Form::sum) flat.insert(flat.end(), f.args.begin(), f.args.end());
+    else flat.push_back(std::move(f));
+  }
+  if (flat.empty()) return number(0);
+  if (flat.size() == 1) return flat[0];
+  return wrap(Form::sum, std::move(flat));
+}
+
+Formula relation(std::vector<Formula> sides) { return wrap(Form::relation, std::move(sides)); }
+
+}  // namespace eomgen::reading

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What is printed: a small tree in which every choice of layout has been made - order, signs, brackets by precedence,
+// fractions. The printers (print/) turn it into text, LaTeX and MathML and choose nothing.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "reading/sum.hpp"
+
+namespace eomgen::reading {
+
+enum class Form {
+  number,      // exact, not negative
+  pi,
+  symbol,      // of the model
+  mark,        // a letter of mechanics: T, U, L, Gamma, E, e, a, lambda, psi, ds^2 (`word`), with `lower` and `upper` indices
+  call,        // op, args
+  power,       // args[0] ^ args[1]
+  negative,    // -args[0]
+  product,     // args
+  fraction,    // args[0] / args[1]
+  sum,         // args; a term that is `negative` is subtracted
+  rate,        // d/dt (args[0])
+  partial,     // d args[0] / d args[1]
+  dot,         // args[0] with `order` dots over it
+  dot_product, // args[0] . args[1]
+  differential,// d args[0]
+  relation,    // args[0] = args[1] = ...
+  list,        // args, with commas
+};
+
+struct Formula {
+  Form form = Form::number;
+  Rational number = 0;
+  Symbol symbol{};
+  Op op = Op::symbol;
+  int order = 0;
+  std::string word;               // of a mark: "T", "tilde L", "Gamma", ...: see print/notation.hpp
+  std::vector<Formula> args;
+  std::vector<Formula> lower, upper;
+};
+
+Formula number(const Rational& value);  // negative ones are wrapped
+Formula symbol(const Symbol& symbol);
+Formula mark(std::string word, std::vector<Formula> lower = {}, std::vector<Formula> upper = {});
+Formula negative(Formula a);  // -(-a) = a
+Formula product(std::vector<Formula> factors);
+Formula fraction(Formula above, Formula below);
+Formula sum(std::vector<Formula> terms);  // of nested sums, flattened; 0 if empty
+Formula relation(std::vector<Formula> sides);
+Formula wrap(Form form, std::vector<Formula> args);
+bool is_zero(const Formula& f);
+
+/// How sums are factored for reading.
+enum class Layout {
+  terms,     // equations: every product of velocities or accelerations is a term of its own
+  grouped,   // energies, reactions: common factors of terms of like kind are taken out
+};
+Formula arrange(const Sum& sum, Layout layout = Layout::grouped);
+/// The terms of arrange() one by one, each possibly `negative`.
+std::vector<Formula> arranged_terms(const Sum& sum, Layout layout);
+
+}  // namespace eomgen::reading

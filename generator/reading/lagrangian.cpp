@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/lagrangian.hpp"
+
+#include <algorithm>
+
+#include "reading/trig.hpp"
+
+namespace eomgen::reading {
+
+using mechanics::Mechanics;
+
+Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
+  Sum result = bridge.sum(m.kinetic_given);
+  for (const mechanics::PointMass& mass : m.masses) {
+    Sum square;
+    for (const symbolic::Ref x : mass.position) {
+      const Sum v = bridge.total_derivative(bridge.sum(x));
+      square += v * v;
+    }
+    result += bridge.sum(mass.mass) * (Rational(1) / 2 * simplify(square));
+  }
+  return simplify(result);
+}
+
+Sum generalized_force(const Mechanics& m, Bridge& bridge, std::uint32_t i) {
+  Sum result = bridge.sum(m.generalized[i]);
+  for (const mechanics::Load& load : m.loads) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Sum direction = bridge.derivative(bridge.sum(load.at[k]), coordinate_symbol(i, 0));
+      if (!direction.is_zero()) result += bridge.sum(load.force[k]) * direction;
+    }
+  }
+  return simplify(result);
+}
+
+std::map<Symbol, Sum> imposed_values(const Mechanics& m, Bridge& bridge) {
+  std::map<Symbol, Sum> values;
+  for (const mechanics::FixedCoordinate& fixed : m.fixed) {
+    values[coordinate_symbol(fixed.coordinate, 0)] = bridge.sum(fixed.value);
+    values[coordinate_symbol(fixed.coordinate, 1)] = bridge.sum(fixed.rate);
+    values[coordinate_symbol(fixed.coordinate, 2)] = bridge.sum(fixed.acceleration);
+  }
+  return values;
+}
+
+std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic) {
+  std::array<Sum, 3> parts;
+  const auto is_rate = [](const Atom& atom) {
+    return atom.op == Op::symbol && atom.symbol.kind == SymbolKind::coordinate && atom.symbol.order == 1;
+  };
+  for (const auto& [monomial, coefficient] : kinetic.terms()) {
+    Rational degree = 0;
+    bool inside = false;
+    for (const Factor& factor : monomial) {
+      if (is_rate(*factor.atom)) degree = degree + factor.exponent;
+      for (const Sum& arg : factor.atom->args) for_each_atom(arg, [&](const Atom& atom) { inside = inside || is_rate(atom); });
+    }
+    if (inside || !is_integer(degree) || cln::minusp(degree) || degree > 2) return std::nullopt;
+    parts[static_cast<std::size_t>(2 - to_long(degree))].add(monomial, coefficient);
+  }
+  return parts;
+}
+
+Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagrangian, std::uint32_t i,
+                           const std::map<Symbol, Sum>& values) {
+  Equation result;
+  result.coordinate = i;
+  result.of_motion = !m.is_eliminated(i);
+  const Sum momentum = bridge.derivative(lagrangian, coordinate_symbol(i, 1));
+  const Sum slope = bridge.derivative(lagrangian, coordinate_symbol(i, 0));
+  result.expanded = bridge.substitute(bridge.total_derivative(momentum) - slope, values);
+  result.expanded = simplify(result.expanded);
+  result.momentum = bridge.substitute(momentum, values);
+  result.slope = bridge.substitute(slope, values);
+  result.force = bridge.substitute(generalized_force(m, bridge, i), values);
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    const Sum gradient = bridge.derivative(bridge.sum(m.constraints[k].psi), coordinate_symbol(i, 0));
+    Sum imposed = bridge.substitute(gradient, values);
+    if (!imposed.is_zero()) result.multipliers.push_back({k, std::move(imposed)});
+  }
+  return result;
+}
+
+}  // namespace eomgen::reading

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What both approaches start from.
+#pragma once
+
+#include "reading/ginac_bridge.hpp"
+#include "reading/reading.hpp"
+
+namespace eomgen::reading {
+
+/// T = sum m/2 v.v + [energy], eq. (1.31), (3.20): velocities differentiated here, not taken from mechanics.
+Sum kinetic_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
+
+/// Q_i of one coordinate, eq. (3.20).
+Sum generalized_force(const mechanics::Mechanics& mechanics, Bridge& bridge, std::uint32_t coordinate);
+
+/// q_c -> d, qdot_c -> d_dot, qddot_c -> d_ddot, eq. (2.97).
+std::map<Symbol, Sum> imposed_values(const mechanics::Mechanics& mechanics, Bridge& bridge);
+
+/// The part of each degree 2, 1, 0 in the velocities; nothing if it is no polynomial of degree 2 in them.
+std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic);
+
+/// d/dt dL/dqdot_i - dL/dq_i = Q_i + sum lambda_k dpsi_k/dq_i of one coordinate, `values` imposed at the end.
+Equation lagrange_equation(const mechanics::Mechanics& mechanics, Bridge& bridge, const Sum& lagrangian,
+                           std::uint32_t coordinate, const std::map<Symbol, Sum>& values);
+
+inline Symbol coordinate_symbol(std::uint32_t index, std::uint8_t order) {
+  return {SymbolKind::coordinate, index, order};
+}
+
+}  // namespace eomgen::reading

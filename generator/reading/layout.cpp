@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From canonical sums to what a person would write: m (R_dot^2 + R^2 phi_dot^2)/2 rather than three products. Terms are
+// gathered by what moves in them, coefficients factored, like kinds of terms share their common factor.
+#include <cln/integer.h>
+
+#include <algorithm>
+
+#include "reading/formula.hpp"
+
+namespace eomgen::reading {
+namespace {
+
+struct ByMotion {
+  Monomial motion;  // velocities and accelerations
+  Sum coefficient;  // everything else
+};
+
+bool moves(const Atom& atom) {
+  if (atom.op != Op::symbol || atom.symbol.order == 0) return false;
+  return atom.symbol.kind == SymbolKind::coordinate || atom.symbol.kind == SymbolKind::function;
+}
+bool is_fixed(const Atom& atom) {  // parameters and numbers: what is gathered last
+  return atom.op == Op::pi || (atom.op == Op::symbol && (atom.symbol.kind == SymbolKind::parameter ||
+                                                         atom.symbol.kind == SymbolKind::multiplier));
+}
+
+Formula factor_formula(const Factor& factor) {
+  const Atom& atom = *factor.atom;
+  const Rational exponent = cln::abs(factor.exponent);
+  Formula base;
+  switch (atom.op) {
+    case Op::symbol: base = symbol(atom.symbol); break;
+    case Op::pi: base.form = Form::pi; break;
+    case Op::add: base = arrange(atom.args[0]); break;
+    case Op::pow: base = wrap(Form::power, {arrange(atom.args[0]), arrange(atom.args[1])}); break;
+    default:
+      base.form = Form::call;
+      base.op = atom.op;
+      for (const Sum& arg : atom.args) base.args.push_back(arrange(arg, Layout::terms));
+  }
+  if (is_one(exponent)) return base;
+  if (exponent == Rational(1) / 2) {
+    Formula root = wrap(Form::call, {std::move(base)});
+    root.op = Op::sqrt;
+    return root;
+  }
+  if (base.form == Form::power) return wrap(Form::power, {std::move(base), number(exponent)});
+  return wrap(Form::power, {std::move(base), number(exponent)});
+}
+
+// coefficient * monomial * extra; `extra` stands between the coefficient's factors and the velocities.
+Formula term_formula(const Rational& coefficient, const Monomial& monomial, std::vector<Formula> extra = {},
+                     const Monomial& motion = {}) {
+  std::vector<Formula> above, below;
+  const cln::cl_I top = cln::numerator(cln::abs(coefficient)), bottom = cln::denominator(coefficient);
+  for (const Factor& factor : monomial) {
+    (cln::minusp(factor.exponent) ? below : above).push_back(factor_formula(factor));
+  }
+  for (Formula& f : extra) above.push_back(std::move(f));
+  for (const Factor& factor : motion) {
+    (cln::minusp(factor.exponent) ? below : above).push_back(factor_formula(factor));
+  }
+  Formula result;
+  if (below.empty()) {
+    above.insert(above.begin(), number(Rational(top) / bottom));
+    result = product(std::move(above));
+  } else {
+    above.insert(above.begin(), number(top));
+    below.insert(below.begin(), number(bottom));
+    result = fraction(product(std::move(above)), product(std::move(below)));
+  }
+  return cln::minusp(coefficient) ? negative(std::move(result)) : result;
+}
+
+// Splits a monomial into the factors that satisfy `pick` and the rest.
+template <class Pick>
+std::pair<Monomial, Monomial> split(const Monomial& monomial, Pick&& pick) {
+  std::pair<Monomial, Monomial> result;
+  for (const Factor& factor : monomial) (pick(*factor.atom) ? result.first : result.second).push_back(factor);
+  return result;
+}
+
+template <class Pick>
+std::vector<ByMotion> gather(const Sum& sum, Pick&& pick) {
+  std::vector<ByMotion> groups;
+  for (const auto& [monomial, coefficient] : display_order(sum)) {
+    const auto [motion, rest] = split(monomial, pick);
+    const auto same = [&m = motion](const ByMotion& g) { return compare(g.motion, m) == 0; };
+    auto found = std::find_if(groups.begin(), groups.end(), same);
+    if (found == groups.end()) found = groups.insert(groups.end(), {motion, Sum()});
+    found->coefficient.add(rest, coefficient);
+  }
+  return groups;
+}
+
+long degree(const Monomial& monomial) {
+  Rational sum = 0;
+  for (const Factor& factor : monomial) sum = sum + cln::abs(factor.exponent);
+  return cln::cl_I_to_long(cln::ceiling1(sum));
+}
+
+/// A sum as content times what is left of it, with a sign that makes the first term positive.
+struct Factored {
+  Rational number = 1;
+  Monomial monomial;
+  Sum rest = 1;
+};
+Factored factor_out(const Sum& sum) {
+  const Content common = content(sum);
+  Factored result{common.number, common.monomial, divide(sum, common)};
+  if (leads_negative(result.rest)) {
+    result.rest = -result.rest;
+    result.number = -result.number;
+  }
+  return result;
+}
+
+std::vector<Formula> polynomial_terms(const Sum& sum);
+
+Formula bracket(const Sum& rest) { return sum(polynomial_terms(rest)); }
+
+Formula factored_formula(const Factored& f, const Monomial& motion = {}) {
+  std::vector<Formula> extra;
+  if (!f.rest.is_number()) extra.push_back(bracket(f.rest));
+  // (m1 + m2) l^2: brackets of parameters stand where parameters do, other ones before the velocities
+  const bool of_parameters = !f.rest.is_number() && [&] {
+    bool all = true;
+    for_each_atom(f.rest, [&](const Atom& atom) { all = all && is_fixed(atom); });
+    return all;
+  }();
+  if (!of_parameters || std::any_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return cln::minusp(x.exponent); })) {
+    return term_formula(f.number, f.monomial, std::move(extra), motion);
+  }
+  Formula front = product({number(cln::abs(f.number)), extra[0], term_formula(1, f.monomial, {}, motion)});
+  return cln::minusp(f.number) ? negative(std::move(front)) : front;
+}
+
+// m1 l^2 + m2 l^2 + m2 k^2 -> (m1 + m2) l^2 + m2 k^2: the factor that saves most, if any saves something.
+bool take_out_best(Sum& left, Factored& taken) {
+  if (left.size() < 2 || left.size() > 64) return false;
+  long best = 0;
+  Monomial factor;
+  for (auto i = left.terms().begin(); i != left.terms().end(); ++i) {
+    for (auto j = std::next(i); j != left.terms().end(); ++j) {
+      Sum both(i->first, 1);
+      both.add(j->first, 1);
+      Monomial common = content(both).monomial;
+      std::erase_if(common, [](const Factor& f) { return cln::minusp(f.exponent); });
+      if (common.empty()) continue;
+      long members = 0;
+      for (const auto& [monomial, coefficient] : left.terms()) {
+        Sum pair(monomial, 1);
+        pair.add(common, 1);
+        if (pair.size() == 1 || compare(content(pair).monomial, common) == 0) ++members;
+      }
+      const long saved = (members - 1) * degree(common) * 4 + degree(common);
+      if (saved > best) {
+        best = saved;
+        factor = common;
+      }
+    }
+  }
+  if (factor.empty()) return false;
+  Sum inside, outside;
+  for (const auto& [monomial, coefficient] : left.terms()) {
+    Sum pair(monomial, 1);
+    pair.add(factor, 1);
+    const bool member = pair.size() == 1 || compare(content(pair).monomial, factor) == 0;
+    (member ? inside : outside).add(monomial, coefficient);
+  }
+  taken = factor_out(inside);
+  left = std::move(outside);
+  return true;
+}
+
+// Terms of a sum without velocities: gathered by what depends on coordinates, each coefficient factored.
+std::vector<Formula> polynomial_terms(const Sum& sum) {
+  std::vector<Formula> result;
+  for (const ByMotion& group : gather(sum, [](const Atom& atom) { return !is_fixed(atom); })) {
+    Sum left = group.coefficient;
+    const Factored whole = factor_out(left);
+    if (left.size() == 1 || !whole.monomial.empty() || !group.motion.empty()) {
+      Factored f = whole;
+      const Sum both = multiply(f.monomial, group.motion);
+      f.monomial = both.terms().begin()->first;
+      result.push_back(factored_formula(f));
+      continue;
+    }
+    Factored taken;
+    while (take_out_best(left, taken)) result.push_back(factored_formula(taken));
+    for (const auto& [monomial, coefficient] : display_order(left)) result.push_back(term_formula(coefficient, monomial));
+  }
+  return result;
+}
+
+// Velocities and accelerations in the order of a term's kind: accelerations, quadratic, linear, none.
+std::pair<Rational, Rational> kind(const Monomial& motion) {
+  std::pair<Rational, Rational> result{0, 0};
+  for (const Factor& factor : motion) (factor.atom->symbol.order >= 2 ? result.first : result.second) += factor.exponent;
+  return result;
+}
+
+// (u^2 + v^2) u_dot^2 + (u^2 + v^2) v_dot^2 -> (u^2 + v^2) (u_dot^2 + v_dot^2)
+std::vector<Formula> share_brackets(const std::vector<ByMotion>& groups) {
+  std::vector<Formula> result;
+  std::vector<bool> done(groups.size(), false);
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (done[i]) continue;
+    const Factored f = factor_out(groups[i].coefficient);
+    std::vector<Formula> motions{term_formula(1, groups[i].motion)};
+    for (std::size_t j = i + 1; j < groups.size() && !f.rest.is_number() && !groups[i].motion.empty(); ++j) {
+      if (done[j] || groups[j].motion.empty()) continue;
+      const Factored g = factor_out(groups[j].coefficient);
+      if (!(g.rest == f.rest) || compare(g.monomial, f.monomial) != 0 || g.number != f.number) continue;
+      motions.push_back(term_formula(1, groups[j].motion));
+      done[j] = true;
+    }
+    if (motions.size() == 1) {
+      if (groups[i].motion.empty()) {
+        for (Formula& term : polynomial_terms(groups[i].coefficient)) result.push_back(std::move(term));
+      } else {
+        result.push_back(factored_formula(f, groups[i].motion));
+      }
+      continue;
+    }
+    result.push_back(term_formula(f.number, f.monomial, {bracket(f.rest), sum(std::move(motions))}));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
+  const std::vector<ByMotion> groups = gather(whole, moves);
+  if (layout == Layout::terms) {
+    std::vector<Formula> result;
+    for (const ByMotion& group : groups) {
+      if (group.motion.empty()) {
+        for (Formula& term : polynomial_terms(group.coefficient)) result.push_back(std::move(term));
+      } else {
+        result.push_back(factored_formula(factor_out(group.coefficient), group.motion));
+      }
+    }
+    return result;
+  }
+  std::vector<Formula> result;
+  for (std::size_t first = 0; first < groups.size();) {
+    std::size_t last = first;
+    Sum together;  // only for its content
+    while (last < groups.size() && kind(groups[last].motion) == kind(groups[first].motion)) {
+      together += Sum(groups[last].motion, 1) * groups[last].coefficient;
+      ++last;
+    }
+    const Factored f = factor_out(together);
+    const bool shared = last - first > 1 && !f.monomial.empty() && std::none_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return moves(*x.atom); });
+    const std::vector<ByMotion> part(groups.begin() + static_cast<std::ptrdiff_t>(first), groups.begin() + static_cast<std::ptrdiff_t>(last));
+    if (shared) {
+      result.push_back(term_formula(f.number, f.monomial, {sum(share_brackets(gather(f.rest, moves)))}));
+    } else {
+      for (Formula& term : share_brackets(part)) result.push_back(std::move(term));
+    }
+    first = last;
+  }
+  return result;
+}
+
+Formula arrange(const Sum& whole, Layout layout) { return sum(arranged_terms(whole, layout)); }
+
+}  // namespace eomgen::reading

@@ -1,0 +1,153 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/rational_function.hpp"
+
+#include <ginac/ginac.h>
+
+#include <algorithm>
+
+namespace eomgen::reading {
+namespace {
+
+using GiNaC::ex;
+
+// Factoring is for what a person would factor.
+constexpr std::size_t factored_terms = 24;
+constexpr std::size_t divided_terms = 400;
+
+struct AtomLess {
+  bool operator()(const AtomPtr& a, const AtomPtr& b) const { return compare(*a, *b) < 0; }
+};
+
+/// Polynomials over atoms as GiNaC polynomials over symbols.
+class Letters {
+ public:
+  /// Nothing if an exponent is negative or no whole number.
+  std::optional<ex> polynomial(const Sum& sum) {
+    ex result = 0;
+    for (const auto& [monomial, coefficient] : sum.terms()) {
+      ex term = GiNaC::numeric(coefficient);
+      for (const Factor& factor : monomial) {
+        if (!is_integer(factor.exponent) || cln::minusp(factor.exponent)) return std::nullopt;
+        term *= GiNaC::pow(letter(factor.atom), static_cast<long>(to_long(factor.exponent)));
+      }
+      result += term;
+    }
+    return result;
+  }
+
+  Sum sum(const ex& e) {
+    if (GiNaC::is_a<GiNaC::numeric>(e)) return Sum(cln::the<cln::cl_RA>(GiNaC::ex_to<GiNaC::numeric>(e).to_cl_N()));
+    if (GiNaC::is_a<GiNaC::symbol>(e)) return Sum(meaning_.at(e));
+    if (GiNaC::is_a<GiNaC::power>(e)) return power(sum(e.op(0)), GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_long());
+    const bool adds = GiNaC::is_a<GiNaC::add>(e);
+    Sum result(adds ? 0 : 1);
+    for (std::size_t i = 0; i < e.nops(); ++i) result = adds ? result + sum(e.op(i)) : result * sum(e.op(i));
+    return result;
+  }
+
+ private:
+  const ex& letter(const AtomPtr& atom) {
+    auto found = letters_.find(atom);
+    if (found == letters_.end()) {
+      found = letters_.emplace(atom, GiNaC::symbol()).first;
+      meaning_.emplace(found->second, atom);
+    }
+    return found->second;
+  }
+  std::map<AtomPtr, ex, AtomLess> letters_;
+  std::map<ex, AtomPtr, GiNaC::ex_is_less> meaning_;
+};
+
+void add_factor(Factorisation& result, Sum factor, long exponent) {
+  if (factor.is_number()) return;  // the numeric content is known already, up to its sign
+  factor = divide(factor, Content{content(factor).number, {}});
+  if (leads_negative(factor)) factor = -factor;
+  for (auto& [known, times] : result.factors) {
+    if (known == factor) {
+      times += exponent;
+      return;
+    }
+  }
+  result.factors.emplace_back(std::move(factor), exponent);
+}
+
+}  // namespace
+
+Factorisation factorise(const Sum& whole) {
+  Factorisation result;
+  result.content = content(whole);
+  Sum primitive = divide(whole, result.content);
+  if (leads_negative(primitive)) {
+    result.sign = -1;
+    primitive = -primitive;
+  }
+  Letters letters;
+  const std::optional<ex> polynomial = primitive.size() > factored_terms ? std::nullopt : letters.polynomial(primitive);
+  if (primitive.is_number()) return result;
+  if (!polynomial) {
+    result.factors.emplace_back(primitive, 1);
+    return result;
+  }
+  const ex factored = GiNaC::factor(*polynomial);
+  const auto add = [&](const ex& e) {
+    if (GiNaC::is_a<GiNaC::power>(e)) {
+      add_factor(result, letters.sum(e.op(0)), GiNaC::ex_to<GiNaC::numeric>(e.op(1)).to_long());
+    } else {
+      add_factor(result, letters.sum(e), 1);
+    }
+  };
+  if (GiNaC::is_a<GiNaC::mul>(factored)) {
+    for (std::size_t i = 0; i < factored.nops(); ++i) add(factored.op(i));
+  } else {
+    add(factored);
+  }
+  std::sort(result.factors.begin(), result.factors.end(),
+            [](const auto& a, const auto& b) { return compare(a.first, b.first) < 0; });
+  return result;
+}
+
+std::optional<Sum> exact_quotient(const Sum& a, const Sum& b) {
+  if (a.is_zero()) return a;
+  if (a.size() > divided_terms || b.size() > divided_terms) return std::nullopt;
+  const Content common_a = content(a), common_b = content(b);
+  Letters letters;
+  const std::optional<ex> x = letters.polynomial(divide(a, common_a)), y = letters.polynomial(divide(b, common_b));
+  ex q;
+  if (!x || !y || !GiNaC::divide(*x, *y, q)) return std::nullopt;
+  const Sum front(common_a.monomial, common_a.number);
+  return front * multiply(inverse(common_b.monomial), {}) * letters.sum(q.expand()) *
+         Sum(cln::recip(common_b.number));
+}
+
+Sum cancel(const Sum& sum) {
+  // the largest power of every sum in a denominator
+  std::map<AtomPtr, Rational, AtomLess> under;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (const Factor& factor : monomial) {
+      if (factor.atom->op != Op::add || !is_integer(factor.exponent) || cln::plusp(factor.exponent)) continue;
+      Rational& most = under.try_emplace(factor.atom, 0).first->second;
+      if (-factor.exponent > most) most = -factor.exponent;
+    }
+  }
+  if (under.empty() || sum.size() > divided_terms) return sum;
+  Sum numerator = sum, rest(1);
+  std::vector<std::pair<Sum, long>> bases;
+  for (const auto& [atom, exponent] : under) {
+    numerator = numerator * Sum(Monomial{{atom, exponent}}, 1);
+    const Factorisation parts = factorise(atom->args[0]);
+    rest = rest * power(Sum(parts.content.monomial, parts.sign * parts.content.number), -exponent);
+    for (const auto& [base, times] : parts.factors) bases.emplace_back(base, times * to_long(exponent));
+  }
+  // Multiplied out, a product with x^-1 of a sum may hold whole positive powers of it, which are sums by now.
+  Sum result = rest;
+  for (auto& [base, times] : bases) {
+    for (std::optional<Sum> q; times > 0 && (q = exact_quotient(numerator, base)); --times) numerator = *q;
+    if (times > 0) result = result * power(base, -times);
+  }
+  result = result * numerator;
+  return result.size() <= sum.size() ? result : sum;
+}
+
+Sum quotient(const Sum& a, const Sum& b) { return cancel(a * power(b, -1)); }
+
+}  // namespace eomgen::reading

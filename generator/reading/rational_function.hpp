@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Quotients of small polynomials: GiNaC factors and divides, on fresh symbols in place of our atoms.
+#pragma once
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "reading/sum.hpp"
+
+namespace eomgen::reading {
+
+/// Denominators that are sums are brought together and cancelled where that makes the sum shorter.
+Sum cancel(const Sum& sum);
+
+/// a / b if it is a sum without b in a denominator.
+std::optional<Sum> exact_quotient(const Sum& a, const Sum& b);
+
+/// Content times irreducible factors (primitive, of canonical sign, in our order); large sums are left whole.
+struct Factorisation {
+  Content content;
+  int sign = 1;
+  std::vector<std::pair<Sum, long>> factors;
+};
+Factorisation factorise(const Sum& sum);
+
+/// a / b, cancelled; throws std::domain_error for b = 0.
+Sum quotient(const Sum& a, const Sum& b);
+
+}  // namespace eomgen::reading

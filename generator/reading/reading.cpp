@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/reading.hpp"
+
+#include <algorithm>
+
+#include "reading/approaches.hpp"
+
+namespace eomgen::reading {
+namespace {
+
+using mechanics::Mechanics;
+
+void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    ReadConstraint c;
+    c.constraint = k;
+    c.label = m.constraints[k].label;
+    c.psi = bridge.sum(m.constraints[k].psi);
+    c.rate = bridge.total_derivative(c.psi);
+    c.acceleration = bridge.total_derivative(c.rate);
+    const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
+    if (const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes); found != m.fixed.end()) {
+      c.fixes = *found;
+      c.value = bridge.sum(found->value);
+      c.value_rate = bridge.sum(found->rate);
+      c.value_acceleration = bridge.sum(found->acceleration);
+    }
+    form.constraints.push_back(std::move(c));
+  }
+}
+
+// Equations that are too long to be read: what is left is which coordinates and forces there are.
+void leave_by_parts(const Mechanics& m, ReadingForm& form) {
+  form.by_parts = true;
+  form.kinetic = form.potential = form.lagrangian = Sum();
+  form.by_degree.reset();
+  form.equations.clear();
+  form.reactions.clear();
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    const bool of_motion = !m.is_eliminated(i);
+    if (!of_motion && form.approach == system::Approach::two) continue;
+    Equation equation;
+    equation.coordinate = i;
+    equation.of_motion = of_motion;
+    form.equations.push_back(std::move(equation));
+  }
+}
+
+}  // namespace
+
+ReadingForm derive_reading(const Mechanics& m, system::Approach approach) {
+  ReadingForm form;
+  form.approach = approach;
+  Bridge bridge(m);
+  try {
+    if (approach == system::Approach::one) approach_one(m, bridge, form);
+    else approach_two(m, bridge, form);
+  } catch (const TermBudget&) {
+    leave_by_parts(m, form);
+  }
+  add_constraints(m, bridge, form);
+  return form;
+}
+
+std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& m) {
+  std::vector<symbolic::Ref> result;
+  if (form.by_parts) return result;
+  symbolic::Dag& dag = *m.dag;
+  for (const Equation& equation : form.equations) {
+    if (!equation.of_motion) continue;
+    symbolic::Ref residual = to_dag(dag, equation.expanded - equation.force);
+    for (const MultiplierTerm& term : equation.multipliers) {
+      const symbolic::Ref lambda = dag.symbol({SymbolKind::multiplier, term.constraint, 0});
+      residual = dag.sub(residual, dag.mul(lambda, to_dag(dag, term.slope)));
+    }
+    result.push_back(residual);
+  }
+  return result;
+}
+
+Sum read(const Mechanics& m, symbolic::Ref expression) {
+  Bridge bridge(m);
+  return bridge.sum(expression);
+}
+
+}  // namespace eomgen::reading

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The product of this stage: the equations of motion as one reads them. In: Mechanics. Out: energies, Lagrange's
+// equations by Approach I (2.96)-(2.98) or II (2.99)-(2.101), constraint forces, the geometry of coordinates
+// (1.20)-(1.32), (2.184)-(2.185), singular sets. Theory: docs/theory.md.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+#include "reading/formula.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::reading {
+
+using Components = std::array<Sum, 3>;
+
+/// One constraint psi = 0, with its first and second total time derivatives.
+struct ReadConstraint {
+  std::uint32_t constraint;  // index into Mechanics::constraints
+  std::string label;
+  Sum psi, rate, acceleration;
+  std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t)
+  Sum value, value_rate, value_acceleration;        // of that coordinate
+};
+
+/// lambda_k dpsi_k/dq_i of one equation.
+struct MultiplierTerm {
+  std::uint32_t constraint;
+  Sum slope;
+};
+
+/// d/dt(momentum) - slope = force + sum lambda_k dpsi_k/dq_i.
+struct Equation {
+  std::uint32_t coordinate;
+  bool of_motion;  // false: it gives a constraint force
+  Sum momentum;    // dL/dqdot_i
+  Sum slope;       // dL/dq_i
+  Sum force;       // Q_i = F . dr/dq_i and given generalised forces
+  std::vector<MultiplierTerm> multipliers;
+  Sum expanded;    // the left-hand side written out: M qddot + h
+};
+
+/// lambda_k as an expression; nothing where only the equations of motion together determine it.
+struct ReadReaction {
+  std::uint32_t constraint;
+  std::string label;
+  std::optional<Sum> value;
+};
+
+/// A set where the inertia matrix of an approach, or a metric, has no inverse: factor = 0.
+struct SingularSet {
+  std::string approach;           // "I", "II", "both"
+  Sum factor;
+  std::vector<Formula> solutions; // phi = 0, phi = pi where these are known
+};
+
+struct ReadingForm {
+  system::Approach approach = system::Approach::one;
+  bool by_parts = false;  // too large to be multiplied out: m r_ddot . dr/dq in place of the equations written out
+  Sum kinetic, potential, lagrangian;  // unconstrained for I, constrained for II
+  std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
+  std::vector<ReadConstraint> constraints;
+  std::vector<Equation> equations;  // I: all coordinates, II: the free ones
+  std::vector<ReadReaction> reactions;
+};
+
+/// Derives the equations for reading. Never throws TermBudget: sets by_parts instead.
+ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
+
+/// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
+struct Geometry {
+  std::string name;                         // of the particle
+  std::vector<std::uint32_t> coordinates;   // n
+  std::vector<Components> covariant;        // a_i along E1..E3, eq. (1.20)
+  std::vector<Components> contravariant;    // a^i, eq. (1.22)
+  std::vector<Components> covariant_unit;   // the same along the chart's unit vectors; empty where it names none
+  std::vector<Components> contravariant_unit;
+  std::vector<std::optional<std::uint32_t>> unit_names;  // whose coordinate's e_q each unit vector is
+  std::vector<Sum> metric, inverse;         // n x n, eq. (1.31)
+  Sum determinant;
+  std::vector<Sum> first, second;           // [ij,k] and Gamma^k_ij at (i n + j) n + k, (2.184), (2.185)
+  Sum line_element;                         // (ds/dt)^2 = a_ik qdot_i qdot_k
+  Sum kinetic;                              // T, eq. (1.32)
+};
+
+/// For every particle whose position is given in a chart.
+std::vector<Geometry> geometry(const mechanics::Mechanics& mechanics);
+
+/// The configuration manifold: M_ik from T2 (free coordinates, constraints imposed) with its Christoffel symbols;
+/// nothing where it is too large. `name` is empty, the bases are empty.
+std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanics);
+
+/// Where the equations of an approach fail, and where a potential or force does.
+std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics);
+
+/// lhs - rhs of each equation of motion, in the order of ReadingForm::equations, on the Dag of `mechanics`: symbols q,
+/// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.by_parts.
+std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& mechanics);
+
+/// Any expression of the Dag, simplified for reading.
+Sum read(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
+
+}  // namespace eomgen::reading

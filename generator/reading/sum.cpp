@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/sum.hpp"
+
+#include <cln/integer.h>
+
+#include <algorithm>
+
+namespace eomgen::reading {
+namespace {
+
+// x |x| stays, |x|^2 = x^2.
+bool is_whole_power_to_expand(const Factor& factor) {
+  if (factor.atom->op == Op::add) return is_integer(factor.exponent) && cln::plusp(factor.exponent);
+  if (factor.atom->op != Op::abs || !is_integer(factor.exponent)) return false;
+  return cln::evenp(cln::numerator(factor.exponent));
+}
+
+}  // namespace
+
+bool is_one(const Rational& r) { return r == 1; }
+bool is_integer(const Rational& r) { return cln::denominator(r) == 1; }
+long to_long(const Rational& r) { return cln::cl_I_to_long(cln::numerator(r)); }
+
+void Sum::add(const Monomial& monomial, const Rational& coefficient) {
+  if (cln::zerop(coefficient)) return;
+  auto [found, inserted] = terms_.try_emplace(monomial, coefficient);
+  if (inserted) return;
+  found->second = found->second + coefficient;
+  if (cln::zerop(found->second)) terms_.erase(found);
+}
+
+Sum& Sum::operator+=(const Sum& other) {
+  for (const auto& [monomial, coefficient] : other.terms_) add(monomial, coefficient);
+  if (terms_.size() > term_budget) throw TermBudget();
+  return *this;
+}
+
+Sum& Sum::operator-=(const Sum& other) {
+  for (const auto& [monomial, coefficient] : other.terms_) add(monomial, -coefficient);
+  if (terms_.size() > term_budget) throw TermBudget();
+  return *this;
+}
+
+Sum operator+(Sum a, const Sum& b) { return a += b; }
+Sum operator-(Sum a, const Sum& b) { return a -= b; }
+Sum operator-(const Sum& a) { return Rational(-1) * a; }
+
+Sum operator*(const Rational& factor, const Sum& a) {
+  Sum result;
+  for (const auto& [monomial, coefficient] : a.terms()) result.add(monomial, factor * coefficient);
+  return result;
+}
+
+Sum multiply(const Monomial& a, const Monomial& b) {
+  Monomial product;
+  Sum whole(1);
+  bool expanded = false;
+  const auto keep = [&](const Factor& factor) {
+    if (cln::zerop(factor.exponent)) return;
+    if (!is_whole_power_to_expand(factor)) {
+      product.push_back(factor);
+      return;
+    }
+    expanded = true;
+    whole = whole * power(factor.atom->args[0], factor.exponent);
+  };
+  auto i = a.begin(), j = b.begin();
+  while (i != a.end() || j != b.end()) {
+    const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
+    if (c < 0) keep(*i++);
+    else if (c > 0) keep(*j++);
+    else {
+      keep({i->atom, i->exponent + j->exponent});
+      ++i;
+      ++j;
+    }
+  }
+  const Sum rest(std::move(product), 1);
+  return expanded ? rest * whole : rest;
+}
+
+Sum operator*(const Sum& a, const Sum& b) {
+  if (a.size() * b.size() > 16 * term_budget) throw TermBudget();
+  Sum result;
+  for (const auto& [x, k] : a.terms()) {
+    for (const auto& [y, l] : b.terms()) {
+      const Sum product = multiply(x, y);
+      for (const auto& [monomial, coefficient] : product.terms()) result.add(monomial, coefficient * k * l);
+    }
+  }
+  if (result.size() > term_budget) throw TermBudget();
+  return result;
+}
+
+Monomial inverse(const Monomial& monomial) {
+  Monomial result = monomial;
+  for (Factor& factor : result) factor.exponent = -factor.exponent;
+  return result;
+}
+
+Content content(const Sum& sum) {
+  Content result;
+  if (sum.is_zero()) return result;
+  cln::cl_I numerators = 0, denominators = 1;
+  bool first = true;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    numerators = cln::gcd(numerators, cln::numerator(coefficient));
+    denominators = cln::lcm(denominators, cln::denominator(coefficient));
+    if (first) {
+      result.monomial = monomial;
+      first = false;
+      continue;
+    }
+    Monomial common;  // least exponents; a missing factor counts as exponent 0
+    auto i = result.monomial.begin(), end_i = result.monomial.end();
+    auto j = monomial.begin(), end_j = monomial.end();
+    while (i != end_i || j != end_j) {
+      const int c = i == end_i ? 1 : j == end_j ? -1 : compare(*i->atom, *j->atom);
+      if (c < 0) {
+        if (cln::minusp(i->exponent)) common.push_back(*i);
+        ++i;
+      } else if (c > 0) {
+        if (cln::minusp(j->exponent)) common.push_back(*j);
+        ++j;
+      } else {
+        common.push_back({i->atom, i->exponent < j->exponent ? i->exponent : j->exponent});
+        ++i;
+        ++j;
+      }
+    }
+    result.monomial = std::move(common);
+  }
+  std::erase_if(result.monomial, [](const Factor& factor) { return cln::zerop(factor.exponent); });
+  result.number = Rational(numerators) / denominators;
+  return result;
+}
+
+Sum divide(const Sum& sum, const Content& by) {
+  const Monomial reciprocal = inverse(by.monomial);
+  Sum result;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    const Sum quotient = multiply(monomial, reciprocal);
+    for (const auto& [rest, one] : quotient.terms()) result.add(rest, one * coefficient / by.number);
+  }
+  return result;
+}
+
+bool contains(const Sum& sum, const Symbol& symbol) {
+  bool found = false;
+  for_each_atom(sum, [&](const Atom& atom) { found = found || (atom.op == Op::symbol && atom.symbol == symbol); });
+  return found;
+}
+
+}  // namespace eomgen::reading

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/trig.hpp"
+
+#include <cln/integer.h>
+
+#include <algorithm>
+#include <tuple>
+
+#include "reading/rational_function.hpp"
+
+namespace eomgen::reading {
+namespace {
+
+constexpr int most_rounds = 6;
+
+struct SumLess {
+  bool operator()(const Sum& a, const Sum& b) const { return compare(a, b) < 0; }
+};
+
+bool is_call(const Factor& factor, Op op) {
+  return factor.atom->op == op && is_integer(factor.exponent) && cln::plusp(factor.exponent);
+}
+
+// How long a sum reads: terms first, then factors.
+std::pair<std::size_t, Rational> length(const Sum& sum) {
+  Rational factors = 0;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (const Factor& factor : monomial) factors = factors + cln::abs(factor.exponent);
+  }
+  return {sum.size(), factors};
+}
+bool shorter(const Sum& a, const Sum& b) { return length(a) < length(b); }
+
+std::vector<Sum> angles(const Sum& sum) {
+  std::map<Sum, bool, SumLess> found;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (const Factor& factor : monomial) {
+      if ((is_call(factor, Op::sin) || is_call(factor, Op::cos)) && factor.exponent >= 2) found[factor.atom->args[0]] = true;
+    }
+  }
+  std::vector<Sum> result;
+  for (const auto& [angle, yes] : found) result.push_back(angle);
+  return result;
+}
+
+// f^2 -> 1 - g^2 with f, g = sin, cos of `angle`.
+Sum replace_square(const Sum& sum, Op f, const Sum& angle) {
+  const Sum g = call(f == Op::sin ? Op::cos : Op::sin, {angle});
+  const Sum other = Sum(1) - g * g;
+  Sum result;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    Monomial rest = monomial;
+    long pairs = 0;
+    for (Factor& factor : rest) {
+      if (!is_call(factor, f) || !(factor.atom->args[0] == angle)) continue;
+      pairs = to_long(factor.exponent) / 2;
+      factor.exponent = factor.exponent - 2 * pairs;
+    }
+    std::erase_if(rest, [](const Factor& factor) { return cln::zerop(factor.exponent); });
+    if (pairs == 0) result.add(monomial, coefficient);
+    else result += Sum(rest, coefficient) * power(other, pairs);
+  }
+  return result;
+}
+
+const Rational* coefficient_of(const Sum& sum, const Monomial& monomial) {
+  const auto found = sum.terms().find(monomial);
+  return found == sum.terms().end() ? nullptr : &found->second;
+}
+
+// The one monomial of a product of monomials without sums under powers.
+Monomial product(const Monomial& a, const Monomial& b) {
+  const Sum result = multiply(a, b);
+  return result.terms().begin()->first;
+}
+
+Monomial of(Op op, const Sum& angle, long exponent) {
+  Sum value = call(op, {angle});
+  Monomial result = value.terms().begin()->first;
+  for (Factor& factor : result) factor.exponent = exponent;
+  return result;
+}
+
+// Where f^2 m stands with its partner, k (f^2 + g^2) m -> k m and k m - k f^2 m -> k g^2 m; one term less each time.
+bool merge_one_pair(Sum& sum, const Sum& angle) {
+  for (const Op f : {Op::sin, Op::cos}) {
+    const Op g = f == Op::sin ? Op::cos : Op::sin;
+    for (const auto& [monomial, coefficient] : sum.terms()) {
+      const bool squared = std::any_of(monomial.begin(), monomial.end(), [&](const Factor& factor) {
+        return is_call(factor, f) && factor.exponent >= 2 && factor.atom->args[0] == angle;
+      });
+      if (!squared) continue;
+      const Monomial rest = product(monomial, of(f, angle, -2));
+      const Monomial partner = product(rest, of(g, angle, 2));
+      const Rational k = coefficient;
+      const Monomial self = monomial;
+      if (const Rational* other = coefficient_of(sum, partner); f == Op::sin && other != nullptr && *other == k) {
+        sum.add(self, -k);
+        sum.add(partner, -k);
+        sum.add(rest, k);
+        return true;
+      }
+      if (const Rational* other = coefficient_of(sum, rest); other != nullptr && *other == -k) {
+        sum.add(self, -k);
+        sum.add(rest, k);
+        sum.add(partner, -k);
+        return true;
+      }
+    }
+  }
+  return false;
+}
+
+Sum merge_pairs(Sum sum, const Sum& angle) {
+  while (merge_one_pair(sum, angle)) {
+  }
+  return sum;
+}
+
+// k m f(a) g(b) + l m f'(a) g'(b), |k| = |l|, as one term; `a` and `b` are factors of `monomial`.
+bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const Factor& a, const Factor& b) {
+  const Sum &x = a.atom->args[0], &y = b.atom->args[0];
+  const Op f = a.atom->op, g = b.atom->op;
+  const auto dual = [](Op op) { return op == Op::sin ? Op::cos : Op::sin; };
+  const Monomial rest = product(product(monomial, of(f, x, -1)), of(g, y, -1));
+  const Monomial partner = product(product(rest, of(dual(f), x, 1)), of(dual(g), y, 1));
+  const Rational* other = coefficient_of(sum, partner);
+  if (other == nullptr || (*other != k && *other != -k)) return false;
+  const bool same = *other == k;
+  Sum merged;
+  if (f == g) {
+    // cos cos +- sin sin; seen from sin sin the sign of the whole follows its partner's
+    const Rational sign = f == Op::cos || same ? Rational(1) : Rational(-1);
+    merged = sign * call(Op::cos, {same ? x - y : x + y});
+  } else {
+    // f(x) g(y) is sin(x) cos(y), or cos(x) sin(y) read the other way round
+    const Sum &s = f == Op::sin ? x : y, &c = f == Op::sin ? y : x;
+    merged = call(Op::sin, {same ? s + c : s - c});
+  }
+  const Monomial self = monomial;
+  const Rational coefficient = k, partner_coefficient = *other;
+  sum.add(self, -coefficient);
+  sum.add(partner, -partner_coefficient);
+  sum += Sum(rest, coefficient) * merged;
+  return true;
+}
+
+bool recombine_one(Sum& sum) {
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (std::size_t i = 0; i < monomial.size(); ++i) {
+      if (!is_call(monomial[i], Op::sin) && !is_call(monomial[i], Op::cos)) continue;
+      for (std::size_t j = i + 1; j < monomial.size(); ++j) {
+        if (!is_call(monomial[j], Op::sin) && !is_call(monomial[j], Op::cos)) continue;
+        if (monomial[i].atom->args[0] == monomial[j].atom->args[0]) continue;
+        const Monomial copy = monomial;
+        const Rational k = coefficient;
+        if (recombine_at(sum, copy, k, copy[i], copy[j])) return true;
+      }
+    }
+  }
+  return false;
+}
+
+// {cos, sin} of a sum of angles or of a multiple of one.
+std::pair<Sum, Sum> addition(const Sum& angle) {
+  Sum c(1), s(0);
+  for (const auto& [monomial, coefficient] : angle.terms()) {
+    const cln::cl_I times = cln::numerator(coefficient);
+    const Sum unit(monomial, Rational(1) / cln::denominator(coefficient));
+    if (cln::abs(times) > 16) {
+      const Sum whole(monomial, coefficient);
+      std::tie(c, s) = std::pair(c * call(Op::cos, {whole}) - s * call(Op::sin, {whole}),
+                                 s * call(Op::cos, {whole}) + c * call(Op::sin, {whole}));
+      continue;
+    }
+    const Sum cu = call(Op::cos, {unit});
+    const Sum su = cln::minusp(times) ? -call(Op::sin, {unit}) : call(Op::sin, {unit});
+    for (long n = cln::cl_I_to_long(cln::abs(times)); n > 0; --n) std::tie(c, s) = std::pair(c * cu - s * su, s * cu + c * su);
+  }
+  return {c, s};
+}
+
+Sum expand_factor(const Factor& factor) {
+  const Atom& atom = *factor.atom;
+  if ((atom.op == Op::sin || atom.op == Op::cos) && is_integer(factor.exponent)) {
+    const auto [c, s] = addition(expand_angles(atom.args[0]));
+    return power(atom.op == Op::cos ? c : s, factor.exponent);
+  }
+  if (atom.op == Op::add) return power(expand_angles(atom.args[0]), factor.exponent);
+  return Sum(Monomial{factor}, 1);
+}
+
+}  // namespace
+
+Sum reduce_squares(const Sum& sum) {
+  Sum best = sum;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Sum before = best;
+    for (const Sum& angle : angles(before)) {
+      const Sum as_it_is = merge_pairs(best, angle);
+      const Sum with_cos = merge_pairs(replace_square(best, Op::sin, angle), angle);
+      const Sum with_sin = merge_pairs(replace_square(best, Op::cos, angle), angle);
+      if (shorter(as_it_is, best)) best = as_it_is;
+      if (shorter(with_sin, best)) best = with_sin;
+      if (shorter(with_cos, best)) best = with_cos;
+    }
+    if (best == before) break;
+  }
+  return best;
+}
+
+Sum recombine_angles(const Sum& sum) {
+  Sum result = sum;
+  while (recombine_one(result)) {
+  }
+  return result;
+}
+
+Sum expand_angles(const Sum& sum) {
+  Sum expanded;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    Sum term(coefficient);
+    for (const Factor& factor : monomial) term = term * expand_factor(factor);
+    expanded += term;
+  }
+  for (const Sum& angle : angles(expanded)) expanded = replace_square(expanded, Op::sin, angle);
+  return expanded;
+}
+
+Sum simplify(const Sum& sum) {
+  Sum best = sum;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Sum before = best;
+    best = cancel(recombine_angles(reduce_squares(best)));
+    if (best == before) break;
+  }
+  return best;
+}
+
+}  // namespace eomgen::reading

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Is an expression zero for all values of its symbols?
+#pragma once
+
+#include "reading/sum.hpp"
+
+namespace eomgen::reading {
+
+enum class Zero {
+  proven,     // the canonical form is empty after trigonometric expansion
+  numerical,  // not proven, but zero to 40 digits at every random point
+  no,         // different from zero at some point
+  unknown,    // no point lies in the domain of all functions
+};
+
+/// Exact first, then at random points with 50 digits; the points are the same in every process.
+Zero zero_test(const Sum& sum);
+inline bool is_zero(const Sum& sum) {
+  const Zero answer = zero_test(sum);
+  return answer == Zero::proven || answer == Zero::numerical;
+}
+
+}  // namespace eomgen::reading
