@@ -284,14 +284,15 @@ class Printer {
   bool is_used(Slot slot) const {
     return std::any_of(leaves_.begin(), leaves_.end(), [slot](const auto& leaf) { return leaf.first == slot; });
   }
+  /// The ABI gives these two functions no inputs: they see the defaults.
+  bool takes_inputs() const { return function_.name != "mass" && function_.name != "constraints"; }
   std::string unused_arguments() const {
     std::vector<std::string> unused;
-    const bool has_inputs = function_.name != "mass" && function_.name != "constraints";
     if (!is_used(Slot::time)) unused.push_back(names_.arguments_t);
     if (!is_used(Slot::state)) unused.push_back(names_.x);
     if (!is_used(Slot::parameter)) unused.push_back(names_.p);
-    if (has_inputs && !is_used(Slot::input)) unused.push_back(names_.u);
-    if (has_inputs) unused.push_back(names_.mode);
+    if (takes_inputs() && !is_used(Slot::input)) unused.push_back(names_.u);
+    if (takes_inputs()) unused.push_back(names_.mode);
     for (std::size_t r = 0; r < function_.results.size(); ++r) {
       if (function_.results[r].second.empty()) unused.push_back(text_.results[r]);
     }
@@ -320,6 +321,7 @@ class Printer {
     load(Slot::state, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.x, i); });
     load(Slot::parameter, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.p, i); });
     load(Slot::input, [&](std::uint32_t i) {
+      if (!takes_inputs()) return dialect_.value(context_.inputs.at(i).value);
       return fmt::format("{0} ? {0}[{1}] : {2}", names_.u, i, dialect_.value(context_.inputs.at(i).value));
     });
     return result;

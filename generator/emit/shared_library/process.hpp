@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Other programs, run without a shell.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace eomgen::emit {
+
+struct Finished {
+  bool started = false;  // false: there is no such program
+  int status = 0;        // of exit; 128 + signal where one ended it
+  std::string output;    // of both streams
+};
+
+/// `arguments[0]` is the program, searched in PATH. Nothing is read from standard input.
+Finished run_process(const std::vector<std::string>& arguments);
+
+}  // namespace eomgen::emit
