@@ -17,6 +17,8 @@ namespace {
 constexpr std::size_t rejections_at_least = 200, rejections_per_point = 20;
 // Beyond the digits asked for, so that rounding in the comparisons themselves stays below them.
 constexpr int guard_digits = 10;
+// Fewer say nothing; differences are kept as binary64, which end at 1e-308.
+constexpr int least_digits = 10, most_digits = 300;
 
 std::string describe(const Comparison& c) {
   return fmt::format("{:.1e} ({} against {})", c.max_relative_difference, c.a, c.b);
@@ -56,6 +58,9 @@ std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics) 
 }
 
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options) {
+  if (options.digits < least_digits || options.digits > most_digits)
+    throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
+                fmt::format("ask for {} to {}", least_digits, most_digits));
   const Judge judge(*mechanics.model, options.digits + guard_digits);
   Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points);
   Tally tally(options.digits);

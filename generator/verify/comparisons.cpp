@@ -261,7 +261,9 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   if (!subjects.reading.empty()) {
     const Motion motion = motion_at(judge, state);
     for (const ReadingForm& form : subjects.reading)
-      tally.note(form.name, judge_name, false, reading_residual(form, mechanics, motion, judge, tally.points() == 0));
+      if (!form.residuals.empty())
+        tally.note(form.name, judge_name, false,
+                   reading_residual(form, mechanics, motion, judge, tally.points() == 0));
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();

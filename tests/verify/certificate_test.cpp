@@ -211,6 +211,14 @@ TEST_CASE("certificate: program, compiled code and reading form are held against
   CHECK(!find(bad, "reading form II", "d'Alembert").pass);
 }
 
+TEST_CASE("certificate: digits that binary64 cannot tell apart are refused, 300 are not") {
+  const model::Model model = chain(1);
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  CHECK_THROWS_AS(verify::verify(m, {301, 1, 1}), Error);
+  CHECK_THROWS_AS(verify::verify(m, {9, 1, 1}), Error);
+  CHECK(verify::verify(m, {300, 1, 1}).pass);
+}
+
 TEST_CASE("certificate: the same seed gives the same certificate") {
   const model::Model model = moving_sphere();
   const auto differences = [&](std::uint64_t seed) {

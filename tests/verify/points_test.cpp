@@ -4,6 +4,7 @@
 #include <doctest/doctest.h>
 
 #include "verify/linear_solve.hpp"
+#include "verify/motion.hpp"
 #include "verify/near.hpp"
 #include "verify/sample_models.hpp"
 
@@ -95,6 +96,24 @@ TEST_CASE("points: kinks are kept away from, constraints that contradict one ano
   Points none(of_twice, 5, many);
   CHECK_THROWS_AS(none.next(), Error);
   CHECK(none.rejected().count("the constraints lose rank") == 1);
+}
+
+TEST_CASE("judge: solved for the motion, P7 moves as (2.109) says and its reaction is (2.111)") {
+  const model::Model m = moving_sphere();
+  const Judge judge(m, 60);
+  Points points(judge, 9, many);
+  for (int i = 0; i < 5; ++i) {
+    const Motion motion = motion_at(judge, points.next());
+    const State& s = motion.state;
+    const Real &mass = s.parameters[0], &g = s.parameters[1], &D = s.parameters[2];
+    const Real d = s.q[0], d1 = s.qdot[0], &pd = s.qdot[1], &td = s.qdot[2];
+    const Real d2 = -s.parameters[4] * s.parameters[5] * s.parameters[5] * cln::sin(s.parameters[5] * s.t);
+    const Real sp = cln::sin(s.q[1]), cp = cln::cos(s.q[1]);
+    CHECK(near(s.qddot[0], d2, 55));
+    CHECK(near(s.qddot[1], td * td * sp * cp + g * sp / d - 2 * d1 * pd / d, 55));
+    CHECK(near(s.qddot[2], D / (mass * sp) - 2 * d1 * td / d - 2 * pd * td * cp / sp, 55));
+    CHECK(near(motion.lambda[0], mass * (d2 - d * pd * pd - d * sp * sp * td * td + g * cp), 55));
+  }
 }
 
 TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a singular matrix") {
