@@ -23,7 +23,7 @@ struct NamedUnit {
   bool prefixes;
 };
 
-constexpr std::array<NamedUnit, 38> units{{
+constexpr std::array<NamedUnit, 37> units{{
     {"1", {}, 1, 1, 0, false},
     {"m", {1}, 1, 1, 0, true},
     {"g", {0, 1}, 1, 1000, 0, true},
@@ -61,7 +61,6 @@ constexpr std::array<NamedUnit, 38> units{{
     {"day", {0, 0, 1}, 86400, 1, 0, false},
     {"ha", {2}, 10000, 1, 0, false},
     {"au", {1}, 149597870700, 1, 0, false},
-    {"P", {-1, 1, -1}, 1, 10, 0, true},
 }};
 
 struct Prefix {
