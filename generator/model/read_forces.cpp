@@ -200,7 +200,10 @@ Torsion Reader::read_torsion(const Value& table, const std::string& what) {
     source_.fail(key_span(table, "rest"), fmt::format("{} has a rest angle and no stiffness", what),
                  "add stiffness, or leave rest out");
   }
-  if (table.find("stiffness") != nullptr) result.stiffness = read_scalar(table, "stiffness", what, "N*m", on_time);
+  if (table.find("stiffness") != nullptr) {
+    result.stiffness = read_scalar(table, "stiffness", what, "N*m", on_time);
+    result.rest = resolver_.number(0, table.span).node;
+  }
   if (table.find("rest") != nullptr) result.rest = read_scalar(table, "rest", what, "rad", on_time);
   if (table.find("coefficient") != nullptr)
     result.coefficient = read_scalar(table, "coefficient", what, "N*m*s", on_state);
