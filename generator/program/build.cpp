@@ -19,15 +19,24 @@ struct Candidate {
   std::size_t index = 0;  // into the candidates
   std::unique_ptr<AbiFunctions> functions;
   WantedFunction rhs;
-  Polynomials raw;
+  std::vector<Polynomials> starts;  // as derived; multiplied out
+  Polynomials best;
   Operations operations;  // raw, then optimised
   std::size_t raw_cost = 0;
 };
 
-Polynomials raw_graph(const AbiFunctions& functions, const WantedFunction& wanted) {
-  Polynomials graph = flatten(from_dag(*functions.system().dag, wanted, functions.system().free), false);
+Polynomials tested(Polynomials graph) {
   reduce_pivots(graph);
   return flatten(graph, false);
+}
+
+/// The function as it was derived, and with small products multiplied out.
+std::vector<Polynomials> starts(const AbiFunctions& functions, const WantedFunction& wanted) {
+  const Polynomials graph = from_dag(*functions.system().dag, wanted, functions.system().free);
+  constexpr std::size_t worth_expanding = 3000;  // nodes; larger systems gain nothing by it
+  std::vector<Polynomials> result = {tested(flatten(graph, false))};
+  if (graph.size() < worth_expanding) result.push_back(tested(flatten(expand(graph), false)));
+  return result;
 }
 
 Function finished(const Polynomials& graph, const WantedFunction& wanted) {
@@ -46,8 +55,9 @@ std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>&
       candidate.index = i;
       candidate.functions = std::make_unique<AbiFunctions>(systems[i], request.fix, ties);
       candidate.rhs = candidate.functions->rhs();
-      candidate.raw = raw_graph(*candidate.functions, candidate.rhs);
-      candidate.operations = count_operations(candidate.raw);
+      candidate.starts = starts(*candidate.functions, candidate.rhs);
+      candidate.best = candidate.starts[0];
+      candidate.operations = count_operations(candidate.best);
       candidate.raw_cost = candidate.operations.cost();
       result.push_back(std::move(candidate));
     }
@@ -63,8 +73,8 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
     if (static_cast<double>(candidate.raw_cost) > worth_optimising * static_cast<double>(cheapest)) continue;
-    candidate.raw = optimise(candidate.raw);
-    candidate.operations = count_operations(candidate.raw);
+    candidate.best = optimise(candidate.starts);
+    candidate.operations = count_operations(candidate.best);
     if (!best || candidate.operations.cost() < candidates[*best].operations.cost()) best = i;
   }
   return *best;
@@ -127,10 +137,10 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.approach = system.approach;
   program.tried = tried(candidates, systems);
   program.active_constraints = system.active.size();
-  program.functions.push_back(finished(chosen.raw, chosen.rhs));
+  program.functions.push_back(finished(chosen.best, chosen.rhs));
   const auto add = [&](const WantedFunction& wanted) {
-    const Polynomials raw = raw_graph(*chosen.functions, wanted);
-    program.functions.push_back(finished(request.optimise ? optimise(raw) : raw, wanted));
+    const std::vector<Polynomials> graphs = starts(*chosen.functions, wanted);
+    program.functions.push_back(finished(request.optimise ? optimise(graphs) : graphs[0], wanted));
   };
   for (const std::string& name : request.with) {
     if (name == "outputs" || name == "rhs") continue;  // by the names asked for; always

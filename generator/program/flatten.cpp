@@ -3,6 +3,7 @@
 #include <cln/rational.h>
 
 #include <algorithm>
+#include <set>
 
 #include "program/polynomials.hpp"
 
@@ -19,13 +20,19 @@ bool is_even(Op op) { return op == Op::cos || op == Op::cosh || op == Op::abs; }
 
 class Flattening {
  public:
-  Flattening(const Polynomials& from, bool inline_products)
-      : from_(from), inline_products_(inline_products), value_(from.size()) {}
+  Flattening(const Polynomials& from, bool inline_products, bool expand)
+      : from_(from), inline_products_(inline_products), expand_(expand), value_(from.size()) {}
 
   Polynomials run() {
     const std::vector<NodeId> order = from_.order();
     uses_ = from_.uses(order);
-    for (const NodeId id : order) value_[id] = value(id);
+    if (expand_) find_barriers();
+    for (const NodeId id : order) {
+      value_[id] = value(id);
+      if (expand_ && barrier_[id]) {
+        for (const Factor& f : value_[id].factors) closed_.insert(f.node);
+      }
+    }
     for (const Term& result : from_.results) to_.results.push_back(to_.operand(translate(result)));
     for (const PivotPair& pair : from_.pivots) {
       to_.pivots.push_back({to_.operand(translate(pair.pivot)), to_.operand(translate(pair.scale))});
@@ -46,7 +53,32 @@ class Flattening {
   Term translate(const Term& term) {
     Term result{term.coefficient, {}};
     for (const Factor& f : term.factors) result = multiply(result, power_of(value_[f.node], f.exponent));
+    while (combine_root(result.factors)) {
+    }
     return result;
+  }
+
+  /// sqrt(s)^j s^k with as few factors as there can be: s^-1 sqrt(s) -> sqrt(s)^-1, sqrt(s)^2 -> s.
+  bool combine_root(Monomial& factors) const {
+    for (const Factor& root : factors) {
+      const Node& node = to_[root.node];
+      if (node.kind != Node::Kind::call || node.op != Op::sqrt || node.terms[0].factors.size() != 1) continue;
+      const Term& square = node.terms[0];
+      if (square.coefficient != 1 || square.factors[0].exponent != 1) continue;
+      const NodeId s = square.factors[0].node;
+      std::int32_t whole = 0;
+      for (const Factor& f : factors) whole += f.node == s ? f.exponent : 0;
+      const std::int32_t halves = root.exponent + 2 * whole;
+      const std::int32_t odd = halves % 2;  // 1, 0 or -1: of the sign of halves
+      if (root.exponent == odd && whole == (halves - odd) / 2) continue;
+      const Factor had = root;
+      factors = multiply(factors, {{had.node, had.exponent}}, -1);
+      if (whole != 0) factors = multiply(factors, {{s, whole}}, -1);
+      if (odd != 0) factors = multiply(factors, {{had.node, odd}});
+      if (halves != odd) factors = multiply(factors, {{s, (halves - odd) / 2}});
+      return true;
+    }
+    return false;
   }
   Term power_of(const Term& base, std::int32_t exponent) {
     if (exponent == 1) return base;
@@ -72,6 +104,7 @@ class Flattening {
     for (const Term& term : node.terms) {
       Term moved = translate(term);
       if (moved.coefficient == 0) continue;
+      if (expand_ && multiply_out(moved, terms)) continue;
       if (node.terms.size() > 1 && may_splice(term, moved)) {
         for (Term inner : to_[moved.factors[0].node].terms) {
           if (cln::minusp(moved.coefficient)) inner.coefficient = -inner.coefficient;
@@ -85,6 +118,43 @@ class Flattening {
     const bool shared = uses_[id] > 1 && !inline_products_;
     if (shared && !result.is_constant() && !result.is_node()) result = to_.operand(result);
     return result;
+  }
+
+  /// Entries of M, f, A and the values of the solve stay closed: what is multiplied out is what they are made of.
+  void find_barriers() {
+    barrier_.assign(from_.size(), false);
+    for (const Label& label : from_.labels) {
+      for (const Factor& f : label.value.factors) barrier_[f.node] = true;
+    }
+    for (const PivotPair& pair : from_.pivots) {
+      for (const Factor& f : pair.pivot.factors) barrier_[f.node] = true;
+    }
+  }
+
+  /// Adds the summands of a product of sums to `terms`, if they are few.
+  bool multiply_out(const Term& term, std::vector<Term>& terms) const {
+    constexpr std::size_t most = 36;
+    std::vector<Term> products{{term.coefficient, {}}};
+    bool opened = false;
+    for (const Factor& f : term.factors) {
+      const Node& node = to_[f.node];
+      const bool open = node.kind == Node::Kind::sum && node.terms.size() > 1 && !closed_.contains(f.node);
+      if (!open || f.exponent < 1 || f.exponent > 2) {
+        for (Term& product : products) product.factors = multiply(product.factors, {f});
+        continue;
+      }
+      for (std::int32_t k = 0; k < f.exponent; ++k) {
+        if (products.size() * node.terms.size() > most) return false;
+        std::vector<Term> next;
+        for (const Term& a : products) {
+          for (const Term& b : node.terms) next.push_back(multiply(a, b));
+        }
+        products = std::move(next);
+      }
+      opened = true;
+    }
+    if (opened) terms.insert(terms.end(), products.begin(), products.end());
+    return opened;
   }
 
   /// A sum that only this sum uses becomes part of it.
@@ -106,14 +176,20 @@ class Flattening {
   }
 
   const Polynomials& from_;
-  bool inline_products_;
+  bool inline_products_, expand_;
   Polynomials to_;
+  std::vector<bool> barrier_;  // of from_
+  std::set<NodeId> closed_;    // of to_
   std::vector<Term> value_;
   std::vector<std::uint32_t> uses_;
 };
 
 }  // namespace
 
-Polynomials flatten(const Polynomials& graph, bool inline_products) { return Flattening(graph, inline_products).run(); }
+Polynomials flatten(const Polynomials& graph, bool inline_products) {
+  return Flattening(graph, inline_products, false).run();
+}
+
+Polynomials expand(const Polynomials& graph) { return Flattening(graph, true, true).run(); }
 
 }  // namespace eomgen::program

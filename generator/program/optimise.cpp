@@ -9,9 +9,9 @@
 namespace eomgen::program {
 namespace {
 
-/// One descent: factor, share, clear up, while the cost falls.
-Polynomials descend(Polynomials graph, std::uint64_t seed, bool reopen) {
-  constexpr int rounds = 6;
+/// One descent: factor, share, clear up, while the cost falls by a thousandth.
+Polynomials descend(Polynomials graph, std::uint64_t seed) {
+  constexpr int rounds = 8;
   Polynomials best = graph;
   std::size_t cost = count_operations(best).cost();
   for (int round = 0; round < rounds; ++round) {
@@ -20,33 +20,34 @@ Polynomials descend(Polynomials graph, std::uint64_t seed, bool reopen) {
     share_products(graph, seed);
     share_sums(graph, seed);
     graph = flatten(graph, false);
-    const std::size_t now = count_operations(graph).cost();
-    if (now < cost) best = graph;
-    if (now >= cost && round > 0) break;
-    cost = std::min(now, cost);
-    if (reopen) graph = flatten(graph, true);
+    const std::size_t now = count_operations(graph).cost(), before = cost;
+    if (now < cost) {
+      best = graph;
+      cost = now;
+    }
+    if (round > 0 && now + before / 1000 >= before) break;
   }
   return best;
 }
 
 }  // namespace
 
-Polynomials optimise(const Polynomials& raw) {
-  // Graphs of tens of nodes get many orders, graphs of thousands one or two.
-  constexpr std::size_t budget = 20000, most = 12;
-  const std::size_t orders = std::clamp<std::size_t>(budget / (raw.size() + 1), 1, most);
-  Polynomials best = flatten(raw, false);
-  std::size_t cost = count_operations(best).cost();
-  for (std::uint64_t seed = 0; seed < orders; ++seed) {
-    for (const bool open : {false, true}) {
-      for (const bool reopen : {false, true}) {
-        Polynomials found = descend(flatten(raw, open), seed, reopen);
-        const std::size_t now = count_operations(found).cost();
-        if (now < cost) {
-          cost = now;
-          best = std::move(found);
-        }
-      }
+Polynomials optimise(const std::vector<Polynomials>& starts) {
+  // Programs of tens of operations get many orders, programs of thousands one from each start.
+  constexpr std::size_t budget = 4000, most = 12;
+  Polynomials best;
+  std::size_t cost = 0;
+  const auto keep = [&](Polynomials found) {
+    const std::size_t now = count_operations(found).cost();
+    if (cost != 0 && now >= cost) return;
+    cost = now;
+    best = std::move(found);
+  };
+  for (const Polynomials& start : starts) {
+    const std::size_t orders = std::clamp<std::size_t>(budget / (count_operations(start).flops() + 1), 1, most);
+    for (const bool inline_products : {false, true}) {
+      const Polynomials flat = flatten(start, inline_products);
+      for (std::uint64_t seed = 0; seed < orders; ++seed) keep(descend(flat, seed));
     }
   }
   return best;

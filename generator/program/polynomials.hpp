@@ -126,6 +126,10 @@ Function schedule(const Polynomials& graph, const std::string& name,
 /// that are shared do too (so that other factorings can be found).
 Polynomials flatten(const Polynomials& graph, bool inline_products);
 
+/// The same with small products of sums multiplied out inside the entries of M, f and the like (its labels), where
+/// Lagrange's equations have terms that cancel.
+Polynomials expand(const Polynomials& graph);
+
 /// Sums rewritten as f*(...) + ..., most frequent factor first; ties by `seed`.
 void factor_sums(Polynomials& graph, std::uint64_t seed);
 /// The most frequent pair of factors, then of summands, becomes a node, and so on.
@@ -135,7 +139,7 @@ void share_sums(Polynomials& graph, std::uint64_t seed);
 /// A number that looks random and depends on its arguments only.
 std::uint64_t scramble(std::uint64_t a, std::uint64_t b);
 
-/// The best program that several seeded orders of the passes find.
-Polynomials optimise(const Polynomials& raw);
+/// The best program that several seeded orders of the passes find, from any of several equal graphs.
+Polynomials optimise(const std::vector<Polynomials>& starts);
 
 }  // namespace eomgen::program
