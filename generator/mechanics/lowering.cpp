@@ -201,16 +201,25 @@ Lowering::Value Lowering::basis(const model::Node& node) {
   if (node.op == model::Op::contravariant_basis) return of(contravariant(node.index, coordinate, node.span));
   const Vec3 a = gradient(position(node.index), coordinate);
   if (node.op == model::Op::covariant_basis) return of(a);
-  if (const auto& chart = m_.model->places[node.index].chart) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (chart->entries[k] == model::no_node || chart->unit_basis[k] == model::no_node) continue;
-      const model::Node& entry = m_.model->arena[chart->entries[k]];
-      if (entry.op == model::Op::coordinate && entry.order == 0 && entry.index == coordinate) {
-        return of(vector(chart->unit_basis[k]));
-      }
-    }
-  }
+  if (const model::NodeId e = chart_vector(node.index, coordinate); e != model::no_node) return of(vector(e));
   return of(scale(dag_.div(dag_.one(), norm(a)), a));
+}
+
+// The chart's own unit vector for a coordinate that is one of its entries and in no other; it holds where a_q vanishes too.
+model::NodeId Lowering::chart_vector(std::uint32_t place, std::uint32_t coordinate) {
+  const auto& chart = m_.model->places[place].chart;
+  model::NodeId result = model::no_node;
+  int entries_with_it = 0;
+  for (std::size_t k = 0; chart && k < 3; ++k) {
+    if (chart->entries[k] == model::no_node) continue;
+    const Ref entry = scalar(chart->entries[k]);
+    for (const Symbol& symbol : dag_.symbols({entry})) {
+      if (symbol.kind == SymbolKind::coordinate && symbol.index == coordinate) ++entries_with_it;
+    }
+    const bool bare = entry == dag_.symbol({SymbolKind::coordinate, coordinate, 0});
+    if (bare) result = chart->unit_basis[k];
+  }
+  return entries_with_it == 1 ? result : model::no_node;
 }
 
 // a^i = sum_k a^ik a_k with the inverse metric of the chart's own coordinates, eq. (1.22); one, two or three of them.

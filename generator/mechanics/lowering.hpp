@@ -47,6 +47,7 @@ class Lowering {
   Value lower_vector(const model::Node& node);
   Value lower_derivative(const model::Node& node);
   Value basis(const model::Node& node);
+  model::NodeId chart_vector(std::uint32_t place, std::uint32_t coordinate);
   Vec3 contravariant(std::uint32_t place, std::uint32_t coordinate, const model::Span& span);
   static Value of(Ref scalar) { return {false, scalar, {}}; }
   static Value of(const Vec3& vector) { return {true, {}, vector}; }

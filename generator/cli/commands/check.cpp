@@ -16,6 +16,10 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
+std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) {
+  return print::render_expression(m, "", "", expression).text;
+}
+
 json constraints_of(const mechanics::Mechanics& m) {
   json result = json::array();
   for (const mechanics::Constraint& c : m.constraints) {
@@ -25,7 +29,7 @@ json constraints_of(const mechanics::Mechanics& m) {
     }
     // A holonomic constraint is its own integral; those that repeat others are refused before this.
     result.push_back({{"name", c.label}, {"kind", "holonomic"}, {"integrable", "yes"},
-                      {"integral", print::expression(m, c.psi).text + " = 0"}, {"redundant", false}, {"use", use}});
+                      {"integral", shown(m, c.psi) + " = 0"}, {"redundant", false}, {"use", use}});
   }
   return result;
 }
@@ -33,7 +37,7 @@ json constraints_of(const mechanics::Mechanics& m) {
 json forces_of(mechanics::Mechanics& m) {
   json result = json::array();
   for (const derive::ForceClass& force : derive::classify_forces(m)) {
-    const json potential = force.has_potential ? json(print::expression(m, force.potential).text) : json(nullptr);
+    const json potential = force.has_potential ? json(shown(m, force.potential)) : json(nullptr);
     result.push_back({{"name", force.name}, {"conservative", derive::name(force.conservative)}, {"potential", potential},
                       {"reason", force.reason}});
   }
@@ -66,11 +70,11 @@ json examine(const model::Model& model) {
     every_unit = every_unit && c.unit.dimension.has_value();
   }
   for (const model::Parameter& p : model.parameters) {
-    parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", print::expression(m, m.parameter_value[parameters.size()]).text}});
+    parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", shown(m, m.parameter_value[parameters.size()])}});
     every_unit = every_unit && p.unit.dimension.has_value();
   }
   for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
-    conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", print::expression(m, c.expression).text}});
+    conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)}});
   }
   for (const Warning& w : model.warnings) {
     warnings.push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});

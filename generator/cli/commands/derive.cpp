@@ -7,6 +7,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/pipeline.hpp"
+#include "derive/routes.hpp"
 #include "print/render.hpp"
 
 namespace eomgen::cli {
@@ -67,6 +68,17 @@ void print_readable(const std::vector<print::Item>& items, const std::string& ap
   }
 }
 
+void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
+  const bool wanted = std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
+  if (!wanted) return;
+  system::EquationSystem system = derive::routes().front().derive(mechanics, system::Approach::two);
+  for (const derive::Conserved& c : derive::conserved_quantities(mechanics, system)) {
+    print::Item item = print::render_expression(mechanics, "conserved", c.name, c.expression);
+    item.role = c.title;
+    items.push_back(std::move(item));
+  }
+}
+
 int execute(const Options& options, const Common& common) {
   require_keys(options.show);
   const ApproachChoice choice = approach_choice(options.approach);
@@ -76,7 +88,8 @@ int execute(const Options& options, const Common& common) {
   const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !mechanics.fixed.empty());
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
-  const std::vector<print::Item> items = print::render(mechanics, form, options.show);
+  std::vector<print::Item> items = print::render(mechanics, form, options.show);
+  add_conserved(mechanics, options.show, items);
   if (common.json) {
     fmt::print("{}\n", to_json(items, system::name(approach)).dump(2));
   } else {

@@ -9,7 +9,7 @@
 #include "cli/operations.hpp"
 #include "cli/pipeline.hpp"
 #include "emit/write_files.hpp"
-#include "print/latex_document.hpp"
+#include "print/render.hpp"
 #include "reading/reading.hpp"
 
 namespace eomgen::cli {

@@ -68,7 +68,7 @@ int execute(const Options& options, const Common& common) {
 Execute declare_verify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--digits", options->digits, "decimal digits of the arithmetic")->check(CLI::Range(20, 500))->capture_default_str();
+  app.add_option("--digits", options->digits, "decimal digits of the arithmetic")->check(CLI::Range(20, 300))->capture_default_str();
   app.add_option("--points", options->points, "random states")->check(CLI::Range(1, 10000))->capture_default_str();
   app.add_flag("--no-compile", options->no_compile, "leave the emitted code out, which needs a C compiler");
   return [options](const Common& common) { return execute(*options, common); };
