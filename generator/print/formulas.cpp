@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "print/notation.hpp"
+
 namespace eomgen::print {
 
 using mechanics::Mechanics;
@@ -22,26 +24,61 @@ namespace {
 Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
 Formula multiplier(std::uint32_t k) { return reading::symbol({SymbolKind::multiplier, k, 0}); }
 
-// Q + sum lambda_k dpsi_k/dq
+/// Letters of mechanics that the model has not taken for something of its own: a rod of length L leaves the Lagrangian
+/// a script L.
+struct Letters {
+  std::string T = "T", U = "U", L = "L", psi = "psi";
+
+  Letters(const Mechanics& m, bool constrained) {
+    const auto avoid = [&](std::string& letter, const char* otherwise) {
+      const auto taken = [&](const auto& list) {
+        return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return split_name(entry.name).base == letter; });
+      };
+      const model::Model& model = *m.model;
+      if (taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs)) letter = otherwise;
+    };
+    avoid(T, "cal T");
+    avoid(U, "cal U");
+    avoid(L, "cal L");
+    avoid(psi, "Psi");
+    if (!constrained) return;
+    for (std::string* letter : {&T, &U, &L}) *letter += "~";
+  }
+};
+
+// lambda slope: numbers first, then lambda, then the rest
+Formula times_multiplier(std::uint32_t k, const Sum& slope) {
+  const bool minus = reading::leads_negative(slope);
+  const Formula f = arrange(minus ? -slope : slope);
+  Formula result;
+  if (f.form == Form::product && f.args[0].form == Form::number) {
+    std::vector<Formula> factors(f.args);
+    factors.insert(factors.begin() + 1, multiplier(k));
+    result = reading::product(std::move(factors));
+  } else if (f.form == Form::number) {
+    result = reading::product({f, multiplier(k)});
+  } else {
+    result = reading::product({multiplier(k), f});
+  }
+  return minus ? reading::negative(std::move(result)) : result;
+}
+
+// Q + sum lambda_k dpsi_k/dq, a positive term first if there is one
 Formula right_side(const Equation& equation) {
   std::vector<Formula> terms = reading::arranged_terms(equation.force, Layout::terms);
-  for (const reading::MultiplierTerm& term : equation.multipliers) {
-    // one term of slope: its factors around lambda; several: lambda (..)
-    const Formula slope = arrange(term.slope);
-    const bool minus = slope.form == Form::negative;
-    Formula factor = reading::product({multiplier(term.constraint), minus ? slope.args[0] : slope});
-    const Formula& inside = minus ? slope.args[0] : slope;
-    if (inside.form == Form::product && inside.args[0].form == Form::number) {
-      std::vector<Formula> rest(inside.args.begin() + 1, inside.args.end());
-      rest.insert(rest.begin(), multiplier(term.constraint));
-      rest.insert(rest.begin(), inside.args[0]);
-      factor = reading::product(std::move(rest));
-    } else if (inside.form == Form::number) {
-      factor = reading::product({inside, multiplier(term.constraint)});
-    }
-    terms.push_back(minus ? reading::negative(std::move(factor)) : std::move(factor));
-  }
+  for (const reading::MultiplierTerm& term : equation.multipliers) terms.push_back(times_multiplier(term.constraint, term.slope));
+  const auto positive = std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
+  if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
   return reading::sum(std::move(terms));
+}
+
+// psi of mechanics' constraint k in the model: several may stand in one [[constraint]].
+model::NodeId constraint_in_model(const Mechanics& m, std::uint32_t k) {
+  for (const model::Constraint& constraint : m.model->constraints) {
+    if (k < constraint.psi.size()) return constraint.psi[k];
+    k -= static_cast<std::uint32_t>(constraint.psi.size());
+  }
+  return model::no_node;
 }
 
 }  // namespace
@@ -59,54 +96,55 @@ Formula explicit_form(const Equation& equation) {
   return reading::relation({arrange(equation.expanded, Layout::terms), right_side(equation)});
 }
 
-void add_energies(const ReadingForm& form, std::vector<Statement>& out) {
+void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   if (form.by_parts) return;
   const bool two = form.approach == system::Approach::two;
+  const Letters letters(m, two);
   const auto add = [&](std::string name, Formula left, const Sum& right) {
     out.push_back({"energies", std::move(name), "", "", reading::relation({std::move(left), arrange(right)})});
   };
-  add(two ? "constrained kinetic energy" : "kinetic energy", mark(two ? "T~" : "T"), form.kinetic);
+  add(two ? "constrained kinetic energy" : "kinetic energy", mark(letters.T), form.kinetic);
   const bool moving = form.by_degree && !((*form.by_degree)[1].is_zero() && (*form.by_degree)[2].is_zero());
   if (moving) {
     for (int k = 0; k < 3; ++k) {
-      add("T" + std::to_string(2 - k), mark("T~", {reading::number(2 - k)}), (*form.by_degree)[static_cast<std::size_t>(k)]);
+      add("T" + std::to_string(2 - k), mark(letters.T, {reading::number(2 - k)}), (*form.by_degree)[static_cast<std::size_t>(k)]);
     }
   }
-  add(two ? "constrained potential energy" : "potential energy", mark(two ? "U~" : "U"), form.potential);
+  add(two ? "constrained potential energy" : "potential energy", mark(letters.U), form.potential);
 }
 
-void add_lagrangian(const ReadingForm& form, std::vector<Statement>& out) {
+void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   if (form.by_parts) return;
-  const Formula L = mark(form.approach == system::Approach::two ? "L~" : "L");
+  const Formula L = mark(Letters(m, form.approach == system::Approach::two).L);
   std::vector<Formula> terms = reading::arranged_terms(form.kinetic, Layout::grouped);
   for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
   out.push_back({"lagrangian", "Lagrangian", "", "", reading::relation({L, reading::sum(std::move(terms))})});
 }
 
 void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+  const Letters letters(m, false);
   for (std::uint32_t f = 0; f < m.model->functions.size(); ++f) {
-    try {
-      const Sum value = reading::read(m, m.function_value[f]);
-      out.push_back({"constraints", m.model->functions[f].name, "", "function of time",
-                     reading::relation({reading::symbol({SymbolKind::function, f, 0}), arrange(value)})});
-    } catch (const reading::TermBudget&) {
-      continue;
-    }
+    const model::Function& function = m.model->functions[f];
+    const std::optional<Formula> written = reading::as_written(*m.model, function.is);
+    if (!written) continue;
+    out.push_back({"constraints", function.name, "", "function of time",
+                   reading::relation({reading::symbol({SymbolKind::function, f, 0}), *written})});
   }
   for (const reading::ReadConstraint& c : form.constraints) {
     const auto add = [&](std::string role, Formula formula) {
       out.push_back({"constraints", c.label, "", std::move(role), std::move(formula)});
     };
     const Formula zero = reading::number(0);
-    const Formula psi = form.constraints.size() == 1 ? mark("psi") : mark("psi", {reading::number(c.constraint + 1)});
+    const Formula psi = form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
+    const Formula written = reading::as_written(*m.model, constraint_in_model(m, c.constraint)).value_or(arrange(c.psi));
     if (c.fixes) {
       const std::uint32_t q = c.fixes->coordinate;
-      add("fixes a coordinate", reading::relation({psi, arrange(c.psi), zero}));
+      add("fixes a coordinate", reading::relation({psi, written, zero}));
       add("fixes a coordinate", reading::wrap(Form::list, {reading::relation({coordinate(q, 0), arrange(c.value)}),
                                                            reading::relation({coordinate(q, 1), arrange(c.value_rate)}),
                                                            reading::relation({coordinate(q, 2), arrange(c.value_acceleration)})}));
     } else {
-      add("keeps its multiplier", reading::relation({psi, arrange(c.psi), zero}));
+      add("keeps its multiplier", reading::relation({psi, written, zero}));
       add("its first time derivative", reading::relation({arrange(c.rate, Layout::terms), zero}));
       add("its second time derivative", reading::relation({arrange(c.acceleration, Layout::terms), zero}));
     }
@@ -160,18 +198,22 @@ void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
   }
 }
 
-void add_lagrangian(const ReadingForm& form, std::vector<Statement>& out);
-
 std::vector<Statement> statements(const Mechanics& m, const ReadingForm& form, const std::vector<std::string>& show) {
   const auto wanted = [&](const char* key) {
     return std::any_of(show.begin(), show.end(), [&](const std::string& s) { return s == key || s == "all"; });
   };
   std::vector<Statement> out;
   if (wanted("constraints")) add_constraints(m, form, out);
-  if (wanted("energies")) add_energies(form, out);
-  if (wanted("lagrangian")) add_lagrangian(form, out);
+  if (wanted("energies")) add_energies(m, form, out);
+  if (wanted("lagrangian")) add_lagrangian(m, form, out);
   if (wanted("equations")) add_equations(m, form, out);
   if (wanted("reactions")) add_reactions(form, out);
+  std::vector<std::string> of_geometry;
+  for (const char* key : {"basis", "metric", "line_element", "christoffel"}) {
+    if (wanted(key)) of_geometry.emplace_back(key);
+  }
+  if (!of_geometry.empty()) add_geometry(m, of_geometry, out);
+  if (wanted("singular")) add_singular(m, out);
   return out;
 }
 

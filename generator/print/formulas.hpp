@@ -23,10 +23,13 @@ reading::Formula momentum_form(const reading::Equation& equation);
 /// M qddot + h = Q + lambda grad psi.
 reading::Formula explicit_form(const reading::Equation& equation);
 
-void add_energies(const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_energies(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_constraints(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys, std::vector<Statement>& out);
+
+void add_singular(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 
 }  // namespace eomgen::print

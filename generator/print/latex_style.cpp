@@ -13,8 +13,6 @@ namespace {
 
 using reading::Op;
 
-constexpr std::size_t line_width = 80;  // printed characters, about
-
 std::string integer(const cln::cl_I& value) {
   std::ostringstream text;
   text << value;
@@ -42,28 +40,41 @@ std::string function_name(Op op) {
   }
 }
 
-// How many characters a piece shows: commands count as one, braces and blanks not at all.
+// How many characters a piece shows, about: braces and blanks not at all, sin three, dots over letters nothing.
 std::size_t visible(const std::string& latex) {
   std::size_t count = 0;
   for (std::size_t i = 0; i < latex.size(); ++i) {
     const char c = latex[i];
     if (c == '\\') {
-      ++count;
-      if (i + 1 < latex.size() && std::isalpha(static_cast<unsigned char>(latex[i + 1])) == 0) ++i;
-      while (i + 1 < latex.size() && std::isalpha(static_cast<unsigned char>(latex[i + 1])) != 0) ++i;
+      std::size_t end = i + 1;
+      while (end < latex.size() && std::isalpha(static_cast<unsigned char>(latex[end])) != 0) ++end;
+      const std::string command = latex.substr(i + 1, end - i - 1);
+      if (command == "sin" || command == "cos" || command == "tan") count += 3;
+      else if (!greek(command).empty() || command.starts_with("frac")) count += 1;
+      i = command.empty() ? i + 1 : end - 1;
     } else if (c != '{' && c != '}' && c != '^' && c != '_' && c != ' ') {
-      ++count;
+      count += c == '+' || c == '-' || c == '=' ? 2 : 1;
     }
   }
   return count;
 }
 
+// Brackets grow only around what is tall.
+std::string in_brackets(const std::string& inside) {
+  const bool tall = inside.find("frac") != std::string::npos || inside.find("\\dot") != std::string::npos ||
+                    inside.find("\\ddot") != std::string::npos || inside.find("sqrt") != std::string::npos;
+  return tall ? "\\left(" + inside + "\\right)" : "(" + inside + ")";
+}
+
 class LatexStyle final : public Style {
  public:
+  explicit LatexStyle(std::size_t width) : line_width_(width) {}
+
   Piece number(const reading::Rational& value) const override {
     if (reading::is_integer(value)) return {integer(cln::numerator(value)), Piece::atom};
     return {"\\tfrac{" + integer(cln::numerator(value)) + "}{" + integer(cln::denominator(value)) + "}", Piece::call};
   }
+  Piece literal(const std::string& digits) const override { return {digits, Piece::atom}; }
   Piece pi() const override { return {"\\pi", Piece::atom}; }
   Piece symbol(const Glyph& glyph) const override { return {latex(glyph), Piece::atom}; }
   Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
@@ -104,7 +115,7 @@ class LatexStyle final : public Style {
     }
     return {text, Piece::product};
   }
-  Piece rate(const Piece& inside) const override { return {open_rate() + inside.text + close_rate(), Piece::call}; }
+  Piece rate(const Piece& inside) const override { return {"\\frac{d}{dt}\\left(" + inside.text + "\\right)", Piece::call}; }
   Piece partial(const Piece& above, const Piece& below) const override {
     return {"\\frac{\\partial " + above.text + "}{\\partial " + below.text + "}", Piece::call};
   }
@@ -114,8 +125,8 @@ class LatexStyle final : public Style {
   Piece dot_product(const Piece& a, const Piece& b) const override {
     return {a.text + " \\cdot " + b.text, Piece::product};
   }
-  Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::call}; }
-  std::string bracket(const std::string& inside) const override { return "\\left(" + inside + "\\right)"; }
+  Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
+  std::string bracket(const std::string& inside) const override { return in_brackets(inside); }
   std::string plus() const override { return " + "; }
   std::string minus() const override { return " - "; }
   std::string leading_minus() const override { return "-"; }
@@ -125,7 +136,7 @@ class LatexStyle final : public Style {
     std::size_t total = 0;
     for (const std::string& piece : pieces) total += visible(piece);
     std::string result;
-    if (total <= line_width) {
+    if (total <= line_width_) {
       for (const std::string& piece : pieces) result += piece;
       return result;
     }
@@ -133,7 +144,7 @@ class LatexStyle final : public Style {
     bool broken = false;
     for (const std::string& piece : pieces) {
       const std::size_t more = visible(piece);
-      if (width > 0 && width + more > line_width) {
+      if (width > 0 && width + more > line_width_) {
         result += " \\\\\n&\\quad{}";
         width = 4;
         broken = true;
@@ -141,17 +152,21 @@ class LatexStyle final : public Style {
       result += piece;
       width += more;
     }
-    return broken ? "\\begin{aligned}\n&" + result + "\n\\end{aligned}" : result;
+    return broken ? "\\begin{aligned}[t]\n&" + result + "\n\\end{aligned}" : result;
   }
-  std::string open_rate() const override { return "\\frac{d}{dt}\\!\\bigl("; }
-  std::string close_rate() const override { return "\\bigr)"; }
+  std::string open_rate() const override { return "\\frac{d}{dt}\\Bigl("; }
+  std::string close_rate() const override { return "\\Bigr)"; }
 
  private:
   static std::string letter(const std::string& word) {
-    if (word.size() == 2 && word[1] == '~') return "\\tilde{" + word.substr(0, 1) + "}";
+    if (word.back() == '~') return "\\tilde{" + letter(word.substr(0, word.size() - 1)) + "}";
+    if (word.starts_with("cal ")) return "\\mathcal{" + word.substr(4) + "}";
+    if (word.starts_with("det ")) return "\\det(" + word.substr(4) + "_{ik})";
+    if (word == "...") return "\\ldots";
     if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "\\mathbf{" + word + "}";
     if (word == "ds^2") return "ds^{2}";
-    if (!greek(word).empty() || word == "det") return "\\" + word;
+    if (word == "metric a") return "a";
+    if (!greek(word).empty()) return "\\" + word;
     return word;
   }
   static std::string joined(const std::vector<std::string>& parts) {
@@ -163,14 +178,16 @@ class LatexStyle final : public Style {
     if (args.size() == 1 && args[0].binding >= Piece::atom) {
       return args[0].text.starts_with("\\") ? args[0].text : " " + args[0].text;
     }
-    std::string result = "\\left(";
+    std::string result;
     for (std::size_t i = 0; i < args.size(); ++i) result += (i > 0 ? ", " : "") + args[i].text;
-    return result + "\\right)";
+    return in_brackets(result);
   }
+
+  std::size_t line_width_;  // printed characters, about
 };
 
 }  // namespace
 
-std::unique_ptr<Style> latex_style() { return std::make_unique<LatexStyle>(); }
+std::unique_ptr<Style> latex_style(std::size_t width) { return std::make_unique<LatexStyle>(width); }
 
 }  // namespace eomgen::print

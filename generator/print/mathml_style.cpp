@@ -50,6 +50,7 @@ class MathmlStyle final : public Style {
     if (reading::is_integer(value)) return {number_element(cln::numerator(value)), Piece::atom};
     return {"<mfrac>" + number_element(cln::numerator(value)) + number_element(cln::denominator(value)) + "</mfrac>", Piece::call};
   }
+  Piece literal(const std::string& digits) const override { return {"<mn>" + digits + "</mn>", Piece::atom}; }
   Piece pi() const override { return {"<mi>π</mi>", Piece::atom}; }
   Piece symbol(const Glyph& glyph) const override { return {mathml(glyph), Piece::atom}; }
   Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
@@ -99,7 +100,7 @@ class MathmlStyle final : public Style {
     return {"<mover accent=\"true\">" + base.text + op(dots == 1 ? "˙" : "¨") + "</mover>", Piece::atom};
   }
   Piece dot_product(const Piece& a, const Piece& b) const override { return {row(a.text + op("·") + b.text), Piece::product}; }
-  Piece differential(const Piece& a) const override { return {row("<mi>d</mi>" + a.text), Piece::call}; }
+  Piece differential(const Piece& a) const override { return {row("<mi>d</mi>" + a.text), Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return row(op("(") + inside + op(")")); }
   std::string plus() const override { return op("+"); }
   std::string minus() const override { return op("−"); }
@@ -122,9 +123,15 @@ class MathmlStyle final : public Style {
 
  private:
   static std::string letter(const std::string& word) {
-    if (word.size() == 2 && word[1] == '~') {
-      return "<mover accent=\"true\"><mi>" + word.substr(0, 1) + "</mi><mo>~</mo></mover>";
+    if (word.back() == '~') {
+      return "<mover accent=\"true\">" + letter(word.substr(0, word.size() - 1)) + "<mo>~</mo></mover>";
     }
+    if (word.starts_with("cal ")) return "<mi mathvariant=\"script\">" + word.substr(4) + "</mi>";
+    if (word.starts_with("det ")) {
+      return row("<mi>det</mi>" + op("(") + "<msub><mi>" + word.substr(4) + "</mi>" + row("<mi>i</mi><mi>k</mi>") + "</msub>" + op(")"));
+    }
+    if (word == "...") return op("…");
+    if (word == "metric a") return "<mi>a</mi>";
     if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "<mi mathvariant=\"bold\">" + word + "</mi>";
     if (word == "ds^2") return "<mi>d</mi><msup><mi>s</mi><mn>2</mn></msup>";
     if (const std::string_view symbol = greek(word); !symbol.empty()) return "<mi>" + std::string(symbol) + "</mi>";

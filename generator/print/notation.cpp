@@ -133,7 +133,22 @@ std::string mathml(const Glyph& glyph) {
 
 std::string escape_latex(std::string_view text) {
   std::string result;
-  for (const char c : text) {
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte >= 0x80) {
+      // Letters with accents of U+00C0 .. U+00FF are what every LaTeX sets; anything else would stop it.
+      const auto next = i + 1 < text.size() ? static_cast<unsigned char>(text[i + 1]) : 0u;
+      const unsigned code = ((byte & 0x1fu) << 6) | (next & 0x3fu);
+      if ((byte & 0xe0u) == 0xc0u && (next & 0xc0u) == 0x80u && code >= 0xc0 && code <= 0xff && code % 0x20 != 0x10 &&
+          code % 0x20 != 0x17 && code % 0x20 != 0x1e) {
+        result += text.substr(i, 2);
+        ++i;
+      } else if ((byte & 0xc0u) != 0x80u) {
+        result += '?';
+      }
+      continue;
+    }
     switch (c) {
       case '\\': result += "\\textbackslash{}"; break;
       case '{': case '}': case '$': case '&': case '#': case '%': case '_': result += std::string("\\") + c; break;

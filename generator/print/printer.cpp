@@ -16,7 +16,7 @@ class Walk {
 
   Piece operator()(const Formula& f) const {
     switch (f.form) {
-      case Form::number: return style_.number(f.number);
+      case Form::number: return f.word.empty() ? style_.number(f.number) : style_.literal(f.word);
       case Form::pi: return style_.pi();
       case Form::symbol: return style_.symbol(notation_(f.symbol));
       case Form::mark: return style_.mark(f.word, texts(f.lower), texts(f.upper));
@@ -45,6 +45,10 @@ class Walk {
     for (std::size_t side = 0; side < sides.size(); ++side) {
       std::vector<std::string> terms = broken_terms(sides[side]);
       if (side > 0) terms.front() = style_.equals() + terms.front();
+      if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" does not stand on a line of its own
+        all.back() += terms.front();
+        continue;
+      }
       for (std::size_t i = 0; i < terms.size(); ++i) {
         all.push_back(std::move(terms[i]));
         starts.push_back(i == 0);
@@ -143,7 +147,11 @@ std::string print(const Formula& formula, const Notation& notation, Format forma
     case Format::latex: style = latex_style(); break;
     case Format::mathml: style = mathml_style(); break;
   }
-  return Walk(*style, notation).whole(formula);
+  return print(formula, notation, *style);
+}
+
+std::string print(const Formula& formula, const Notation& notation, const Style& style) {
+  return Walk(style, notation).whole(formula);
 }
 
 }  // namespace eomgen::print

@@ -31,6 +31,7 @@ class Style {
  public:
   virtual ~Style() = default;
   virtual Piece number(const reading::Rational& value) const = 0;  // not negative
+  virtual Piece literal(const std::string& digits) const = 0;  // a decimal as the author wrote it
   virtual Piece pi() const = 0;
   virtual Piece symbol(const Glyph& glyph) const = 0;
   virtual Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const = 0;
@@ -59,10 +60,13 @@ class Style {
 };
 
 std::unique_ptr<Style> text_style(bool language);
-std::unique_ptr<Style> latex_style();
+/// Lines are broken where they show more than `width` characters.
+std::unique_ptr<Style> latex_style(std::size_t width = 80);
 std::unique_ptr<Style> mathml_style();
 
 /// A formula as it stands alone: a display in LaTeX, one or several <math> elements in MathML.
 std::string print(const reading::Formula& formula, const Notation& notation, Format format);
+/// The same in a style of one's own.
+std::string print(const reading::Formula& formula, const Notation& notation, const Style& style);
 
 }  // namespace eomgen::print

@@ -43,11 +43,12 @@ class TextStyle final : public Style {
     text << value;
     return {text.str(), reading::is_integer(value) ? Piece::atom : Piece::product};
   }
+  Piece literal(const std::string& digits) const override { return {digits, Piece::atom}; }
   Piece pi() const override { return {"pi", Piece::atom}; }
   Piece symbol(const Glyph& glyph) const override { return {glyph.name, Piece::atom}; }
   Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
     if (word == "[]") return {"[" + joined({lower[0], lower[1]}, " ") + ", " + lower[2] + "]", Piece::atom};
-    std::string text = word;
+    std::string text = letter(word);
     if (!upper.empty()) text += "^" + (upper.size() == 1 ? upper[0] : "(" + joined(upper, " ") + ")");
     if (!lower.empty()) text += "_" + (lower.size() == 1 ? lower[0] : "(" + joined(lower, " ") + ")");
     return {text, Piece::atom};
@@ -74,8 +75,9 @@ class TextStyle final : public Style {
   Piece product(const std::vector<Piece>& factors) const override {
     std::string text;
     for (std::size_t i = 0; i < factors.size(); ++i) {
-      // Only the first factor may be a fraction: a b/c x would read as a b/(c x).
-      const bool bracket_it = i > 0 && factors[i].binding == Piece::product;
+      // a b/c x would read as a b/(c x); a number such as 1/2 may stand first
+      const bool is_number = factors[i].text.find_first_not_of("0123456789/") == std::string::npos;
+      const bool bracket_it = factors[i].binding == Piece::product && (i > 0 || !is_number) && factors.size() > 1;
       text += (i > 0 ? (language_ ? "*" : " ") : "") + (bracket_it ? "(" + factors[i].text + ")" : factors[i].text);
     }
     return {text, Piece::product};
@@ -104,6 +106,13 @@ class TextStyle final : public Style {
   std::string close_rate() const override { return ")"; }
 
  private:
+  static std::string letter(const std::string& word) {
+    if (word == "metric a") return "a";
+    if (word.starts_with("det ")) return "det(" + word.substr(4) + "_ik)";
+    if (!word.starts_with("cal ")) return word;
+    const std::string rest = word.substr(5);
+    return (word[4] == 'T' ? "kinetic" : word[4] == 'U' ? "potential" : "Lagrangian") + rest;
+  }
   static std::string joined(const std::vector<std::string>& parts, const char* separator) {
     std::string result;
     for (std::size_t i = 0; i < parts.size(); ++i) result += (i > 0 ? separator : "") + parts[i];

@@ -4,11 +4,15 @@
 #include <cln/integer.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "reading/formula.hpp"
 
 namespace eomgen::reading {
 namespace {
+
+// Lines are broken between terms, never inside of a bracket: a bracket must fit on one.
+constexpr std::size_t longest_bracket = 6;
 
 struct ByMotion {
   Monomial motion;  // velocities and accelerations
@@ -48,18 +52,21 @@ Formula factor_formula(const Factor& factor) {
   return wrap(Form::power, {std::move(base), number(exponent)});
 }
 
-// coefficient * monomial * extra; `extra` stands between the coefficient's factors and the velocities.
-Formula term_formula(const Rational& coefficient, const Monomial& monomial, std::vector<Formula> extra = {},
-                     const Monomial& motion = {}) {
+// coefficient * monomial * brackets * motion. Brackets of parameters, (m1 + m2) l^2, go where parameters do.
+Formula term_formula(const Rational& coefficient, const Monomial& monomial, std::vector<Formula> brackets = {},
+                     const Monomial& motion = {}, bool brackets_first = false) {
   std::vector<Formula> above, below;
   const cln::cl_I top = cln::numerator(cln::abs(coefficient)), bottom = cln::denominator(coefficient);
-  for (const Factor& factor : monomial) {
-    (cln::minusp(factor.exponent) ? below : above).push_back(factor_formula(factor));
-  }
-  for (Formula& f : extra) above.push_back(std::move(f));
-  for (const Factor& factor : motion) {
-    (cln::minusp(factor.exponent) ? below : above).push_back(factor_formula(factor));
-  }
+  const auto add_brackets = [&] {
+    for (Formula& f : brackets) above.push_back(std::move(f));
+  };
+  const auto add_factors = [&](const Monomial& factors) {
+    for (const Factor& factor : factors) (cln::minusp(factor.exponent) ? below : above).push_back(factor_formula(factor));
+  };
+  if (brackets_first) add_brackets();
+  add_factors(monomial);
+  if (!brackets_first) add_brackets();
+  add_factors(motion);
   Formula result;
   if (below.empty()) {
     above.insert(above.begin(), number(Rational(top) / bottom));
@@ -120,19 +127,10 @@ std::vector<Formula> polynomial_terms(const Sum& sum);
 Formula bracket(const Sum& rest) { return sum(polynomial_terms(rest)); }
 
 Formula factored_formula(const Factored& f, const Monomial& motion = {}) {
-  std::vector<Formula> extra;
-  if (!f.rest.is_number()) extra.push_back(bracket(f.rest));
-  // (m1 + m2) l^2: brackets of parameters stand where parameters do, other ones before the velocities
-  const bool of_parameters = !f.rest.is_number() && [&] {
-    bool all = true;
-    for_each_atom(f.rest, [&](const Atom& atom) { all = all && is_fixed(atom); });
-    return all;
-  }();
-  if (!of_parameters || std::any_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return cln::minusp(x.exponent); })) {
-    return term_formula(f.number, f.monomial, std::move(extra), motion);
-  }
-  Formula front = product({number(cln::abs(f.number)), extra[0], term_formula(1, f.monomial, {}, motion)});
-  return cln::minusp(f.number) ? negative(std::move(front)) : front;
+  if (f.rest.is_number()) return term_formula(f.number, f.monomial, {}, motion);
+  bool of_parameters = true;
+  for_each_atom(f.rest, [&](const Atom& atom) { of_parameters = of_parameters && is_fixed(atom); });
+  return term_formula(f.number, f.monomial, {bracket(f.rest)}, motion, of_parameters);
 }
 
 // m1 l^2 + m2 l^2 + m2 k^2 -> (m1 + m2) l^2 + m2 k^2: the factor that saves most, if any saves something.
@@ -208,8 +206,9 @@ std::vector<Formula> share_brackets(const std::vector<ByMotion>& groups) {
     if (done[i]) continue;
     const Factored f = factor_out(groups[i].coefficient);
     std::vector<Formula> motions{term_formula(1, groups[i].motion)};
-    for (std::size_t j = i + 1; j < groups.size() && !f.rest.is_number() && !groups[i].motion.empty(); ++j) {
-      if (done[j] || groups[j].motion.empty()) continue;
+    const bool worth_it = !groups[i].motion.empty() && (!f.rest.is_number() || !f.monomial.empty());
+    for (std::size_t j = i + 1; j < groups.size() && worth_it; ++j) {
+      if (done[j] || groups[j].motion.empty() || kind(groups[j].motion) != kind(groups[i].motion)) continue;
       const Factored g = factor_out(groups[j].coefficient);
       if (!(g.rest == f.rest) || compare(g.monomial, f.monomial) != 0 || g.number != f.number) continue;
       motions.push_back(term_formula(1, groups[j].motion));
@@ -223,9 +222,29 @@ std::vector<Formula> share_brackets(const std::vector<ByMotion>& groups) {
       }
       continue;
     }
-    result.push_back(term_formula(f.number, f.monomial, {bracket(f.rest), sum(std::move(motions))}));
+    std::vector<Formula> brackets{sum(std::move(motions))};
+    if (!f.rest.is_number()) brackets.insert(brackets.begin(), bracket(f.rest));
+    result.push_back(term_formula(f.number, f.monomial, std::move(brackets)));
   }
   return result;
+}
+
+// (x^2 + y^2)/2 rather than x^2/2 + y^2/2, where most terms are the simpler for it.
+std::optional<Formula> number_in_front(const Sum& whole) {
+  if (whole.size() < 3) return std::nullopt;
+  const Rational number = content(whole).number;
+  if (is_integer(number)) return std::nullopt;
+  std::size_t simple = 0;
+  for (const auto& [monomial, coefficient] : whole.terms()) {
+    if (cln::abs(coefficient) == number) ++simple;
+    for (const Factor& factor : monomial) {
+      if (moves(*factor.atom)) return std::nullopt;
+    }
+  }
+  if (3 * simple < 2 * whole.size()) return std::nullopt;
+  const bool minus = leads_negative(whole);
+  const Content front{minus ? -number : number, {}};
+  return term_formula(front.number, {}, {sum(polynomial_terms(divide(whole, front)))});
 }
 
 }  // namespace
@@ -243,6 +262,7 @@ std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
     }
     return result;
   }
+  if (std::optional<Formula> halved = number_in_front(whole)) return {std::move(*halved)};
   std::vector<Formula> result;
   for (std::size_t first = 0; first < groups.size();) {
     std::size_t last = first;
@@ -252,8 +272,10 @@ std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
       ++last;
     }
     const Factored f = factor_out(together);
-    const bool shared = last - first > 1 && !f.monomial.empty() && std::none_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return moves(*x.atom); });
-    const std::vector<ByMotion> part(groups.begin() + static_cast<std::ptrdiff_t>(first), groups.begin() + static_cast<std::ptrdiff_t>(last));
+    const bool motion_only = std::any_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return moves(*x.atom); });
+    const bool shared = last - first > 1 && last - first <= longest_bracket && !f.monomial.empty() && !motion_only;
+    const std::vector<ByMotion> part(groups.begin() + static_cast<std::ptrdiff_t>(first),
+                                     groups.begin() + static_cast<std::ptrdiff_t>(last));
     if (shared) {
       result.push_back(term_formula(f.number, f.monomial, {sum(share_brackets(gather(f.rest, moves)))}));
     } else {

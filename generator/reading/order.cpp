@@ -80,8 +80,9 @@ int compare(const Atom& a, const Atom& b) {
   if (rank_a != rank_b) return sign_of(rank_a < rank_b, true);
   if (a.op == Op::symbol && b.op == Op::symbol) return sign_of(a.symbol < b.symbol, b.symbol < a.symbol);
   if (a.op == Op::pi && b.op == Op::pi) return 0;
-  // sin(x) cos(x) sin(y) cos(y): by argument first
+  // sin(x) cos(x) sin(y) cos(y) cos(x - y): by argument first, simple ones before sums
   const std::size_t common = std::min(a.args.size(), b.args.size());
+  if (common > 0 && a.args[0].size() != b.args[0].size()) return sign_of(a.args[0].size() < b.args[0].size(), true);
   for (std::size_t i = 0; i < common; ++i) {
     if (const int c = compare(a.args[i], b.args[i]); c != 0) return c;
   }

@@ -101,7 +101,10 @@ std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics);
 /// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.by_parts.
 std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& mechanics);
 
-/// Any expression of the Dag, simplified for reading.
+/// A scalar expression as the model's author wrote it, nothing multiplied out; nothing if there are vectors in it.
+std::optional<Formula> as_written(const model::Model& model, model::NodeId expression);
+
+/// Any expression of the Dag, simplified for reading; throws TermBudget.
 Sum read(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
 
 }  // namespace eomgen::reading

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the inertia matrix of an approach has no inverse, factor by factor of its determinant; and where a potential
+// or force divides by zero.
+#include <cln/integer.h>
+
+#include <algorithm>
+
+#include "reading/lagrangian.hpp"
+#include "reading/rational_function.hpp"
+#include "reading/small_matrix.hpp"
+#include "reading/trig.hpp"
+
+namespace eomgen::reading {
+namespace {
+
+using mechanics::Mechanics;
+
+// Beyond this a determinant is not written out; the charts of the particles are looked at instead.
+constexpr std::size_t largest_determinant = 4;
+
+bool varies(const Atom& atom) {
+  return atom.op == Op::symbol && (atom.symbol.kind == SymbolKind::coordinate || atom.symbol.kind == SymbolKind::function ||
+                                   atom.symbol.kind == SymbolKind::time);
+}
+bool varies(const Sum& sum) {
+  bool result = false;
+  for_each_atom(sum, [&](const Atom& atom) { result = result || varies(atom); });
+  return result;
+}
+
+// Where f = 0 for the few f whose zeros everybody knows.
+std::vector<Formula> solutions(const Sum& factor) {
+  if (factor.size() != 1) return {};
+  const Monomial& monomial = factor.terms().begin()->first;
+  if (monomial.size() != 1) return {};
+  const Atom& atom = *monomial[0].atom;
+  const auto at = [](const Formula& left, Formula right) { return relation({left, std::move(right)}); };
+  Formula pi;
+  pi.form = Form::pi;
+  if (atom.op == Op::sin) return {at(arrange(atom.args[0]), number(0)), at(arrange(atom.args[0]), pi)};
+  if (atom.op == Op::cos) {
+    const Formula half = fraction(pi, number(2));
+    return {at(arrange(atom.args[0]), half), at(arrange(atom.args[0]), negative(half))};
+  }
+  return {};
+}
+
+class Sets {
+ public:
+  void add(const std::string& approach, const Sum& factor) {
+    if (!varies(factor)) return;
+    for (SingularSet& set : found_) {
+      if (!(set.factor == factor)) continue;
+      if (set.approach != approach) set.approach = "both";
+      return;
+    }
+    found_.push_back({approach, factor, solutions(factor)});
+  }
+  void add_factors(const std::string& approach, const Sum& product) {
+    const Factorisation parts = factorise(product);
+    for (const Factor& factor : parts.content.monomial) {
+      if (!cln::plusp(factor.exponent)) continue;
+      add(approach, factor.atom->op == Op::add ? factor.atom->args[0] : Sum(factor.atom));
+    }
+    for (const auto& [factor, exponent] : parts.factors) add(approach, factor);
+  }
+  // x^-1, (x^2 + y^2)^(-3/2): the equations hold nowhere near x = 0, x^2 + y^2 = 0
+  void add_denominators(const std::string& approach, const Sum& sum) {
+    for (const auto& [monomial, coefficient] : sum.terms()) {
+      for (const Factor& factor : monomial) {
+        if (!cln::minusp(factor.exponent)) continue;
+        add(approach, factor.atom->op == Op::add ? factor.atom->args[0] : Sum(factor.atom));
+      }
+    }
+  }
+  std::vector<SingularSet> take() { return std::move(found_); }
+
+ private:
+  std::vector<SingularSet> found_;
+};
+
+bool positive_always(const Sum& factor) {
+  // a sum of terms without a sign change and with a part that does not vanish: m1 + m2 sin(x)^2
+  bool constant_part = false;
+  for (const auto& [monomial, coefficient] : factor.terms()) {
+    if (cln::minusp(coefficient)) return false;
+    bool fixed = true;
+    for (const Factor& f : monomial) {
+      const bool even = is_integer(f.exponent) && cln::evenp(cln::numerator(f.exponent));
+      const bool moves = varies(Sum(f.atom));
+      if (moves && !even) return false;
+      fixed = fixed && !moves;
+    }
+    constant_part = constant_part || fixed;
+  }
+  return constant_part;
+}
+
+void add_determinant(Bridge& bridge, const std::string& approach, const Sum& kinetic, const std::vector<std::uint32_t>& which, Sets& sets) {
+  Sets candidates;
+  candidates.add_factors(approach, determinant(mass_matrix(bridge, kinetic, which), which.size()));
+  for (const SingularSet& set : candidates.take()) {
+    if (!positive_always(set.factor)) sets.add(approach, set.factor);
+  }
+}
+
+}  // namespace
+
+std::vector<SingularSet> singular_sets(const Mechanics& m) {
+  Bridge bridge(m);
+  Sets sets;
+  std::vector<std::uint32_t> all;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) all.push_back(i);
+  const std::map<Symbol, Sum> values = imposed_values(m, bridge);
+  try {
+    const Sum kinetic = kinetic_energy(m, bridge);
+    if (all.size() <= largest_determinant) add_determinant(bridge, "I", kinetic, all, sets);
+    if (m.free.size() <= largest_determinant) add_determinant(bridge, "II", bridge.substitute(kinetic, values), m.free, sets);
+    const Sum potential = bridge.sum(m.potential);
+    sets.add_denominators("I", potential);
+    sets.add_denominators("II", bridge.substitute(potential, values));
+  } catch (const TermBudget&) {
+  }
+  if (m.q.size() > largest_determinant) {
+    // Each particle's chart fails where its metric does; that is where the whole inertia matrix may.
+    for (const Geometry& g : geometry(m)) {
+      sets.add_factors("I", g.determinant);
+      bool stays = false;
+      for (const std::uint32_t i : g.coordinates) stays = stays || !m.is_eliminated(i);
+      if (stays && m.free.size() > largest_determinant) sets.add_factors("II", bridge.substitute(g.determinant, values));
+    }
+  }
+  return sets.take();
+}
+
+}  // namespace eomgen::reading
