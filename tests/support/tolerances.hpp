@@ -28,4 +28,14 @@ inline constexpr double on_constraint = 1e-13;
 // A correction against a reference solve of the KKT system: condition numbers up to 1e3.
 inline constexpr double same_correction = 1e-11;
 
+// --- program --------------------------------------------------------------------------------------------------------
+// 60 digits, some hundred operations with condition numbers up to 1e10.
+inline constexpr double same_value = 1e-45;
+// A central difference in 60 digits with a step of 1e-15: the error is the step squared times third derivatives.
+inline constexpr double difference_quotient = 1e-20;
+// A solve in binary64 against another, condition numbers up to 1e4.
+inline constexpr double unrolled_solve = 1e-11;
+// Deriving nothing, only optimising: half a second on one core; a shared machine may take some times that.
+inline constexpr double chain_seconds = 10;
+
 }  // namespace tolerances

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <functional>
+
+#include "error.hpp"
+#include "program/systems.hpp"
+#include "program/values.hpp"
+#include "support/tolerances.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+
+TEST_CASE("program: the Jacobian is that of the right-hand side, to 20 digits of a difference quotient") {
+  for (const auto& system : {double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
+    CAPTURE(system.free.size());
+    const auto built = build(system, {"jac", "jac_p"});
+    const auto base = arguments_at<cln::cl_R>(system, 1);
+    const auto jac = program::interpret(built.functions[1], base, 60).results;
+    const auto jac_p = program::interpret(built.functions[2], base, 60).results[0];
+    const std::size_t n = 2 * system.free.size();
+    const cln::cl_R step = cln::expt(cln::cl_RA(10), -15);
+    const auto quotient = [&](const std::function<cln::cl_R&(program::Arguments<cln::cl_R>&)>& pick) {
+      auto above = base, below = base;
+      pick(above) = pick(above) + step;
+      pick(below) = pick(below) - step;
+      auto result = program::interpret(built.functions[0], above, 60).results[0];
+      const auto other = program::interpret(built.functions[0], below, 60).results[0];
+      for (std::size_t i = 0; i < n; ++i) result[i] = (result[i] - other[i]) / (2 * step);
+      return result;
+    };
+    const auto column = [n](const std::vector<cln::cl_R>& all, std::size_t j) {
+      const auto begin = all.begin() + static_cast<std::ptrdiff_t>(j * n);
+      return std::vector<cln::cl_R>(begin, begin + static_cast<std::ptrdiff_t>(n));
+    };
+    for (std::size_t j = 0; j < n; ++j) {
+      CHECK(difference(column(jac[0], j), quotient([j](auto& a) -> cln::cl_R& { return a.x[j]; })) < tolerances::difference_quotient);
+    }
+    CHECK(difference(jac[1], quotient([](auto& a) -> cln::cl_R& { return a.t; })) < tolerances::difference_quotient);
+    for (std::size_t j = 0; j < jac_p.size() / n; ++j) {
+      CHECK(difference(column(jac_p, j), quotient([j](auto& a) -> cln::cl_R& { return a.p[j]; })) < tolerances::difference_quotient);
+    }
+  }
+}
+
+TEST_CASE("program: h of `mass` closes M qddot + h = A^T lambda") {
+  const auto system = spherical_pendulum();
+  const auto built = build(system, {"mass", "constraints", "reactions"});
+  const auto arguments = arguments_at<double>(system, 2);
+  const auto dx = program::interpret(built.functions[0], arguments).results[0];
+  const auto mass = program::interpret(built.functions[1], arguments).results;
+  const auto constraints = program::interpret(built.functions[2], arguments).results;
+  const auto lambda = program::interpret(built.functions[3], arguments).results[0];
+  for (std::size_t i = 0; i < 3; ++i) {
+    double left = mass[1][i];
+    for (std::size_t j = 0; j < 3; ++j) left += mass[0][i + 3 * j] * dx[3 + j];
+    CHECK(left == doctest::Approx(constraints[1][i] * lambda[0]).epsilon(tolerances::unrolled_solve));
+  }
+}
+
+TEST_CASE("program: a function computes only what it needs") {
+  const auto built = build(spherical_pendulum(), {"mass"}, true, true);
+  CHECK(built.functions[1].name == "mass");
+  CHECK(built.functions[1].operations.div == 0);
+  CHECK(built.functions[1].operations.sqrt == 0);
+  CHECK(built.functions[1].pivots.empty());
+  std::vector<system::EquationSystem> candidates{cart_pendulum()};
+  program::Request request;
+  request.outputs = {"potential"};
+  const auto potential = program::build_program(candidates, request).functions[1];
+  CHECK(potential.operations.trig == 1);
+  CHECK(potential.operations.flops() <= 3);
+  CHECK_FALSE(potential.uses_input);
+}
+
+TEST_CASE("program: fixed parameters become numbers and fold") {
+  std::vector<system::EquationSystem> candidates{pendulum()};
+  program::Request request;
+  request.fix = {{1, symbolic::Rational(1) / 2}, {2, symbolic::Rational(981) / 100}};
+  const auto function = program::build_program(candidates, request).functions[0];
+  CHECK(function.operations.mul == 1);  // 19.62 sin theta
+  CHECK(function.operations.div == 0);
+  REQUIRE(function.constants.size() == 1);
+  CHECK(function.constants[0] == symbolic::Rational(981) / 50);
+  CHECK(function.pivots.empty());
+}
+
+TEST_CASE("program: the cheapest of several routes is taken, ties go to the first, dear ones are not optimised") {
+  std::vector<system::EquationSystem> candidates{chain(2), double_pendulum()};
+  candidates[0].route = "first";
+  candidates[1].route = "second";
+  auto built = program::build_program(candidates, {});
+  CHECK(built.route == "second");
+  REQUIRE(built.tried.size() == 2);
+  CHECK(built.tried[0].route == "first");
+  CHECK(built.tried[1].operations.cost() <= built.tried[0].operations.cost());
+  CHECK(built.functions[0].operations.cost() == built.tried[1].operations.cost());
+  candidates = {double_pendulum(), double_pendulum()};
+  candidates[0].route = "first";
+  candidates[1].route = "second";
+  CHECK(program::build_program(candidates, {}).route == "first");
+}
+
+TEST_CASE("program: what does not exist is refused by name") {
+  const auto message = [](const std::vector<std::string>& with, const std::vector<std::string>& outputs) -> std::string {
+    std::vector<system::EquationSystem> candidates{pendulum()};
+    program::Request request;
+    request.with = with;
+    request.outputs = outputs;
+    try {
+      program::build_program(candidates, request);
+    } catch (const Error& error) {
+      return error.message() + " / " + error.remedy();
+    }
+    return "";
+  };
+  CHECK(message({"taylor"}, {}) == "function `taylor` is not supported yet / functions that can be asked for: jac, jac_p, mass, constraints, reactions, outputs");
+  CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));
+  CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
+}
+
+TEST_CASE("program: an expression that the state cannot give is refused") {
+  auto system = pendulum();
+  const Maker k{system.dag};
+  system.f[0] = k.s(k.dag->symbol({symbolic::SymbolKind::function, 0, 0})).ref;
+  CHECK_THROWS_AS(build(system), Error);
+}

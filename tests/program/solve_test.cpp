@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The unrolled solve against Eigen, at random points.
+#include "program/solve.hpp"
+
+#include <doctest/doctest.h>
+
+#include <Eigen/Dense>
+
+#include "error.hpp"
+#include "program/abi_functions.hpp"
+#include "program/systems.hpp"
+#include "program/values.hpp"
+#include "support/tolerances.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+
+namespace {
+
+double number(const cln::cl_R& x) { return cln::double_approx(x); }
+
+Eigen::MatrixXd matrix(const system::EquationSystem& s, const std::vector<symbolic::Ref>& entries, std::size_t rows,
+                       std::size_t columns, std::uint64_t point) {
+  const auto values = expressions_at(*s.dag, entries, point);
+  Eigen::MatrixXd result(rows, columns);
+  for (std::size_t i = 0; i < rows; ++i) {
+    for (std::size_t j = 0; j < columns; ++j) {
+      result(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(j)) = number(values[i * columns + j]);
+    }
+  }
+  return result;
+}
+
+/// Accelerations, then multipliers: [M -A^T; A 0] (qddot, lambda) = (f, -gamma).
+Eigen::VectorXd reference(const system::EquationSystem& s, std::uint64_t point) {
+  const std::size_t n = s.free.size(), m = s.active.size();
+  const auto rows = static_cast<Eigen::Index>(n), below = static_cast<Eigen::Index>(m);
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(rows + below, rows + below);
+  Eigen::VectorXd r(rows + below);
+  K.topLeftCorner(rows, rows) = matrix(s, s.M, n, n, point);
+  r.head(rows) = matrix(s, s.f, n, 1, point);
+  if (m > 0) {
+    const Eigen::MatrixXd A = matrix(s, s.A, m, n, point);
+    K.topRightCorner(rows, below) = -A.transpose();
+    K.bottomLeftCorner(below, rows) = A;
+    r.tail(below) = -matrix(s, s.gamma, m, 1, point);
+  }
+  return K.fullPivLu().solve(r);
+}
+
+void check_against_eigen(const system::EquationSystem& system) {
+  for (std::uint64_t point = 0; point < 5; ++point) {
+    const Eigen::VectorXd expected = reference(system, point);
+    const program::Program built = build(system, {"reactions"});
+    const auto arguments = arguments_at<double>(system, point);
+    const auto dx = program::interpret(built.functions[0], arguments).results[0];
+    const auto lambda = program::interpret(built.functions[1], arguments).results[0];
+    const std::size_t n = system.free.size();
+    const double scale = expected.cwiseAbs().maxCoeff();
+    for (std::size_t i = 0; i < n; ++i) {
+      CHECK(dx[i] == arguments.x[n + i]);
+      CHECK(std::abs(dx[n + i] - expected(static_cast<Eigen::Index>(i))) <= tolerances::unrolled_solve * scale);
+    }
+    for (std::size_t k = 0; k < system.active.size(); ++k) {
+      CHECK(std::abs(lambda[k] - expected(static_cast<Eigen::Index>(n + k))) <= tolerances::unrolled_solve * scale);
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("solve: accelerations agree with Eigen for dense and diagonal mass matrices") {
+  check_against_eigen(pendulum());
+  check_against_eigen(double_pendulum());
+  check_against_eigen(cart_pendulum());
+  check_against_eigen(chain(5));
+}
+
+TEST_CASE("solve: with constraints accelerations and multipliers solve the KKT system") {
+  check_against_eigen(spherical_pendulum());
+}
+
+TEST_CASE("solve: a massless coordinate that a constraint determines is solved with the multipliers unchanged") {
+  const auto system = massless();
+  CHECK(program::is_singular_everywhere(*system.dag, system.M, 3));
+  check_against_eigen(system);
+}
+
+TEST_CASE("solve: a massless coordinate that nothing determines is refused") {
+  auto system = massless();
+  system.active.clear();
+  system.A.clear();
+  system.psi.clear();
+  system.b.clear();
+  system.gamma.clear();
+  CHECK_THROWS_AS(build(system), Error);
+}
+
+TEST_CASE("solve: structural zeros of M cost nothing") {
+  // Two pendulums side by side are solved as two: no operation couples them.
+  const Maker k;
+  const Scalar half = k.number(1, 2), l = k.p(0), g = k.p(1);
+  Scalar T = k.number(0), V = k.number(0);
+  for (std::uint32_t i = 0; i < 2; ++i) {
+    T = T + half * l * l * k.q(i, 1) * k.q(i, 1);
+    V = V - g * l * k.cos(k.q(i));
+  }
+  const auto built = build(lagrange(k, 2, T, V, {k.number(0), k.number(0)}));
+  CHECK(built.functions[0].operations.add == 0);
+  CHECK(built.functions[0].operations.div == 1);  // g/l, shared
+  CHECK(built.functions[0].operations.mul == 2);
+}
+
+TEST_CASE("solve: an arrow-shaped M keeps its zeros by the order of elimination") {
+  // One cart, four pendulums on it: M is an arrow. In minimum degree order the pendulums go first and nothing fills in.
+  const Maker k;
+  const Scalar half = k.number(1, 2), m = k.p(0), l = k.p(1), g = k.p(2);
+  Scalar T = half * m * k.q(0, 1) * k.q(0, 1), V = k.number(0);
+  constexpr std::uint32_t pendulums = 4;
+  for (std::uint32_t i = 1; i <= pendulums; ++i) {
+    const Scalar w = k.q(i, 1), v = k.q(0, 1);
+    T = T + half * m * (v * v + k.number(2) * l * v * w * k.cos(k.q(i)) + l * l * w * w);
+    V = V - m * g * l * k.cos(k.q(i));
+  }
+  const auto system = lagrange(k, 1 + pendulums, T, V, std::vector<Scalar>(1 + pendulums, k.number(0)));
+  check_against_eigen(system);
+  // 8 flops per pendulum for elimination and back substitution; a filled matrix would take far more
+  CHECK(build(system).functions[0].operations.flops() <= 60);
+}
+
+TEST_CASE("solve: the pivot test sees a matrix that is singular, and only then") {
+  // At theta2 - theta1 = 0 with m1 = 0 the double pendulum has no inertia across: exactly singular.
+  const auto system = double_pendulum();
+  const auto built = build(system);
+  const auto vanishes = [&](double m1, double difference) {
+    auto arguments = arguments_at<double>(system, 0);
+    arguments.p[0] = m1;
+    arguments.x[1] = arguments.x[0] + difference;
+    bool any = false;
+    for (const auto& [pivot, scale] : program::interpret(built.functions[0], arguments).pivots) {
+      any = any || std::abs(pivot) <= program::pivot_tolerance * std::abs(scale);
+    }
+    return any;
+  };
+  CHECK(vanishes(0, 0));
+  CHECK_FALSE(vanishes(1e-6, 0));
+  CHECK_FALSE(vanishes(0, 0.01));
+}
