@@ -65,6 +65,7 @@ Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed
       }
       Context component = context;
       component.shape = Shape::scalar;
+      component.what = "a component of " + context.what;
       std::array<Typed, 3> parts;
       for (std::size_t k = 0; k < 3; ++k) parts[k] = this->value_with(value.items[k], local, component);
       return meet(array_of(parts, value.span), value.span, context);

@@ -53,9 +53,9 @@ TEST_CASE("names are kept apart from derivatives and functions") {
 }
 
 TEST_CASE("harmless LaTeX passes, everything else is refused") {
-  for (const char* good : {"\\theta", "\\dot{x}_{1}", "m_{\\mathrm{cart}}", "\\bar\\omega'", "x^{*}", "\\vec{r}\\,"}) {
+  for (const char* good : {"\\theta", "m_{\\mathrm{cart}}", "\\bar\\omega'", "x^{*}", "\\vec{r}\\,"}) {
     CAPTURE(good);
-    if (std::string(good).find("\\dot") == std::string::npos) CHECK(!illegal_tex(good));
+    CHECK(!illegal_tex(good));
   }
   for (const char* bad : {"", "\\write18{x}", "\\input{x}", "\\def\\a{b}", "}{", "{", "$x$", "x & y", "a%b", "#1",
                           "\\\\", "<b>", "~", "\\catcode`\\%=0"}) {
