@@ -264,8 +264,9 @@ class Printer {
     std::string sum = fmt::format("{}[{}]", dx, n);
     for (std::size_t i = 1; i < n; ++i) sum += fmt::format(" + {}[{}]", dx, n + i);
     // inf - inf and nan - nan are nan, which equals nothing
-    line(fmt::format("const {} finite = {};", dialect_.real, sum));
-    line(fmt::format("return finite - finite == {} ? 0 : 5;", dialect_.constant(0)));
+    const std::string finite = table_.declare("finite");
+    line(fmt::format("const {} {} = {};", dialect_.real, finite, sum));
+    line(fmt::format("return {0} - {0} == {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
   /// What an entry is, behind its line.

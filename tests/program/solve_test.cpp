@@ -137,7 +137,8 @@ TEST_CASE("solve: the pivot test sees a matrix that is singular, and only then")
     arguments.p[0] = m1;
     arguments.x[1] = arguments.x[0] + difference;
     bool any = false;
-    for (const auto& [pivot, scale] : program::interpret(built.functions[0], arguments).pivots) {
+    const auto values = program::interpret(built.functions[0], arguments);
+    for (const auto& [pivot, scale] : values.pivots) {
       any = any || std::abs(pivot) <= program::pivot_tolerance * std::abs(scale);
     }
     return any;

@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emitted code in the hands of compilers.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "emit/examples.hpp"
+#include "error.hpp"
+#include "support/tolerances.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+
+namespace {
+
+void compiles_everywhere(const Example& e) {
+  const Folder folder;
+  const auto files = emit::emit(e.program, e.context);
+  emit::write_files(folder.path, files);
+  const std::string name = emit::mangled_id(e.context.id);
+  const std::string c = folder.path + "/" + name + ".c", cpp = folder.path + "/use.cpp";
+  std::ofstream(cpp) << fmt::format(
+      "#include \"{0}.hpp\"\n#include \"{0}.h\"\n"
+      "int main() {{ return eom::{0}::selftest() + {0}_selftest(); }}\n", name);
+  const std::string object = folder.path + "/object.o", program = folder.path + "/use";
+  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {c}) == "");
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {c}) == "");
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-O2", "-o", program}, {cpp, object, "-lm"}) == "");
+  if (emit::run_process({"clang", "--version"}).started) {
+    CHECK(complaints({"clang", "-std=c11", "-c", "-o", program + ".o"}, {c}) == "");
+    CHECK(complaints({"clang", "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {cpp}) == "");
+  }
+  CHECK(emit::run_process({program}).status == 0);
+}
+
+}  // namespace
+
+TEST_CASE("emitted code: clean under strict warnings as C and as C++, and its self tests agree") {
+  for (const Example& e : examples()) {
+    INFO(e.context.id);
+    compiles_everywhere(e);
+  }
+}
+
+TEST_CASE("emitted code: hostile names and texts stay what they are") {
+  auto e = example("int", cart_pendulum(), {"I", "NULL"}, {"unix", "linux", "M_PI", "main", "dx"}, {"fabs"});
+  e.context.title = "*/ int evil; /* ?\?/ \\";
+  e.context.parameters[0].note = "ends in a backslash \\\n#error injected";
+  e.context.parameters[1].unit = "\"; system(\"x\"); //*/";
+  e.context.verdict = "?\?/?\?'\xff\xfe \xe2\x80\xae";
+  e.context.singular = {"%s%n", "// \\"};
+  compiles_everywhere(e);
+  const auto files = emit::emit(e.program, e.context);
+  CHECK(files[0].name == "int_.hpp");
+  for (const auto& file : files) {
+    for (const char c : file.text) CHECK_MESSAGE((static_cast<unsigned char>(c) < 0x7f && (c >= ' ' || c == '\n')), file.name);
+    CHECK(file.text.find("??") == std::string::npos);
+    CHECK(file.text.find("\\\n") == std::string::npos);
+  }
+  compiles_everywhere(example("template", double_pendulum(), {"class", "sin"}, {"v1", "v2", "Real", "State", "std"}));
+  compiles_everywhere(example("9 lives-%", double_pendulum(), {"x", "x_"}, {"p", "u", "mode", "INT_MAX", "errno"}));
+  compiles_everywhere(example("eom", cart_pendulum(), {"M", "h"}, {"rhs", "finite", "M_11", "sin_theta", "lambda"}, {"selftest"}));
+}
+
+TEST_CASE("emitted code: -ffast-math is refused") {
+  const Folder folder;
+  const Example e = examples()[0];
+  emit::write_files(folder.path, emit::emit(e.program, e.context));
+  const auto said = complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
+  CHECK(said.find("without -ffast-math") != std::string::npos);
+}
+
+TEST_CASE("emitted header: float, long double and a number type of one's own") {
+  const Folder folder;
+  const Example e = examples()[2];
+  emit::write_files(folder.path, emit::emit(e.program, e.context));
+  std::ofstream(folder.path + "/use.cpp") << R"(
+#include "cart.hpp"
+struct Dual {  // a + b eps, eps^2 = 0
+  double a = 0, b = 0;
+  Dual() = default;
+  explicit Dual(double value) : a(value) {}
+  Dual(double value, double derivative) : a(value), b(derivative) {}
+};
+Dual operator+(Dual x, Dual y) { return {x.a + y.a, x.b + y.b}; }
+Dual operator-(Dual x, Dual y) { return {x.a - y.a, x.b - y.b}; }
+Dual operator-(Dual x) { return {-x.a, -x.b}; }
+Dual operator*(Dual x, Dual y) { return {x.a * y.a, x.a * y.b + x.b * y.a}; }
+Dual operator/(Dual x, Dual y) { return {x.a / y.a, (x.b - x.a / y.a * y.b) / y.a}; }
+bool operator==(Dual x, Dual y) { return x.a == y.a; }
+bool operator<=(Dual x, Dual y) { return x.a <= y.a; }
+Dual sin(Dual x) { return {std::sin(x.a), std::cos(x.a) * x.b}; }
+Dual cos(Dual x) { return {std::cos(x.a), -std::sin(x.a) * x.b}; }
+Dual abs(Dual x) { return x.a < 0 ? -x : x; }
+
+namespace model = eom::cart;
+template <class Real>
+bool agrees(double tolerance) {
+  double x[4], p[5], dx[4];
+  model::defaults(x, p);
+  if (model::rhs<double>(0, x, p, nullptr, 0, dx) != 0) return false;
+  Real X[4], P[5], DX[4];
+  model::defaults(X, P);
+  if (model::rhs<Real>(Real(0), X, P, nullptr, 0, DX) != 0) return false;
+  for (std::size_t i = 0; i < model::state_count; ++i) {
+    if (!(std::fabs(static_cast<double>(DX[i]) - dx[i]) <= tolerance * (1 + std::fabs(dx[i])))) return false;
+  }
+  return true;
+}
+int main() {
+  if (!agrees<float>(1e-5) || !agrees<long double>(1e-13)) return 1;
+  double x[4], p[5], dfdx[16], dfdt[4];
+  model::defaults(x, p);
+  model::jac<double>(0, x, p, nullptr, 0, dfdx, dfdt);
+  for (std::size_t j = 0; j < 4; ++j) {  // the Jacobian by dual numbers
+    Dual X[4], P[5], DX[4];
+    model::defaults(X, P);
+    X[j].b = 1;
+    if (model::rhs<Dual>(Dual(0), X, P, nullptr, 0, DX) != 0) return 2;
+    for (std::size_t i = 0; i < 4; ++i) {
+      if (!(std::fabs(DX[i].b - dfdx[i + 4 * j]) <= 1e-12)) return 3;
+    }
+  }
+  return x[model::State::theta_dot] == x[3] ? 0 : 4;
+}
+)";
+  const std::string program = folder.path + "/use";
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp"}) == "");
+  CHECK(emit::run_process({program}).status == 0);
+}
+
+TEST_CASE("emitted code: codes 1 and 5 tell singular and not finite apart") {
+  const Folder cache;
+  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const Example e = examples()[1];
+  const auto files = emit::emit(e.program, e.context, "c");
+  const auto compiled = emit::compile_and_load(files[0].text, files[1].text, "double_pendulum");
+  double x[4] = {0.3, 0.3, 0.1, 0.2}, p[5] = {1, 1, 1, 1, 9.81}, dx[4];
+  CHECK(compiled.model.rhs(0, x, p, nullptr, 0, dx) == 0);
+  p[0] = 0;
+  CHECK(compiled.model.rhs(0, x, p, nullptr, 0, dx) == 1);
+  p[0] = 1;
+  p[2] = 0;
+  CHECK(compiled.model.rhs(0, x, p, nullptr, 0, dx) == 1);
+  p[2] = 1;
+  x[2] = std::nan("");
+  CHECK(compiled.model.rhs(0, x, p, nullptr, 0, dx) == 5);
+  x[1] = 1;
+  x[2] = 1e200;
+  CHECK(compiled.model.rhs(0, x, p, nullptr, 0, dx) == 5);
+}
+
+TEST_CASE("emitted code: compiled functions give what the interpreter gives in 50 digits") {
+  const Folder cache;
+  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  for (const Example& e : examples()) {
+    INFO(e.context.id);
+    const auto files = emit::emit(e.program, e.context, "c");
+    const auto compiled = emit::compile_and_load(files[0].text, files[1].text, e.context.id);
+    const auto& m = compiled.model;
+    const auto& test = e.context.tests[1];
+    const double* u = test.u.empty() ? nullptr : test.u.data();
+    program::Arguments<cln::cl_R> exact{exactly(test.t), {}, {}, {}};
+    for (const double value : test.x) exact.x.push_back(exactly(value));
+    for (const double value : test.p) exact.p.push_back(exactly(value));
+    for (const double value : test.u) exact.u.push_back(exactly(value));
+    for (const auto& function : e.program.functions) {
+      auto arguments = exact;
+      const bool no_inputs = function.name == "mass" || function.name == "constraints";
+      for (std::size_t i = 0; i < arguments.u.size() && no_inputs; ++i) arguments.u[i] = exactly(e.context.inputs[i].value);
+      const auto expected = program::interpret(function, arguments, 50).results;
+      std::vector<std::vector<double>> got;
+      for (const auto& list : expected) got.emplace_back(list.size() + 1);
+      const double *x = test.x.data(), *p = test.p.data();
+      int code = 0;
+      if (function.name == "rhs") code = m.rhs(test.t, x, p, u, 0, got[0].data());
+      if (function.name == "jac") code = m.jac(test.t, x, p, u, 0, got[0].data(), got[1].data());
+      if (function.name == "jac_p") code = m.jac_p(test.t, x, p, u, 0, got[0].data());
+      if (function.name == "mass") code = m.mass(test.t, x, p, got[0].data(), got[1].data());
+      if (function.name == "constraints") code = m.constraints(test.t, x, p, got[0].data(), got[1].data(), got[2].data());
+      if (function.name == "reactions") code = m.reactions(test.t, x, p, u, 0, got[0].data());
+      if (function.name == "outputs") code = m.outputs(test.t, x, p, u, 0, got[0].data());
+      CHECK(code == 0);
+      for (std::size_t r = 0; r < expected.size(); ++r) {
+        for (std::size_t i = 0; i < expected[r].size(); ++i) {
+          const double value = cln::double_approx(expected[r][i]);
+          CHECK(std::abs(got[r][i] - value) <= tolerances::unrolled_solve * (1 + std::abs(value)));
+        }
+      }
+    }
+  }
+}
+
+TEST_CASE("emission: the same bytes again, and no more functions than asked for") {
+  const Example a = examples()[1], b = examples()[1];
+  const auto first = emit::emit(a.program, a.context), second = emit::emit(b.program, b.context);
+  for (std::size_t i = 0; i < first.size(); ++i) CHECK(first[i].text == second[i].text);
+  const Example bare = example("pendulum", pendulum(), {"theta"}, {"m", "l", "g"}, {}, {});
+  const std::string c = file_named(emit::emit(bare.program, bare.context), ".c");
+  CHECK(c.find("pendulum_rhs") != std::string::npos);
+  CHECK(c.find("pendulum_jac") == std::string::npos);
+  CHECK(c.find("pendulum_mass") == std::string::npos);
+  CHECK(c.find("pow(") == std::string::npos);
+}
+
+TEST_CASE("emission: a target that does not exist is refused with those that do") {
+  const Example e = examples()[0];
+  try {
+    emit::emit(e.program, e.context, "fortran");
+    FAIL("accepted");
+  } catch (const Error& error) {
+    CHECK(error.message() == "there is no target `fortran`");
+    CHECK(error.remedy() == "targets: cpp, c");
+  }
+}
+
+TEST_CASE("emission: every target gives files with different names that are not empty") {
+  const Example e = examples()[3];
+  for (const auto& target : emit::targets()) {
+    const auto files = target.emit(e.program, e.context);
+    REQUIRE_FALSE(files.empty());
+    std::vector<std::string> names;
+    for (const auto& file : files) {
+      CHECK(file.text.size() > 100);
+      CHECK(std::find(names.begin(), names.end(), file.name) == names.end());
+      names.push_back(file.name);
+    }
+  }
+}
+
+TEST_CASE("write_files: whole files or none, and errors that name the path") {
+  const Folder folder;
+  const std::string inside = folder.path + "/deep/er";
+  const auto paths = emit::write_files(inside, {{"a.txt", "one"}, {"b.txt", "two"}});
+  REQUIRE(paths.size() == 2);
+  std::ostringstream text;
+  text << std::ifstream(paths[1]).rdbuf();
+  CHECK(text.str() == "two");
+  CHECK(std::distance(std::filesystem::directory_iterator(inside), {}) == 2);
+  try {
+    emit::write_files(paths[0], {{"c.txt", "three"}});  // a file is in the way
+    FAIL("written");
+  } catch (const Error& error) {
+    CHECK(error.fault() == Fault::tool);
+    CHECK(error.message().find("a.txt") != std::string::npos);
+  }
+}

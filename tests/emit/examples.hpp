@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Programs with names and numbers, ready to emit.
+#pragma once
+
+#include <cln/dfloat.h>
+#include <fmt/format.h>
+#include <stdlib.h>
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include "emit/shared_library/loaded_model.hpp"
+#include "emit/shared_library/process.hpp"
+#include "emit/targets.hpp"
+#include "emit/write_files.hpp"
+#include "program/systems.hpp"
+#include "program/values.hpp"
+
+namespace test_systems {
+
+inline cln::cl_R exactly(double value) { return cln::rational(cln::cl_DF(value)); }
+
+struct Example {
+  program::Program program;
+  emit::EmissionContext context;
+};
+
+inline Example example(const std::string& id, const system::EquationSystem& system, const std::vector<std::string>& coordinates,
+                       const std::vector<std::string>& parameters, const std::vector<std::string>& inputs = {},
+                       const std::vector<std::string>& with = {"jac", "jac_p", "mass", "constraints", "reactions"}) {
+  Example result;
+  result.program = build(system, with, true, true);
+  emit::EmissionContext& context = result.context;
+  context.id = id;
+  context.title = "A test";
+  context.content_hash = "0123abcd";
+  context.verdict = "pass: 20 points, 50 digits";
+  for (const std::string& name : coordinates) context.coordinates.push_back({name, "rad", "", 0});
+  for (const std::string& name : parameters) context.parameters.push_back({name, "kg", "", 0.5 + 0.125 * static_cast<double>(context.parameters.size())});
+  for (const std::string& name : inputs) context.inputs.push_back({name, "N", "", 0.25});
+  for (std::uint64_t point = 0; point < 3; ++point) {
+    auto arguments = arguments_at<cln::cl_R>(system, point);
+    emit::TestVector test;
+    const auto rounded = [](std::vector<cln::cl_R>& values, std::size_t count) {
+      std::vector<double> result_values;
+      for (std::size_t i = 0; i < count; ++i) {
+        result_values.push_back(cln::double_approx(values[i]));
+        values[i] = exactly(result_values.back());
+      }
+      return result_values;
+    };
+    test.x = rounded(arguments.x, arguments.x.size());
+    test.p = rounded(arguments.p, parameters.size());
+    test.u = rounded(arguments.u, inputs.size());
+    test.t = cln::double_approx(arguments.t);
+    arguments.t = exactly(test.t);
+    const auto values = program::interpret(result.program.functions[0], arguments, 50);
+    for (const auto& value : values.results[0]) {
+      test.dx.push_back(cln::double_approx(value));
+    }
+    context.tests.push_back(std::move(test));
+  }
+  context.start = context.tests[0].x;
+  return result;
+}
+
+inline std::vector<Example> examples() {
+  return {example("pendulum", pendulum(), {"theta"}, {"m", "l", "g"}),
+          example("double_pendulum", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"}),
+          example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}),
+          example("spherical", spherical_pendulum(), {"x", "y", "z"}, {"m", "g", "L0", "a", "w"}),
+          example("massless", massless(), {"x", "y", "z"}, {"m", "k"})};
+}
+
+/// A folder that is gone at the end.
+struct Folder {
+  std::string path;
+  Folder() {
+    std::string pattern = (std::filesystem::temp_directory_path() / "eomgen-test-XXXXXX").string();
+    path = ::mkdtemp(pattern.data());
+  }
+  ~Folder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path, ignored);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+};
+
+/// Sets an environment variable for a while.
+struct Setting {
+  std::string name, before;
+  bool had;
+  Setting(const std::string& variable, const std::string& value) : name(variable) {
+    const char* old = ::getenv(name.c_str());
+    had = old != nullptr;
+    if (had) before = old;
+    ::setenv(name.c_str(), value.c_str(), 1);
+  }
+  ~Setting() {
+    if (had) ::setenv(name.c_str(), before.c_str(), 1);
+    else ::unsetenv(name.c_str());
+  }
+  Setting(const Setting&) = delete;
+  Setting& operator=(const Setting&) = delete;
+};
+
+inline std::string file_named(const std::vector<emit::EmittedFile>& files, const std::string& ending) {
+  for (const auto& file : files) {
+    if (file.name.ends_with(ending)) return file.text;
+  }
+  return "";
+}
+
+inline const std::vector<std::string>& strict() {
+  static const std::vector<std::string> list = {"-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"};
+  return list;
+}
+
+/// What the compiler says; empty if it is content.
+inline std::string complaints(std::vector<std::string> command, const std::vector<std::string>& arguments) {
+  command.insert(command.end(), strict().begin(), strict().end());
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  const emit::Finished finished = emit::run_process(command);
+  if (!finished.started) return "not started: " + command[0];
+  return finished.status == 0 && finished.output.empty() ? "" : fmt::format("status {}\n{}", finished.status, finished.output);
+}
+
+}  // namespace test_systems

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/names.hpp"
+
+#include <doctest/doctest.h>
+
+#include "emit/context.hpp"
+
+using namespace eomgen::emit;
+
+TEST_CASE("names: what languages and headers reserve gets a trailing underscore") {
+  NameTable names;
+  CHECK(names.declare("theta") == "theta");
+  CHECK(names.declare("int") == "int_");
+  CHECK(names.declare("I") == "I_");
+  CHECK(names.declare("M_PI") == "M_PI_");
+  CHECK(names.declare("M_12") == "M_12");
+  CHECK(names.declare("v1") == "v1_");
+  CHECK(names.declare("v") == "v");
+  CHECK(names.declare("gamma") == "gamma");
+}
+
+TEST_CASE("names: two wishes for one name give two names") {
+  NameTable names;
+  CHECK(names.declare("x") == "x");
+  CHECK(names.declare("x") == "x_");
+  CHECK(names.declare("x_") == "x__");
+  CHECK(names.declare("P.position1") == "P_position1");
+}
+
+TEST_CASE("names: a model's id becomes an identifier") {
+  CHECK(mangled_id("p7_moving_sphere") == "p7_moving_sphere");
+  CHECK(mangled_id("7") == "model_7");
+  CHECK(mangled_id("a-b c") == "a_b_c");
+  CHECK(mangled_id("class") == "class_");
+  CHECK(mangled_id("") == "model_");
+}
