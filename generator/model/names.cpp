@@ -107,6 +107,7 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
 bool looks_misspelt(std::string_view name, std::string_view known) {
   if (std::min(name.size(), known.size()) < 2 || std::max(name.size(), known.size()) < 3) return false;
   const std::size_t shortest = std::min(name.size(), known.size());
+  const bool after_underscore = name.size() > 2 && name[name.size() - 2] == '_';
   // What is left between the common start and the common end.
   while (!name.empty() && !known.empty() && name.front() == known.front()) {
     name.remove_prefix(1);
@@ -119,9 +120,13 @@ bool looks_misspelt(std::string_view name, std::string_view known) {
   const bool transposed = name.size() == 2 && known.size() == 2 && name[0] == known[1] && name[1] == known[0];
   if (transposed) return true;
   if (name.size() > 1 || known.size() > 1) return false;
-  // Different numbers are different names, and so are phi and psi.
+  // Different numbers are different names, and so are phi and psi, thetaA and thetaB, x_cart and y_cart, phi_a and phi_b.
   if ((!name.empty() && digit(name[0])) || (!known.empty() && digit(known[0]))) return false;
-  return name.size() != known.size() || shortest >= 4;
+  if (name.size() != known.size()) return true;
+  const auto upper = [](char c) { return c >= 'A' && c <= 'Z'; };
+  const auto axis = [](char c) { return c >= 'u' && c <= 'z'; };
+  const bool labels = (upper(name[0]) && upper(known[0])) || (axis(name[0]) && axis(known[0])) || after_underscore;
+  return shortest >= 4 && !labels;
 }
 
 std::string quote(std::string_view text) {

@@ -32,6 +32,10 @@ TEST_CASE("numbered names and short pairs are no misspellings of one another") {
   CHECK(!looks_misspelt("phi", "psi"));
   CHECK(!looks_misspelt("x", "y"));
   CHECK(!looks_misspelt("x1", "y1"));
+  CHECK(!looks_misspelt("thetaA", "thetaB"));
+  CHECK(!looks_misspelt("x_cart", "y_cart"));
+  CHECK(!looks_misspelt("theta_a", "theta_b"));
+  CHECK(looks_misspelt("thera", "theta"));
 }
 
 TEST_CASE("every legal name is accepted, also those of C++ and Python") {
