@@ -40,8 +40,8 @@ public:
 private:
   char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.text.size() ? text_.text[at_ + ahead] : '\0'; }
 
-  [[noreturn]] void fail(std::size_t at, std::size_t length, std::string what, std::string remedy) const {
-    text_.source->fail(text_.span(at, length), std::move(what), std::move(remedy));
+  [[noreturn]] void fail(std::size_t at, std::size_t length, const std::string& what, const std::string& remedy) const {
+    text_.source->fail(text_.span(at, length), what, remedy);
   }
 
   Token next() {

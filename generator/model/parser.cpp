@@ -40,8 +40,8 @@ private:
   }
   Span span(const Token& token) const { return text_.span(token.at, token.length); }
 
-  [[noreturn]] void fail(const Token& token, std::string what, std::string remedy) const {
-    text_.source->fail(span(token), std::move(what), std::move(remedy));
+  [[noreturn]] void fail(const Token& token, const std::string& what, const std::string& remedy) const {
+    text_.source->fail(span(token), what, remedy);
   }
 
   [[noreturn]] void unexpected() const {

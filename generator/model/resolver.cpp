@@ -256,7 +256,7 @@ bool Resolver::uses_parameters(NodeId root) const {
     const NodeId id = stack.back();
     stack.pop_back();
     if (id == no_node) continue;
-    if (model_.arena[id].op == Op::parameter) return true;
+    if (model_.arena[id].op == Op::parameter || model_.arena[id].op == Op::definition) return true;
     for (const NodeId child : model_.arena[id].args) stack.push_back(child);
   }
   return false;

@@ -74,6 +74,7 @@ public:
   /// The same, remembered: for the expressions of places and definitions.
   const CoordinateSet& coordinates_of(NodeId reference);
 
+  /// Parameters or definitions, which may hold some.
   bool uses_parameters(NodeId node) const;
 
   /// Whether the model states any unit; without, nothing is checked.
