@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mechanics/lowering.hpp"
 
+#include "symbolic/polynomial.hpp"
+
 namespace eomgen::mechanics {
 namespace {
 
@@ -277,7 +279,17 @@ Vec3 Lowering::scale(Ref factor, const Vec3& a) {
   return {dag_.mul(factor, a[0]), dag_.mul(factor, a[1]), dag_.mul(factor, a[2])};
 }
 
-Ref Lowering::norm(const Vec3& a) { return dag_.call(sym::Op::sqrt, dot(a, a)); }
+// In curvilinear coordinates the squares often add up to one square, such as R^2: then there is no root to take.
+Ref Lowering::norm(const Vec3& a) {
+  constexpr std::size_t term_budget = 60;
+  const Ref square = dot(a, a);
+  sym::Expander expander(dag_, term_budget);
+  if (const std::optional<Ref> reduced = expander(square)) {
+    const Ref root = dag_.call(sym::Op::sqrt, *reduced);
+    if (dag_[root].op != sym::Op::sqrt) return root;
+  }
+  return dag_.call(sym::Op::sqrt, square);
+}
 
 Vec3 Lowering::gradient(const Vec3& a, std::uint32_t coordinate) {
   sym::Derivation by = sym::partial(dag_, {SymbolKind::coordinate, coordinate, 0});

@@ -32,6 +32,21 @@ void add_values(Mechanics& m, Lowering& lower) {
   }
 }
 
+// Parameters that are declared positive, and coordinates whose range starts at 0 or above.
+void add_assumptions(Mechanics& m, Lowering& lower) {
+  Dag& dag = *m.dag;
+  for (std::uint32_t i = 0; i < m.model->parameters.size(); ++i) {
+    if (m.model->parameters[i].positive) dag.assume_positive({SymbolKind::parameter, i, 0});
+  }
+  for (std::uint32_t i = 0; i < m.model->coordinates.size(); ++i) {
+    const model::NodeId bound = m.model->coordinates[i].lower;
+    if (bound == model::no_node) continue;
+    const Ref lowest = lower.scalar(bound);
+    const bool known = dag.is_constant(lowest) && !cln::minusp(dag.value(lowest));
+    if (known || dag.is_positive(lowest)) dag.assume_positive({SymbolKind::coordinate, i, 0});
+  }
+}
+
 // A coordinate that no kinetic energy and no constraint mentions has no equation.
 void require_equations(const Mechanics& m) {
   Dag& dag = *m.dag;
@@ -117,6 +132,7 @@ Mechanics build_mechanics(const model::Model& model) {
   m.dag = std::make_shared<Dag>();
   add_symbols(m);
   Lowering lower(m);
+  add_assumptions(m, lower);
   add_masses(m, lower);
   add_forces(m, lower);
   add_constraints(m, lower);

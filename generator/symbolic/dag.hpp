@@ -11,6 +11,8 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
+#include <set>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -84,6 +86,11 @@ class Dag {
   Ref call(Op function, Ref a, Ref b);  // atan2, min, max
   Ref select(Ref a, Ref b, Ref x, Ref y);
 
+  /// From now on sqrt(x^2) is x for this symbol: a length, a radius inside its chart (docs/model-format.md, ranges).
+  void assume_positive(Symbol symbol);
+  /// Known to be positive wherever it is defined, by the assumptions; false says nothing.
+  bool is_positive(Ref r) const;
+
   const Node& operator[](Ref r) const { return nodes_[r.id]; }
   std::size_t size() const { return nodes_.size(); }
   bool is_constant(Ref r) const { return nodes_[r.id].op == Op::constant; }
@@ -103,6 +110,7 @@ class Dag {
   };
   Ref intern(const Node& node);
   Ref make(Op op, Ref a, Ref b);
+  std::optional<Ref> exact_root(Ref a);
 
   std::vector<Node> nodes_;
   std::vector<Rational> constants_;
@@ -110,6 +118,7 @@ class Dag {
   std::unordered_map<Node, std::uint32_t, Hash> index_;
   std::unordered_map<std::string, std::uint32_t> constant_index_;
   std::vector<std::pair<Symbol, std::uint32_t>> symbol_index_;  // sorted
+  std::set<Symbol> positive_;
   Ref zero_, one_;
 };
 

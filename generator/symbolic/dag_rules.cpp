@@ -158,6 +158,22 @@ Ref Dag::pow(Ref a, Ref b) {
   return make(Op::pow, a, b);
 }
 
+// sqrt(a) where it is exact: of squares of what is known to be positive, and of products and quotients of such.
+std::optional<Ref> Dag::exact_root(Ref a) {
+  const Node node = nodes_[a.id];
+  if (is_constant(a)) {
+    Rational root;
+    if (!cln::minusp(value(a)) && cln::sqrtp(value(a), &root)) return constant(root);
+    return std::nullopt;
+  }
+  if (node.op == Op::power && node.payload % 2 == 0 && is_positive(node.args[0])) return power(node.args[0], node.payload / 2);
+  if (node.op != Op::mul && node.op != Op::div) return std::nullopt;
+  const std::optional<Ref> first = exact_root(node.args[0]);
+  const std::optional<Ref> second = first ? exact_root(node.args[1]) : std::nullopt;
+  if (!second) return std::nullopt;
+  return node.op == Op::mul ? mul(*first, *second) : div(*first, *second);
+}
+
 Ref Dag::call(Op function, Ref a) {
   if (is_zero(a)) {
     switch (function) {
@@ -185,8 +201,9 @@ Ref Dag::call(Op function, Ref a) {
   if (is_constant(a)) {
     if (function == Op::abs) return a;   // negative ones went above
     if (function == Op::sign) return one_;
-    Rational root;
-    if (function == Op::sqrt && cln::sqrtp(value(a), &root)) return constant(root);
+  }
+  if (function == Op::sqrt) {
+    if (const std::optional<Ref> root = exact_root(a)) return *root;
   }
   Node result;
   result.op = function;

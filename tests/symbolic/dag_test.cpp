@@ -91,3 +91,14 @@ TEST_CASE("dag: the rules keep the value of random expressions to 40 digits") {
     }
   }
 }
+
+TEST_CASE("dag: roots of squares are taken of what is assumed positive, and of nothing else") {
+  Dag dag;
+  const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
+  const Ref square = dag.mul(dag.power(x, 2), dag.constant(Rational(9) / 4));
+  CHECK(dag[dag.call(Op::sqrt, square)].op == Op::sqrt);
+  dag.assume_positive({SymbolKind::coordinate, 0, 0});
+  CHECK(dag.call(Op::sqrt, square) == dag.mul(dag.constant(Rational(3) / 2), x));
+  CHECK(dag.call(Op::sqrt, dag.power(dag.add(x, dag.one()), 4)) == dag.power(dag.add(x, dag.one()), 2));
+  CHECK(dag[dag.call(Op::sqrt, dag.mul(dag.power(x, 2), dag.power(y, 2)))].op == Op::sqrt);
+}
