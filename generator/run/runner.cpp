@@ -8,6 +8,7 @@
 #include <eom/error_estimate.hpp>
 #include <eom/watch/drift.hpp>
 
+#include "model/names.hpp"
 #include "run/integration.hpp"
 
 namespace eomgen::run {
@@ -37,12 +38,28 @@ class Watch {
   }
 
   bool step(const eom::StepView& view) {
-    if (request_.every > 0) rows_within(view);
     see(view.t1, view.x1.data());
+    if (left_chart()) {
+      // Nothing of this step is a result: the chart's equations stop holding somewhere inside it.
+      chart_detail_ = fmt::format("{} leaves its range between t = {} and {}", left_, view.t0, view.t1);
+      last_t_ = view.t0;
+      last_x_.assign(view.x0.begin(), view.x0.end());
+      return false;
+    }
+    if (request_.every > 0) rows_within(view);
     if (request_.progress) {
       request_.progress((view.t1 - request_.scene.t0) / (request_.scene.t1 - request_.scene.t0));
     }
     return true;
+  }
+
+  /// Where a coordinate left its range, the run ends with the step before; tells what happened.
+  void cut(eom::Result& end) const {
+    if (chart_detail_.empty()) return;
+    end.outcome = eom::Outcome::chart_left;
+    end.detail = chart_detail_;
+    end.t = last_t_;
+    end.x = last_x_;
   }
 
   /// The end of the run as a last row, unless it is on the grid already.
@@ -69,6 +86,18 @@ class Watch {
     const double work = request_.watch_power ? x[2 * request_.code.free.size()] : 0;
     balance_.see(y_[energy_] - integration_.work, work, magnitude);
     defect_ = std::max(defect_, integration_.constraint_defect(t, x));
+  }
+
+  // Every coordinate, eliminated ones too, comes first among the outputs, with its rate.
+  bool left_chart() {
+    const Scene& scene = request_.scene;
+    for (std::size_t i = 0; i < scene.lower.size(); ++i) {
+      const double q = y_[2 * i];
+      if (q > scene.lower[i] && q < scene.upper[i]) continue;
+      left_ = request_.code.output_names[2 * i];
+      return true;
+    }
+    return false;
   }
 
   void rows_within(const eom::StepView& view) {
@@ -101,6 +130,9 @@ class Watch {
   std::vector<eom::Drift> drifts_;
   eom::PowerBalance balance_;
   double defect_ = 0;
+  std::string left_, chart_detail_;
+  double last_t_ = 0;
+  std::vector<double> last_x_;
   std::uint64_t next_ = 1;
   double last_row_ = std::nan("");
 };
@@ -127,18 +159,12 @@ void estimate_error(const RunRequest& request, const eom::Result& first, const e
   result.seconds_estimate = seconds_since(start);
 }
 
-eom::Options options_of(const RunRequest& request, const std::string& solver) {
+eom::Options options_of(const RunRequest& request) {
   eom::Options options;
   options.rtol = request.scene.rtol;
   options.atol = request.scene.atol;
   options.fixed_step = request.scene.step;
   options.interrupt = request.interrupt;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if (method.name == solver && !method.adaptive && options.fixed_step <= 0) {
-      throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", solver),
-                  "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
-    }
-  }
   return options;
 }
 
@@ -147,15 +173,26 @@ eom::Options options_of(const RunRequest& request, const std::string& solver) {
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
   if (asked != "auto") {
     for (const eom::MethodInfo& method : eom::methods()) {
-      if (asked == method.name) return {asked, "as asked for"};
+      if (asked != method.name) continue;
+      if (!method.adaptive && scene.step <= 0) {
+        throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
+                    "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
+      }
+      return {asked, "as asked for"};
     }
     std::string names;
-    for (const eom::MethodInfo& method : eom::methods()) names += fmt::format("{}, ", method.name);
+    std::vector<std::string> known{"auto"};
+    for (const eom::MethodInfo& method : eom::methods()) {
+      names += fmt::format("{}, ", method.name);
+      known.emplace_back(method.name);
+    }
     static constexpr const char* later[] = {"tsit5", "taylor", "radau5", "rodas", "midpoint", "variational2", "variational4"};
     for (const char* name : later) {
       if (asked == name) throw Error("run", {}, fmt::format("solver '{}' is not supported yet", asked), "choose from: " + names + "auto");
     }
-    throw Error("run", {}, fmt::format("there is no solver '{}'", asked), "choose from: " + names + "auto");
+    const std::string hint = model::did_you_mean(asked, known);
+    throw Error("run", {}, fmt::format("there is no solver {}", model::quote(asked)),
+                (hint.empty() ? "" : hint + " ") + "choose from: " + names + "auto");
   }
   if (scene.step > 0) return {"rk4", "a fixed step is given"};
   if (scene.rtol > 1e-6) return {"dopri5", "rtol is above 1e-6, where order 5 needs the fewest evaluations"};
@@ -165,12 +202,13 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
 RunResult integrate_scene(const RunRequest& request) {
   RunResult result;
   std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
-  const eom::Options options = options_of(request, result.solver);
+  const eom::Options options = options_of(request);
   Integration integration(request, result.solver);
   Watch watch(request, integration);
   const Clock::time_point start = Clock::now();
-  const eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); });
+  eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); });
   result.seconds_integrate = seconds_since(start);
+  watch.cut(end);
   watch.finish(end.t, end.x.data());
   watch.report(result);
   result.outcome = end.outcome;
@@ -183,7 +221,7 @@ RunResult integrate_scene(const RunRequest& request) {
   std::vector<double> y(request.code.output_names.size());
   integration.outputs(end.t, end.x.data(), y);
   for (std::size_t i = 0; i < y.size(); ++i) result.final.emplace_back(request.code.output_names[i], y[i]);
-  if (request.estimate && end.outcome == eom::Outcome::done) estimate_error(request, end, options, result);
+  if (request.estimate && result.outcome == eom::Outcome::done) estimate_error(request, end, options, result);
   return result;
 }
 

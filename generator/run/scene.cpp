@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <set>
 
 #include "derive/imposition.hpp"
+#include "model/names.hpp"
 #include "run/start.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -22,6 +24,14 @@ using symbolic::SymbolKind;
 
 constexpr int digits = 40;
 
+// The equations were simplified on the strength of it.
+void require_sign(const model::Parameter& p, const cln::cl_R& value, const model::Model& model) {
+  if (!p.positive || cln::plusp(value)) return;
+  throw Error("scene", model.where(p.span),
+              fmt::format("parameter '{}' is declared positive, and its value is {}", p.name, cln::double_approx(value)),
+              "give it a positive value, or leave `positive` out of the model");
+}
+
 std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
   const std::size_t n = m.model->parameters.size();
   std::vector<Ref> formula = m.parameter_value;
@@ -30,8 +40,11 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
     const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
                                     [&](const model::Parameter& p) { return p.name == name; });
     if (found == m.model->parameters.end()) {
-      throw Error("scene", {}, fmt::format("there is no parameter '{}' to set", name),
-                  "eomgen check MODEL lists the parameters");
+      std::vector<std::string> names;
+      for (const model::Parameter& p : m.model->parameters) names.push_back(p.name);
+      const std::string hint = model::did_you_mean(name, names);
+      throw Error("scene", {}, fmt::format("there is no parameter {} to set", model::quote(name)),
+                  hint.empty() ? fmt::format("the parameters are {}", fmt::join(names, ", ")) : hint);
     }
     formula[static_cast<std::size_t>(found - m.model->parameters.begin())] = m.dag->constant(value);
   }
@@ -53,9 +66,32 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
                     "check the numbers that it is computed from");
       }
       known[i] = true;
+      require_sign(m.model->parameters[i], values[i], *m.model);
     }
   }
   return values;
+}
+
+// What the derivation assumed: parameters declared positive, and masses, which the reader saw at the default values only.
+void require_signs(Mechanics& m, const std::vector<cln::cl_R>& values) {
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const model::Parameter& p = m.model->parameters[i];
+    if (!p.positive || cln::plusp(values[i])) continue;
+    throw Error("scene", m.model->where(p.span), fmt::format("parameter '{}' is declared positive and is {} here", p.name, cln::double_approx(values[i])),
+                "give it a value greater than 0");
+  }
+  for (const model::Particle& particle : m.model->particles) {
+    const Ref mass = mechanics::lower_scalar(m, particle.mass);
+    const std::vector<Symbol> symbols = m.dag->symbols({mass});
+    const bool of_parameters = std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
+    if (!of_parameters) continue;
+    const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
+    const cln::cl_R value = symbolic::evaluate(*m.dag, {mass}, lookup, digits)[0];
+    if (cln::plusp(value)) continue;
+    throw Error("scene", m.model->where(particle.span),
+                fmt::format("the mass of '{}' is {} here", m.model->places[particle.place].name, cln::double_approx(value)),
+                "a mass is greater than 0");
+  }
 }
 
 // Expressions of a scene are evaluated once, at its start.
@@ -120,6 +156,27 @@ void resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& val
   }
 }
 
+// A start outside its chart would be integrated with equations that do not hold there.
+void resolve_ranges(const Mechanics& m, SceneEvaluator& value, Scene& result) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  for (const model::Coordinate& c : m.model->coordinates) {
+    result.lower.push_back(c.lower == model::no_node ? -infinity : value.number(c.lower, "the lower end of a range"));
+    result.upper.push_back(c.upper == model::no_node ? infinity : value.number(c.upper, "the upper end of a range"));
+  }
+}
+
+void require_ranges(const Mechanics& m, const model::Scene& scene, const Scene& result) {
+  for (std::size_t i = 0; i < result.q.size(); ++i) {
+    if (result.q[i] > result.lower[i] && result.q[i] < result.upper[i]) continue;
+    const model::Coordinate& c = m.model->coordinates[i];
+    const auto given = std::find_if(scene.initial.begin(), scene.initial.end(),
+                                    [&](const model::InitialValue& v) { return v.coordinate == i && v.order == 0; });
+    throw Error("scene", m.model->where(given == scene.initial.end() ? scene.span : given->span),
+                fmt::format("the start has {} = {}, outside its range ({}, {})", c.name, result.q[i], result.lower[i], result.upper[i]),
+                fmt::format("start inside the range, or give {} another one in [coordinates]", c.name));
+  }
+}
+
 void require_span(const Mechanics& m, const model::Scene& scene, const Scene& result) {
   const auto fail = [&](const char* what, const char* remedy) {
     throw Error("scene", m.model->where(scene.span), what, remedy);
@@ -138,6 +195,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   Scene result;
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = parameter_values(m, scene, overrides);
+  require_signs(m, parameters);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
   // The start is computed with the binary64 parameters that the run will use.
   std::vector<cln::cl_R> rounded;
@@ -159,6 +217,10 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.step = overrides.step.value_or(result.step);
   result.every = overrides.every.value_or(result.every);
   result.solver = overrides.solver.value_or(scene.solver);
+  if (overrides.t_end && !(result.t1 > result.t0)) {
+    throw Error("scene", {}, fmt::format("the run would end at t = {}, before its start at t = {}", result.t1, result.t0),
+                "give a later --t-end");
+  }
   require_span(m, scene, result);
   resolve_inputs(m, scene, value, result);
 
@@ -174,6 +236,8 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   solve_start(problem);
   result.q = problem.q;
   result.qdot = problem.qdot;
+  resolve_ranges(m, value, result);
+  require_ranges(m, scene, result);
   result.solved = problem.solved;
 
   std::vector<model::Named> wanted = scene.outputs;

@@ -29,6 +29,7 @@ struct Scene {
   std::vector<double> parameters;  // all of the model, in order; dependent ones computed
   double t0 = 0, t1 = 0;
   std::vector<double> q, qdot;     // all coordinates of the model
+  std::vector<double> lower, upper;  // open range of each coordinate; infinite where there is none
   std::string solver;              // as asked for; may be "auto"
   double rtol = 1e-9, atol = 1e-12;
   double step = 0, every = 0;      // 0: not given

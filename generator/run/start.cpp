@@ -71,13 +71,13 @@ class StartSolver {
           const double off = std::abs(given->second.value - exact[order]);
           if (!(off <= start_tolerance * std::max(std::abs(exact[order]), std::abs(given->second.value)))) {
             throw Error("scene", p_.mechanics.model->where(given->second.span),
-                        fmt::format("{} = {:.17g} breaks constraint '{}', which fixes it at {:.17g} (off by {:.3g})",
+                        fmt::format("{} = {} breaks constraint '{}', which fixes it at {} (off by {:.3g})",
                                     label(key), given->second.value, constraint, exact[order], off),
                         fmt::format("leave {} out: it follows from the constraint", label(key)));
           }
         }
         value(key) = exact[order];
-        p_.solved.push_back(fmt::format("{} = {:.17g} follows from '{}'", label(key), exact[order], constraint));
+        p_.solved.push_back(fmt::format("{} = {} follows from '{}'", label(key), exact[order], constraint));
       }
     }
   }
@@ -163,7 +163,7 @@ class StartSolver {
       for (const std::size_t i : free) {
         const StartProblem::Key key{s_.free[i], order};
         if (value(key) == start[key.first]) continue;
-        p_.solved.push_back(fmt::format("{} = {:.17g} follows from the constraints", label(key), value(key)));
+        p_.solved.push_back(fmt::format("{} = {} follows from the constraints", label(key), value(key)));
       }
       return;
     }

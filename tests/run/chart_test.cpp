@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coordinates have ranges: a start outside is refused, a run that leaves one is told.
+#include <doctest/doctest.h>
+
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+// Straight through the centre: r would become negative, where the spring's length is no longer r.
+std::string radial(double r, double r_dot) {
+  return "format = 1\n[parameters]\nm = 1\nk = 4\nL = 0.5\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+         "position = { cylindrical = [\"r\", \"theta\"] }\n"
+         "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = \"L\" }\n"
+         "[scene.default]\nt = [0, 10]\ninitial = { r = " + std::to_string(r) + ", r_dot = " + std::to_string(r_dot) + " }\n";
+}
+
+test::Finished run_text(const std::string& text) {
+  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/radial.toml";
+  test::write_text(path, text);
+  return test::run_model(path);
+}
+
+}  // namespace
+
+TEST_CASE("run: a radius that would pass zero ends the run with chart_left, the last row inside the chart") {
+  const test::Finished finished = run_text(radial(1, -5));
+  CHECK(finished.simulation.result.outcome == eom::Outcome::chart_left);
+  CHECK(finished.simulation.result.detail.find("r leaves its range") != std::string::npos);
+  CHECK(finished.final("r") > 0);
+  CHECK(finished.rows.at(finished.rows.size() - 1, "r") > 0);
+  CHECK(finished.simulation.result.error_estimate.empty());
+}
+
+TEST_CASE("run: one that stays inside is done") {
+  CHECK(run_text(radial(1, 0)).simulation.result.outcome == eom::Outcome::done);
+}
+
+TEST_CASE("run: a start outside the range is refused") {
+  CHECK_THROWS_WITH_AS(run_text(radial(-1, 0)), doctest::Contains("the start has r = -1, outside its range (0, inf)"), Error);
+}

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/scene.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "derive/routes.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+const std::string rod = R"toml(format = 1
+[parameters]
+m = 1
+g = 9.81
+L = 2
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "rod"
+holonomic = "x^2 + y^2 - L^2"
+[scene.default]
+)toml";
+
+run::Scene resolve(const std::string& text, const run::Overrides& overrides = {}) {
+  const model::Model model = model::read_model_text(text, "scene.toml");
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  const system::EquationSystem system = derive::routes().front().derive(m, system::Approach::two);
+  return run::resolve_scene(m, system, model.scene("default"), overrides);
+}
+
+std::string refusal(const std::string& text, const run::Overrides& overrides = {}) {
+  try {
+    resolve(text, overrides);
+  } catch (const Error& error) {
+    CHECK(error.exit_code() == 2);
+    CHECK_FALSE(error.remedy().empty());
+    return error.message();
+  }
+  return "accepted";
+}
+
+constexpr double rounding = 1e-14;
+
+}  // namespace
+
+TEST_CASE("scene: what is not given follows from the constraints, positions and rates") {
+  const run::Scene scene = resolve(rod + "initial = { x = 1.2, x_dot = 0.4 }\nguess = { y = -1 }\n");
+  CHECK(scene.q[1] == doctest::Approx(-1.6).epsilon(rounding));
+  CHECK(scene.qdot[1] == doctest::Approx(0.3).epsilon(rounding));  // x x_dot + y y_dot = 0
+  CHECK(scene.solved.size() == 2);
+}
+
+TEST_CASE("scene: the guess chooses between the closures") {
+  CHECK(resolve(rod + "initial = { x = 1.2 }\nguess = { y = 3 }\n").q[1] == doctest::Approx(1.6).epsilon(rounding));
+  CHECK(resolve(rod + "initial = { x = 1.2 }\nguess = { y = -3 }\n").q[1] == doctest::Approx(-1.6).epsilon(rounding));
+}
+
+TEST_CASE("scene: values that break a constraint are refused with the amount, unless solve may move them") {
+  const std::string broken = "initial = { x = 1.2, y = -1.7 }\n";
+  const std::string message = refusal(rod + broken);
+  CHECK(message.find("breaks constraint 'rod'") != std::string::npos);
+  CHECK(message.find("0.33") != std::string::npos);  // 1.44 + 2.89 - 4
+  const run::Scene scene = resolve(rod + broken + "solve = [\"y\"]\n");
+  CHECK(scene.q[0] == 1.2);
+  CHECK(scene.q[1] == doctest::Approx(-1.6).epsilon(rounding));
+}
+
+TEST_CASE("scene: a start that the constraints do not determine is refused, not guessed") {
+  CHECK(refusal(rod).find("breaks constraint 'rod'") != std::string::npos);
+}
+
+TEST_CASE("scene: dependent parameters follow the ones that are set") {
+  const std::string text = R"toml(format = 1
+[parameters]
+k = "m*w^2"
+m = 2
+w = 3
+[coordinates]
+x = {}
+[energy]
+kinetic = "m*x_dot^2/2"
+potential = "k*x^2/2"
+[scene.default]
+parameters = { w = 4 }
+)toml";
+  CHECK(resolve(text).parameters[0] == 32);
+  run::Overrides overrides;
+  overrides.parameters["m"] = symbolic::Rational(1) / 2;
+  CHECK(resolve(text, overrides).parameters[0] == 8);
+  overrides.parameters["nothing"] = 1;
+  CHECK(refusal(text, overrides).find("no parameter 'nothing'") != std::string::npos);
+}
+
+TEST_CASE("scene: a parameter that is declared positive stays positive") {
+  std::string text = rod + "initial = { x = 0, y = -2 }\n";
+  text.replace(text.find("L = 2"), 5, "L = { value = 2, positive = true }");
+  CHECK(refusal(text) == "accepted");
+  run::Overrides overrides;
+  overrides.parameters["L"] = -2;
+  CHECK(refusal(text, overrides) == "parameter 'L' is declared positive, and its value is -2");
+}
