@@ -3,10 +3,12 @@
 
 #include <cln/integer.h>
 #include <cln/integer_io.h>
+#include <cln/rational_io.h>
 #include <fmt/format.h>
 
 #include <cctype>
 #include <cstdlib>
+#include <sstream>
 
 #include "error.hpp"
 
@@ -48,6 +50,16 @@ symbolic::Rational parse_decimal(const std::string& text, const std::string& sho
   const symbolic::Rational mantissa = cln::cl_I(digits.c_str());
   const symbolic::Rational value = mantissa * cln::expt(symbolic::Rational(10), static_cast<int>(exponent));
   return negative ? -value : value;
+}
+
+std::string decimal_text(const symbolic::Rational& value) {
+  const double nearest = cln::double_approx(value);
+  const std::string text = fmt::format("{}", nearest);
+  const bool exact = text.size() < 40 && text.find_first_of("in") == std::string::npos && parse_decimal(text, text) == value;
+  if (exact) return text;
+  std::ostringstream fraction;
+  fraction << value;
+  return fraction.str();
 }
 
 }  // namespace eomgen::cli

@@ -11,4 +11,7 @@ namespace eomgen::cli {
 /// more than 400 digits or an exponent beyond 400.
 symbolic::Rational parse_decimal(const std::string& text, const std::string& shown);
 
+/// "9.81" for 981/100; the fraction where no decimal of at most 17 digits is it.
+std::string decimal_text(const symbolic::Rational& value);
+
 }  // namespace eomgen::cli

@@ -30,6 +30,6 @@ Interrupt::~Interrupt() {
   std::signal(SIGTERM, SIG_DFL);
 }
 
-const std::atomic<bool>* Interrupt::flag() const { return &raised; }
+const std::atomic<bool>& Interrupt::flag() { return raised; }
 
 }  // namespace eomgen::cli

@@ -8,6 +8,8 @@
 #include <filesystem>
 #include <vector>
 
+#include "model/names.hpp"
+
 namespace eomgen::cli {
 namespace {
 
@@ -26,47 +28,40 @@ std::vector<fs::path> model_folders() {
   return folders;
 }
 
-std::size_t distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = row[0]++;
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitution = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitution});
-    }
-  }
-  return row[b.size()];
-}
-
-std::string nearest(const std::string& name, const std::vector<fs::path>& folders) {
-  std::string best;
-  std::size_t least = name.size() / 2 + 1;
+std::vector<std::string> models_in(const std::vector<fs::path>& folders) {
+  std::vector<std::string> names;
   for (const fs::path& folder : folders) {
     std::error_code error;
-    std::vector<std::string> names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
       if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
     }
-    std::sort(names.begin(), names.end());
-    for (const std::string& candidate : names) {
-      const bool begins = candidate.starts_with(name + "_");
-      const std::size_t d = begins ? 0 : distance(name, candidate);
-      if (d < least || (d == 0 && best.empty())) {
-        least = d;
-        best = candidate;
-      }
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// The model that was meant, as it would be typed; empty if none is near.
+std::string nearest(const std::string& typed, const std::vector<fs::path>& folders) {
+  const fs::path path(typed);
+  const std::string name = path.extension() == ".toml" ? path.stem().string() : path.filename().string();
+  const std::vector<std::string> names = models_in(path.has_parent_path() ? std::vector{path.parent_path()} : folders);
+  std::string meant = model::nearest(name, names).value_or("");
+  for (const std::string& candidate : names) {
+    if (!name.empty() && candidate.starts_with(name + "_")) {  // P7 for P7_moving_sphere
+      meant = candidate;
+      break;
     }
   }
-  return best;
+  return meant.empty() || !path.has_parent_path() ? meant : (path.parent_path() / (meant + ".toml")).string();
 }
 
 }  // namespace
 
 std::string locate_model(const std::string& name) {
   std::error_code error;
-  if (fs::exists(name, error)) return name;
+  for (const std::string& file : {name, name + ".toml"}) {
+    if (fs::exists(file, error) && !fs::is_directory(file, error)) return file;
+  }
   const std::vector<fs::path> folders = model_folders();
   if (name.find('/') == std::string::npos) {
     for (const fs::path& folder : folders) {
@@ -75,6 +70,7 @@ std::string locate_model(const std::string& name) {
       }
     }
   }
+  if (fs::is_directory(name, error)) return name;  // the reader says what is wrong with it
   const std::string hint = nearest(name, folders);
   throw Error("cli", Where{name, 0, 0, 1, ""}, "there is no such model file, nor a model of that name in models/",
               hint.empty() ? "eomgen new NAME writes a starter model" : fmt::format("did you mean {}?", hint));

@@ -7,13 +7,13 @@
 #include <new>
 
 #include "cli/command.hpp"
+#include "cli/usage.hpp"
 
 namespace {
 
 using eomgen::cli::Command;
 using eomgen::cli::Common;
 
-constexpr int exit_usage = 2;
 constexpr int exit_internal = 4;
 
 int report(const eomgen::Error& error) {
@@ -27,20 +27,24 @@ int main(int argc, char** argv) try {
   CLI::App app{"eomgen: equations of motion of mechanical systems, from a text model", "eomgen"};
   app.set_version_flag("--version", EOMGEN_VERSION);
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::help);
   Common common;
   std::map<const CLI::App*, std::function<int(const Common&)>> actions;
+  std::vector<std::string> names;
   for (const Command& command : eomgen::cli::commands()) {
     CLI::App* sub = app.add_subcommand(command.name, command.summary);
     sub->add_flag("--json", common.json, "one JSON document instead of readable output");
-    sub->add_option("--seed", common.seed, "fixes every random choice")->capture_default_str();
+    sub->add_option("--seed", common.seed, "fixes every random choice")
+        ->check(eomgen::cli::whole_number(0, 999'999'999'999'999))
+        ->capture_default_str();
     actions[sub] = command.declare(*sub);
+    names.emplace_back(command.name);
   }
+  eomgen::cli::require_command({argv, static_cast<std::size_t>(argc)}, names);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? 0 : exit_usage;
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return report(eomgen::cli::usage_error(error, app));
   }
   const int code = actions.at(app.get_subcommands().front())(common);
   // A full disk or a closed pipe loses results; that is a failure, not a silence.

@@ -12,9 +12,14 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
+constexpr double unbounded = 1e308;  // an estimate that is not finite: JSON has no infinity
 
-json number(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+using Json = nlohmann::ordered_json;
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+/// One line of the report: what it is about, then what there is to say.
+std::string line(const std::string& label, const std::string& value) { return fmt::format("{:<18}{}\n", label, value); }
 
 // What `final` holds: coordinates, energy, reactions and what was asked for; the rest served the watches.
 bool is_final(const Simulation& simulation, const std::string& name) {
@@ -25,25 +30,55 @@ bool is_final(const Simulation& simulation, const std::string& name) {
   return name == "energy" || name.starts_with("reaction.") || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
+std::string final_values(const Simulation& simulation) {
+  const run::RunResult& result = simulation.result;
+  std::string out;
+  for (const auto& [name, value] : result.final) {
+    if (!is_final(simulation, name)) continue;
+    const auto found = std::find_if(result.error_estimate.begin(), result.error_estimate.end(),
+                                    [&name = name](const auto& e) { return e.first == name; });
+    const std::string error = found == result.error_estimate.end() ? "" : fmt::format("   +- {:.1e}", found->second);
+    out += fmt::format("  {:<24} {:>24}{}\n", name, value, error);
+  }
+  return out;
+}
+
+/// What became of that which must not change, and how much to believe.
+std::string watched(const Simulation& simulation) {
+  const run::RunResult& result = simulation.result;
+  std::string out;
+  if (!result.error_estimate.empty()) {
+    out += line("error estimate", fmt::format("{:.2e} at most, from {} further evaluations",
+                                              result.error_estimate.back().second, result.estimate_rhs_evaluations));
+    if (!result.estimate_note.empty()) out += line("", result.estimate_note);
+  }
+  for (const run::Invariant& i : result.invariants) {
+    out += line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, i.initial, i.max_relative_drift));
+  }
+  out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
+  if (simulation.derived->mechanics.active.empty()) return out;
+  return out + line("constraints", fmt::format("|psi| at most {:.1e}; projection moved positions by {:.1e}, rates by {:.1e}, "
+                                               "and did the work {:.1e}",
+                                               result.constraint_drift, result.projection_position,
+                                               result.projection_velocity, result.projection_work));
+}
+
 }  // namespace
 
-std::string RunReport::json() const {
+nlohmann::ordered_json RunReport::json() const {
   const auto& [derived_model, scene, program, certificate, code, result] = simulation;
   const Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
   const Timings& seconds = derived.seconds;
-  nlohmann::ordered_json final = nlohmann::ordered_json::object(), estimate = nullptr;
-  nlohmann::ordered_json invariants = nlohmann::ordered_json::object(), events = nlohmann::ordered_json::array();
+  Json final = Json::object(), invariants = Json::object(), events = Json::array();
   for (const auto& [name, value] : result.final) {
     if (is_final(simulation, name)) final[name] = number(value);
   }
-  if (!result.error_estimate.empty()) estimate = nlohmann::ordered_json::object();
-  for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : 1e308;
   for (const run::Invariant& i : result.invariants) {
     invariants[i.name] = {{"initial", number(i.initial)}, {"max_relative_drift", number(i.max_relative_drift)}};
   }
   for (const run::RunEvent& e : result.events) events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
-  const nlohmann::ordered_json document{
+  Json document{
       {"format", 1},
       {"model", derived.model.id},
       {"scene", scene.name},
@@ -60,11 +95,9 @@ std::string RunReport::json() const {
         {"compile", compiled.seconds}, {"integrate", result.seconds_integrate}, {"estimate", result.seconds_estimate}}},
       {"compiled", compiled.cached ? "from the cache" : "now"},
       {"final", final},
-      {"error_estimate", estimate},
-      {"error_estimate_rhs_evaluations", result.estimate_rhs_evaluations},
       {"invariants", invariants},
       {"power_balance", number(result.power_balance)},
-      {"constraint_drift", number(result.constraint_drift)},
+      {"constraint_drift", derived.mechanics.active.empty() ? Json(nullptr) : number(result.constraint_drift)},
       {"projection", {{"position", result.projection_position}, {"velocity", result.projection_velocity}, {"work", result.projection_work}}},
       {"events", events},
       {"solved", scene.solved},
@@ -72,47 +105,37 @@ std::string RunReport::json() const {
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
       {"certificate", certificate.summary()}};
-  return document.dump(2) + "\n";
+  if (!estimate_wanted) return document;
+  Json estimate = nullptr;
+  for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
+  document["error_estimate"] = estimate;
+  document["error_estimate_rhs_evaluations"] = result.estimate_rhs_evaluations;
+  document["error_estimate_note"] = result.estimate_note;
+  return document;
 }
 
 std::string RunReport::text() const {
   const auto& [derived_model, scene, program, certificate, code, result] = simulation;
   const Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
-  std::string out;
-  const auto line = [&out](const std::string& label, const std::string& value) { out += fmt::format("{:<18}{}\n", label, value); };
   const Timings& seconds = derived.seconds;
-  line("model", fmt::format("{}, scene {}, t = {:g} to {:g}", derived.model.id, scene.name, scene.t0, scene.t1));
-  for (const std::string& sentence : scene.solved) line("start", sentence);
-  line("certificate", certificate.summary());
-  line("right-hand side", fmt::format("{} (route {}, approach {})", to_text(program.functions.front().operations), program.route,
-                                      system::name(program.approach)));
-  line("solver", fmt::format("{} ({}), rtol {:g}, atol {:g}", result.solver, result.reason, scene.rtol, scene.atol));
-  line("outcome", fmt::format("{} at t = {:.17g}{}{}", eom::name(result.outcome), result.t, result.detail.empty() ? "" : ": ", result.detail));
-  line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps, result.statistics.rejected, result.statistics.rhs_evaluations));
-  out += "\n";
-  for (const auto& [name, value] : result.final) {
-    if (!is_final(simulation, name)) continue;
-    const auto found = std::find_if(result.error_estimate.begin(), result.error_estimate.end(), [&](const auto& e) { return e.first == name; });
-    const std::string error = found == result.error_estimate.end() ? "" : fmt::format("   +- {:.1e}", found->second);
-    out += fmt::format("  {:<24} {:>24.16g}{}\n", name, value, error);
-  }
-  out += "\n";
-  if (!result.error_estimate.empty()) {
-    line("error estimate", fmt::format("{:.2e} at most, from {} further evaluations", result.error_estimate.back().second, result.estimate_rhs_evaluations));
-    if (!result.estimate_note.empty()) line("", result.estimate_note);
-  }
-  for (const run::Invariant& i : result.invariants) {
-    line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, i.initial, i.max_relative_drift));
-  }
-  line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
-  if (!derived.mechanics.active.empty()) {
-    line("constraints", fmt::format("|psi| at most {:.1e}; projection moved positions by {:.1e}, rates by {:.1e}, and did the work {:.1e}",
-                                    result.constraint_drift, result.projection_position, result.projection_velocity, result.projection_work));
-  }
-  line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}",
-                              seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
-                              compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate));
+  std::string out = line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
+  for (const std::string& sentence : scene.solved) out += line("start", sentence);
+  out += line("certificate", certificate.summary());
+  out += line("right-hand side", fmt::format("{} (route {}, approach {})", to_text(program.functions.front().operations),
+                                             program.route, system::name(program.approach)));
+  const std::string accuracy = scene.step > 0 ? fmt::format("step {}", scene.step)
+                                              : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
+  out += line("solver", fmt::format("{} ({}), {}", result.solver, result.reason, accuracy));
+  out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
+                                     result.detail.empty() ? "" : ": ", result.detail));
+  for (const run::RunEvent& e : result.events) out += line("event", fmt::format("{} at t = {}: {}", e.kind, e.t, e.name));
+  out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
+                                   result.statistics.rejected, result.statistics.rhs_evaluations));
+  out += "\n" + final_values(simulation) + "\n" + watched(simulation);
+  out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}",
+                                     seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
+                                     compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate));
   return out;
 }
 

@@ -2,6 +2,7 @@
 // A run told to a person, and as the JSON document of docs/schema/run.schema.json.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "cli/simulate.hpp"
@@ -10,9 +11,10 @@ namespace eomgen::cli {
 
 struct RunReport {
   const Simulation& simulation;
+  bool estimate_wanted = true;  // else the document has no error_estimate
 
   std::string text() const;
-  std::string json() const;
+  nlohmann::ordered_json json() const;
 };
 
 }  // namespace eomgen::cli

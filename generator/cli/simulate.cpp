@@ -61,6 +61,7 @@ Simulation simulate(const SimulationRequest& request) {
   require_pass(certificate, derived->model);
   // The sources carry the default scene, so that every scene runs the same library.
   const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), {});
+  if (request.ready) request.ready();
   CompiledCode code = compile(program, emission_context(*derived, program, defaults, certificate));
 
   const run::Code functions = code.for_run();

@@ -19,6 +19,8 @@ struct SimulationRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   bool estimate = true;
   std::uint64_t seed = 1;
+  /// Called once everything is derived and checked, before the compiler is called.
+  std::function<void()> ready;
   /// Called before the first row with the names of all that the rows hold (at least the coordinates with their rates,
   /// energy, kinetic, potential, reactions and what the scene asks for). Left out: no rows.
   std::function<void(const Derived&, const run::Scene&, const std::vector<std::string>& names)> begin;

@@ -72,14 +72,8 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
   return values;
 }
 
-// What the derivation assumed: parameters declared positive, and masses, which the reader saw at the default values only.
-void require_signs(Mechanics& m, const std::vector<cln::cl_R>& values) {
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const model::Parameter& p = m.model->parameters[i];
-    if (!p.positive || cln::plusp(values[i])) continue;
-    throw Error("scene", m.model->where(p.span), fmt::format("parameter '{}' is declared positive and is {} here", p.name, cln::double_approx(values[i])),
-                "give it a value greater than 0");
-  }
+// Masses, which the reader saw at the default values only.
+void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
   for (const model::Particle& particle : m.model->particles) {
     const Ref mass = mechanics::lower_scalar(m, particle.mass);
     const std::vector<Symbol> symbols = m.dag->symbols({mass});
@@ -195,7 +189,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   Scene result;
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = parameter_values(m, scene, overrides);
-  require_signs(m, parameters);
+  require_masses(m, parameters);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
   // The start is computed with the binary64 parameters that the run will use.
   std::vector<cln::cl_R> rounded;

@@ -4,7 +4,9 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
+#include "cli/decimal.hpp"
 #include "cli/locate.hpp"
+#include "cli/output.hpp"
 #include "derive/conservative.hpp"
 #include "derive/conserved.hpp"
 #include "derive/routes.hpp"
@@ -45,18 +47,16 @@ json forces_of(mechanics::Mechanics& m) {
 }
 
 json singular_of(const mechanics::Mechanics& m) {
-  // Told per approach: a set that names a fixed coordinate is none of Approach II.
-  std::map<std::string, std::string> sets;
-  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    const reading::ReadingForm form = reading::derive_reading(m, approach);
-    for (const print::Item& item : print::render(m, form, {"singular"})) {
-      const auto [found, inserted] = sets.emplace(item.text, system::name(approach));
-      if (!inserted) found->second = "both";
-    }
-  }
   json result = json::array();
-  for (const auto& [set, approach] : sets) result.push_back({{"set", set}, {"approach", approach}});
+  for (const print::Item& item : print::render(m, reading::derive_reading(m, system::Approach::two), {"singular"})) {
+    result.push_back({{"set", item.text}, {"approach", item.role}});
+  }
   return result;
+}
+
+// A number as a decimal; what other parameters determine as their expression.
+std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
+  return m.dag->is_constant(value) ? decimal_text(m.dag->value(value)) : shown(m, value);
 }
 
 json examine(const model::Model& model) {
@@ -70,7 +70,7 @@ json examine(const model::Model& model) {
     every_unit = every_unit && c.unit.dimension.has_value();
   }
   for (const model::Parameter& p : model.parameters) {
-    parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", shown(m, m.parameter_value[parameters.size()])}});
+    parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[parameters.size()])}});
     every_unit = every_unit && p.unit.dimension.has_value();
   }
   for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
@@ -95,7 +95,7 @@ void print_readable(const json& found) {
   for (const json& c : found["coordinates"]) {
     fmt::print("  {:<20} {}{}\n", text(c["name"]), text(c["unit"]), c["eliminated"].get<bool>() ? "  (fixed by a constraint)" : "");
   }
-  fmt::print("  {} degrees of freedom\n", found["dof"].get<long>());
+  fmt::print("  {} degree{} of freedom\n", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s");
   heading("parameters");
   for (const json& p : found["parameters"]) fmt::print("  {:<20} {} {}\n", text(p["name"]), text(p["value"]), text(p["unit"]));
   if (!found["constraints"].empty()) heading("constraints");
@@ -125,7 +125,7 @@ Execute declare_check(CLI::App& app) {
     const model::Model model = load_model(*name);
     const json found = examine(model);
     if (common.json) {
-      fmt::print("{}\n", found.dump(2));
+      print_document(found);
     } else {
       print_readable(found);
     }

@@ -6,8 +6,11 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
+#include "cli/output.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/usage.hpp"
 #include "derive/routes.hpp"
+#include "model/names.hpp"
 #include "print/render.hpp"
 
 namespace eomgen::cli {
@@ -29,13 +32,19 @@ const std::vector<std::string>& show_keys() {
 void require_keys(const std::vector<std::string>& show) {
   for (const std::string& key : show) {
     if (std::find(show_keys().begin(), show_keys().end(), key) == show_keys().end()) {
-      throw Error("derive", {}, fmt::format("there is nothing called '{}' to show", key),
-                  fmt::format("choose from: {}", fmt::join(show_keys(), ", ")));
+      throw Error("derive", {}, fmt::format("there is nothing called {} to show", model::quote(key)),
+                  choice_of(key, show_keys()));
     }
     if (key == "linear") {
       throw Error("derive", {}, "the linearised equations are not supported yet", "leave 'linear' out of --show");
     }
   }
+}
+
+void require_format(const std::string& format) {
+  const std::vector<std::string> known{"text", "latex", "mathml"};
+  if (std::find(known.begin(), known.end(), format) != known.end()) return;
+  throw Error("derive", {}, fmt::format("there is no format {}", model::quote(format)), choice_of(format, known));
 }
 
 const std::string& in_format(const print::Item& item, const std::string& format) {
@@ -81,6 +90,7 @@ void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::strin
 
 int execute(const Options& options, const Common& common) {
   require_keys(options.show);
+  require_format(options.format);
   const ApproachChoice choice = approach_choice(options.approach);
   model::Model model = load_model(options.model);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
@@ -91,7 +101,7 @@ int execute(const Options& options, const Common& common) {
   std::vector<print::Item> items = print::render(mechanics, form, options.show);
   add_conserved(mechanics, options.show, items);
   if (common.json) {
-    fmt::print("{}\n", to_json(items, system::name(approach)).dump(2));
+    print_document(to_json(items, system::name(approach)));
   } else {
     print_readable(items, system::name(approach), options.format);
   }
@@ -104,10 +114,8 @@ Execute declare_derive(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
-  app.add_option("--show", options->show, "what to show; a list of " + fmt::format("{}", fmt::join(show_keys(), ", ")))->delimiter(',');
-  app.add_option("--format", options->format, "text, latex or mathml")
-      ->check(CLI::IsMember({"text", "latex", "mathml"}))
-      ->capture_default_str();
+  add_list(app, "--show", options->show, fmt::format("what to show; a list of {}", fmt::join(show_keys(), ", ")));
+  app.add_option("--format", options->format, "text, latex or mathml")->capture_default_str();
   return [options](const Common& common) { return execute(*options, common); };
 }
 

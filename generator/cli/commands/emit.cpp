@@ -7,8 +7,10 @@
 #include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/operations.hpp"
+#include "cli/output.hpp"
 #include "cli/pipeline.hpp"
-#include "emit/write_files.hpp"
+#include "cli/usage.hpp"
+#include "model/names.hpp"
 #include "print/render.hpp"
 #include "reading/reading.hpp"
 
@@ -29,6 +31,10 @@ program::Request request_of(const Options& options, Derived& derived, const run:
       request.outputs.push_back("energy");
     } else if (name == "outputs") {
       request.outputs.insert(request.outputs.end(), scene.outputs.begin(), scene.outputs.end());
+      if (scene.outputs.empty() && options.outputs.empty()) {
+        fmt::print(stderr, "warning: the default scene asks for no outputs, so there is no function for them\n"
+                           "  remedy: name them: --output energy,..\n");
+      }
     } else {
       request.with.push_back(name);
     }
@@ -47,7 +53,9 @@ program::Request request_of(const Options& options, Derived& derived, const run:
     const auto& parameters = derived.model.parameters;
     const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
     if (found == parameters.end()) {
-      throw Error("emit", {}, fmt::format("there is no parameter '{}' to fix", name), "eomgen check MODEL lists the parameters");
+      std::vector<std::string> names;
+      for (const model::Parameter& p : parameters) names.push_back(p.name);
+      throw Error("emit", {}, fmt::format("there is no parameter {} to fix", model::quote(name)), choice_of(name, names));
     }
     const auto index = static_cast<std::uint32_t>(found - parameters.begin());
     request.fix[index] = cln::rational(cln::cl_R(scene.parameters[index]));
@@ -55,22 +63,44 @@ program::Request request_of(const Options& options, Derived& derived, const run:
   return request;
 }
 
+void require_with(const std::vector<std::string>& with) {
+  const std::vector<std::string> known{"jac", "jac_p", "mass", "constraints", "reactions", "outputs", "energy"};
+  for (const std::string& name : with) {
+    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+    const bool later = name == "events" || name == "taylor" || name == "rhs_batch";
+    throw Error("emit", {}, later ? fmt::format("the function {} is not supported yet", name)
+                                  : fmt::format("there is no function {} to emit", model::quote(name)),
+                choice_of(name, known));
+  }
+}
+
+void require_target(const std::string& target) {
+  std::vector<std::string> known;
+  for (const emit::TargetEntry& entry : emit::targets()) known.emplace_back(entry.name);
+  known.emplace_back("latex");
+  if (std::find(known.begin(), known.end(), target) != known.end()) return;
+  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), choice_of(target, known));
+}
+
 void require_form(const std::string& form) {
   if (form == "auto" || form == "multipliers") return;
   const bool known = form == "nullspace" || form == "chaplygin" || form == "routh";
-  throw Error("emit", {}, known ? fmt::format("form '{}' is not supported yet", form) : fmt::format("there is no form '{}'", form),
+  throw Error("emit", {}, known ? fmt::format("form '{}' is not supported yet", form) : fmt::format("there is no form {}", model::quote(form)),
               "choose auto or multipliers");
 }
 
 int emit_document(const Options& options, const Common& common) {
   const auto derived = derive_model(options.model, ApproachChoice::automatic);
+  if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty()) {
+    fmt::print(stderr, "warning: a document has no functions: --with, --output and --fix change nothing\n");
+  }
   const reading::ReadingForm one = reading::derive_reading(derived->mechanics, system::Approach::one);
   const reading::ReadingForm two = reading::derive_reading(derived->mechanics, system::Approach::two);
   const std::string name = emit::mangled_id(derived->model.id) + ".tex";
   const std::vector<std::string> files =
-      emit::write_files(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}});
+      write_results(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}});
   if (common.json) {
-    fmt::print("{}\n", json{{"format", 1}, {"files", files}}.dump(2));
+    print_document(json{{"format", 1}, {"files", files}});
   } else {
     for (const std::string& file : files) fmt::print("wrote {}\n", file);
   }
@@ -78,7 +108,9 @@ int emit_document(const Options& options, const Common& common) {
 }
 
 int execute(const Options& options, const Common& common) {
+  require_target(options.target);
   require_form(options.form);
+  require_with(options.with);
   const ApproachChoice approach = approach_choice(options.approach);
   if (options.target == "latex") return emit_document(options, common);
   const auto derived = derive_model(options.model, approach);
@@ -89,7 +121,7 @@ int execute(const Options& options, const Common& common) {
   require_pass(certificate, derived->model);
   const emit::EmissionContext context = emission_context(*derived, program, scene, certificate);
   const std::vector<std::string> files =
-      emit::write_files(options.folder, emit::emit(program, context, options.target));
+      write_results(options.folder, emit::emit(program, context, options.target));
   const Timings& seconds = derived->seconds;
   if (common.json) {
     json tried = json::array();
@@ -99,7 +131,7 @@ int execute(const Options& options, const Common& common) {
                         {"certificate", certificate.summary()},
                         {"seconds", {{"read", seconds.read}, {"derive", seconds.derive}, {"optimise", seconds.optimise},
                                      {"verify", seconds.verify}, {"print", seconds.print}}}};
-    fmt::print("{}\n", document.dump(2));
+    print_document(document);
     return 0;
   }
   fmt::print("route       {}, approach {}\n", program.route, system::name(program.approach));
@@ -118,14 +150,13 @@ Execute declare_emit(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   app.add_option("-o", options->folder, "the folder for the sources; it is made if need be")->required();
-  app.add_option("--target", options->target, "cpp, or latex for a document")->capture_default_str();
-  app.add_option("--with", options->with,
-                 "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), energy")
-      ->delimiter(',');
-  app.add_option("--output", options->outputs, "names for the function outputs")->delimiter(',');
+  app.add_option("--target", options->target, "cpp, c, or latex for a document")->capture_default_str();
+  add_list(app, "--with", options->with,
+           "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), energy");
+  add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto or multipliers")->capture_default_str();
-  app.add_option("--fix", options->fix, "parameters that become numbers")->delimiter(',');
+  add_list(app, "--fix", options->fix, "parameters that become numbers");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

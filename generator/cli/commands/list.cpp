@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
+#include "cli/output.hpp"
 #include "coordinates/coordinate_system.hpp"
 #include "derive/routes.hpp"
 #include "emit/targets.hpp"
@@ -27,6 +28,8 @@ json registries() {
     solvers.push_back({{"name", method.name}, {"order", method.order}, {"dense_order", method.dense_order}, {"adaptive", method.adaptive}});
   }
   for (const emit::TargetEntry& target : emit::targets()) targets.push_back({{"name", target.name}, {"title", target.title}});
+  // A document comes from the reading form, not from a program, so it is no entry of that registry.
+  targets.push_back({{"name", "latex"}, {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;
   result["rotations"] = json::array();
   result["joints"] = json::array();
@@ -39,7 +42,7 @@ json registries() {
 int execute(const Common& common) {
   const json all = registries();
   if (common.json) {
-    fmt::print("{}\n", all.dump(2));
+    print_document(all);
     return 0;
   }
   for (const auto& [key, entries] : all.items()) {
@@ -48,7 +51,8 @@ int execute(const Common& common) {
     if (entries.empty()) fmt::print("  none yet\n");
     for (const json& entry : entries) {
       const std::string title = entry.contains("title") ? entry["title"].get<std::string>()
-                                                        : fmt::format("order {}", entry["order"].get<int>());
+                                                        : fmt::format("order {}, {}", entry["order"].get<int>(),
+                                                                      entry["adaptive"].get<bool>() ? "chooses its steps" : "needs --step");
       fmt::print("  {:<14} {}\n", entry["name"].get<std::string>(), title);
     }
   }

@@ -6,8 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/starter_text.hpp"
-#include "emit/write_files.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -33,9 +33,9 @@ int execute(const Options& options, const Common& common) {
   }
   std::string text = starter_text;
   for (std::size_t at; (at = text.find("NAME.")) != std::string::npos;) text.replace(at, 4, options.name);
-  emit::write_files(".", {{file, text}});
+  write_results(".", {{file, text}});
   if (common.json) {
-    fmt::print("{}\n", nlohmann::ordered_json{{"format", 1}, {"file", file}}.dump(2));
+    print_document(nlohmann::ordered_json{{"format", 1}, {"file", file}});
   } else {
     fmt::print("wrote {}\n", file);
   }

@@ -3,7 +3,6 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
 #include <eom/output/csv.hpp>
 #include <eom/output/svg_plot.hpp>
 #include <filesystem>
@@ -12,9 +11,11 @@
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/output.hpp"
 #include "cli/run_report.hpp"
 #include "cli/simulate.hpp"
-#include "emit/write_files.hpp"
+#include "cli/usage.hpp"
+#include "model/names.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -22,28 +23,26 @@ namespace {
 struct Options {
   std::string model, scene = "default", out, plot, approach = "auto";
   std::vector<std::string> set, outputs;
-  double rtol = -1, atol = -1, step = -1, t_end = std::nan(""), every = -1;
-  std::string solver;
+  std::optional<double> rtol, atol, step, t_end, every;
+  std::optional<std::string> solver;
   bool no_error_estimate = false;
 };
-
-constexpr double progress_after = 2;       // seconds
 
 run::Overrides overrides_of(const Options& options) {
   run::Overrides o;
   for (const std::string& assignment : options.set) {
     const std::size_t equals = assignment.find('=');
-    if (equals == std::string::npos) {
-      throw Error("run", {}, fmt::format("'{}' sets nothing", assignment), "write --set NAME=VALUE, such as --set m=2.5");
+    if (equals == std::string::npos || equals == 0) {
+      throw Error("run", {}, fmt::format("{} sets nothing", model::quote(assignment)), "write --set NAME=VALUE, such as --set m=2.5");
     }
     o.parameters[assignment.substr(0, equals)] = parse_decimal(assignment.substr(equals + 1), assignment);
   }
-  if (options.rtol >= 0) o.rtol = options.rtol;
-  if (options.atol >= 0) o.atol = options.atol;
-  if (options.step >= 0) o.step = options.step;
-  if (options.every >= 0) o.every = options.every;
-  if (!std::isnan(options.t_end)) o.t_end = options.t_end;
-  if (!options.solver.empty()) o.solver = options.solver;
+  o.rtol = options.rtol;
+  o.atol = options.atol;
+  o.step = options.step;
+  o.every = options.every;
+  o.t_end = options.t_end;
+  o.solver = options.solver;
   o.outputs = options.outputs;
   return o;
 }
@@ -63,19 +62,19 @@ class Rows {
       index_.push_back(static_cast<std::size_t>(std::find(code.begin(), code.end(), column) - code.begin()));
     }
     values_.resize(columns_.size());
-    if (!csv.empty()) csv_.emplace(csv, columns_);
+    if (!csv.empty()) written([&] { csv_.emplace(csv, columns_); });
   }
 
   void operator()(double t, std::span<const double> y) {
     for (std::size_t i = 0; i < index_.size(); ++i) values_[i] = y[index_[i]];
-    if (csv_) csv_->row(t, values_);
+    if (csv_) written([&] { csv_->row(t, values_); });
     if (!keep_) return;
     t_.push_back(t);
     kept_.push_back(values_);
   }
 
   void finish(eom::Outcome outcome) {
-    if (csv_) csv_->finish(outcome);
+    if (csv_) written([&] { csv_->finish(outcome); });
   }
 
   void plot(const std::string& file, const std::string& title) const {
@@ -93,10 +92,19 @@ class Rows {
   }
 
  private:
+  // The writer is part of the runtime, which knows no Error; a full disk is no defect of ours.
+  template <typename Write>
+  static void written(Write write) {
+    try {
+      write();
+    } catch (const std::runtime_error& error) {
+      throw Error("run", {}, error.what(), "see to space on that disk and to your rights there", Fault::tool);
+    }
+  }
   static void write_text(const std::string& file, const std::string& text) {
     const std::filesystem::path path(file);
     const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
-    emit::write_files(folder, {{path.filename().string(), text}});
+    write_results(folder, {{path.filename().string(), text}});
   }
 
   std::vector<std::string> columns_;
@@ -108,20 +116,44 @@ class Rows {
   std::size_t coordinates_ = 0;
 };
 
-std::function<void(double)> progress_bar() {
-  if (isatty(STDERR_FILENO) == 0) return {};
-  const auto start = std::chrono::steady_clock::now();
-  auto last = std::make_shared<std::chrono::steady_clock::time_point>(start);
-  return [start, last](double fraction) {
-    const auto now = std::chrono::steady_clock::now();
-    if (std::chrono::duration<double>(now - start).count() < progress_after) return;
-    if (std::chrono::duration<double>(now - *last).count() < 0.2) return;
-    *last = now;
+/// One line on a terminal, written over and over, and wiped at the end.
+class Progress {
+ public:
+  Progress() = default;
+  Progress(const Progress&) = delete;
+  Progress& operator=(const Progress&) = delete;
+  ~Progress() { wipe(); }
+
+  void operator()(double fraction) {
+    const Clock::time_point now = Clock::now();
+    if (now - start_ < std::chrono::seconds(2) || now - last_ < std::chrono::milliseconds(200)) return;
+    last_ = now;
+    shown_ = true;
     fmt::print(stderr, "\r{:5.1f} % of the time span ", 100 * fraction);
-  };
+  }
+  void wipe() {
+    if (std::exchange(shown_, false)) fmt::print(stderr, "\r{:40}\r", "");
+  }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now(), last_ = start_;
+  bool shown_ = false;
+};
+
+/// The run; an error while the user asked it to stop is an interruption.
+Simulation simulate_until_interrupted(const SimulationRequest& request) {
+  try {
+    return simulate(request);
+  } catch (const Error&) {
+    if (!Interrupt::flag()) throw;
+    throw Error("run", {}, "interrupted before the run began", "nothing was computed that could be kept", Fault::numerical);
+  }
 }
 
 int execute(const Options& options, const Common& common) {
+  if (!options.out.empty()) require_writable("--out", options.out);
+  if (!options.plot.empty()) require_writable("--plot", options.plot);
   SimulationRequest request;
   request.model = options.model;
   request.scene = options.scene;
@@ -129,9 +161,11 @@ int execute(const Options& options, const Common& common) {
   request.approach = approach_choice(options.approach);
   request.estimate = !options.no_error_estimate;
   request.seed = common.seed;
-  request.progress = progress_bar();
-  Interrupt interrupt;
-  request.interrupt = interrupt.flag();
+  Progress progress;
+  if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
+  std::optional<Interrupt> interrupt;
+  request.ready = [&interrupt] { interrupt.emplace(); };
+  request.interrupt = &Interrupt::flag();
   std::optional<Rows> rows;
   if (!options.out.empty() || !options.plot.empty()) {
     request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
@@ -139,12 +173,17 @@ int execute(const Options& options, const Common& common) {
     };
     request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
   }
-  const Simulation simulation = simulate(request);
+  const Simulation simulation = simulate_until_interrupted(request);
+  progress.wipe();
   const model::Model& model = simulation.derived->model;
   if (rows) rows->finish(simulation.result.outcome);
   if (!options.plot.empty()) rows->plot(options.plot, model.title.empty() ? model.id : model.title);
-  const RunReport report{simulation};
-  fmt::print("{}", common.json ? report.json() : report.text());
+  const RunReport report{simulation, request.estimate};
+  if (common.json) {
+    print_document(report.json());
+  } else {
+    fmt::print("{}", report.text());
+  }
   const eom::Outcome outcome = simulation.result.outcome;
   return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }
@@ -156,15 +195,15 @@ Execute declare_run(CLI::App& app) {
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
   app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
-  app.add_option("--rtol", options->rtol, "relative tolerance")->check(CLI::NonNegativeNumber);
-  app.add_option("--atol", options->atol, "absolute tolerance")->check(CLI::NonNegativeNumber);
-  app.add_option("--step", options->step, "a fixed step, without error control")->check(CLI::PositiveNumber);
-  app.add_option("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--t-end", options->t_end, "the end of the run");
-  app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(CLI::PositiveNumber);
+  app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
+  app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
+  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
+  app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
   app.add_option("--out", options->out, "a CSV file");
   app.add_option("--plot", options->plot, "an SVG plot of the coordinates over time");
-  app.add_option("--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all")->delimiter(',');
+  add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
   return [options](const Common& common) { return execute(*options, common); };

@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/output.hpp"
 #include "cli/pipeline.hpp"
+#include "cli/usage.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -34,7 +37,10 @@ json to_json(const verify::Certificate& certificate) {
 
 void print_readable(const verify::Certificate& certificate) {
   fmt::print("{:<28} {:<28} {:>12} {:>10}  {}\n", "this", "against", "difference", "tolerance", "");
-  for (const verify::Comparison& c : certificate.comparisons) {
+  // What shares no code proves most, so it comes first.
+  std::vector<verify::Comparison> rows = certificate.comparisons;
+  std::stable_partition(rows.begin(), rows.end(), [](const verify::Comparison& c) { return !c.shares_code; });
+  for (const verify::Comparison& c : rows) {
     fmt::print("{:<28} {:<28} {:>12.2e} {:>10.0e}  {}{}\n", c.a, c.b, c.max_relative_difference, c.tolerance,
                c.pass ? "agree" : "DISAGREE", c.shares_code ? " (they share code)" : "");
   }
@@ -56,7 +62,7 @@ int execute(const Options& options, const Common& common) {
   }
   const verify::Certificate certificate = certify(*derived, program, verification);
   if (common.json) {
-    fmt::print("{}\n", to_json(certificate).dump(2));
+    print_document(to_json(certificate));
   } else {
     print_readable(certificate);
   }
@@ -68,8 +74,8 @@ int execute(const Options& options, const Common& common) {
 Execute declare_verify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--digits", options->digits, "decimal digits of the arithmetic")->check(CLI::Range(20, 300))->capture_default_str();
-  app.add_option("--points", options->points, "random states")->check(CLI::Range(1, 10000))->capture_default_str();
+  app.add_option("--digits", options->digits, "decimal digits of the arithmetic")->check(whole_number(20, 300))->capture_default_str();
+  app.add_option("--points", options->points, "random states")->check(whole_number(1, 10000))->capture_default_str();
   app.add_flag("--no-compile", options->no_compile, "leave the emitted code out, which needs a C compiler");
   return [options](const Common& common) { return execute(*options, common); };
 }

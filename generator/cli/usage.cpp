@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/usage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/names.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr std::string_view planned[] = {"bench", "stress", "linearize", "equilibria", "inverse", "sweep", "report"};
+
+template <typename Accept>
+CLI::Validator number(const char* what, Accept accept) {
+  return {[what, accept](std::string& text) {
+            double value = 0;
+            const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accept(value);
+            return fine ? std::string() : fmt::format("{} is not {}", model::quote(text), what);
+          },
+          ""};
+}
+
+// The command whose options were being read; the program itself before there is one.
+const CLI::App& where(const CLI::App& app) {
+  const auto parsed = app.get_subcommands();
+  return parsed.empty() ? app : *parsed.front();
+}
+
+std::vector<std::string> flags_of(const CLI::App& app) {
+  std::vector<std::string> flags;
+  for (const CLI::Option* option : app.get_options()) {
+    for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) flags.push_back("-" + name);
+  }
+  return flags;
+}
+
+Error unexpected(const CLI::App& app) {
+  const std::string help = fmt::format("{} --help lists what there is", app.get_parent() == nullptr ? "eomgen" : "eomgen " + app.get_name());
+  std::vector<std::string> extra = app.remaining();
+  const auto option = std::find_if(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
+  if (option == extra.end()) {
+    return Error("usage", {}, fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
+  }
+  const std::string name = option->substr(0, option->find('='));
+  const std::string hint = model::did_you_mean(name, flags_of(app));
+  return Error("usage", {}, fmt::format("there is no option {}", model::quote(name)), hint.empty() ? help : hint + " " + help);
+}
+
+}  // namespace
+
+CLI::Validator finite_number() {
+  return number("a number", [](double) { return true; });
+}
+CLI::Validator positive_number() {
+  return number("a number greater than 0", [](double value) { return value > 0; });
+}
+CLI::Validator number_not_negative() {
+  return number("a number, 0 or greater", [](double value) { return value >= 0; });
+}
+
+CLI::Validator whole_number(unsigned long long least, unsigned long long most) {
+  return {[least, most](std::string& text) {
+            const bool digits = !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
+            const unsigned long long value = digits ? std::stoull(text) : 0;
+            if (digits && value >= least && value <= most) return std::string();
+            return fmt::format("{} is not a whole number from {} to {}", model::quote(text), least, most);
+          },
+          ""};
+}
+
+CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::string>& target, const std::string& help,
+                      char delimiter) {
+  return app.add_option(flag, target, help)->delimiter(delimiter)->allow_extra_args(false);
+}
+
+std::string choice_of(const std::string& name, const std::vector<std::string>& known) {
+  const std::string hint = model::did_you_mean(name, known);
+  const std::string all = fmt::format("choose from: {}", fmt::join(known, ", "));
+  return hint.empty() ? all : hint + " " + all;
+}
+
+void require_command(std::span<char* const> words, const std::vector<std::string>& commands) {
+  if (words.size() < 2 || words[1][0] == '-') return;
+  const std::string word = words[1];
+  if (std::find(commands.begin(), commands.end(), word) != commands.end()) return;
+  if (std::find(std::begin(planned), std::end(planned), word) != std::end(planned)) {
+    throw Error("usage", {}, fmt::format("the command '{}' is not supported yet", word), "eomgen --help lists the commands");
+  }
+  throw Error("usage", {}, fmt::format("there is no command {}", model::quote(word)), choice_of(word, commands));
+}
+
+Error usage_error(const CLI::ParseError& error, const CLI::App& app) {
+  const CLI::App& command = where(app);
+  const std::string name = command.get_parent() == nullptr ? "eomgen" : "eomgen " + command.get_name();
+  if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) return unexpected(command);
+  std::string what = error.what();
+  if (what == "A subcommand is required") what = "a command is missing";
+  return Error("usage", {}, what, name + " --help tells how it is used");
+}
+
+}  // namespace eomgen::cli

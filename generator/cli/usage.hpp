@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command line as the user typed it: what is asked of numbers, and errors of usage with a remedy.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+
+namespace eomgen::cli {
+
+/// Validators of numbers; infinite and "nan" are refused by each.
+CLI::Validator finite_number();
+CLI::Validator positive_number();
+CLI::Validator number_not_negative();
+CLI::Validator whole_number(unsigned long long least, unsigned long long most);
+
+/// An option that may be repeated and takes one word each time, which `delimiter` may part. CLI11 would let it swallow MODEL.
+CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::string>& target, const std::string& help,
+                      char delimiter = ',');
+
+/// "did you mean 'x'?", or else "choose from: ...".
+std::string choice_of(const std::string& name, const std::vector<std::string>& known);
+
+/// Throws Error where the first word is no command: with the nearest one, or that it is still to come.
+void require_command(std::span<char* const> words, const std::vector<std::string>& commands);
+
+/// What CLI11 found wrong, in our words.
+Error usage_error(const CLI::ParseError& error, const CLI::App& app);
+
+}  // namespace eomgen::cli
