@@ -121,7 +121,7 @@ class Walk {
   std::vector<std::string> broken_terms(const Formula& side) const {
     std::vector<std::string> result;
     const std::vector<Formula> terms = side.form == Form::sum ? side.args : std::vector<Formula>{side};
-    if (terms[0].form != Form::rate || terms[0].args[0].form != Form::sum || terms[0].args[0].args.size() < 3) {
+    if (terms[0].form != Form::rate || terms[0].args[0].form != Form::sum || terms[0].args[0].args.size() < 2) {
       return side.form == Form::relation || side.form == Form::list ? std::vector<std::string>{(*this)(side).text} : signed_terms(side);
     }
     result = signed_terms(terms[0].args[0]);

@@ -9,6 +9,13 @@ namespace eomgen::reading {
 
 using mechanics::Mechanics;
 
+namespace {
+
+// Of the kinetic energy: with more, no equation fits on a page.
+constexpr std::size_t readable_terms = 800;
+
+}  // namespace
+
 Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
   Sum result = bridge.sum(m.kinetic_given);
   for (const mechanics::PointMass& mass : m.masses) {
@@ -18,6 +25,7 @@ Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
       square += v * v;
     }
     result += bridge.sum(mass.mass) * (Rational(1) / 2 * simplify(square));
+    if (result.size() > readable_terms) throw TermBudget();
   }
   return simplify(result);
 }

@@ -30,7 +30,7 @@ using AtomPtr = std::shared_ptr<const Atom>;
 struct TermBudget : std::length_error {
   TermBudget() : std::length_error("the expression has too many terms to be multiplied out") {}
 };
-inline constexpr std::size_t term_budget = 60000;
+inline constexpr std::size_t term_budget = 3000;
 
 struct Factor {
   AtomPtr atom;

@@ -82,37 +82,48 @@ Monomial of(Op op, const Sum& angle, long exponent) {
 }
 
 // Where f^2 m stands with its partner, k (f^2 + g^2) m -> k m and k m - k f^2 m -> k g^2 m; one term less each time.
-bool merge_one_pair(Sum& sum, const Sum& angle) {
-  for (const Op f : {Op::sin, Op::cos}) {
-    const Op g = f == Op::sin ? Op::cos : Op::sin;
-    for (const auto& [monomial, coefficient] : sum.terms()) {
-      const bool squared = std::any_of(monomial.begin(), monomial.end(), [&](const Factor& factor) {
-        return is_call(factor, f) && factor.exponent >= 2 && factor.atom->args[0] == angle;
-      });
-      if (!squared) continue;
-      const Monomial rest = product(monomial, of(f, angle, -2));
-      const Monomial partner = product(rest, of(g, angle, 2));
-      const Rational k = coefficient;
-      const Monomial self = monomial;
-      if (const Rational* other = coefficient_of(sum, partner); f == Op::sin && other != nullptr && *other == k) {
-        sum.add(self, -k);
-        sum.add(partner, -k);
-        sum.add(rest, k);
-        return true;
-      }
-      if (const Rational* other = coefficient_of(sum, rest); other != nullptr && *other == -k) {
-        sum.add(self, -k);
-        sum.add(rest, k);
-        sum.add(partner, -k);
-        return true;
-      }
-    }
+bool merge_term(Sum& sum, const Monomial& self, const Rational& k, const Factor& square) {
+  const Op f = square.atom->op, g = f == Op::sin ? Op::cos : Op::sin;
+  const Sum angle = square.atom->args[0];
+  const Monomial rest = product(self, of(f, angle, -2));
+  const Monomial partner = product(rest, of(g, angle, 2));
+  if (const Rational* other = coefficient_of(sum, partner); other != nullptr && *other == k) {
+    sum.add(self, -k);
+    sum.add(partner, -k);
+    sum.add(rest, k);
+    return true;
+  }
+  if (const Rational* other = coefficient_of(sum, rest); other != nullptr && *other == -k) {
+    sum.add(self, -k);
+    sum.add(rest, k);
+    sum.add(partner, -k);
+    return true;
   }
   return false;
 }
 
-Sum merge_pairs(Sum sum, const Sum& angle) {
-  while (merge_one_pair(sum, angle)) {
+bool merge_term(Sum& sum, const Monomial& self, const Rational& k) {
+  for (const Factor& factor : self) {
+    const bool trig = is_call(factor, Op::sin) || is_call(factor, Op::cos);
+    if (trig && factor.exponent >= 2 && merge_term(sum, self, k, factor)) return true;
+  }
+  return false;
+}
+
+// Passes over the whole sum; the search goes on behind a term that was merged.
+Sum merge_pairs(Sum sum) {
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (auto term = sum.terms().begin(); term != sum.terms().end();) {
+      const Monomial monomial = term->first;
+      const Rational k = term->second;
+      if (merge_term(sum, monomial, k)) {
+        changed = true;
+        term = sum.terms().upper_bound(monomial);
+      } else {
+        ++term;
+      }
+    }
   }
   return sum;
 }
@@ -145,20 +156,34 @@ bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const F
   return true;
 }
 
-bool recombine_one(Sum& sum) {
-  for (const auto& [monomial, coefficient] : sum.terms()) {
-    for (std::size_t i = 0; i < monomial.size(); ++i) {
-      if (!is_call(monomial[i], Op::sin) && !is_call(monomial[i], Op::cos)) continue;
-      for (std::size_t j = i + 1; j < monomial.size(); ++j) {
-        if (!is_call(monomial[j], Op::sin) && !is_call(monomial[j], Op::cos)) continue;
-        if (monomial[i].atom->args[0] == monomial[j].atom->args[0]) continue;
-        const Monomial copy = monomial;
-        const Rational k = coefficient;
-        if (recombine_at(sum, copy, k, copy[i], copy[j])) return true;
-      }
+bool is_trig(const Factor& factor) { return is_call(factor, Op::sin) || is_call(factor, Op::cos); }
+
+// Tries all pairs of sines and cosines of one term.
+bool recombine_term(Sum& sum, const Monomial& monomial, const Rational& k) {
+  for (std::size_t i = 0; i < monomial.size(); ++i) {
+    if (!is_trig(monomial[i])) continue;
+    for (std::size_t j = i + 1; j < monomial.size(); ++j) {
+      if (!is_trig(monomial[j]) || monomial[i].atom->args[0] == monomial[j].atom->args[0]) continue;
+      if (recombine_at(sum, monomial, k, monomial[i], monomial[j])) return true;
     }
   }
   return false;
+}
+
+// One pass; the search goes on behind a term that was merged, so that long sums take one pass or two.
+bool recombine_all(Sum& sum) {
+  bool changed = false;
+  for (auto term = sum.terms().begin(); term != sum.terms().end();) {
+    const Monomial monomial = term->first;
+    const Rational k = term->second;
+    if (recombine_term(sum, monomial, k)) {
+      changed = true;
+      term = sum.terms().upper_bound(monomial);
+    } else {
+      ++term;
+    }
+  }
+  return changed;
 }
 
 // {cos, sin} of a sum of angles or of a multiple of one.
@@ -193,14 +218,12 @@ Sum expand_factor(const Factor& factor) {
 }  // namespace
 
 Sum reduce_squares(const Sum& sum) {
-  Sum best = sum;
+  Sum best = merge_pairs(sum);  // mostly that is all
   for (int round = 0; round < most_rounds; ++round) {
     const Sum before = best;
     for (const Sum& angle : angles(before)) {
-      const Sum as_it_is = merge_pairs(best, angle);
-      const Sum with_cos = merge_pairs(replace_square(best, Op::sin, angle), angle);
-      const Sum with_sin = merge_pairs(replace_square(best, Op::cos, angle), angle);
-      if (shorter(as_it_is, best)) best = as_it_is;
+      const Sum with_cos = merge_pairs(replace_square(best, Op::sin, angle));
+      const Sum with_sin = merge_pairs(replace_square(best, Op::cos, angle));
       if (shorter(with_sin, best)) best = with_sin;
       if (shorter(with_cos, best)) best = with_cos;
     }
@@ -211,7 +234,7 @@ Sum reduce_squares(const Sum& sum) {
 
 Sum recombine_angles(const Sum& sum) {
   Sum result = sum;
-  while (recombine_one(result)) {
+  while (recombine_all(result)) {
   }
   return result;
 }

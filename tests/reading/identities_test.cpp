@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Simplification keeps values and finds what a person would find.
+#include <doctest/doctest.h>
+
+#include "reading/by_name.hpp"
+#include "reading/rational_function.hpp"
+#include "reading/trig.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+using reading::power;
+using reading::simplify;
+
+namespace {
+
+System some_symbols() {
+  return System(model::read_model_text(R"(format = 1
+[parameters]
+m = { value = 1, positive = true }
+k = 1
+[coordinates]
+a = {}
+b = {}
+phi = { range = [0, "pi"] }
+x = {}
+y = {}
+[energy]
+kinetic = "m*k*(a_dot^2 + b_dot^2 + phi_dot^2 + x_dot^2 + y_dot^2)/2"
+)", "symbols"));
+}
+
+}  // namespace
+
+TEST_CASE("trigonometry: squares and angle differences are recombined") {
+  System s = some_symbols();
+  const Sum a = s.symbol("a"), b = s.symbol("b"), m = s.symbol("m"), x = s.symbol("x");
+  CHECK(simplify(square(sin(a)) + square(cos(a))) == Sum(1));
+  CHECK(simplify(m * square(sin(a)) * x + m * square(cos(a)) * x) == m * x);
+  CHECK(simplify(Sum(1) - square(sin(a))) == square(cos(a)));
+  CHECK(simplify(power(sin(a), 4) + Sum(2) * square(sin(a)) * square(cos(a)) + power(cos(a), 4)) == Sum(1));
+  CHECK(simplify(cos(a) * cos(b) + sin(a) * sin(b)) == cos(a - b));
+  CHECK(simplify(cos(a) * cos(b) - sin(a) * sin(b)) == cos(a + b));
+  CHECK(simplify(sin(a) * cos(b) - cos(a) * sin(b)) == sin(a - b));
+  CHECK(simplify(m * x * (sin(a) * cos(b) + cos(a) * sin(b))) == m * x * sin(a + b));
+  CHECK(simplify(cos(a + b) * cos(a) + sin(a + b) * sin(a)) == cos(b));
+  CHECK(simplify(sin(b) * cos(a) - cos(b) * sin(a)) == -sin(a - b));
+}
+
+TEST_CASE("trigonometry: the shorter of the two forms is kept, and nothing gets longer") {
+  System s = some_symbols();
+  const Sum a = s.symbol("a"), m = s.symbol("m"), k = s.symbol("k"), x = s.symbol("x");
+  const Sum kinetic = square(cos(a)) * x + square(sin(a)) * x + square(sin(a)) * m;
+  CHECK(simplify(kinetic) == x + m * square(sin(a)));
+  const Sum mixed = k * square(cos(a)) + m * square(sin(a));
+  CHECK(simplify(mixed).size() == 2);
+  CHECK(same(simplify(mixed), mixed));
+}
+
+TEST_CASE("roots: sqrt(x^2) is x where x is positive, and |x| where nothing is known") {
+  System s = some_symbols();
+  const Sum m = s.symbol("m"), x = s.symbol("x"), phi = s.symbol("phi");
+  CHECK(sqrt(square(m)) == m);
+  CHECK(sqrt(Sum(4) * square(m)) == Sum(2) * m);
+  CHECK(sqrt(square(x)) == reading::call(symbolic::Op::abs, {x}));
+  CHECK(sqrt(square(m * sin(phi))) == m * sin(phi));  // phi lies between 0 and pi
+  CHECK(sqrt(x) * sqrt(x) == x);
+  CHECK(square(reading::call(symbolic::Op::abs, {x})) == square(x));
+}
+
+TEST_CASE("signs: -1 is pulled out of functions and of sums under a power") {
+  System s = some_symbols();
+  const Sum x = s.symbol("x"), y = s.symbol("y");
+  CHECK(sin(y - x) == -sin(x - y));
+  CHECK(cos(y - x) == cos(x - y));
+  CHECK(power(y - x, -1) == -power(x - y, -1));
+  CHECK(power(y - x, -2) == power(x - y, -2));
+  CHECK(power(Sum(2) * y - Sum(2) * x, -1) == reading::Rational(-1) / 2 * power(x - y, -1));
+}
+
+TEST_CASE("quotients: common factors cancel, denominators are factored") {
+  System s = some_symbols();
+  const Sum x = s.symbol("x"), y = s.symbol("y"), a = s.symbol("a"), m = s.symbol("m");
+  const Sum u = square(x) + square(y);
+  CHECK(reading::quotient(u * x * y, u) == x * y);
+  CHECK(reading::quotient(square(x) - square(y), x + y) == x - y);
+  CHECK(reading::quotient(x, square(x) * u + u) == x * power(square(x) + Sum(1), -1) * power(u, -1));
+  CHECK(simplify(square(x) * power(u, -1) + square(y) * power(u, -1)) == Sum(1));
+  CHECK(same(over(m, Sum(1) + square(sin(a))) * (Sum(2) - square(cos(a))), m));
+  CHECK_THROWS_AS(power(Sum(), -1), std::domain_error);
+  const auto parts = reading::factorise(square(x) * square(y) * power(u, 2) * Sum(-6));
+  CHECK(parts.sign == -1);
+  REQUIRE(parts.factors.size() == 1);
+  CHECK(parts.factors[0].first == u);
+  CHECK(parts.factors[0].second == 2);
+}
+
+TEST_CASE("zero test: proven, numerical, no") {
+  System s = some_symbols();
+  const Sum a = s.symbol("a"), b = s.symbol("b"), x = s.symbol("x");
+  CHECK(reading::zero_test(sin(Sum(3) * a) - Sum(3) * sin(a) + Sum(4) * power(sin(a), 3)) == reading::Zero::proven);
+  CHECK(reading::zero_test(sin(a + b) - sin(a) * cos(b) - cos(a) * sin(b)) == reading::Zero::proven);
+  CHECK(reading::zero_test(sin(a) - cos(a)) == reading::Zero::no);
+  const Sum hyperbolic = square(reading::call(symbolic::Op::cosh, {x})) - square(reading::call(symbolic::Op::sinh, {x})) - Sum(1);
+  CHECK(reading::zero_test(hyperbolic) == reading::Zero::numerical);
+  CHECK(reading::zero_test(reading::call(symbolic::Op::log, {-square(x)})) == reading::Zero::unknown);
+}

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Large systems: told in parts, soon.
+#include <doctest/doctest.h>
+
+#include <chrono>
+
+#include "reading/by_name.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+namespace {
+
+// Planar chain of n masses with relative angles: its energy has of the order of n^5 terms.
+std::string relative_chain(int n) {
+  std::string text = "format = 1\n[parameters]\nm = 1\nl = 1\ng = 9.81\n[coordinates]\n";
+  for (int i = 1; i <= n; ++i) text += "q" + std::to_string(i) + " = {}\n";
+  std::string angle;
+  for (int i = 1; i <= n; ++i) {
+    angle += (i > 1 ? " + q" : "q") + std::to_string(i);
+    const std::string before = i > 1 ? "P" + std::to_string(i - 1) + " + " : "";
+    text += "[[particle]]\nname = \"P" + std::to_string(i) + "\"\nmass = \"m\"\nposition = \"" + before + "l*sin(" + angle +
+            ")*E1 - l*cos(" + angle + ")*E2\"\n";
+  }
+  return text + "[[force]]\ngravity = \"-g*E2\"\n";
+}
+
+}  // namespace
+
+TEST_CASE("a chain of 15 relative angles is told by parts, with every coordinate, in seconds") {
+  System s(model::read_model_text(relative_chain(15), "chain"));
+  const auto start = std::chrono::steady_clock::now();
+  const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::one);
+  CHECK(std::chrono::steady_clock::now() - start < std::chrono::seconds(20));
+  CHECK(form.by_parts);
+  CHECK(form.equations.size() == 15);
+  CHECK(reading::residuals_on_dag(form, s.mechanics).empty());
+}
+
+TEST_CASE("a chain of 4 relative angles is written out, with residuals on the Dag") {
+  System s(model::read_model_text(relative_chain(4), "chain"));
+  const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::one);
+  CHECK_FALSE(form.by_parts);
+  CHECK(reading::residuals_on_dag(form, s.mechanics).size() == 4);
+}
