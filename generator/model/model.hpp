@@ -26,7 +26,7 @@ struct Unit {
 
 struct Parameter {
   std::string name;
-  NodeId value = no_node;  // of numbers and earlier parameters only
+  NodeId value = no_node;  // of numbers and other parameters, earlier or later in the file
   Unit unit;
   std::string tex, note;
   bool positive = false;

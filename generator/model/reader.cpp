@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/reader.hpp"
 
+#include "model/declared_order.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -91,6 +93,7 @@ Model read_model_text(const std::string& text, const std::string& file) {
   const Source source(file, text);
   const Value root = read_document(source);
   Model model = Reader(source, root).read();
+  restore_declared_order(model);
   model.file = file;
   model.id = std::filesystem::path(file).stem().string();
   model.lines = source.lines();

@@ -3,12 +3,12 @@
 
 using namespace eomgen::model;
 
-TEST_CASE("parameters may be stated in any order and are kept in one that can be evaluated") {
+TEST_CASE("parameters may be stated in any order and keep it") {
   const Model model = with_parameters("a = \"b + c\"\nb = \"2*c\"\nc = 3");
   std::vector<std::string> names;
   for (const Parameter& parameter : model.parameters) names.push_back(parameter.name);
-  CHECK(names == std::vector<std::string>{"c", "b", "a"});
-  CHECK(exact(model, model.parameters[2].value) == 9);
+  CHECK(names == std::vector<std::string>{"a", "b", "c"});
+  CHECK(exact(model, model.parameters[0].value) == 9);
 }
 
 TEST_CASE("a parameter table holds value, unit, tex, note and sign") {
@@ -48,8 +48,8 @@ TEST_CASE("functions of time may use one another, and have derivatives by name")
       read(particle("[functions]\na = { is = \"b*2\", unit = \"m\", tex = 'a' }\nb = \"L*sin(3*t)\"\n"
                     "[[constraint]]\nname = \"c\"\nholonomic = \"R_0 - a\"\n[coordinates]\nR_0 = \"m\"\n"
                     "[definitions]\nv = \"a_dot\"\nw = \"b_ddot\"\n"));
-  CHECK(model.functions[0].name == "b");
-  CHECK(model.functions[1].unit.text == "m");
+  CHECK(model.functions[0].name == "a");
+  CHECK(model.functions[0].unit.text == "m");
   CHECK(model.definitions[0].unit.text == "m/s");
 }
 
@@ -159,7 +159,7 @@ TEST_CASE("title, notes, id, hash and lines are kept") {
 
 TEST_CASE("definitions may be stated before what they use") {
   const Model model = read(particle("[definitions]\na = \"b + c\"\nb = \"2*c\"\nc = \"R\"\n"));
-  CHECK(model.definitions[0].name == "c");
-  CHECK(model.definitions[2].name == "a");
-  CHECK(model.definitions[2].unit.text == "m");
+  CHECK(model.definitions[0].name == "a");
+  CHECK(model.definitions[2].name == "c");
+  CHECK(model.definitions[0].unit.text == "m");
 }

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/declared_order.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <tuple>
+
+namespace eomgen::model {
+namespace {
+
+// Sorts by place in the file; gives the new index of each old one.
+template <class T>
+std::vector<std::uint32_t> sort_by_place(std::vector<T>& items) {
+  std::vector<std::uint32_t> order(items.size());
+  std::iota(order.begin(), order.end(), 0u);
+  const auto place = [&](std::uint32_t i) { return std::tuple(items[i].span.line, items[i].span.column); };
+  std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  std::vector<std::uint32_t> moved(items.size());
+  std::vector<T> sorted;
+  for (std::uint32_t k = 0; k < order.size(); ++k) {
+    moved[order[k]] = k;
+    sorted.push_back(std::move(items[order[k]]));
+  }
+  items = std::move(sorted);
+  return moved;
+}
+
+}  // namespace
+
+void restore_declared_order(Model& model) {
+  const std::vector<std::uint32_t> parameters = sort_by_place(model.parameters);
+  const std::vector<std::uint32_t> functions = sort_by_place(model.functions);
+  const std::vector<std::uint32_t> definitions = sort_by_place(model.definitions);
+  for (Node& node : model.arena.nodes) {
+    if (node.op == Op::parameter) node.index = parameters[node.index];
+    if (node.op == Op::function) node.index = functions[node.index];
+    if (node.op == Op::definition) node.index = definitions[node.index];
+  }
+  for (Scene& scene : model.scenes) {
+    for (auto& override_value : scene.parameters) override_value.first = parameters[override_value.first];
+  }
+}
+
+}  // namespace eomgen::model
