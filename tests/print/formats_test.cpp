@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a reader sees: few golden strings, brackets, and MathML that is well-formed.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "print/render.hpp"
+
+using namespace eomgen;
+using print::Item;
+
+namespace {
+
+struct Printed {
+  explicit Printed(const model::Model& read, system::Approach approach, std::vector<std::string> show = {"all"})
+      : model(read), mechanics(mechanics::build_mechanics(model)),
+        items(print::render(mechanics, reading::derive_reading(mechanics, approach), show)) {}
+  std::vector<Item> of(const std::string& key) const {
+    std::vector<Item> result;
+    std::copy_if(items.begin(), items.end(), std::back_inserter(result), [&](const Item& item) { return item.key == key; });
+    return result;
+  }
+  model::Model model;
+  mechanics::Mechanics mechanics;
+  std::vector<Item> items;
+};
+
+std::string shipped(const std::string& name) { return std::string(EOMGEN_SOURCE_DIR) + "/models/" + name + ".toml"; }
+
+// Every element that opens closes, in order.
+bool well_formed(const std::string& xml) {
+  std::vector<std::string> open;
+  for (std::size_t i = xml.find('<'); i != std::string::npos; i = xml.find('<', i + 1)) {
+    const std::size_t end = xml.find('>', i);
+    if (end == std::string::npos) return false;
+    const std::string tag = xml.substr(i + 1, end - i - 1);
+    if (tag.ends_with("/")) continue;
+    if (tag.starts_with("/")) {
+      if (open.empty() || open.back() != tag.substr(1)) return false;
+      open.pop_back();
+    } else {
+      open.push_back(tag.substr(0, tag.find(' ')));
+    }
+  }
+  return open.empty();
+}
+
+std::string expression(const std::string& is, print::Format format) {
+  const model::Model model = model::read_model_text("format = 1\n[parameters]\na = 1\nb = 2\nc = 3\n[coordinates]\nx = {}\ny = {}\n"
+                                                    "[definitions]\ne = \"" + is + "\"\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\n", "text");
+  const mechanics::Mechanics m = mechanics::build_mechanics(model);
+  return print::print(reading::arrange(reading::read(m, m.scalar_definition[0])), print::Notation(m), format);
+}
+
+}  // namespace
+
+TEST_CASE("P7 reads as (2.111)") {
+  const Printed one(model::read_model(shipped("P7_moving_sphere")), system::Approach::one, {"equations", "reactions"});
+  const auto equations = one.of("equations");
+  REQUIRE(equations.size() == 3);
+  CHECK(equations[0].coordinate == "phi");
+  CHECK(equations[0].role == "motion");
+  CHECK(equations[0].text == "d/dt(m d^2 phi_dot) - m d^2 sin(phi) cos(phi) theta_dot^2 - m g d sin(phi) = 0");
+  CHECK(equations[1].text == "d/dt(m d^2 sin^2(phi) theta_dot) = D d^2 sin(phi)");
+  CHECK(equations[1].latex == "\\frac{d}{dt}\\left(m d^{2} \\sin^{2}\\phi\\, \\dot{\\theta}\\right) = D d^{2} \\sin\\phi");
+  CHECK(equations[2].role == "constraint force");
+  CHECK(equations[2].text == "d/dt(m d_dot) - m d phi_dot^2 - m d sin^2(phi) theta_dot^2 + m g cos(phi) = lambda");
+  const auto reactions = one.of("reactions");
+  REQUIRE(reactions.size() == 1);
+  CHECK(reactions[0].name == "sphere");
+  CHECK(reactions[0].text == "lambda = m d_ddot - m d (phi_dot^2 + sin^2(phi) theta_dot^2) + m g cos(phi)");
+}
+
+TEST_CASE("P7 by approach II reads as (2.109), without the constraint force") {
+  const Printed two(model::read_model(shipped("P7_moving_sphere")), system::Approach::two, {"equations", "energies"});
+  REQUIRE(two.of("equations").size() == 2);
+  for (const Item& item : two.items) CHECK(item.text.find("lambda") == std::string::npos);
+  CHECK(two.of("energies")[0].text == "T~ = 1/2 m (d^2 phi_dot^2 + d^2 sin^2(phi) theta_dot^2 + d_dot^2)");
+}
+
+TEST_CASE("common factors of parameters stand in front") {
+  const Printed one(model::read_model(shipped("S5_double_pendulum")), system::Approach::two, {"equations"});
+  CHECK(one.of("explicit")[0].text ==
+        "(m1 + m2) L1^2 theta1_ddot + m2 L1 L2 cos(theta1 - theta2) theta2_ddot + m2 L1 L2 sin(theta1 - theta2) theta2_dot^2"
+        " + (m1 + m2) L1 g sin(theta1) = 0");
+}
+
+TEST_CASE("what `all` shows is there in three formats, and MathML is well-formed") {
+  for (const char* name : {"P7_moving_sphere", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian", "P14_kepler_cartesian",
+                           "cart_pendulum", "S6_chain_6"}) {
+    for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+      const Printed printed(model::read_model(shipped(name)), approach);
+      CHECK(printed.items.size() > 3);
+      for (const Item& item : printed.items) {
+        CAPTURE(item.text);
+        CHECK_FALSE(item.text.empty());
+        CHECK_FALSE(item.latex.empty());
+        CHECK(well_formed(item.mathml));
+        CHECK(std::count(item.latex.begin(), item.latex.end(), '{') == std::count(item.latex.begin(), item.latex.end(), '}'));
+      }
+    }
+  }
+}
+
+TEST_CASE("brackets stand where they are needed, and only there") {
+  using print::Format;
+  CHECK(expression("a/(b*c)", Format::text) == "a/(b c)");
+  CHECK(expression("a/b*c", Format::language) == "a*c/b");
+  CHECK(expression("x/(a + b)", Format::latex) == "\\frac{x}{a + b}");
+  CHECK(expression("sin(x + y)^2*cos(x)^3", Format::text) == "cos^3(x) sin^2(x + y)");
+  CHECK(expression("sqrt(x + y)", Format::latex) == "\\sqrt{x + y}");
+  CHECK(expression("exp(-a*x)", Format::latex) == "e^{-a x}");
+  CHECK(expression("-(a - b)*x", Format::text) == "-(a - b) x");
+  CHECK(expression("x/2 + y/3", Format::text) == "1/2 x + 1/3 y");
+  CHECK(expression("abs(x)*min(x, y)", Format::latex) == "\\left|x\\right| \\min(x, y)");
+  CHECK(expression("if(x < y, x, -y)", Format::language) == "if(x < y, x, -y)");
+  CHECK(expression("(x + y)^(a/b)", Format::language) == "(x + y)^(a/b)");
+}
+
+TEST_CASE("the language of model files can be pasted back") {
+  for (const char* text : {"a*x^2/(b + c) - 3/7*sin(x - y)*x_dot", "sqrt(x^2 + y^2)^(-3)", "atan2(x, y)*exp(-x^2)", "abs(x*y)^3/log(2 + x^2)"}) {
+    const std::string once = expression(text, print::Format::language);
+    CAPTURE(once);
+    CHECK(expression(once, print::Format::language) == once);
+  }
+}
+
+TEST_CASE("letters of mechanics give way to the model's own") {
+  const model::Model model = model::read_model_text(R"(format = 1
+[parameters]
+m = 1
+L = 2
+lambda = 3
+[coordinates]
+T = {}
+psi = {}
+[energy]
+kinetic = "m*(T_dot^2 + L^2*psi_dot^2)/2"
+potential = "lambda*T"
+[[constraint]]
+name = "c"
+holonomic = "T - L*psi^2"
+)", "letters");
+  const Printed printed(model, system::Approach::two);
+  CHECK(printed.of("lagrangian")[0].latex.starts_with("\\tilde{\\mathcal{L}} = "));
+  CHECK(printed.of("energies")[0].text.starts_with("kinetic~ = "));
+  CHECK(printed.of("constraints")[0].latex.starts_with("\\Psi = "));
+  CHECK(printed.of("equations")[0].text.find("= mu") != std::string::npos);
+}

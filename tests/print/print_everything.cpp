@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// print_everything MODEL N: all formulas in all formats, after N of GiNaC's serial numbers were burnt.
+#include <ginac/ginac.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "print/render.hpp"
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  try {
+    for (long i = std::strtol(argv[2], nullptr, 10); i > 0; --i) GiNaC::symbol burnt;
+    const eomgen::model::Model model = eomgen::model::read_model(argv[1]);
+    const eomgen::mechanics::Mechanics mechanics = eomgen::mechanics::build_mechanics(model);
+    const auto one = eomgen::reading::derive_reading(mechanics, eomgen::system::Approach::one);
+    const auto two = eomgen::reading::derive_reading(mechanics, eomgen::system::Approach::two);
+    for (const auto& form : {one, two}) {
+      for (const eomgen::print::Item& item : eomgen::print::render(mechanics, form, {"all"})) {
+        std::printf("%s|%s|%s|%s\n%s\n%s\n%s\n", item.key.c_str(), item.name.c_str(), item.coordinate.c_str(), item.role.c_str(),
+                    item.text.c_str(), item.latex.c_str(), item.mathml.c_str());
+      }
+    }
+    std::printf("%s", eomgen::print::latex_document(mechanics, one, two).c_str());
+  } catch (const eomgen::Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
