@@ -23,15 +23,35 @@ echo "-- the package holds no path of the source or build tree"
 if grep -rIlF -e "$source" -e "$build" -e "$scratch/first" -- "$prefix"; then refuse "these files name folders of the build"; fi
 
 echo "-- a stranger's program is built with it and links neither GiNaC nor CLN"
-"$cmake" -S "$source/tests/install/consumer" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+cp -R "$source/tests/install/consumer" "$scratch/source"
+"$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/configure.log" 2>&1 ||
   { cat "$scratch/configure.log"; refuse "find_package(eomgen)"; }
 grep -q "^eomgen_DIR:PATH=$prefix/" "$scratch/consumer/CMakeCache.txt" || refuse "another eomgen was found than the one installed here"
 "$cmake" --build "$scratch/consumer"
-"$scratch/consumer/oscillator"
-linked=$(ldd "$scratch/consumer/oscillator")
-if grep -Ei 'ginac|libcln|libgmp' <<<"$linked"; then refuse "the program links computer algebra"; fi
+for program in oscillator pendulum; do
+  "$scratch/consumer/$program" || refuse "$program"
+  linked=$(ldd "$scratch/consumer/$program")
+  if grep -Ei 'ginac|libcln|libgmp' <<<"$linked"; then refuse "$program links computer algebra"; fi
+done
 if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these installed headers include computer algebra"; fi
+
+echo "-- eom_generate runs again when the model or eomgen changes, and only then"
+generated="$scratch/consumer/pendulum_equations_eom/pendulum.c"
+rebuilds() { # what a build generates now
+  "$cmake" --build "$scratch/consumer" | grep -o 'Generating the equations of motion of .*' || true
+}
+before=$(stat -c %y "$generated")
+[[ -z $(rebuilds) ]] || refuse "a build without a change generated code"
+touch "$scratch/source/pendulum.cpp"
+[[ -z $(rebuilds) && $(stat -c %y "$generated") == "$before" ]] || refuse "a source file that is no model made it generate code"
+sed -i 's/l = "1 m"/l = "2 m"/' "$scratch/source/pendulum.toml"
+touch "$scratch/source/pendulum.toml"
+[[ $(rebuilds) == "Generating the equations of motion of pendulum" ]] || refuse "a changed model did not generate its code, or others did"
+grep -q 'p\[1\] = 2.0' "$generated" || refuse "the generated code does not have the changed parameter"
+"$scratch/consumer/pendulum" || refuse "the program of the changed model"
+touch "$prefix/bin/eomgen"
+(($(rebuilds | wc -l) == 2)) || refuse "a newer eomgen did not generate all code"
 
 echo "-- the licence of what is installed lies beside it"
 [[ -n $(find "$prefix" -path '*doc*' -name 'LICENSE*') ]] || refuse "no licence is installed"
