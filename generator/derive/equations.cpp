@@ -58,64 +58,6 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   }
 }
 
-// dE/dt = -dL/dt|q + sum Q_i qdot_i - sum lambda_k dpsi_k/dt|q + d(T1 + 2 T0)/dt: docs/theory.md, "Power".
-Ref power(Mechanics& m, const EquationSystem& s) {
-  Dag& dag = *m.dag;
-  const std::size_t functions = m.model->functions.size();
-  std::map<Symbol, Ref> explicit_time{{{SymbolKind::time, 0, 0}, dag.one()}};
-  for (std::uint32_t i = 0; i < functions; ++i) {
-    for (std::uint8_t order = 0; order < 6; ++order) {
-      explicit_time[{SymbolKind::function, i, order}] =
-          dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
-    }
-  }
-  symbolic::Derivation at_fixed_motion(dag, explicit_time);
-  Ref result = at_fixed_motion(m.potential);
-  Ref moving = dag.zero();  // T1 + 2 T0 = sum m v . dr/dt|q
-  for (const mechanics::PointMass& mass : m.masses) {
-    Vec3 drift;
-    for (std::size_t k = 0; k < 3; ++k) drift[k] = at_fixed_motion(mass.position[k]);
-    moving = dag.add(moving, dag.mul(mass.mass, dot(dag, mass.velocity, drift)));
-    const Ref mass_rate = at_fixed_motion(mass.mass);
-    const Ref half_square = dag.div(dot(dag, mass.velocity, mass.velocity), dag.integer(2));
-    result = dag.sub(result, dag.mul(mass_rate, half_square));
-    // dT/dt at fixed q, qdot through a prescribed part of the position
-    Vec3 rate_of_velocity;
-    for (std::size_t k = 0; k < 3; ++k) rate_of_velocity[k] = at_fixed_motion(mass.velocity[k]);
-    result = dag.sub(result, dag.mul(mass.mass, dot(dag, mass.velocity, rate_of_velocity)));
-  }
-  const std::vector<Ref> Q = generalized_forces(m);
-  Ref virial = dag.zero();  // qdot . dT/dqdot of the given kinetic energy
-  bool homogeneous = true;
-  std::map<Symbol, Ref> zero;
-  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    result = dag.add(result, dag.mul(Q[i], m.qdot[i]));
-    const Ref p = symbolic::partial(dag, coordinate(i, 1))(m.kinetic_given);
-    virial = dag.add(virial, dag.mul(m.qdot[i], p));
-    zero[coordinate(i, 1)] = dag.zero();
-  }
-  symbolic::Substitution at_rest(dag, zero);
-  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    const Ref p = symbolic::partial(dag, coordinate(i, 1))(m.kinetic_given);
-    homogeneous = homogeneous && dag.is_zero(at_rest(p));
-    for (std::uint32_t k = 0; k < m.q.size(); ++k) {
-      const Ref mass = symbolic::partial(dag, coordinate(k, 1))(p);
-      for (const Symbol& symbol : dag.symbols({mass})) {
-        homogeneous = homogeneous && !(symbol.kind == SymbolKind::coordinate && symbol.order > 0);
-      }
-    }
-  }
-  homogeneous = homogeneous && dag.is_zero(at_rest(m.kinetic_given));
-  result = dag.sub(result, at_fixed_motion(m.kinetic_given));
-  if (!homogeneous) moving = dag.add(moving, dag.sub(dag.mul(dag.integer(2), m.kinetic_given), virial));
-  symbolic::Derivation ddt = symbolic::total_time(dag, m.q.size(), functions);
-  result = dag.add(result, ddt(moving));
-  for (const system::Reaction& reaction : s.reactions) {
-    result = dag.sub(result, dag.mul(reaction.value, m.constraints[reaction.constraint].rate));
-  }
-  return result;
-}
-
 void add_outputs(Mechanics& m, EquationSystem& s) {
   const auto add = [&s](std::string name, Ref value) { s.outputs.push_back({std::move(name), value}); };
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {

@@ -23,6 +23,9 @@ system::EquationSystem assemble(Mechanics& mechanics, const FullEquations& full,
 /// Q_i = sum F . dr/dq_i + given generalised forces, eq. (3.20), for all coordinates.
 std::vector<Ref> generalized_forces(Mechanics& mechanics);
 
+/// What the energy's rate must be, with the reactions of `system`: docs/theory.md, "Power". May use qddot.
+Ref power(Mechanics& mechanics, const system::EquationSystem& system);
+
 Ref dot(Dag& dag, const Vec3& a, const Vec3& b);
 
 }  // namespace eomgen::derive

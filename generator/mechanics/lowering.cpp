@@ -13,16 +13,6 @@ namespace sym = symbolic;
 // Deeper than any expression that a person writes; keeps the recursion away from the end of the stack.
 constexpr int depth_limit = 5000;
 
-sym::Derivation explicit_time(Dag& dag, std::size_t functions) {
-  std::map<Symbol, Ref> seeds{{{SymbolKind::time, 0, 0}, dag.one()}};
-  for (std::uint32_t i = 0; i < functions; ++i) {
-    for (std::uint8_t order = 0; order < 6; ++order) {
-      seeds[{SymbolKind::function, i, order}] = dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
-    }
-  }
-  return {dag, std::move(seeds)};
-}
-
 sym::Op unary(model::Fn fn) {
   switch (fn) {
     case model::Fn::sin: return sym::Op::sin;
@@ -52,7 +42,7 @@ Lowering::Lowering(Mechanics& mechanics)
     : m_(mechanics),
       dag_(*mechanics.dag),
       ddt_(sym::total_time(dag_, mechanics.model->coordinates.size(), mechanics.model->functions.size())),
-      explicit_rate_(explicit_time(dag_, mechanics.model->functions.size())),
+      explicit_rate_(sym::explicit_time(dag_, mechanics.model->functions.size())),
       extension_(dag_.zero()) {}
 
 Ref Lowering::scalar(model::NodeId id) { return id == model::no_node ? dag_.zero() : value(id).scalar; }

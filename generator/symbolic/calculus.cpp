@@ -86,19 +86,32 @@ Ref Derivation::of_node(Ref r) {
 
 Derivation partial(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, dag.one()}}); }
 
+namespace {
+
+// Orders of the functions of time that can be reached by differentiating accelerations a few times more.
+constexpr std::uint8_t highest_function_order = 6;
+
+std::map<Symbol, Ref> explicit_seeds(Dag& dag, std::size_t functions) {
+  std::map<Symbol, Ref> seeds{{{SymbolKind::time, 0, 0}, dag.one()}};
+  for (std::uint32_t i = 0; i < functions; ++i) {
+    for (std::uint8_t order = 0; order < highest_function_order; ++order) {
+      seeds[{SymbolKind::function, i, order}] =
+          dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
+    }
+  }
+  return seeds;
+}
+
+}  // namespace
+
+Derivation explicit_time(Dag& dag, std::size_t functions) { return {dag, explicit_seeds(dag, functions)}; }
+
 Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration) {
-  std::map<Symbol, Ref> seeds;
-  seeds[Symbol{SymbolKind::time, 0, 0}] = dag.one();
+  std::map<Symbol, Ref> seeds = explicit_seeds(dag, functions);
   for (std::uint32_t i = 0; i < coordinates; ++i) {
     seeds[{SymbolKind::coordinate, i, 0}] = dag.symbol({SymbolKind::coordinate, i, 1});
     seeds[{SymbolKind::coordinate, i, 1}] =
         freeze_acceleration ? dag.zero() : dag.symbol({SymbolKind::coordinate, i, 2});
-  }
-  for (std::uint32_t i = 0; i < functions; ++i) {
-    for (std::uint8_t order = 0; order < 6; ++order) {
-      seeds[{SymbolKind::function, i, order}] =
-          dag.symbol({SymbolKind::function, i, static_cast<std::uint8_t>(order + 1)});
-    }
   }
   return Derivation(dag, std::move(seeds));
 }

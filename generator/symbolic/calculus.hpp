@@ -30,6 +30,9 @@ Derivation partial(Dag& dag, Symbol symbol);
 /// do not exist here; `freeze_acceleration` seeds qdot with 0 in place of qddot (for bias terms).
 Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration = false);
 
+/// Partial time derivative at fixed coordinates and velocities: t -> 1, f -> f'.
+Derivation explicit_time(Dag& dag, std::size_t functions);
+
 class Substitution {
  public:
   Substitution(Dag& dag, std::map<Symbol, Ref> values) : dag_(dag), values_(std::move(values)) {}

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// dE/dt = -dL/dt|q,qdot + sum Q_i qdot_i - sum lambda_k dpsi_k/dt|q + d(T1 + 2 T0)/dt: docs/theory.md, "Power".
+#include "derive/equations.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+Symbol rate_symbol(std::uint32_t i) { return {SymbolKind::coordinate, i, 1}; }
+
+/// What moving masses and prescribed parts of their positions add.
+struct Prescribed {
+  Ref inertia;  // dT/dt at fixed q and qdot
+  Ref moving;   // T1 + 2 T0
+};
+
+Prescribed of_masses(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
+  Dag& dag = *m.dag;
+  Prescribed sum{dag.zero(), dag.zero()};
+  for (const mechanics::PointMass& mass : m.masses) {
+    Vec3 drift, acceleration;  // of the position and of the velocity, at fixed q and qdot
+    for (std::size_t k = 0; k < 3; ++k) drift[k] = at_fixed_motion(mass.position[k]);
+    for (std::size_t k = 0; k < 3; ++k) acceleration[k] = at_fixed_motion(mass.velocity[k]);
+    const Ref half_square = dag.div(dot(dag, mass.velocity, mass.velocity), dag.integer(2));
+    sum.inertia = dag.add(sum.inertia, dag.mul(at_fixed_motion(mass.mass), half_square));
+    sum.inertia = dag.add(sum.inertia, dag.mul(mass.mass, dot(dag, mass.velocity, acceleration)));
+    sum.moving = dag.add(sum.moving, dag.mul(mass.mass, dot(dag, mass.velocity, drift)));
+  }
+  return sum;
+}
+
+// Whether the given kinetic energy is a quadratic form of the velocities: then T1 + 2 T0 vanishes, and saying so keeps
+// accelerations out of the power.
+bool is_quadratic_form(Mechanics& m, Ref T) {
+  Dag& dag = *m.dag;
+  std::map<Symbol, Ref> zero;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) zero[rate_symbol(i)] = dag.zero();
+  symbolic::Substitution at_rest(dag, zero);
+  if (!dag.is_zero(at_rest(T))) return false;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    const Ref p = symbolic::partial(dag, rate_symbol(i))(T);
+    if (!dag.is_zero(at_rest(p))) return false;
+    for (std::uint32_t k = 0; k < m.q.size(); ++k) {
+      const Ref inertia = symbolic::partial(dag, rate_symbol(k))(p);
+      for (const Symbol& symbol : dag.symbols({inertia})) {
+        if (symbol.kind == SymbolKind::coordinate && symbol.order > 0) return false;
+      }
+    }
+  }
+  return true;
+}
+
+Prescribed of_given_energy(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
+  Dag& dag = *m.dag;
+  const Ref T = m.kinetic_given;
+  Prescribed result{at_fixed_motion(T), dag.zero()};
+  if (is_quadratic_form(m, T)) return result;
+  Ref virial = dag.zero();  // qdot . dT/dqdot
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    virial = dag.add(virial, dag.mul(m.qdot[i], symbolic::partial(dag, rate_symbol(i))(T)));
+  }
+  result.moving = dag.sub(dag.mul(dag.integer(2), T), virial);
+  return result;
+}
+
+}  // namespace
+
+Ref power(Mechanics& m, const system::EquationSystem& s) {
+  Dag& dag = *m.dag;
+  symbolic::Derivation at_fixed_motion = symbolic::explicit_time(dag, m.model->functions.size());
+  const Prescribed masses = of_masses(m, at_fixed_motion), given = of_given_energy(m, at_fixed_motion);
+  Ref result = at_fixed_motion(m.potential);
+  result = dag.sub(result, dag.add(masses.inertia, given.inertia));
+  const std::vector<Ref> Q = generalized_forces(m);
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) result = dag.add(result, dag.mul(Q[i], m.qdot[i]));
+  for (const system::Reaction& reaction : s.reactions) {
+    result = dag.sub(result, dag.mul(reaction.value, m.constraints[reaction.constraint].rate));
+  }
+  symbolic::Derivation ddt = symbolic::total_time(dag, m.q.size(), m.model->functions.size());
+  return dag.add(result, ddt(dag.add(masses.moving, given.moving)));
+}
+
+}  // namespace eomgen::derive
