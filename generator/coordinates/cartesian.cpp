@@ -12,7 +12,7 @@ const CoordinateSystem cartesian{
     .e = {{{"1", "0", "0"}, {"0", "1", "0"}, {"0", "0", "1"}}},
     .singular = "",
     .planar = true,
-    .constant = "",
+    .constant = {},
 };
 
 }  // namespace eomgen::coordinates

@@ -12,9 +12,15 @@ namespace eomgen::coordinates {
 
 struct Slot {
   std::string_view name;   // "phi"
-  std::string_view unit;   // "m", "rad", "1"
+  std::string_view unit;   // "m", "rad", "1", "m^(1/2)"
   std::string_view lower;  // open range of the chart as expressions; empty: unbounded
   std::string_view upper;
+};
+
+/// A further key of the position ("pitch", "angle"), which the expressions use; no name if there is none.
+struct Constant {
+  std::string_view name;
+  std::string_view unit;
 };
 
 struct CoordinateSystem {
@@ -25,7 +31,7 @@ struct CoordinateSystem {
   std::array<std::array<std::string_view, 3>, 3> e;  // unit vectors along a_i; empty strings: normalise a_i
   std::string_view singular;                  // where det(a_ik) = 0, for reading
   bool planar;                                // two entries allowed, the third is 0
-  std::string_view constant;                  // name of a further key ("pitch", "angle"), or empty
+  Constant constant;
 };
 
 std::span<const CoordinateSystem* const> registry();

@@ -12,7 +12,7 @@ const CoordinateSystem cylindrical{
     .e = {{{"cos(theta)", "sin(theta)", "0"}, {"-sin(theta)", "cos(theta)", "0"}, {"0", "0", "1"}}},
     .singular = "r = 0",
     .planar = true,
-    .constant = "",
+    .constant = {},
 };
 
 }  // namespace eomgen::coordinates

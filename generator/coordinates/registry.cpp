@@ -9,12 +9,18 @@ namespace eomgen::coordinates {
 extern const CoordinateSystem cartesian;
 extern const CoordinateSystem cylindrical;
 extern const CoordinateSystem spherical;
+extern const CoordinateSystem parabolic;
+extern const CoordinateSystem helical;
+extern const CoordinateSystem oblique;
 
 namespace {
-constexpr std::array<const CoordinateSystem*, 3> systems{
+constexpr std::array<const CoordinateSystem*, 6> systems{
     &cartesian,
     &cylindrical,
     &spherical,
+    &parabolic,
+    &helical,
+    &oblique,
 };
 }  // namespace
 

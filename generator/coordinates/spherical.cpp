@@ -14,7 +14,7 @@ const CoordinateSystem spherical{
            {"-sin(theta)", "cos(theta)", "0"}}},
     .singular = "R = 0, phi = 0, phi = pi",
     .planar = false,
-    .constant = "",
+    .constant = {},
 };
 
 }  // namespace eomgen::coordinates

@@ -63,7 +63,7 @@ private:
   void warn_misspelt(const std::string& name, Span span);
   void warn_unused();
 
-  // read_places.cpp: [[particle]] [[point]], positions; chain.cpp: [[chain]]
+  // read_places.cpp: [[particle]] [[point]]; read_positions.cpp, read_custom.cpp: positions; chain.cpp: [[chain]]
   struct PlaceSource {
     const Value* table = nullptr;
     bool particle = false;
@@ -77,13 +77,24 @@ private:
     bool relative = false;
     std::vector<std::uint32_t> coordinates, places;
   };
+  /// A position in a chart, from where the chart measures.
+  struct Spelt {
+    Chart chart;
+    std::array<Typed, 3> x;
+  };
   void declare_places();
   std::uint32_t declare_place(const std::string& name, Span span, PlaceSource where);
   void declare_chain(const Value& table);
   void declare_entries(const Value& position);
+  void declare_entry(const Value& entry, std::string_view unit);
   Typed define_place(Symbol& symbol);
   Typed chart_position(std::uint32_t place, const Value& table);
-  const coordinates::CoordinateSystem& system_of(const Value& table, const Entry*& entries) const;
+  const Entry& system_entry(const Value& table) const;
+  Spelt spelt_position(const Value& table, const Entry& entry);
+  Spelt custom_position(const Value& table, const Entry& entry);
+  std::array<Typed, 3> solved_position(const Value& names, const Value& q, const Context& context);
+  void check_inverse(const Spelt& spelt, const Value& q, bool both);
+  void check_independent(const Spelt& spelt, const Entry& entry, Span constant);
   std::array<Typed, 3> chart_entries(const coordinates::CoordinateSystem& system, const Value& entries);
   Typed chain_position(const PlaceSource& where);
   Typed chain_entry(const Value& table, std::string_view key, long link, const Context& context);

@@ -51,6 +51,8 @@ public:
   Typed value(const Value& value, const Context& context);
   /// An expression of the program's own (of a coordinate system), with names of its own.
   Typed text(std::string_view text, const std::map<std::string, Typed>& local, Span span, const Context& context);
+  /// An expression that the reader has put together; its names are those of the model.
+  Typed tree(const Syntax& syntax, const Context& context) { return this->syntax(syntax, context); }
   /// `local` names that hold in the next calls only (`extension`).
   Typed value_with(const Value& value, const std::map<std::string, Typed>& local, const Context& context);
   /// Resolves a declared name, and all that it needs, if that is not done yet.

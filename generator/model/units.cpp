@@ -95,7 +95,7 @@ std::optional<MeasuredUnit> single_unit(std::string_view name) {
   return std::nullopt;
 }
 
-// unit = factor { ("*"|"/") factor }, factor = (name | "(" unit ")") [ "^" ["-"|"+"] digits ]
+// unit = factor { ("*"|"/") factor }, factor = (name | "(" unit ")") [ "^" ( ["-"|"+"] digit | "(" ["-"] digit "/" digit ")" ) ]
 class UnitParser {
 public:
   explicit UnitParser(std::string_view text) : text_(text) {}
@@ -138,13 +138,30 @@ private:
     ++at_;
     const bool negative = at_ < text_.size() && text_[at_] == '-';
     if (at_ < text_.size() && (text_[at_] == '-' || text_[at_] == '+')) ++at_;
-    if (at_ >= text_.size() || text_[at_] < '1' || text_[at_] > '9') return std::nullopt;
+    if (!negative && at_ < text_.size() && text_[at_] == '(') return fraction(*result);
+    if (!is_digit()) return std::nullopt;
     const int exponent = (negative ? -1 : 1) * (text_[at_++] - '0');  // one digit: nothing has a tenth power
     result->dimension = raised(result->dimension, exponent);
     result->scale = cln::expt(result->scale, cln::cl_I(exponent));
     result->pi_power *= exponent;
     return result;
   }
+
+  // m^(1/2), as dimensions are written; only of units without a factor, whose root would not be exact.
+  std::optional<MeasuredUnit> fraction(MeasuredUnit unit) {
+    ++at_;
+    const bool negative = at_ < text_.size() && text_[at_] == '-';
+    if (negative) ++at_;
+    if (!is_digit()) return std::nullopt;
+    const Rational above = text_[at_++] - '0';
+    if (at_ >= text_.size() || text_[at_++] != '/' || !is_digit()) return std::nullopt;
+    const Rational below = text_[at_++] - '0';
+    if (at_ >= text_.size() || text_[at_++] != ')' || unit.scale != 1 || unit.pi_power != 0) return std::nullopt;
+    unit.dimension = raised(unit.dimension, negative ? -above / below : above / below);
+    return unit;
+  }
+
+  bool is_digit() const { return at_ < text_.size() && text_[at_] >= '1' && text_[at_] <= '9'; }
 
   std::string_view text_;
   std::size_t at_ = 0;

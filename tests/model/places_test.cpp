@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "coordinates/coordinate_system.hpp"
 #include "model_support.hpp"
 
 using namespace eomgen::model;
@@ -55,33 +54,6 @@ std::string placed(const std::string& position) {
 }
 
 }  // namespace
-
-TEST_CASE("the registry's unit vectors are orthonormal and along the derivatives of the position") {
-  for (const auto* system : eomgen::coordinates::registry()) {
-    CAPTURE(system->name);
-    const Model model = read("format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { " +
-                             std::string(system->name) + " = [\"a\", \"b\", \"c\"] }\n");
-    const Place& place = model.places[1];
-    const std::vector<double> q{1.3, 0.7, 0.4};
-    constexpr double step = 1e-6, tolerance = 1e-8;  // of central differences
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto e = vector_at(model, place.chart->unit_basis[i], q);
-      auto ahead = q, behind = q;
-      ahead[i] += step;
-      behind[i] -= step;
-      const auto above = vector_at(model, place.position, ahead), below = vector_at(model, place.position, behind);
-      double length = 0, along = 0, unit = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        const double derivative = (above[k] - below[k]) / (2 * step);
-        length += derivative * derivative;
-        along += derivative * e[k];
-        unit += e[k] * e[k];
-      }
-      CHECK(unit == doctest::Approx(1).epsilon(tolerance));
-      CHECK(along == doctest::Approx(std::sqrt(length)).epsilon(tolerance));
-    }
-  }
-}
 
 TEST_CASE("charts are spelled out, measured from a place, and planar with two entries") {
   const Model model = read(placed("{ cylindrical = [\"r\", \"theta\"], from = \"A\" }"));

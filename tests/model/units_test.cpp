@@ -63,10 +63,12 @@ TEST_CASE("dimensions are written as an engineer would") {
   CHECK(text_of(dimension_of("rad")) == "1");
   CHECK(text_of(dimension_of("m^3/(kg*s^2)")) == "m^3/(kg*s^2)");
   CHECK(text_of(raised(dimension_of("m"), ratio(1, 2))) == "m^(1/2)");
+  CHECK(same(dimension_of("m^(1/2)"), raised(dimension_of("m"), ratio(1, 2))));
+  CHECK(same(dimension_of("kg^(-3/2)*m^2"), product(raised(dimension_of("kg"), ratio(-3, 2)), dimension_of("m^2"))));
 }
 
 TEST_CASE("what is no unit is refused") {
-  for (const char* text : {"", "mm m", "foo", "m^", "m^0", "m^12", "m//s", "(m", "m)", "2", "kdeg", "m^1.5", "m-s"}) {
+  for (const char* text : {"", "mm m", "foo", "m^", "m^0", "m^12", "m//s", "(m", "m)", "2", "kdeg", "m^(1/2", "m^(1/0)", "m^-(1/2)", "mm^(1/2)", "m^1.5", "m-s"}) {
     CAPTURE(text);
     CHECK(!parse_unit(text));
   }

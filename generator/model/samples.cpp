@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/samples.hpp"
+
+#include <cln/rational.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+namespace eomgen::model {
+namespace {
+
+constexpr double none = std::numeric_limits<double>::quiet_NaN();
+constexpr double some_time = 0.37;
+
+using Vector = std::array<double, 3>;
+double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+
+}  // namespace
+
+double Samples::random() {
+  state_ = state_ * 6364136223846793005u + 1442695040888963407u;
+  return static_cast<double>(state_ >> 11) / 9007199254740992.0;  // 2^53
+}
+
+void Samples::next() {
+  q_.assign(model_.coordinates.size(), 0);
+  known_.clear();
+  for (std::size_t k = 0; k < q_.size(); ++k) {
+    const Coordinate& c = model_.coordinates[k];
+    double low = c.lower == no_node ? none : value(c.lower), high = c.upper == no_node ? none : value(c.upper);
+    if (std::isnan(low)) low = std::isnan(high) ? -1.5 : high - 2;
+    if (std::isnan(high)) high = c.lower == no_node ? 1.5 : low + 2;
+    q_[k] = low + (0.02 + 0.96 * random()) * (high - low);
+  }
+}
+
+double Samples::value(NodeId id) {
+  if (id == no_node) return none;
+  if (const auto found = known_.find(id); found != known_.end()) return found->second;
+  const double result = fresh(model_.arena[id]);
+  known_[id] = result;
+  return result;
+}
+
+double Samples::moved(NodeId node, std::uint32_t coordinate, double by) {
+  q_[coordinate] += by;
+  known_.clear();
+  const double result = value(node);
+  q_[coordinate] -= by;
+  known_.clear();
+  return result;
+}
+
+double Samples::fresh(const Node& node) {
+  const auto arg = [&](std::size_t k) { return value(node.args[k]); };
+  if (node.vector) return none;
+  switch (node.op) {
+    case Op::number: return cln::double_approx(node.value);
+    case Op::pi: return std::numbers::pi;
+    case Op::time: return some_time;
+    case Op::parameter: return value(model_.parameters[node.index].value);
+    case Op::function: return node.order == 0 ? value(model_.functions[node.index].is) : none;
+    case Op::coordinate: return node.order == 0 ? q_[node.index] : none;
+    case Op::definition: return value(model_.definitions[node.index].is);
+    case Op::add: return arg(0) + arg(1);
+    case Op::subtract: return arg(0) - arg(1);
+    case Op::negate: return -arg(0);
+    case Op::multiply: return arg(0) * arg(1);
+    case Op::divide: return arg(0) / arg(1);
+    case Op::power: return std::pow(arg(0), arg(1));
+    case Op::conditional: return arg(0) < arg(1) ? arg(2) : arg(3);
+    case Op::call: return call(node);
+    default: return none;
+  }
+}
+
+double Samples::call(const Node& node) {
+  const double x = value(node.args[0]);
+  const double y = node.args[1] == no_node ? none : value(node.args[1]);
+  switch (node.fn) {
+    case Fn::sin: return std::sin(x);
+    case Fn::cos: return std::cos(x);
+    case Fn::tan: return std::tan(x);
+    case Fn::asin: return std::asin(x);
+    case Fn::acos: return std::acos(x);
+    case Fn::atan: return std::atan(x);
+    case Fn::atan2: return std::atan2(x, y);
+    case Fn::sinh: return std::sinh(x);
+    case Fn::cosh: return std::cosh(x);
+    case Fn::tanh: return std::tanh(x);
+    case Fn::exp: return std::exp(x);
+    case Fn::log: return std::log(x);
+    case Fn::sqrt: return std::sqrt(x);
+    case Fn::abs: return std::abs(x);
+    case Fn::sign: return x > 0 ? 1 : x < 0 ? -1 : 0;
+    case Fn::min: return std::min(x, y);
+    case Fn::max: return std::max(x, y);
+  }
+  return none;
+}
+
+double Samples::independence(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates) {
+  constexpr double step = 1e-5;  // of central differences: 1e-10 of rounding and of truncation
+  std::vector<Vector> a;
+  for (const std::uint32_t k : coordinates) {
+    Vector tangent;
+    for (std::size_t c = 0; c < 3; ++c) tangent[c] = (moved(x[c], k, step) - moved(x[c], k, -step)) / (2 * step);
+    const double length = std::sqrt(dot(tangent, tangent));
+    if (length < 1e-8) return 0;
+    for (double& component : tangent) component /= length;
+    a.push_back(tangent);
+  }
+  const auto g = [&](std::size_t i, std::size_t k) { return dot(a[i], a[k]); };
+  switch (a.size()) {
+    case 2: return 1 - g(0, 1) * g(0, 1);
+    case 3: return 1 + 2 * g(0, 1) * g(1, 2) * g(0, 2) - g(0, 1) * g(0, 1) - g(1, 2) * g(1, 2) - g(0, 2) * g(0, 2);
+    default: return 1;
+  }
+}
+
+}  // namespace eomgen::model
