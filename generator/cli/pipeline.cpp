@@ -121,7 +121,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   subjects.programs.push_back(program_form(program, options.digits));
   if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);
   const verify::Certificate certificate =
-      verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed});
+      verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed});
   derived.seconds.verify += watch.lap();
   return certificate;
 }

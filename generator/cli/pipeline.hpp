@@ -2,6 +2,7 @@
 // The program in a few lines: model -> mechanics -> equation systems -> certificate -> program -> sources.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,6 +45,7 @@ struct Verification {
   std::size_t points = 20;
   std::uint64_t seed = 1;
   const verify::CompiledForm* compiled = nullptr;
+  std::map<std::uint32_t, symbolic::Rational> fixed = {};  // as the program was asked for
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 

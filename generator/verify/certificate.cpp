@@ -62,7 +62,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
     throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
   const Judge judge(*mechanics.model, options.digits + guard_digits);
-  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points);
+  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed);
   Tally tally(options.digits);
   while (tally.points() < options.points) {
     const State state = points.next();

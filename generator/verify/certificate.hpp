@@ -22,6 +22,7 @@ struct Options {
   int digits = 50;  // 10 to 300: beyond, a binary64 cannot hold a difference
   std::size_t points = 20;
   std::uint64_t seed = 1;
+  std::map<std::uint32_t, cln::cl_RA> fixed = {};  // parameters that a program has as numbers
 };
 
 /// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,

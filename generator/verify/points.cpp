@@ -31,7 +31,8 @@ bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text 
 
 }  // namespace
 
-Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap) : judge_(judge), engine_(seed), cap_(cap) {
+Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed)
+    : judge_(judge), engine_(seed), cap_(cap), fixed_(std::move(fixed)) {
   read_scene();
 }
 
@@ -133,6 +134,10 @@ double Points::draw_coordinate(const Choice& c) {
   return c.center + spread_ * symmetric() * c.scale;
 }
 
+void Points::fix(std::vector<Real>& parameters) const {
+  for (const auto& [index, value] : fixed_) parameters[index] = judge_.precision().round(value);
+}
+
 State Points::draw() {
   const model::Model& m = judge_.model();
   State s;
@@ -143,7 +148,9 @@ State Points::draw() {
     s.parameters.push_back(zero ? exact(spread_ * (0.55 + 0.45 * u))
                                 : defaults_[i] * exact(1 + parameter_spread * spread_ * u));
   }
+  fix(s.parameters);  // before: others depend on them; after: they may depend on others
   s.parameters = judge_.parameters(std::move(s.parameters));
+  fix(s.parameters);
   for (const double fallback : input_defaults_)
     s.inputs.push_back(exact(fallback + symmetric() * std::max(1.0, std::fabs(fallback))));
   for (std::size_t i = 0; i < choices_.size(); ++i) {

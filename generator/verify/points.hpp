@@ -4,6 +4,8 @@
 // (positions, then velocities). Deterministic by seed on every platform; what is unfit is rejected and counted.
 #pragma once
 
+#include <cln/rational.h>
+
 #include <cstdint>
 #include <map>
 #include <random>
@@ -16,8 +18,8 @@ namespace eomgen::verify {
 
 class Points {
  public:
-  /// At most `cap` rejections in all.
-  Points(const Judge& judge, std::uint64_t seed, std::size_t cap);
+  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point.
+  Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {});
 
   /// A state with qddot = 0. Throws Error (Fault::check) once too many were rejected.
   State next();
@@ -37,6 +39,7 @@ class Points {
   void read_scene();
   void read_ranges(const State& start);
   void read_scales();
+  void fix(std::vector<Real>& parameters) const;
   State draw();
   double draw_coordinate(const Choice& choice);
   void project_positions(State& state) const;
@@ -48,6 +51,7 @@ class Points {
   const Judge& judge_;
   std::mt19937_64 engine_;
   std::size_t cap_;
+  std::map<std::uint32_t, cln::cl_RA> fixed_;
   std::vector<Choice> choices_;       // per coordinate
   std::vector<Real> defaults_;        // of the parameters
   std::vector<double> input_defaults_;

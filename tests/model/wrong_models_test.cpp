@@ -5,49 +5,6 @@
 
 #include "model_support.hpp"
 
-namespace eomgen::model {
-
-std::string pendulum(const std::vector<std::pair<std::string, std::string>>& edits, const std::string& more) {
-  std::string text = R"(format = 1
-[parameters]
-m = "1 kg"
-g = "9.81 m/s^2"
-L = "1 m"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-)";
-  for (const auto& [from, to] : edits) {
-    const std::size_t at = text.find(from);
-    REQUIRE(at != std::string::npos);
-    text.replace(at, from.size(), to);
-  }
-  return text + more;
-}
-
-std::string repeated(const std::string& text, std::size_t times) {
-  std::string result;
-  for (std::size_t k = 0; k < times; ++k) result += text;
-  return result;
-}
-
-std::string definitions_in_a_row(int count) {
-  std::string result = "[definitions]\n";
-  for (int k = 0; k < count; ++k) result += "d" + std::to_string(k) + " = \"d" + std::to_string(k + 1) + " + 1\"\n";
-  return result + "d" + std::to_string(count) + " = \"R\"\n";
-}
-
-std::string numbered(int count) {
-  std::string result;
-  for (int k = 0; k < count; ++k) result += "n" + std::to_string(k) + " = 1\n";
-  return result;
-}
-
-}  // namespace eomgen::model
-
 using namespace eomgen::model;
 
 namespace {

@@ -51,8 +51,14 @@ const std::string& in_format(const print::Item& item, const std::string& format)
   return format == "latex" ? item.latex : format == "mathml" ? item.mathml : item.text;
 }
 
-json to_json(const std::vector<print::Item>& items, const std::string& approach) {
+json to_json(const std::vector<print::Item>& items, const std::string& approach, const std::vector<std::string>& show) {
   json result{{"format", 1}, {"approach", approach}, {"equations", json::array()}, {"reactions", json::array()}};
+  const bool all = std::find(show.begin(), show.end(), "all") != show.end();
+  for (const std::string& key : show_keys()) {
+    const bool wanted = std::find(show.begin(), show.end(), key) != show.end() ||
+                        (all && key != "linear");
+    if (wanted && key != "all") result[key] = json::array();  // also where there turns out to be nothing to show
+  }
   for (const print::Item& item : items) {
     json entry;
     if (!item.coordinate.empty()) entry["coordinate"] = item.coordinate;
@@ -101,7 +107,7 @@ int execute(const Options& options, const Common& common) {
   std::vector<print::Item> items = print::render(mechanics, form, options.show);
   add_conserved(mechanics, options.show, items);
   if (common.json) {
-    print_document(to_json(items, system::name(approach)));
+    print_document(to_json(items, system::name(approach), options.show));
   } else {
     print_readable(items, system::name(approach), options.format);
   }

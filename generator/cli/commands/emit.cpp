@@ -116,8 +116,10 @@ int execute(const Options& options, const Common& common) {
   const auto derived = derive_model(options.model, approach);
   const run::Scene scene =
       run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
-  const program::Program program = make_program(*derived, request_of(options, *derived, scene));
-  const verify::Certificate certificate = certify(*derived, program, {50, emission_points, common.seed, nullptr});
+  const program::Request request = request_of(options, *derived, scene);
+  const program::Program program = make_program(*derived, request);
+  const verify::Certificate certificate =
+      certify(*derived, program, {50, emission_points, common.seed, nullptr, request.fix});
   require_pass(certificate, derived->model);
   const emit::EmissionContext context = emission_context(*derived, program, scene, certificate);
   const std::vector<std::string> files =

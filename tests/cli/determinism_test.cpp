@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equal input gives equal bytes, whatever the process: addresses, environment and folder differ from one to the next.
+#include <doctest/doctest.h>
+
+#include <map>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+constexpr int processes = 5;
+
+using Files = std::map<std::string, std::string>;
+
+/// What `words` writes into out/, from `processes` processes, two at a time.
+std::vector<Files> emit_repeatedly(const Words& words) {
+  std::vector<Files> result;
+  for (int k = 0; k < processes; k += 2) {
+    std::vector<std::unique_ptr<Folder>> folders;
+    std::vector<std::unique_ptr<Child>> children;
+    for (int i = k; i < std::min(k + 2, processes); ++i) {
+      folders.push_back(std::make_unique<Folder>());
+      ChildCommand call = command(*folders.back(), words);
+      // Moves the stack, and the hashes of a program that would seed them from its environment.
+      call.environment["EOMGEN_TEST_PADDING"] = std::string(static_cast<std::size_t>(1 + 977 * i), 'x');
+      call.environment["LC_ALL"] = i % 2 == 0 ? "C" : "C.UTF-8";
+      children.push_back(std::make_unique<Child>(call));
+    }
+    for (std::size_t i = 0; i < children.size(); ++i) {
+      const ChildResult finished = children[i]->finish();
+      CAPTURE(finished.err);
+      CHECK(finished.status == 0);
+      Files files{{"standard output", finished.out}};
+      if (folders[i]->has("out")) {
+        for (const std::filesystem::directory_entry& entry : std::filesystem::directory_iterator(*folders[i] / "out")) {
+          const std::string name = entry.path().filename().string();
+          files[name] = folders[i]->read("out/" + name);
+        }
+      }
+      result.push_back(std::move(files));
+    }
+  }
+  return result;
+}
+
+void same_everywhere(const std::string& model, const Words& words, std::size_t files) {
+  CAPTURE(model);
+  const std::vector<Files> all = emit_repeatedly(words);
+  CHECK(all.front().size() == files + 1);
+  for (const Files& one : all) {
+    for (const auto& [name, text] : one) {
+      CAPTURE(name);
+      CHECK((text == all.front().at(name)));  // in brackets: doctest would print both
+    }
+  }
+}
+
+}  // namespace
+
+TEST_CASE("every shipped model emits equal bytes in five fresh processes") {
+  for (const std::string& model : shipped_models()) {
+    same_everywhere(model, {"emit", model, "-o", "out", "--with", "jac,reactions,outputs", "--output", "energy"}, 3);
+  }
+}
+
+TEST_CASE("every shipped model's document has equal bytes in five fresh processes") {
+  for (const std::string& model : shipped_models()) same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
+}

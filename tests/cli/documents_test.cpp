@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every command's JSON document: the keys that were promised, the shape of docs/schema, and that it holds what is true.
+#include <doctest/doctest.h>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+void has_keys(const Json& document, const Words& keys) {
+  for (const std::string& key : keys) {
+    CAPTURE(key);
+    CHECK(document.contains(key));
+  }
+}
+
+const Words models{"P7_moving_sphere", "P2_planar_pendulum", "S5_double_pendulum_cartesian", "cart_pendulum", "G1_spherical"};
+
+}  // namespace
+
+TEST_CASE("list: the document holds the registries, the readable output names the same") {
+  const Folder folder;
+  const Json all = document(folder, {"list"});
+  has_keys(all, {"coordinates", "rotations", "joints", "solvers", "targets"});
+  const std::string readable = expect(0, folder, {"list"}).out;
+  for (const char* key : {"coordinates", "solvers", "targets", "routes"}) {
+    CHECK_FALSE(all[key].empty());
+    for (const Json& entry : all[key]) CHECK(contains(readable, "  " + entry["name"].get<std::string>() + " "));
+  }
+  CHECK_FALSE(contains(readable, "{"));
+}
+
+TEST_CASE("check: every model's document") {
+  const Folder folder;
+  for (const std::string& model : models) {
+    CAPTURE(model);
+    const Json found = document(folder, {"check", model});
+    has_keys(found, {"coordinates", "dof", "parameters", "constraints", "forces", "conserved", "singular", "units", "warnings"});
+    CHECK_FALSE(contains(expect(0, folder, {"check", model}).out, "{"));
+  }
+  const Json sphere = document(folder, {"check", "P7_moving_sphere"});
+  CHECK(sphere["dof"] == 2);
+  REQUIRE(sphere["coordinates"].size() == 3);
+  CHECK(sphere["coordinates"][0]["name"] == "R");
+  CHECK(sphere["coordinates"][0]["eliminated"] == true);
+  CHECK(sphere["parameters"][1]["value"] == "9.81");
+  REQUIRE(sphere["forces"].size() == 2);
+  CHECK(sphere["forces"][0]["conservative"] == "yes");
+  CHECK(sphere["forces"][0]["potential"] == "m g R cos(phi)");
+  CHECK(sphere["forces"][1]["conservative"] == "no");
+  CHECK(sphere["forces"][1]["potential"].is_null());
+  CHECK(sphere["constraints"][0]["integrable"] == "yes");
+  // Each set once, with the approaches that fail there: R is no coordinate of Approach II, d(t) is none of Approach I.
+  for (const Json& one : sphere["singular"]) {
+    CHECK(std::count_if(sphere["singular"].begin(), sphere["singular"].end(), [&](const Json& s) { return s["set"] == one["set"]; }) == 1);
+  }
+}
+
+TEST_CASE("derive: a key for each thing shown, in three formats") {
+  const Folder folder;
+  for (const std::string& model : models) {
+    CAPTURE(model);
+    for (const char* approach : {"I", "II"}) {
+      const Json shown = document(folder, {"derive", model, "--approach", approach, "--show", "all"});
+      has_keys(shown, {"approach", "equations", "reactions", "energies", "lagrangian"});
+      CHECK(shown["approach"] == approach);
+      CHECK_FALSE(shown["equations"].empty());
+    }
+  }
+  for (const char* key : {"basis", "metric", "christoffel", "line_element", "energies", "lagrangian", "constraints", "singular"}) {
+    CAPTURE(key);
+    const Json shown = document(folder, {"derive", "P7_moving_sphere", "--show", key});
+    has_keys(shown, {key, "equations", "reactions"});
+    CHECK_FALSE(shown[key].empty());
+  }
+  const Words words{"derive", "P7_moving_sphere", "--approach", "I", "--format"};
+  const auto in_format = [&](const char* format) {
+    Words all = words;
+    all.emplace_back(format);
+    return expect(0, folder, all).out;
+  };
+  CHECK(contains(in_format("text"), "lambda = m d_ddot - m d (phi_dot^2 + sin^2(phi) theta_dot^2) + m g cos(phi)"));
+  CHECK(contains(in_format("latex"), "\\dot{\\theta}"));
+  CHECK(contains(in_format("mathml"), "<math"));
+}
+
+TEST_CASE("derive: what does not apply is an empty list, not a missing key") {
+  const Folder folder;
+  for (const char* key : {"basis", "metric", "christoffel", "line_element", "constraints", "conserved", "reactions", "singular"}) {
+    CAPTURE(key);
+    has_keys(document(folder, {"derive", "cart_pendulum", "--show", key}), {key});
+  }
+}
+
+TEST_CASE("verify: routes with what they share, and a verdict") {
+  const Folder folder;
+  for (const char* model : {"P7_moving_sphere", "S5_double_pendulum_cartesian"}) {
+    CAPTURE(model);
+    const Json certificate = document(folder, {"verify", model, "--points", "5"});
+    has_keys(certificate, {"routes", "points", "rejected", "verdict"});
+    CHECK(certificate["verdict"] == "pass");
+    CHECK(certificate["points"] == 5);
+    std::size_t independent = 0, emitted = 0;
+    for (const Json& row : certificate["routes"]) {
+      independent += row["shares_code"] == false ? 1 : 0;
+      emitted += row["a"] == "emitted code" ? 1 : 0;
+    }
+    CHECK(independent >= 6);
+    CHECK(emitted == 1);
+  }
+  const std::string readable = expect(0, folder, {"verify", "P7_moving_sphere", "--points", "2", "--no-compile"}).out;
+  CHECK_FALSE(contains(readable, "{"));
+  CHECK_FALSE(contains(readable, "emitted code"));
+  // What shares no code comes first.
+  CHECK(readable.find("they share code") > readable.rfind("reading form II "));
+}
+
+TEST_CASE("emit: the files are there; the counts are of the route that was taken") {
+  const Folder folder;
+  const Json emitted = document(folder, {"emit", "P7_moving_sphere", "-o", "out"});
+  has_keys(emitted, {"files", "route", "tried", "operations", "seconds"});
+  CHECK(emitted["files"] == Json({"out/P7_moving_sphere.hpp", "out/P7_moving_sphere.c", "out/P7_moving_sphere.h"}));
+  for (const Json& file : emitted["files"]) CHECK(folder.has(file));
+  bool among = false;
+  for (const Json& tried : emitted["tried"]) among = among || (tried["route"] == emitted["route"] && tried["operations"] == emitted["operations"]);
+  CHECK(among);
+  const Json paper = document(folder, {"emit", "P7_moving_sphere", "-o", "paper", "--target", "latex"});
+  CHECK(paper["files"] == Json({"paper/P7_moving_sphere.tex"}));
+  CHECK(contains(folder.read("paper/P7_moving_sphere.tex"), "\\documentclass"));
+  CHECK(contains(expect(0, folder, {"emit", "P7_moving_sphere", "-o", "out"}).out, "wrote out/P7_moving_sphere.hpp"));
+}
+
+TEST_CASE("run: the document tells how, how long, how exact") {
+  const Folder folder;
+  for (const std::string& model : models) {
+    CAPTURE(model);
+    const Json run = document(folder, {"run", model, "--t-end", "2"});
+    has_keys(run, {"solver", "outcome", "steps", "rejected", "rhs_evaluations", "seconds", "final", "error_estimate", "invariants",
+                   "power_balance", "constraint_drift", "events", "solver_reason"});
+    CHECK(run["outcome"] == "done");
+    CHECK(run["error_estimate"]["max"].get<double>() > 0);
+    CHECK(run["error_estimate"]["max"].get<double>() < 1e-3);
+    CHECK(run["power_balance"].get<double>() < 1e-6);
+    has_keys(run["final"], {"energy"});
+  }
+  const Json without = document(folder, {"run", "P2_planar_pendulum", "--no-error-estimate"});
+  CHECK_FALSE(without.contains("error_estimate"));
+  CHECK(without["constraint_drift"].is_null());  // both constraints are built in
+  CHECK(document(folder, {"run", "S5_double_pendulum_cartesian"})["constraint_drift"].get<double>() < 1e-10);
+}
+
+TEST_CASE("run: the readable report says the same in words") {
+  const Folder folder;
+  const ChildResult run = expect(0, folder, {"run", "S5_double_pendulum_cartesian", "--t-end", "1"});
+  CHECK(run.err.empty());
+  for (const char* word : {"solver            dop853 (rtol is 1e-6 or below", "outcome           done at t = 1\n", "error estimate    ",
+                           "invariant         energy = ", "power balance     ", "constraints       |psi| at most ", "seconds           derive "}) {
+    CAPTURE(word);
+    CHECK(contains(run.out, word));
+  }
+  CHECK_FALSE(contains(run.out, "{"));
+  CHECK_FALSE(contains(run.out, "0.20000000000000001"));
+  CHECK_FALSE(contains(expect(0, folder, {"run", "P2_planar_pendulum", "--t-end", "1", "--no-error-estimate"}).out, "error estimate"));
+}

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Emitted sources in the hands of a stranger: compiled with every warning an error, called from C and from C++.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+const Words warnings{"-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"};
+
+void compile(const Folder& folder, Words words) {
+  words.insert(words.end(), warnings.begin(), warnings.end());
+  const ChildResult result = run_child({words, folder.path()});
+  CAPTURE(result.err);
+  REQUIRE(result.status == 0);
+}
+
+/// What a program in `folder` prints, as JSON.
+Json printed(const Folder& folder, const std::string& program) {
+  const ChildResult result = run_child({{folder / program}, folder.path()});
+  REQUIRE(result.status == 0);
+  CAPTURE(result.out);
+  return Json::parse(result.out);
+}
+
+// States, self test, metadata, and the right-hand side at the defaults, as one JSON document.
+std::string c_caller(const std::string& name) {
+  std::string text = R"(#include <stdio.h>
+#include "NAME.h"
+int main(void)
+{
+  double x[64], p[64], dx[64];
+  int status;
+  NAME_defaults(x, p);
+  status = NAME_rhs(0.0, x, p, NULL, 0, dx);
+  printf("{\"abi\": %d, \"selftest\": %d, \"status\": %d, \"x\": [%.17g, %.17g], \"dx\": [%.17g, %.17g], \"info\": %s}\n",
+         NAME_abi(), NAME_selftest(), status, x[0], x[1], dx[0], dx[1], NAME_info());
+  return 0;
+}
+)";
+  for (std::size_t at; (at = text.find("NAME")) != std::string::npos;) text.replace(at, 4, name);
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("C: every shipped model compiles as strict C11, passes its self test, and describes itself") {
+  const Folder folder;
+  for (const char* model : {"P2_planar_pendulum", "P7_moving_sphere", "P14_kepler_spherical", "S5_double_pendulum_cartesian",
+                            "S5_spherical_double_pendulum", "cart_pendulum"}) {
+    const std::string name = model;
+    CAPTURE(name);
+    expect(0, folder, {"emit", name, "-o", ".", "--with", "jac,jac_p,mass,constraints,reactions", "--output", "energy"});
+    folder.write("caller.c", c_caller(name));
+    compile(folder, {"gcc", "-std=c11", "-o", "caller", "caller.c", name + ".c", "-lm"});
+    const Json all = printed(folder, "caller");
+    CHECK(all["abi"] == 1);
+    CHECK(all["selftest"] == 0);
+    CHECK(all["status"] == 0);
+    for (const char* key : {"model", "content_hash", "states", "parameters", "inputs", "outputs", "modes", "units", "defaults", "verdict"}) {
+      CAPTURE(key);
+      CHECK(all["info"].contains(key));
+    }
+    CHECK(all["info"]["model"] == name);
+    CHECK(all["info"]["verdict"].get<std::string>().starts_with("pass"));
+    CHECK(all["info"]["outputs"] == Json({"energy"}));
+    // The right-hand side begins with the rates.
+    const std::size_t half = all["info"]["states"].size() / 2;
+    if (half == 1) CHECK(all["dx"][0] == all["x"][1]);
+  }
+}
+
+TEST_CASE("C: the pendulum's acceleration is -g/L sin(theta)") {
+  const Folder folder;
+  expect(0, folder, {"emit", "P2_planar_pendulum", "-o", "."});
+  folder.write("caller.c", c_caller("P2_planar_pendulum"));
+  compile(folder, {"gcc", "-std=c11", "-o", "caller", "caller.c", "P2_planar_pendulum.c", "-lm"});
+  const Json all = printed(folder, "caller");
+  CHECK(all["info"]["states"] == Json({"theta", "theta_dot"}));
+  CHECK(all["x"] == Json({1.0, 0.0}));
+  CHECK(all["dx"][1].get<double>() == doctest::Approx(-9.81 * std::sin(1.0)).epsilon(1e-15));
+}
+
+TEST_CASE("C++: the header alone, in float and double, gives the same") {
+  const Folder folder;
+  expect(0, folder, {"emit", "P2_planar_pendulum", "-o", ".", "--with", "jac"});
+  folder.write("caller.cpp", R"(#include <cmath>
+#include <cstdio>
+
+#include "P2_planar_pendulum.hpp"
+
+template <typename Real>
+double acceleration() {
+  const Real x[] = {Real(0.5), Real(2)}, p[] = {Real(1), Real(9.81), Real(2)};
+  Real dx[2];
+  const int status = eom::P2_planar_pendulum::rhs<Real>(Real(0), x, p, nullptr, 0, dx);
+  return status == 0 ? static_cast<double>(dx[1]) : 1e300;
+}
+
+int main() {
+  const double expected = -9.81 / 2 * std::sin(0.5);
+  std::printf("{\"double\": %.17g, \"float\": %.17g, \"expected\": %.17g}\n", acceleration<double>(), acceleration<float>(), expected);
+}
+)");
+  compile(folder, {"g++", "-std=c++20", "-o", "caller", "caller.cpp"});
+  const Json all = printed(folder, "caller");
+  CHECK(all["double"].get<double>() == doctest::Approx(all["expected"].get<double>()).epsilon(1e-15));
+  CHECK(all["float"].get<double>() == doctest::Approx(all["expected"].get<double>()).epsilon(1e-6));
+}
+
+TEST_CASE("C: integrating the emitted right-hand side by hand gives the rows of run") {
+  const Folder folder;
+  expect(0, folder, {"emit", "P7_moving_sphere", "-o", "."});
+  // Classical Runge-Kutta written here, from the defaults to t = 1.
+  folder.write("caller.c", R"(#include <stdio.h>
+#include "P7_moving_sphere.h"
+static void f(double t, const double* x, const double* p, double* dx) { (void)P7_moving_sphere_rhs(t, x, p, NULL, 0, dx); }
+int main(void)
+{
+  double x[4], p[8], k[4][4], y[4];
+  const double h = 1e-3;
+  P7_moving_sphere_defaults(x, p);
+  for (int n = 0; n < 1000; ++n) {
+    const double t = n * h;
+    f(t, x, p, k[0]);
+    for (int s = 1; s < 4; ++s) {
+      const double c = s == 3 ? h : h / 2;
+      for (int i = 0; i < 4; ++i) y[i] = x[i] + c * k[s - 1][i];
+      f(t + c, y, p, k[s]);
+    }
+    for (int i = 0; i < 4; ++i) x[i] += h / 6 * (k[0][i] + 2 * k[1][i] + 2 * k[2][i] + k[3][i]);
+  }
+  printf("[%.17g, %.17g, %.17g, %.17g]\n", x[0], x[1], x[2], x[3]);
+  return 0;
+}
+)");
+  compile(folder, {"gcc", "-std=c11", "-O1", "-o", "caller", "caller.c", "P7_moving_sphere.c", "-lm"});
+  const Json by_hand = printed(folder, "caller");
+  const Json final = document(folder, {"run", "P7_moving_sphere", "--t-end", "1", "--rtol", "1e-12"})["final"];
+  const Words names{"phi", "theta", "phi_dot", "theta_dot"};
+  for (std::size_t i = 0; i < 4; ++i) CHECK(by_hand[i].get<double>() == doctest::Approx(final[names[i]].get<double>()).epsilon(1e-9));
+}
+
+TEST_CASE("--fix: a parameter becomes a number, the array of parameters stays") {
+  const Folder folder;
+  const Json fixed = document(folder, {"emit", "P7_moving_sphere", "-o", ".", "--fix", "m,g,D"});
+  const Json open = document(folder, {"emit", "P7_moving_sphere", "-o", "open"});
+  CHECK(fixed["operations"]["mul"].get<int>() <= open["operations"]["mul"].get<int>());
+  folder.write("caller.c", c_caller("P7_moving_sphere"));
+  compile(folder, {"gcc", "-std=c11", "-o", "caller", "caller.c", "P7_moving_sphere.c", "-lm"});
+  const Json all = printed(folder, "caller");
+  CHECK(all["selftest"] == 0);
+  CHECK(all["info"]["parameters"].size() == 6);
+}

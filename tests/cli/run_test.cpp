@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options of run: each changes what it should and nothing else.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "program.hpp"
+#include "support/elliptic.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+double angle(const Json& run) { return run["final"]["theta"].get<double>(); }
+
+}  // namespace
+
+TEST_CASE("--set changes the motion as the closed form says, with the code that is there") {
+  const Folder folder;
+  document(folder, {"run", "P2_planar_pendulum"});
+  for (const double L : {0.5, 1.0, 2.5}) {
+    const Json run = document(folder, {"run", "P2_planar_pendulum", "--set", "L=" + std::to_string(L), "--rtol", "1e-12"});
+    CHECK(run["compiled"] == "from the cache");
+    CHECK(angle(run) == doctest::Approx(pendulum_from_rest(1.0, std::sqrt(9.81 / L), 10).angle).epsilon(1e-9));
+    CHECK(run["final"]["r"] == L);
+  }
+}
+
+TEST_CASE("--set takes exact decimals, and the last of two") {
+  const Folder folder;
+  const auto length = [&](const std::string& value) {
+    return document(folder, {"run", "P2_planar_pendulum", "--set", "L=3", "--set", "L=" + value, "--t-end", "0.1"})["final"]["r"].get<double>();
+  };
+  CHECK(length("0.1") == 0.1);
+  CHECK(length("1e-1") == 0.1);
+  CHECK(length("+2.5E+0") == 2.5);
+  CHECK(length("0.30000000000000004") == 0.30000000000000004);
+}
+
+TEST_CASE("--t-end, --rtol, --scene") {
+  const Folder folder;
+  const Json half = document(folder, {"run", "P2_planar_pendulum", "--t-end", "0.5"});
+  CHECK(half["t"] == 0.5);
+  const Json coarse = document(folder, {"run", "P2_planar_pendulum", "--rtol", "1e-4"});
+  CHECK(coarse["solver"] == "dopri5");
+  CHECK(coarse["rhs_evaluations"].get<int>() < document(folder, {"run", "P2_planar_pendulum", "--rtol", "1e-11"})["rhs_evaluations"].get<int>());
+  folder.write("two.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"
+                                         "[scene.long_rod]\nt = [0, 2]\nparameters = { L = 2 }\ninitial = { x = 0, y = -2, y_dot = 0 }\n"));
+  CHECK(document(folder, {"run", "two.toml"})["t"] == 1.0);
+  const Json other = document(folder, {"run", "two.toml", "--scene", "long_rod"});
+  CHECK(other["scene"] == "long_rod");
+  CHECK(other["t"] == 2.0);
+  CHECK(other["final"]["y"].get<double>() == doctest::Approx(-2));
+  CHECK(other["compiled"] == "from the cache");  // scenes run the same code
+}
+
+TEST_CASE("every solver that list shows runs, and they agree") {
+  const Folder folder;
+  const double expected = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;
+  for (const Json& solver : document(folder, {"list"})["solvers"]) {
+    const std::string name = solver["name"].get<std::string>();
+    CAPTURE(name);
+    Words words{"run", "P2_planar_pendulum", "--solver", name};
+    const bool adaptive = solver["adaptive"].get<bool>();
+    if (!adaptive) words.insert(words.end(), {"--step", "0.001"});
+    const Json run = document(folder, words);
+    CHECK(run["solver"] == name);
+    CHECK(run["solver_reason"] == "as asked for");
+    CHECK(std::abs(angle(run) - expected) < 1e-6);
+    CHECK(run["error_estimate"]["theta"].get<double>() < 1e-6);
+    if (!adaptive) CHECK(run["steps"] == 10000);
+  }
+}
+
+TEST_CASE("a step without a solver means rk4; a step with an adaptive one keeps it") {
+  const Folder folder;
+  const Json run = document(folder, {"run", "P2_planar_pendulum", "--step", "0.01"});
+  CHECK(run["solver"] == "rk4");
+  CHECK(run["steps"] == 1000);
+  CHECK(document(folder, {"run", "P2_planar_pendulum", "--step", "0.01", "--solver", "dop853"})["steps"] == 1000);
+}
+
+TEST_CASE("--seed: the same run, whatever it is; verify draws other points") {
+  const Folder folder;
+  const Json one = document(folder, {"run", "S5_double_pendulum", "--seed", "1"});
+  CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "1"})["final"]);
+  CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "2"})["final"]);
+  const auto routes = [&](const char* seed) {
+    return document(folder, {"verify", "S5_double_pendulum", "--points", "3", "--no-compile", "--seed", seed})["routes"];
+  };
+  CHECK(routes("7") == routes("7"));
+  CHECK(routes("7") != routes("8"));
+}
+
+TEST_CASE("--approach: I and II are the same motion") {
+  const Folder folder;
+  for (const char* model : {"P7_moving_sphere", "P2_planar_pendulum"}) {
+    const Json one = document(folder, {"run", model, "--approach", "I"});
+    const Json two = document(folder, {"run", model, "--approach", "II"});
+    CHECK(one["approach"] == "I");
+    CHECK(two["approach"] == "II");
+    for (const auto& [name, value] : one["final"].items()) {
+      CAPTURE(name);
+      CHECK(std::abs(value.get<double>() - two["final"][name].get<double>()) < 1e-6);
+    }
+  }
+}
+
+TEST_CASE("the error estimate bounds what a far tighter run shows, within its factor") {
+  const Folder folder;
+  const double exact = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;
+  for (const char* rtol : {"1e-5", "1e-8"}) {
+    const Json run = document(folder, {"run", "P2_planar_pendulum", "--rtol", rtol, "--atol", rtol});
+    const double error = std::abs(angle(run) - exact), estimate = run["error_estimate"]["theta"].get<double>();
+    CHECK(estimate > error / 10);
+    CHECK(estimate < error * 10);
+  }
+}

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Starts: what breaks a constraint is refused with its size and place, what may move is moved, a guess picks the closure.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+// Two cranks of length 1 about (0, 0) and (3, 0), joined by a rod of length 2.5. With A given, B has two places.
+std::string loop(const std::string& scene) {
+  return R"(format = 1
+[parameters]
+m = "1 kg"
+g = "9.81 m/s^2"
+a = "1 m"
+c = "2.5 m"
+d = "3 m"
+[[particle]]
+name = "A"
+mass = "m"
+position = { cartesian = ["x1", "y1"] }
+[[particle]]
+name = "B"
+mass = "m"
+position = { cartesian = ["x2", "y2"] }
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "left"
+holonomic = "x1^2 + y1^2 - a^2"
+[[constraint]]
+name = "right"
+holonomic = "(x2 - d)^2 + y2^2 - a^2"
+[[constraint]]
+name = "rod"
+holonomic = "(x2 - x1)^2 + (y2 - y1)^2 - c^2"
+[scene.default]
+t = [0, 0.2]
+)" + scene;
+}
+
+Json start_of(const Folder& folder, const std::string& scene) {
+  folder.write("loop.toml", loop(scene));
+  return document(folder, {"run", "loop.toml", "--out", "a.csv"});
+}
+
+}  // namespace
+
+TEST_CASE("a start that breaks a constraint is refused: by how much, which, where") {
+  const Folder folder;
+  folder.write("off.toml", pendulum_text("[scene.default]\ninitial = { x = 0.6, y = -0.9 }\n"));
+  const ChildResult result = expect(2, folder, {"run", "off.toml", "--out", "a.csv"});
+  CHECK(contains(result.err, "off.toml:17:22: error: the start breaks constraint 'rod': it is off by 0.17 "));
+  CHECK(contains(result.err, "  17 | initial = { x = 0.6, y = -0.9 }"));
+  CHECK(contains(result.err, "remedy: give consistent values, or name what may be moved: solve = [one of \"x\", \"y\"]"));
+  CHECK_FALSE(folder.has("a.csv"));
+  folder.write("rate.toml", pendulum_text("[scene.default]\ninitial = { x = 0.6, y = -0.8, x_dot = 1, y_dot = 1 }\n"));
+  CHECK(contains(expect(2, folder, {"run", "rate.toml"}).err, "the start breaks constraint 'rod' in its rates: it is off by -0.4 "));
+  CHECK(contains(expect(2, folder, {"emit", "off.toml", "-o", "out"}).err, "the start breaks constraint 'rod'"));
+  expect(0, folder, {"check", "off.toml"});  // a scene does not make the equations wrong
+}
+
+TEST_CASE("a value for an eliminated coordinate must be the one that the constraint gives") {
+  const Folder folder;
+  std::string text = pendulum_text("[scene.default]\ninitial = { r = 1.5, theta = 0.1 }\n");
+  text.replace(text.find("cartesian = [\"x\", \"y\"]"), 22, "cylindrical = [\"r\", \"theta\"]");
+  text.replace(text.find("x^2 + y^2 - L^2"), 15, "r - L");
+  folder.write("fixed.toml", text);
+  CHECK(contains(expect(2, folder, {"run", "fixed.toml"}).err, "r = 1.5 breaks constraint 'rod', which fixes it at 1 (off by 0.5)"));
+}
+
+TEST_CASE("solve moves what it may, and nothing else") {
+  const Folder folder;
+  folder.write("move.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 0.6, y = -0.9, x_dot = 0.5 }\nsolve = [\"y\"]\n"));
+  const Json run = document(folder, {"run", "move.toml", "--out", "a.csv"});
+  const Table table = read_table(folder.read("a.csv"));
+  CHECK(table.at(0, "x") == 0.6);
+  CHECK(table.at(0, "y") == doctest::Approx(-0.8).epsilon(1e-14));
+  CHECK(table.at(0, "y_dot") == doctest::Approx(0.6 * 0.5 / 0.8).epsilon(1e-14));
+  CHECK(run["solved"].size() == 2);
+}
+
+TEST_CASE("a guess picks the closure of a loop") {
+  const Folder folder;
+  // A at (0.6, 0.8): B lies 1 from (3, 0) and 2.5 from A, above or below the line between them.
+  const std::string given = "initial = { x1 = 0.6, y1 = 0.8, x1_dot = 0 }\n";
+  for (const double side : {1.0, -1.0}) {
+    start_of(folder, given + "guess = { x2 = 3, y2 = " + std::to_string(side) + " }\n");
+    const Table table = read_table(folder.read("a.csv"));
+    const double x2 = table.at(0, "x2"), y2 = table.at(0, "y2");
+    CHECK(y2 * side > 0);
+    CHECK(std::hypot(x2 - 3, y2) == doctest::Approx(1).epsilon(1e-13));
+    CHECK(std::hypot(x2 - 0.6, y2 - 0.8) == doctest::Approx(2.5).epsilon(1e-13));
+    CHECK(table.at(0, "x1") == 0.6);
+    const std::size_t last = table.rows.size() - 1;  // it stays closed
+    CHECK(std::hypot(table.at(last, "x2") - table.at(last, "x1"), table.at(last, "y2") - table.at(last, "y1")) == doctest::Approx(2.5).epsilon(1e-10));
+  }
+}
+
+TEST_CASE("a start that no values can close is refused") {
+  const Folder folder;
+  folder.write("loop.toml", loop("initial = { x1 = -1, y1 = 0, x1_dot = 0 }\n"));  // 4 from the other pivot; 3.5 at most
+  const ChildResult result = expect(2, folder, {"run", "loop.toml"});
+  CHECK(contains(result.err, "the start breaks constraint"));
+}

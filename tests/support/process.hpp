@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A child process in a test. In: arguments, working folder, changes of the environment, a limit of time. Out: what it
+// printed and how it ended. A child that outlives its limit is killed.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace eomgen::test {
+
+struct ChildCommand {
+  std::vector<std::string> arguments;  // the program first; looked for in PATH if it is no path
+  std::string folder = ".";
+  std::map<std::string, std::optional<std::string>> environment{};  // changes; nothing: taken out
+  double limit = 30;  // seconds
+};
+
+struct ChildResult {
+  int status = -1;  // exit code, or 128 + signal
+  bool in_time = true;
+  double seconds = 0;
+  std::string out, err;
+};
+
+class Child {
+ public:
+  /// Starts it. Throws std::runtime_error where that cannot be done.
+  explicit Child(const ChildCommand& command);
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+  ~Child();
+
+  void signal(int number) const;
+  /// Reads until both streams are at their end, and waits.
+  ChildResult finish();
+
+ private:
+  void read_until(std::chrono::steady_clock::time_point end, ChildResult& result);
+
+  pid_t process_ = -1;
+  int out_ = -1, err_ = -1;
+  double limit_;
+  std::chrono::steady_clock::time_point start_;
+};
+
+inline ChildResult run_child(const ChildCommand& command) { return Child(command).finish(); }
+
+}  // namespace eomgen::test
