@@ -134,8 +134,8 @@ x = "m"
 kinetic = "m*x^2*x_dot^2/L^2/2"
 potential = "0"
 [scene.default]
-t = [0, 1]
-initial = { x = 0, x_dot = 1 }
+t = [0, 4]
+initial = { x = 1, x_dot = -1 }
 )";
 }
 

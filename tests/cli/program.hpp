@@ -44,7 +44,7 @@ Json document(const Folder& folder, Words words, int status = 0);
 std::string pendulum_text(const std::string& scene);
 /// x'' = k x^2 from x = 1: infinite at a finite time.
 std::string diverging_text();
-/// Starts where its inertia vanishes: no accelerations there.
+/// Falls towards x = 0, where its inertia vanishes; Euler's step of length 1 from the start ends there exactly.
 std::string singular_text();
 
 struct Table {
