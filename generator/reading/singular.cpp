@@ -28,6 +28,13 @@ bool varies(const Sum& sum) {
   return result;
 }
 
+// cos(alpha) of a parameter: a value of the parameter, too, may be where coordinates fail.
+bool turns(const Sum& factor) {
+  if (factor.size() != 1 || factor.terms().begin()->first.size() != 1) return false;
+  const Op op = factor.terms().begin()->first[0].atom->op;
+  return op == Op::sin || op == Op::cos;
+}
+
 // Where f = 0 for the few f whose zeros everybody knows.
 std::vector<Formula> solutions(const Sum& factor) {
   if (factor.size() != 1) return {};
@@ -48,7 +55,7 @@ std::vector<Formula> solutions(const Sum& factor) {
 class Sets {
  public:
   void add(const std::string& approach, const Sum& factor) {
-    if (!varies(factor)) return;
+    if (!varies(factor) && !turns(factor)) return;
     for (SingularSet& set : found_) {
       if (!(set.factor == factor)) continue;
       if (set.approach != approach) set.approach = "both";
@@ -81,6 +88,7 @@ class Sets {
 
 bool positive_always(const Sum& factor) {
   // a sum of terms without a sign change and with a part that does not vanish: m1 + m2 sin(x)^2
+  if (turns(factor)) return false;
   bool constant_part = false;
   for (const auto& [monomial, coefficient] : factor.terms()) {
     if (cln::minusp(coefficient)) return false;
@@ -98,7 +106,7 @@ bool positive_always(const Sum& factor) {
 
 void add_determinant(Bridge& bridge, const std::string& approach, const Sum& kinetic, const std::vector<std::uint32_t>& which, Sets& sets) {
   Sets candidates;
-  candidates.add_factors(approach, determinant(mass_matrix(bridge, kinetic, which), which.size()));
+  candidates.add_factors(approach, simplify(determinant(mass_matrix(bridge, kinetic, which), which.size())));
   for (const SingularSet& set : candidates.take()) {
     if (!positive_always(set.factor)) sets.add(approach, set.factor);
   }

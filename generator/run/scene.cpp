@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -182,6 +183,31 @@ void require_span(const Mechanics& m, const model::Scene& scene, const Scene& re
   if (result.step < 0 || result.every < 0) fail("step and every must be positive", "leave them out for the defaults");
 }
 
+// Coordinates fail where M has no inverse; with multipliers it may have none as long as the constraints mend that.
+void require_regular(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene, const Scene& start) {
+  constexpr double smallest_pivot = 1e-14;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
+  if (!system.active.empty()) return;
+  const auto n = static_cast<Eigen::Index>(system.free.size());
+  const std::vector<double> values = symbolic::evaluate(*system.dag, system.M, [&](const symbolic::Symbol& s) {
+    if (s.kind == symbolic::SymbolKind::parameter) return start.parameters[s.index];
+    if (s.kind == symbolic::SymbolKind::time) return start.t0;
+    if (s.kind == symbolic::SymbolKind::coordinate) return (s.order == 0 ? start.q : start.qdot)[s.index];
+    return std::nan("");
+  });
+  Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
+  if (!M.allFinite()) return;  // told by what has no value
+  const Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
+  bool regular = scale.size() == 0 || scale.minCoeff() > 0;
+  if (regular) {
+    M = scale.cwiseInverse().asDiagonal() * M * scale.cwiseInverse().asDiagonal();
+    const Eigen::LDLT<Eigen::MatrixXd> factors(M);
+    regular = factors.vectorD().minCoeff() > smallest_pivot;
+  }
+  if (regular) return;
+  throw Error("scene", m.model->where(scene.span), "the start is a singular configuration: the coordinates fail there",
+              "start elsewhere, or choose other coordinates or parameters; `check` lists the singular sets");
+}
+
 }  // namespace
 
 Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
@@ -233,6 +259,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
   result.solved = problem.solved;
+  require_regular(m, system, scene, result);
 
   std::vector<model::Named> wanted = scene.outputs;
   if (!overrides.outputs.empty()) {

@@ -21,8 +21,8 @@ void tighten(cli::SimulationRequest& request) {
 
 }  // namespace
 
-TEST_CASE("P14: in Cartesian and in spherical coordinates it follows Kepler's equation and keeps E and h") {
-  for (const char* name : {"P14_kepler_cartesian", "P14_kepler_spherical"}) {
+TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates it follows Kepler's equation and keeps E and h") {
+  for (const char* name : {"P14_kepler_cartesian", "P14_kepler_spherical", "P14_kepler_parabolic"}) {
     INFO(name);
     const test::Finished run = test::run_model(name, tighten);
     const double GM = run.parameter("GM"), a = run.parameter("a"), e = run.parameter("e"), m = run.parameter("m");
