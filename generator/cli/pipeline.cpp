@@ -33,6 +33,16 @@ std::vector<system::Approach> approaches(const mechanics::Mechanics& m, Approach
   return {system::Approach::two, system::Approach::one};
 }
 
+// Nothing to integrate and no right-hand side to emit; what such a model can tell is its constraint forces.
+void require_freedom(const mechanics::Mechanics& m) {
+  if (m.free.size() > m.active.size()) return;
+  const model::Constraint& last = m.model->constraints.back();
+  throw Error("derive", m.model->where(last.span),
+              m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
+                             : "there are as many constraints as coordinates: nothing is left to move, unless constraints repeat one another",
+              "remove a constraint; eomgen derive shows the constraint forces of a motion that is prescribed");
+}
+
 verify::ProgramForm program_form(const program::Program& program, int digits) {
   const program::Function& rhs = program.functions.front();
   return {"optimised program", [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x,
@@ -85,6 +95,7 @@ std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice ap
   derived->model = load_model(name);
   derived->seconds.read = watch.lap();
   derived->mechanics = mechanics::build_mechanics(derived->model);
+  require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::RouteEntry& route : derive::routes()) {
       if (route.applies(derived->mechanics, a)) derived->candidates.push_back(route.derive(derived->mechanics, a));
