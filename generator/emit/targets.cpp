@@ -3,6 +3,7 @@
 
 #include "emit/c/c.hpp"
 #include "emit/cpp/cpp.hpp"
+#include "emit/python/python.hpp"
 #include "error.hpp"
 
 namespace eomgen::emit {
@@ -11,6 +12,7 @@ namespace {
 constexpr TargetEntry registry[] = {
     {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
     {"c", "C11 sources with the C ABI", emit_c},
+    {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python},
 };
 
 }  // namespace

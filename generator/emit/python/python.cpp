@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/python/python.hpp"
+
+#include "emit/c/c.hpp"
+#include "emit/metadata.hpp"
+#include "skeletons/python_model_py.hpp"
+#include "skeletons/python_simulate_c.hpp"
+
+namespace eomgen::emit {
+
+std::vector<EmittedFile> emit_python(const program::Program& program, const EmissionContext& context) {
+  std::vector<EmittedFile> files = emit_c(program, context);
+  const std::string name = mangled_id(context.id);
+  files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, {{"name", name}}, {})});
+  files.push_back({name + ".py",
+                   rendered(skeleton::python_model_py, {{"banner", banner(program, context, "# ", "# ", "")}, {"name", name}}, {})});
+  return files;
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Target python: its C in the hands of compilers, its module in those of Python where there is one. What the module
+// computes is compared with `eomgen run` by examples/python and examples/scipy.
+#include <doctest/doctest.h>
+
+#include "emit/examples.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+
+namespace {
+
+void compiles_and_imports(const Example& e) {
+  const Folder folder;
+  const Setting cache("EOMGEN_CACHE_DIR", folder.path);
+  const auto files = emit::emit(e.program, e.context, "python");
+  emit::write_files(folder.path, files);
+  const std::string name = emit::mangled_id(e.context.id), c = folder.path + "/" + name + "_simulate.c";
+  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", folder.path + "/c.o"}, {c}) == "");
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) == "");
+  for (const auto& file : files) {
+    for (const char letter : file.text) CHECK_MESSAGE((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')), file.name);
+  }
+  if (emit::run_process({"python3", "--version"}).status != 0) return;
+  const std::string use = fmt::format(
+      "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{0}'); import {1} as m; "
+      "assert len(m.rhs(0, m.defaults['x'])) == len(m.states) == {2}; assert len(m.params) == {3}; "
+      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'", folder.path, name, e.context.start.size(),
+      e.context.parameters.size());
+  const emit::Finished finished = emit::run_process({"python3", "-c", use});
+  CHECK_MESSAGE(finished.status == 0, finished.output);
+}
+
+}  // namespace
+
+TEST_CASE("target python: the C is clean under strict warnings, the module imports and integrates") {
+  for (const Example& e : examples()) {
+    INFO(e.context.id);
+    compiles_and_imports(e);
+  }
+}
+
+TEST_CASE("target python: hostile names and texts stay what they are") {
+  auto e = example("int", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
+  e.context.title = "\"\"\" + exit(7) #\n%s {} \\";
+  e.context.parameters[0].note = "\nexit(8)";
+  e.context.parameters[1].unit = "'); exit(9)  # \xff";
+  compiles_and_imports(e);
+}
