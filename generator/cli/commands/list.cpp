@@ -23,6 +23,8 @@ json registries() {
     for (const coordinates::Slot& slot : system->slots) slots.push_back(slot.name);
     coordinates.push_back({{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
   }
+  // Defined by the model itself, so it is no entry of that registry.
+  coordinates.push_back({{"name", "custom"}, {"title", "coordinates that a model defines, by x(q) or by q(x)"}, {"slots", json::array()}, {"singular", ""}});
   for (const derive::RouteEntry& route : derive::routes()) routes.push_back({{"name", route.name}, {"title", route.title}});
   for (const eom::MethodInfo& method : eom::methods()) {
     solvers.push_back({{"name", method.name}, {"order", method.order}, {"dense_order", method.dense_order}, {"adaptive", method.adaptive}});
