@@ -10,7 +10,7 @@ nlohmann::ordered_json to_json(const program::Operations& o) {
 }
 
 std::string to_text(const program::Operations& o) {
-  std::string text = fmt::format("{} flops ({} add, {} mul)", o.flops(), o.add, o.mul);
+  std::string text = fmt::format("{} {} ({} add, {} mul)", o.flops(), o.flops() == 1 ? "flop" : "flops", o.add, o.mul);
   if (o.div > 0) text += fmt::format(", {} div", o.div);
   if (o.sqrt > 0) text += fmt::format(", {} sqrt", o.sqrt);
   if (o.trig > 0) text += fmt::format(", {} trig", o.trig);

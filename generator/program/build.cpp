@@ -80,15 +80,18 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   return *best;
 }
 
+// One entry per system: its cheaper order of elimination.
 std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::vector<system::EquationSystem>& systems) {
   std::vector<Tried> result;
+  std::optional<std::size_t> last;
   for (const Candidate& candidate : candidates) {
-    const std::string& route = systems[candidate.index].route;
-    if (result.empty() || result.back().route != route) {
-      result.push_back({route, candidate.operations});
+    const system::EquationSystem& system = systems[candidate.index];
+    if (last != candidate.index) {
+      result.push_back({system.route, system.approach, candidate.operations});
     } else if (candidate.operations.cost() < result.back().operations.cost()) {
       result.back().operations = candidate.operations;
     }
+    last = candidate.index;
   }
   return result;
 }

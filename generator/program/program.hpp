@@ -58,6 +58,7 @@ struct Function {
 
 struct Tried {
   std::string route;
+  system::Approach approach = system::Approach::two;
   Operations operations;
 };
 

@@ -127,7 +127,7 @@ int execute(const Options& options, const Common& common) {
   const Timings& seconds = derived->seconds;
   if (common.json) {
     json tried = json::array();
-    for (const program::Tried& t : program.tried) tried.push_back({{"route", t.route}, {"operations", to_json(t.operations)}});
+    for (const program::Tried& t : program.tried) tried.push_back({{"route", t.route}, {"approach", system::name(t.approach)}, {"operations", to_json(t.operations)}});
     const json document{{"format", 1}, {"files", files}, {"route", program.route}, {"approach", system::name(program.approach)},
                         {"tried", tried}, {"operations", to_json(program.functions.front().operations)},
                         {"certificate", certificate.summary()},
@@ -139,7 +139,7 @@ int execute(const Options& options, const Common& common) {
   fmt::print("route       {}, approach {}\n", program.route, system::name(program.approach));
   fmt::print("operations  {}\n", to_text(program.functions.front().operations));
   for (const program::Tried& t : program.tried) {
-    fmt::print("tried       {:<10} {}\n", t.route, to_text(t.operations));
+    fmt::print("tried       {:<10} {:<3} {}\n", t.route, system::name(t.approach), to_text(t.operations));
   }
   fmt::print("certificate {}\n", certificate.summary());
   for (const std::string& file : files) fmt::print("wrote {}\n", file);
