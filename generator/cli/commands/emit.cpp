@@ -152,7 +152,7 @@ Execute declare_emit(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   app.add_option("-o", options->folder, "the folder for the sources; it is made if need be")->required();
-  app.add_option("--target", options->target, "cpp, c, or latex for a document")->capture_default_str();
+  app.add_option("--target", options->target, "cpp, c, python, or latex for a document")->capture_default_str();
   add_list(app, "--with", options->with,
            "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), energy");
   add_list(app, "--output", options->outputs, "names for the function outputs");
