@@ -88,6 +88,9 @@ std::string identifier(const std::string& text) {
 std::string NameTable::declare(const std::string& wanted) {
   std::string name = identifier(wanted);
   if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "_" + name;
+  // What is reserved for how it begins is not freed by an underscore at its end.
+  const bool of_the_compiler = name.size() > 1 && name[0] == '_' && (name[1] == '_' || (name[1] >= 'A' && name[1] <= 'Z'));
+  if (of_the_compiler) name = "n" + name;
   while (is_reserved(name) || !taken_.insert(name).second) name += '_';
   return name;
 }

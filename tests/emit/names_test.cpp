@@ -34,3 +34,12 @@ TEST_CASE("names: a model's id becomes an identifier") {
   CHECK(mangled_id("class") == "class_");
   CHECK(mangled_id("") == "model_");
 }
+
+TEST_CASE("names: what begins as the compiler's own names do becomes a legal name at once") {
+  for (const char* wanted : {"\"\"\"", "__x", "_X", "___"}) {
+    eomgen::emit::NameTable table;
+    const std::string name = table.declare(wanted);
+    CHECK_FALSE(eomgen::emit::is_reserved(name));
+    CHECK(name[0] != '_');
+  }
+}
