@@ -2,7 +2,6 @@
 #include "program/from_dag.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "error.hpp"
 
@@ -11,8 +10,6 @@ namespace {
 
 using symbolic::Op;
 using symbolic::SymbolKind;
-
-constexpr std::uint32_t not_free = std::numeric_limits<std::uint32_t>::max();
 
 class Conversion {
  public:

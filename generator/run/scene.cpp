@@ -39,7 +39,7 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
   for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
   for (const auto& [name, value] : overrides.parameters) {
     const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
-                                    [&](const model::Parameter& p) { return p.name == name; });
+                                    [&wanted = name](const model::Parameter& p) { return p.name == wanted; });
     if (found == m.model->parameters.end()) {
       std::vector<std::string> names;
       for (const model::Parameter& p : m.model->parameters) names.push_back(p.name);

@@ -131,7 +131,8 @@ TEST_CASE("every system: the metric is singular where its file says, and nowhere
     Charted chart(*system);
     const auto sets = told(system->singular);
     for (const auto& [name, value] : sets) {
-      CAPTURE(name);
+      const std::string set(name);
+      CAPTURE(set);
       Values at = chart.point();
       at[chart.symbol(name)] = value;
       CHECK(std::abs(value_of(chart.geometry.determinant, at)) < exact);

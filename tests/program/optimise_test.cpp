@@ -57,7 +57,8 @@ symbolic::Ref random_expression(Maker& k, std::uint64_t seed) {
 
 TEST_CASE("optimiser: the value of every function stays the same to 45 digits") {
   for (const auto& [name, system] : systems()) {
-    INFO(std::string(name));
+    const std::string label(name);
+    INFO(label);
     program::AbiFunctions functions(system, {});
     for (const bool optimise : {false, true}) {
       const auto built = build(system, {"jac", "mass", "constraints", "reactions"}, optimise, true);
@@ -97,7 +98,8 @@ TEST_CASE("optimiser: the value of random expressions stays the same to 45 digit
 
 TEST_CASE("optimiser: what is counted is what is in the code") {
   for (const auto& [name, system] : systems()) {
-    INFO(std::string(name));
+    const std::string label(name);
+    INFO(label);
     program::AbiFunctions functions(system, {});
     const auto wanted = functions.rhs();
     const auto graph = program::flatten(program::from_dag(*system.dag, wanted, system.free), false);
