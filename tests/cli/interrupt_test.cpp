@@ -45,7 +45,7 @@ TEST_CASE("an interrupted run keeps its rows, names its outcome and ends with 3"
   }
 }
 
-TEST_CASE("a run that is killed leaves whole rows under another name, and the old table as it was") {
+TEST_CASE("a run that is killed leaves its rows under another name, whole but for the last, and the old table as it was") {
   const Folder folder;
   folder.write("a.csv", "old");
   Child child(command(folder, endless));
@@ -53,7 +53,9 @@ TEST_CASE("a run that is killed leaves whole rows under another name, and the ol
   child.signal(SIGKILL);
   CHECK(child.finish().status == 128 + SIGKILL);
   CHECK(folder.read("a.csv") == "old");
-  const Table table = read_table(folder.read("a.csv.partial"));
+  // SIGKILL may fall into the middle of a write, which the kernel then cuts between two pages.
+  const std::string text = folder.read("a.csv.partial");
+  const Table table = read_table(text.substr(0, text.rfind('\n') + 1));
   CHECK(table.outcome.empty());
   CHECK(table.rows.size() > 100);
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A table of numbers in a file. In: column names, rows of (t, values). Out: F.csv, whole or not at all.
 // Rows go to F.csv.partial; finish(outcome) adds the line "# outcome: NAME" and renames it to F.csv in one go, after an
-// interruption or a failure too. Without finish the .partial file stays, with whole lines. Numbers have 17 significant
+// interruption or a failure too. Without finish the .partial file stays, with whole lines (a kill that falls into the
+// middle of a write may cut the last one). Numbers have 17 significant
 // digits, as printf's %.17g gives in the C locale, whatever the locale is.
 #pragma once
 
