@@ -58,9 +58,10 @@ int Integration::outputs(double t, const double* x, std::span<double> y) const {
 
 double Integration::constraint_defect(double t, const double* x) {
   if (psi_.empty()) return 0;
-  code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data());
+  // Where psi has no value the drift is infinite, not what it was a step ago.
+  if (code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data()) != 0) return HUGE_VAL;
   double largest = 0;
-  for (const double psi : psi_) largest = std::max(largest, std::abs(psi));
+  for (const double psi : psi_) largest = std::isnan(psi) ? HUGE_VAL : std::max(largest, std::abs(psi));
   return largest;
 }
 

@@ -12,6 +12,7 @@ using namespace eomgen;
 
 namespace {
 
+// The models S6_chain_1, S6_chain_2 and S6_chain_6.
 constexpr double span = 3;  // seconds: before the chains become chaotic
 
 test::Finished chain(int n) {
