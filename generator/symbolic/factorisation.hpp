@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// L D L^T of a symmetric matrix of expressions, unrolled: structural zeros cost nothing, and the order of elimination
+// (minimum degree) keeps them.
+#pragma once
+
+#include <vector>
+
+#include "symbolic/dag.hpp"
+
+namespace eomgen::symbolic {
+
+/// `pivot` is what is left of `scale` after elimination; code 1 where it vanishes beside it.
+struct Pivot {
+  Ref pivot, scale;
+};
+
+/// Among rows of equally few entries in M: which one is eliminated first.
+enum class Ties { ascending, descending };
+
+/// L D L^T of a symmetric matrix (row-major, n x n) with structural zeros.
+class Factorisation {
+ public:
+  Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, Ties ties);
+
+  /// L^-1 r, in the order of elimination.
+  std::vector<Ref> forward(const std::vector<Ref>& r) const;
+  /// L^-T D^-1 z, in the order of the rows.
+  std::vector<Ref> backward(const std::vector<Ref>& z) const;
+  /// sum_k a_k b_k / D_k for two results of `forward`.
+  Ref inner(const std::vector<Ref>& a, const std::vector<Ref>& b) const;
+  const std::vector<Pivot>& pivots() const { return pivots_; }
+
+ private:
+  std::size_t next_row(std::vector<bool>& done, Ties ties);
+  Dag& dag_;
+  std::size_t n_;
+  std::vector<Ref> w_;  // n x n, by rows of the matrix: reduced entries; below the diagonal of step k: l * D
+  std::vector<std::size_t> order_;
+  std::vector<Ref> d_;  // by step
+  std::vector<Pivot> pivots_;
+};
+
+}  // namespace eomgen::symbolic
