@@ -22,6 +22,13 @@ inline constexpr double rounding = 64 * epsilon;
 // An error estimate is worth having when it is within this factor of the true error, both ways.
 inline constexpr double estimate_factor = 10;
 
+// --- lib: events and modes ------------------------------------------------------------------------------------------
+// Runs at rtol 1e-12 over some periods (rk4 with steps of 2e-3: 1e-12 as well): what the issue asks for is 1e-10.
+inline constexpr double event_time = 1e-10;
+inline constexpr double event_state = 1e-10;
+// A root whose slope is 1e-3 of the function's size: the same divided by the slope.
+inline constexpr double grazing_time = 1e-7;
+
 // --- lib: projection ------------------------------------------------------------------------------------------------
 // A projected state meets its constraints up to the rounding of their terms.
 inline constexpr double on_constraint = 1e-13;

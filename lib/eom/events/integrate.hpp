@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: MIT
+// integrate() with events. In: what integrate() takes, event functions g(t, x, values) -> code, and a handler that
+// decides at each event. Out: Result, as if of one run.
+//
+// A crossing is found on the dense output of the step and then made exact: the step is taken anew from its start to the
+// crossing, by the method itself, and the crossing is corrected by the value found there until it moves by no more than
+// 1e-12 of the step. State and time of an event so have the accuracy of the step, not that of the dense output, and
+// after_step (a projection) has seen the state. The next step starts there.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "eom/events/locator.hpp"
+#include "eom/ode.hpp"
+
+namespace eom {
+
+enum class AtEvent {
+  go_on,    // the state is as it was: functions keep their sides, the step size is kept
+  restart,  // the state, the right-hand side or what is watched has changed: sides and step size are found anew
+  stop,     // the run ends here: stopped_by_event
+};
+
+/// What a handler is given. At a passing crossing x and functions are to be left alone and the answer is not asked.
+struct EventPoint {
+  double t;
+  std::span<double> x;
+  Crossing crossing;
+  std::span<EventFunction> functions;  // of all events: which are watched from here on
+};
+
+/// So many breaking events in a row without time going on end the run: the solution slides along a surface.
+inline constexpr int events_without_progress = 32;
+
+namespace events {
+
+template <class F, class G, class Handler, class Observer, class AfterStep>
+class Run {
+ public:
+  Run(std::string_view method, F& rhs, G& g, std::vector<EventFunction> functions, double t0,
+      std::span<const double> x0, double t1, const Options& options, Handler& handler, Observer& observer,
+      AfterStep& after_step)
+      : method_(method), rhs_(rhs), g_(g), t1_(t1), options_(options), handler_(handler), observer_(observer),
+        after_step_(after_step), values_(functions.size()), locator_(std::move(functions), x0.size()) {
+    total_.t = t0;
+    total_.x.assign(x0.begin(), x0.end());
+    cut_x_.resize(x0.size());
+  }
+
+  Result run() {
+    const int code = locator_.start(total_.t, total_.x.data(), g_);
+    if (code != 0) {
+      total_.outcome = outcome_of_abi_code(code);
+      total_.detail = "an event function returned code " + std::to_string(code) + " at the start";
+      return total_;
+    }
+    Options piece = options_;
+    while (true) {
+      piece.max_steps = options_.max_steps - std::min(options_.max_steps, total_.statistics.steps + total_.statistics.rejected);
+      cut_.reset();
+      const Result part = integrate(method_, rhs_, total_.t, total_.x, t1_, piece,
+                                    [this](const StepView& view) { return observe(view); }, after_step_);
+      add(part.statistics);
+      if (!cut_) {
+        total_.outcome = part.outcome;
+        total_.detail = part.detail;
+        total_.t = part.t;
+        total_.x = part.x;
+        return total_;
+      }
+      --total_.statistics.steps;  // the one that was cut
+      if (!take_event(piece)) return total_;
+    }
+  }
+
+ private:
+  void add(const Statistics& part) {
+    total_.statistics.steps += part.steps;
+    total_.statistics.rejected += part.rejected;
+    total_.statistics.rhs_evaluations += part.rhs_evaluations;
+    total_.statistics.dense_fallbacks += part.dense_fallbacks;
+  }
+
+  /// After each accepted step: passing events are told, a breaking one ends the piece.
+  bool observe(const StepView& view) {
+    locator_.open(view, g_);
+    while (const std::optional<Crossing> crossing = locator_.next(view, g_)) {
+      if (locator_.functions()[crossing->function].watch == Watch::breaking) {
+        cut_ = crossing;
+        cut_t_ = view.t0;
+        cut_h_ = view.t1 - view.t0;
+        std::copy(view.x0.begin(), view.x0.end(), cut_x_.begin());
+        view.interpolate(crossing->t, total_.x);  // where the step cannot be taken anew
+        return false;
+      }
+      Crossing exact = *crossing;
+      std::vector<double> x(view.x0.size());
+      view.interpolate(exact.t, x);
+      const Statistics before = total_.statistics;
+      refine(view.t0, view.x0, view.t1 - view.t0, exact, x, [](const StepView&) { return true; });
+      total_.statistics.steps = before.steps;
+      handler_(EventPoint{exact.t, x, exact, locator_.functions()});
+    }
+    locator_.close();
+    return observer_(view);
+  }
+
+  /// Steps from (t0, x0) to the crossing until it stays where it is; `last` sees the final step. x is the state there.
+  template <class Last>
+  bool refine(double t0, std::span<const double> x0, double h, Crossing& crossing, std::vector<double>& x, Last&& last) {
+    Options one;
+    one.rtol = options_.rtol;
+    one.atol = options_.atol;
+    one.quadratures = options_.quadratures;
+    const std::size_t i = crossing.function;
+    const double limit = std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
+    double t = crossing.t, before = 0, value_before = 0;
+    bool go_on = true;
+    for (int trial = 0; trial < most_corrections; ++trial) {
+      one.fixed_step = std::abs(t - t0);
+      if (one.fixed_step == 0) return go_on;
+      bool final = false;
+      double next = t;
+      const auto look = [&](const StepView& view) {
+        final = g_(view.t1, view.x1.data(), values_.data()) != 0 || !std::isfinite(values_[i]) || values_[i] == 0 ||
+                trial + 1 == most_corrections;
+        if (!final) {
+          const double slope = trial == 0 ? slope_at_end(view, i) : (values_[i] - value_before) / (t - before);
+          const double move = -values_[i] / slope;
+          final = !std::isfinite(move) || std::abs(move) <= limit || std::abs(move) > farthest * std::abs(h);
+          if (!final) next = t + move;
+          if ((next - t0) * h <= 0) final = true;
+        }
+        if (final) go_on = last(view);
+        return true;
+      };
+      const Result step = integrate(method_, rhs_, t0, x0, t, one, look, after_step_);
+      add(step.statistics);
+      if (step.outcome != Outcome::done) return go_on;  // the dense output's state stays
+      total_.statistics.steps -= final ? 0 : step.statistics.steps;
+      crossing.t = t;
+      x = step.x;
+      if (final) return go_on;
+      before = t;
+      value_before = values_[i];
+      t = next;
+    }
+    return go_on;
+  }
+
+  /// dg_i/dt at the end of a step, on its dense output.
+  double slope_at_end(const StepView& view, std::size_t i) {
+    const double at_end = values_[i], back = 1e-4 * (view.t1 - view.t0);
+    std::vector<double> x(view.x0.size());
+    view.interpolate(view.t1 - back, x);
+    const int code = g_(view.t1 - back, x.data(), values_.data());
+    const double slope = code == 0 ? (at_end - values_[i]) / back : std::numeric_limits<double>::quiet_NaN();
+    values_[i] = at_end;
+    return slope;
+  }
+
+  /// The breaking event that ended a piece; false: the run ends with it.
+  bool take_event(Options& piece) {
+    Crossing crossing = *cut_;
+    const double h = cut_h_;
+    const bool go_on = refine(cut_t_, cut_x_, h, crossing, total_.x, [this](const StepView& view) { return observer_(view); });
+    const double progress = std::abs(crossing.t - total_.t);
+    total_.t = crossing.t;
+    if (!go_on) return end(Outcome::stopped_by_event, "stopped by the observer");
+    crowded_ = progress > 1e-14 * std::max(std::abs(crossing.t), std::abs(h)) ? 0 : crowded_ + 1;
+    const AtEvent answer = handler_(EventPoint{crossing.t, total_.x, crossing, locator_.functions()});
+    if (answer == AtEvent::stop) return end(Outcome::stopped_by_event, "");
+    if (crowded_ >= events_without_progress)
+      return end(Outcome::step_too_small, "events follow one another without time going on");
+    piece.initial_step = answer == AtEvent::go_on ? std::abs(h) : options_.initial_step;
+    if (answer == AtEvent::go_on) return true;
+    const int code = locator_.start(total_.t, total_.x.data(), g_, {&crossing, 1});
+    return code == 0 || end(outcome_of_abi_code(code), "an event function returned code " + std::to_string(code));
+  }
+
+  bool end(Outcome outcome, std::string detail) {
+    total_.outcome = outcome;
+    if (!detail.empty()) {
+      char t[32];
+      std::snprintf(t, sizeof t, "%.17g", total_.t);
+      total_.detail = std::move(detail) + " at t = " + t;
+    }
+    return false;
+  }
+
+  static constexpr int most_corrections = 6;
+  static constexpr double farthest = 0.01;  // of the step: a correction that is larger is none
+
+  std::string_view method_;
+  F& rhs_;
+  G& g_;
+  double t1_;
+  const Options& options_;
+  Handler& handler_;
+  Observer& observer_;
+  AfterStep& after_step_;
+  std::vector<double> values_;
+  EventLocator locator_;
+  Result total_;
+  std::optional<Crossing> cut_;
+  double cut_t_ = 0, cut_h_ = 0;
+  std::vector<double> cut_x_;
+  int crowded_ = 0;
+};
+
+}  // namespace events
+
+/// integrate() with event functions: g(t, x, values) -> int gives as many values as there are `functions`;
+/// handler(EventPoint) -> AtEvent. Passing events are told before the observer sees the step that holds them, a
+/// breaking one after the observer saw the step that ends there. What is thrown is what integrate() throws.
+template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
+Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
+                        const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,
+                        Observer&& observer = {}, AfterStep&& after_step = {}) {
+  detail::check_problem(t0, x0, t1, options);
+  return events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,
+                     std::remove_reference_t<Observer>, std::remove_reference_t<AfterStep>>(
+             method, rhs, g, std::move(functions), t0, x0, t1, options, handler, observer, after_step)
+      .run();
+}
+
+}  // namespace eom

@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: MIT
+// Where event functions g_i(t, x) change their signs within a step. In: the step with its dense output, and
+// g(t, x, values) -> code. Out: crossings in the order of the run, each to 1e-12 of the step on the dense output.
+//
+// An event function keeps a side (the sign it had last). A crossing flips it, so that the residual of a root that was
+// just found is not found again. A side that is not known (at the start of a run on the surface itself, or after a state
+// was changed there) is the sign of the first value beyond rounding, looked for on a geometric sequence of points.
+// Each step is sampled at nine points; between samples of one sign a double root is looked for wherever three of
+// them show a dip that may reach zero. A zero without a change of sign is no event.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/events/root.hpp"
+#include "eom/run_types.hpp"
+
+namespace eom {
+
+/// Of the value as a function of time, whichever way time runs in the integration.
+enum class Direction { any, up, down };
+
+enum class Watch {
+  off,
+  passing,   // told, and the integration goes on as if nothing had been
+  breaking,  // the step ends at the crossing, and whoever is told decides how to go on
+};
+
+struct EventFunction {
+  Direction direction = Direction::any;
+  Watch watch = Watch::breaking;
+};
+
+struct Crossing {
+  std::size_t function = 0;
+  double t = 0;
+  bool up = false;  // the value rises with t
+};
+
+class EventLocator {
+ public:
+  /// n: components of the state.
+  EventLocator(std::vector<EventFunction> functions, std::size_t n)
+      : functions_(std::move(functions)),
+        side_(functions_.size(), 0),
+        position_(functions_.size(), 0),
+        size_(functions_.size(), 0),
+        values_(functions_.size()),
+        samples_(places.size() * functions_.size()),
+        x_(n) {}
+
+  std::span<EventFunction> functions() { return functions_; }
+  std::span<const EventFunction> functions() const { return functions_; }
+  /// -1, 0 (not known) or 1 of a function's value where the run stands.
+  int side(std::size_t function) const { return side_[function]; }
+
+  /// Takes the sides at (t, x) afresh; those of `crossed` functions, and those within rounding of zero, are not known.
+  template <class G>
+  int start(double t, const double* x, G& g, std::span<const Crossing> crossed = {}) {
+    if (functions_.empty()) return 0;
+    const int code = g(t, x, values_.data());
+    if (code != 0) return code;
+    for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = beyond(i, values_[i], 0) ? sign(values_[i]) : 0;
+    for (const Crossing& c : crossed) side_[c.function] = 0;
+    return 0;
+  }
+
+  /// Samples a new step. What next() gives belongs to it until close().
+  template <class G>
+  void open(const StepView& view, G& g) {
+    for (std::size_t k = 0; k < places.size(); ++k) {
+      evaluate(view, places[k], g);
+      for (std::size_t i = 0; i < functions_.size(); ++i) {
+        sample(k, i) = values_[i];
+        if (std::isfinite(values_[i])) size_[i] = std::max(size_[i], std::abs(values_[i]));
+      }
+    }
+    std::fill(position_.begin(), position_.end(), 0.0);
+    for (std::size_t i = 0; i < functions_.size(); ++i)
+      if (functions_[i].watch != Watch::off && side_[i] == 0) find_side(view, i, g);
+  }
+
+  /// The next crossing of the step that is watched for, in the order of the run; nothing when there are no more.
+  template <class G>
+  std::optional<Crossing> next(const StepView& view, G& g) {
+    while (true) {
+      std::optional<Candidate> first;
+      for (std::size_t i = 0; i < functions_.size(); ++i) {
+        if (functions_[i].watch == Watch::off) continue;
+        const std::optional<Candidate> candidate = crossing(view, i, g);
+        if (candidate && (!first || candidate->s < first->s)) first = candidate;
+      }
+      if (!first) return std::nullopt;
+      const std::size_t i = first->function;
+      side_[i] = -first->side;
+      position_[i] = first->s;
+      const bool up = (side_[i] > 0) == (view.t1 > view.t0);
+      const Direction direction = functions_[i].direction;
+      if (direction == Direction::any || (direction == Direction::up) == up) return Crossing{i, at(view, first->s), up};
+    }
+  }
+
+  /// The step was accepted in full: sides of functions that had none, or had no value somewhere in it.
+  void close() {
+    for (std::size_t i = 0; i < functions_.size(); ++i) {
+      bool known = functions_[i].watch != Watch::off && side_[i] != 0;
+      for (std::size_t k = 0; k < places.size(); ++k) known = known && std::isfinite(sample(k, i));
+      const double last = sample(places.size() - 1, i);
+      if (!known) side_[i] = beyond(i, last, 0) ? sign(last) : 0;
+    }
+  }
+
+ private:
+  struct Candidate {
+    std::size_t function;
+    double s;
+    int side;  // before the crossing
+  };
+
+  // Close to both ends too, so that a dip between the last of one step and the first of the next is seen.
+  static constexpr std::array<double, 9> places{0, 1e-4, 0.067, 0.25, 0.5, 0.75, 0.933, 1 - 1e-4, 1};
+  static constexpr double tolerance = 1e-12;         // of the step
+  static constexpr double rounding = 1e-13;          // of the largest value seen: smaller ones have no sign
+  static constexpr double dip_worth_a_look = 0.5;    // of the smallest sample: where a parabola's vertex lies lower
+
+  static int sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
+  bool beyond(std::size_t i, double value, double noise) const {
+    return std::isfinite(value) && value != 0 && std::abs(value) > std::max(noise, rounding * size_[i]);
+  }
+  static double at(const StepView& view, double s) {
+    return s <= 0 ? view.t0 : s >= 1 ? view.t1 : view.t0 + s * (view.t1 - view.t0);
+  }
+  double& sample(std::size_t k, std::size_t i) { return samples_[k * functions_.size() + i]; }
+
+  template <class G>
+  void evaluate(const StepView& view, double s, G& g) {
+    const double* x = view.x0.data();
+    if (s >= 1) {
+      x = view.x1.data();
+    } else if (s > 0) {
+      view.interpolate(at(view, s), x_);
+      x = x_.data();
+    }
+    if (g(at(view, s), x, values_.data()) != 0)
+      std::fill(values_.begin(), values_.end(), std::numeric_limits<double>::quiet_NaN());
+  }
+
+  template <class G>
+  double value(const StepView& view, double s, std::size_t i, G& g) {
+    evaluate(view, s, g);
+    return values_[i];
+  }
+
+  /// The side of a function that starts on its surface: that of its first value beyond rounding.
+  template <class G>
+  void find_side(const StepView& view, std::size_t i, G& g) {
+    const double noise = std::isfinite(sample(0, i)) ? 4 * std::abs(sample(0, i)) : 0;
+    for (double s = tolerance; s < 0.05; s *= 10) {
+      const double v = value(view, s, i, g);
+      if (!beyond(i, v, noise)) continue;
+      side_[i] = sign(v);
+      position_[i] = s;
+      return;
+    }
+    for (std::size_t k = 1; k < places.size(); ++k) {
+      if (!beyond(i, sample(k, i), noise)) continue;
+      side_[i] = sign(sample(k, i));
+      position_[i] = places[k];
+      return;
+    }
+    position_[i] = 1;
+  }
+
+  /// The first crossing after the function's position. Beyond a place without a value nothing is looked for.
+  template <class G>
+  std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g) {
+    const int side = side_[i];
+    if (side == 0) return std::nullopt;
+    const auto inward = [&](double s) { return side * value(view, s, i, g); };  // positive on the function's side
+    double left = position_[i];
+    double at_left = left == 0 ? side * sample(0, i) : std::numeric_limits<double>::quiet_NaN();
+    for (std::size_t k = 1; k < places.size(); ++k) {
+      const double here = side * sample(k, i);
+      if (places[k] <= left) continue;
+      if (!std::isfinite(here)) break;
+      if (here < 0) return Candidate{i, root(inward, left, at_left, places[k], here), side};
+      if (k + 1 < places.size()) {
+        const double dip = dipped(inward, left, at_left, places[k], here, places[k + 1], side * sample(k + 1, i));
+        if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
+      }
+      left = places[k];
+      at_left = here;
+    }
+    return std::nullopt;
+  }
+
+  /// A point where the function is negative between three samples that are not, the middle one the lowest; else NaN.
+  template <class F>
+  double dipped(F& inward, double a, double fa, double b, double fb, double c, double fc) {
+    constexpr double none = std::numeric_limits<double>::quiet_NaN();
+    if (!std::isfinite(fa)) fa = inward(a);
+    if (!(fb > 0 && fb <= fa && fb < fc)) return none;
+    const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b);
+    const double bend = (right - left) / (c - a);              // second divided difference, positive at a dip
+    const double slope = left + bend * (b - a);                // of the parabola at b
+    const double vertex = fb - slope * slope / (4 * bend);
+    if (!(vertex < dip_worth_a_look * fb)) return none;
+    return events::find_negative(inward, a, b, fb, c, 1e-9);
+  }
+
+  /// The root between left (on the function's side, or the place of its last crossing) and right (beyond it).
+  template <class F>
+  double root(F& inward, double left, double at_left, double right, double at_right) {
+    if (!(at_left > 0)) {
+      // On the surface but for rounding: the first point beyond it that is on the function's side; else it is here.
+      double found = std::numeric_limits<double>::quiet_NaN();
+      for (double part = tolerance; part < 1 && !(found > 0); part *= 10) {
+        const double s = left + part * (right - left);
+        const double v = inward(s);
+        if (v > 0) left = s, found = v;
+      }
+      if (!(found > 0)) return left;
+      at_left = found;
+    }
+    return events::find_root(inward, left, at_left, right, at_right, tolerance);
+  }
+
+  std::vector<EventFunction> functions_;
+  std::vector<int> side_;
+  std::vector<double> position_;  // fraction of the step up to which crossings are known
+  std::vector<double> size_;      // largest value seen
+  std::vector<double> values_;
+  std::vector<double> samples_;
+  std::vector<double> x_;
+};
+
+}  // namespace eom

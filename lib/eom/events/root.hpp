@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// A root of a function of one variable between two points where its signs differ, and the dip of one whose signs agree.
+// In: the function, a bracket, a tolerance. Out: the place. No allocation; a value that is not finite ends the search.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace eom::events {
+
+/// Where f changes its sign between a and b (f(a) f(b) < 0), to within `tolerance`: Chandrupatla's method (Advances in
+/// Engineering Software 28, 1997): inverse quadratic interpolation where it is safe, bisection elsewhere.
+template <class F>
+double find_root(F&& f, double a, double fa, double b, double fb, double tolerance) {
+  constexpr double epsilon = std::numeric_limits<double>::epsilon();
+  double c = a, fc = fa, t = 0.5;
+  while (true) {
+    const double x = a + t * (b - a);
+    const double fx = f(x);
+    if (!std::isfinite(fx)) return x;
+    if ((fx > 0) == (fa > 0)) {
+      c = a, fc = fa;
+    } else {
+      c = b, fc = fb, b = a, fb = fa;
+    }
+    a = x, fa = fx;
+    const double best = std::abs(fa) < std::abs(fb) ? a : b;
+    const double limit = (2 * epsilon * std::abs(best) + 0.5 * tolerance) / std::abs(b - a);
+    if (limit > 0.5 || fa == 0) return fa == 0 ? a : best;
+    const double xi = (a - b) / (c - b), phi = (fa - fb) / (fc - fb);
+    const bool safe = phi * phi < xi && (1 - phi) * (1 - phi) < 1 - xi;
+    t = safe ? fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb) : 0.5;
+    t = std::clamp(t, limit, 1 - limit);
+  }
+}
+
+/// A point between a and c where f, positive at both and smaller at b in between, is negative; NaN where its minimum is
+/// not. Golden section, ended as soon as a negative value is seen.
+template <class F>
+double find_negative(F&& f, double a, double b, double fb, double c, double tolerance) {
+  constexpr double golden = 0.38196601125010515;
+  while (c - a > tolerance) {
+    const double x = b - a > c - b ? b - golden * (b - a) : b + golden * (c - b);
+    const double fx = f(x);
+    if (!std::isfinite(fx)) break;
+    if (fx < 0) return x;
+    if (fx < fb) {
+      (x < b ? c : a) = b;
+      b = x, fb = fx;
+    } else {
+      (x < b ? a : c) = x;
+    }
+  }
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace eom::events

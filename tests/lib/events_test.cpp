@@ -1,0 +1,243 @@
+// Events: crossings where the closed forms say, with every method, both ways in time; what is found once is found once.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "eom/events/integrate.hpp"
+#include "lib/problems.hpp"
+#include "support/tolerances.hpp"
+
+namespace {
+
+using eom::AtEvent;
+using eom::Direction;
+using eom::EventFunction;
+using eom::EventPoint;
+using eom::Watch;
+using std::numbers::pi;
+
+eom::Options tight(const eom::MethodInfo& method) {
+  eom::Options options;
+  options.rtol = 1e-12;
+  options.atol = 1e-13;
+  if (!method.adaptive) options.fixed_step = 2e-3;
+  return options;
+}
+
+struct Seen {
+  double t;
+  std::size_t function;
+  bool up;
+  std::vector<double> x;
+};
+
+/// The oscillator from (1, 0): x = cos t, with all events it meets; `watch` of all functions.
+template <class G>
+std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::vector<EventFunction> functions,
+                            eom::Options options) {
+  std::vector<Seen> seen;
+  const problems::Oscillator oscillator{{1, 0}};
+  const auto handler = [&](const EventPoint& point) {
+    seen.push_back({point.t, point.crossing.function, point.crossing.up, {point.x.begin(), point.x.end()}});
+    return AtEvent::go_on;
+  };
+  const eom::Result result =
+      eom::integrate_events(method.name, oscillator, 0, oscillator.start, t1, options, g, std::move(functions), handler);
+  CHECK(result.outcome == eom::Outcome::done);
+  CHECK(result.t == t1);
+  CHECK(problems::largest_difference(result.x, oscillator.exact(t1)) < tolerances::event_state);
+  return seen;
+}
+
+const auto position = [](double, const double* x, double* g) { return g[0] = x[0], 0; };
+
+}  // namespace
+
+TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, both ways in time") {
+  for (const eom::MethodInfo& method : eom::methods())
+    for (const Watch watch : {Watch::passing, Watch::breaking})
+      for (const double t1 : {20.0, -20.0}) {
+        CAPTURE(std::string(method.name));
+        CAPTURE(t1);
+        const auto seen = crossings(method, t1, position, {{Direction::any, watch}}, tight(method));
+        REQUIRE(seen.size() == 6);
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+          const double exact = std::copysign((static_cast<double>(k) + 0.5) * pi, t1);
+          CHECK(std::abs(seen[k].t - exact) < tolerances::event_time);
+          CHECK(std::abs(seen[k].x[0]) < tolerances::event_time);
+          // cos falls through its zero at pi/2; going back from 0 it is met at -pi/2, where it rises with t.
+          CHECK(seen[k].up == ((k % 2 == 1) != (t1 < 0)));
+        }
+      }
+}
+
+TEST_CASE("all methods: directions are those of time, whichever way the run goes") {
+  for (const eom::MethodInfo& method : eom::methods())
+    for (const double t1 : {20.0, -20.0}) {
+      CAPTURE(std::string(method.name));
+      const auto up = crossings(method, t1, position, {{Direction::up, Watch::breaking}}, tight(method));
+      const auto down = crossings(method, t1, position, {{Direction::down, Watch::passing}}, tight(method));
+      REQUIRE(up.size() == 3);
+      REQUIRE(down.size() == 3);
+      for (const Seen& s : up) CHECK(-s.x[1] < 0);
+      for (const Seen& s : down) CHECK(s.x[1] < 0);
+    }
+}
+
+TEST_CASE("all methods: several functions in one step come in the order of the run") {
+  const auto levels = [](double t, const double*, double* g) {
+    for (int i = 0; i < 4; ++i) g[i] = t - (0.5 - 0.1 * i);  // times 0.5, 0.4, 0.3, 0.2
+    return 0;
+  };
+  for (const eom::MethodInfo& method : eom::methods())
+    for (const Watch watch : {Watch::passing, Watch::breaking}) {
+      eom::Options options;
+      options.fixed_step = 1;  // all in one step
+      std::vector<std::size_t> order;
+      const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
+      const auto handler = [&](const EventPoint& point) {
+        order.push_back(point.crossing.function);
+        CHECK(std::abs(point.t - (0.5 - 0.1 * static_cast<double>(point.crossing.function))) < tolerances::event_time);
+        return AtEvent::go_on;
+      };
+      const std::vector<double> start{0};
+      const eom::Result r = eom::integrate_events(method.name, f, 0, start, 1, options, levels,
+                                                  std::vector<EventFunction>(4, {Direction::any, watch}), handler);
+      CHECK(r.outcome == eom::Outcome::done);
+      CHECK(order == std::vector<std::size_t>{3, 2, 1, 0});
+    }
+}
+
+TEST_CASE("all methods: a double root inside one step is two events, and one that is missed by a hair is none") {
+  // x = cos t, and a level just below its maximum at 2 pi: crossed at 2 pi -+ acos(level), 0.0014 apart from it.
+  for (const double level : {1 - 1e-6, 1 + 1e-6}) {
+    const auto g = [level](double, const double* x, double* value) { return value[0] = x[0] - level, 0; };
+    for (const eom::MethodInfo& method : eom::methods()) {
+      CAPTURE(std::string(method.name));
+      eom::Options options = tight(method);
+      if (!method.adaptive) options.fixed_step = 0.005;
+      std::vector<Seen> seen = crossings(method, 7, g, {{Direction::any, Watch::breaking}}, options);
+      if (level > 1) {
+        CHECK(seen.empty());
+        continue;
+      }
+      REQUIRE(seen.size() == 3);  // on the way down from the start too
+      const double half = std::acos(level);
+      CHECK(std::abs(seen[0].t - half) < tolerances::grazing_time);
+      CHECK(std::abs(seen[1].t - (2 * pi - half)) < tolerances::grazing_time);
+      CHECK(std::abs(seen[2].t - (2 * pi + half)) < tolerances::grazing_time);
+    }
+  }
+}
+
+TEST_CASE("an event function that starts at zero is not found at the start, but when it comes back") {
+  const auto velocity = [](double, const double* x, double* g) { return g[0] = x[1], 0; };  // -sin t: 0 at the start
+  for (const eom::MethodInfo& method : eom::methods()) {
+    CAPTURE(std::string(method.name));
+    const auto seen = crossings(method, 7, velocity, {{Direction::any, Watch::breaking}}, tight(method));
+    REQUIRE(seen.size() == 2);
+    CHECK(std::abs(seen[0].t - pi) < tolerances::event_time);
+    CHECK(std::abs(seen[1].t - 2 * pi) < tolerances::event_time);
+  }
+}
+
+TEST_CASE("a passing event leaves the run as it was, to the last bit") {
+  const problems::Pendulum pendulum;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    const eom::Options options = tight(method);
+    const eom::Result plain = eom::integrate(method.name, pendulum, 0, pendulum.start, 12, options);
+    const auto handler = [](const EventPoint&) { return AtEvent::stop; };  // not asked
+    const eom::Result watched = eom::integrate_events(method.name, pendulum, 0, pendulum.start, 12, options, position,
+                                                      {{Direction::any, Watch::passing}}, handler);
+    CHECK(plain.x == watched.x);
+    CHECK(plain.statistics.steps == watched.statistics.steps);
+  }
+}
+
+TEST_CASE("events are as accurate as the steps: the time of a stop has the order of the method") {
+  // theta = 0 is reached after a quarter of the period.
+  const problems::Pendulum pendulum;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    CAPTURE(std::string(method.name));
+    const auto error = [&](double step) {
+      eom::Options options;
+      options.fixed_step = step;
+      const auto handler = [](const EventPoint&) { return AtEvent::stop; };
+      const eom::Result r = eom::integrate_events(method.name, pendulum, 0, pendulum.start, 12, options, position,
+                                                  {EventFunction{}}, handler);
+      CHECK(r.outcome == eom::Outcome::stopped_by_event);
+      return std::abs(r.t - pendulum.period() / 4);
+    };
+    // A mean over neighbouring steps: where in the last step the event lies changes with the step.
+    const auto mean = [&](double step) {
+      double sum = 0;
+      for (int k = 0; k < 16; ++k) sum += std::log(error(step * (1 + 0.01 * k)) + 1e-300);
+      return sum / 16;
+    };
+    const double h = method.order == 8 ? 1 : 0.1;
+    const double measured = (mean(h) - mean(h / 4)) / std::log(4.0);
+    CHECK(measured > method.order - 0.5);
+  }
+}
+
+TEST_CASE("the observer sees steps that join, the last before an event ending there") {
+  const problems::Oscillator oscillator{{1, 0}};
+  for (const eom::MethodInfo& method : eom::methods()) {
+    CAPTURE(std::string(method.name));
+    double reached = 0;
+    std::vector<double> ends;
+    const auto observer = [&](const eom::StepView& view) {
+      CHECK(view.t0 == reached);
+      reached = view.t1;
+      ends.push_back(view.t1);
+      return true;
+    };
+    const auto handler = [&](const EventPoint& point) {
+      CHECK(point.t == reached);
+      CHECK(point.x[1] == doctest::Approx(-1));
+      return AtEvent::stop;
+    };
+    const eom::Result r = eom::integrate_events(method.name, oscillator, 0, oscillator.start, 7, tight(method), position,
+                                                {EventFunction{}}, handler, observer);
+    CHECK(r.outcome == eom::Outcome::stopped_by_event);
+    CHECK(r.t == reached);
+    CHECK(r.statistics.steps == ends.size());
+  }
+}
+
+TEST_CASE("a motion that would slide along the surface ends told, not in an endless loop") {
+  // x' = -sign x: both sides lead to x = 0. The side is switched at the surface.
+  double side = 1;
+  const auto f = [&side](double, const double*, double* dx) { return dx[0] = -side, 0; };
+  const auto handler = [&side](const EventPoint& point) {
+    side = point.crossing.up ? 1 : -1;
+    return AtEvent::go_on;
+  };
+  const std::vector<double> start{1};
+  const eom::Result r =
+      eom::integrate_events("dopri5", f, 0, start, 7, eom::Options{}, position, {EventFunction{}}, handler);
+  CHECK(r.outcome == eom::Outcome::step_too_small);
+  CHECK(std::abs(r.t - 1) < tolerances::event_time);
+  CHECK(r.detail.find("without time going on") != std::string::npos);
+}
+
+TEST_CASE("an event function without a value is no event; one that fails at the start ends the run") {
+  const auto root = [](double t, const double*, double* g) { return g[0] = std::sqrt(t - 1) - 1, 0; };  // 0 at t = 2
+  const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
+  const std::vector<double> start{0};
+  std::vector<double> times;
+  const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), AtEvent::go_on; };
+  eom::Options options;
+  options.fixed_step = 0.25;
+  const eom::Result r = eom::integrate_events("rk4", f, 0, start, 4, options, root, {EventFunction{}}, handler);
+  CHECK(r.outcome == eom::Outcome::done);
+  REQUIRE(times.size() == 1);
+  CHECK(std::abs(times[0] - 2) < tolerances::event_time);
+  const auto refuses = [](double, const double*, double*) { return 2; };
+  const eom::Result none = eom::integrate_events("rk4", f, 0, start, 4, options, refuses, {EventFunction{}}, handler);
+  CHECK(none.outcome == eom::Outcome::chart_left);
+}
