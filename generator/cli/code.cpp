@@ -10,7 +10,8 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
     : compiled_(std::move(compiled)),
       outputs_(program.outputs),
       free_(program.free),
-      active_(program.active_constraints) {}
+      active_(program.active_constraints),
+      holonomic_(program.holonomic) {}
 
 verify::CompiledForm CompiledCode::form() const {
   const emit::RhsFunction rhs = compiled_.model.rhs;
@@ -25,7 +26,7 @@ verify::CompiledForm CompiledCode::form() const {
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  return {model.rhs, model.outputs, model.mass, model.constraints, outputs_, free_, active_};
+  return {model.rhs, model.outputs, model.mass, model.constraints, outputs_, free_, active_, holonomic_};
 }
 
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context) {

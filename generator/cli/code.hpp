@@ -21,6 +21,7 @@ class CompiledCode {
   std::vector<std::string> outputs_;
   std::vector<std::uint32_t> free_;
   std::size_t active_;
+  std::vector<bool> holonomic_;
 };
 
 /// Emits C with `context` and compiles it (cached by content).

@@ -57,9 +57,11 @@ std::string watched(const Simulation& simulation) {
   }
   out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
   if (simulation.derived->mechanics.active.empty()) return out;
-  return out + line("constraints", fmt::format("|psi| at most {:.1e}; projection moved positions by {:.1e}, rates by {:.1e}, "
+  const std::vector<bool>& holonomic = simulation.program.holonomic;
+  const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();
+  return out + line("constraints", fmt::format("{} at most {:.1e}; projection moved positions by {:.1e}, rates by {:.1e}, "
                                                "and did the work {:.1e}",
-                                               result.constraint_drift, result.projection_position,
+                                               positions ? "|psi|" : "residuals", result.constraint_drift, result.projection_position,
                                                result.projection_velocity, result.projection_work));
 }
 

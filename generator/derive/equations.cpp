@@ -23,10 +23,14 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
   symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
   for (const std::uint32_t k : s.active) {
     // Written with the fixed coordinates imposed first, so that A has only the columns that move.
-    const Ref psi = finish.imposed(m.constraints[k].psi);
+    const mechanics::Constraint& constraint = m.constraints[k];
+    const Ref psi = finish.imposed(constraint.psi);
+    s.holonomic.push_back(constraint.holonomic());
     s.psi.push_back(finish(psi));
-    for (const std::uint32_t i : s.free) s.A.push_back(finish(symbolic::partial(dag, coordinate(i, 0))(psi)));
-    const Ref rate = bias(psi);  // A qdot + b
+    for (const std::uint32_t i : s.free) {
+      s.A.push_back(constraint.holonomic() ? finish(symbolic::partial(dag, coordinate(i, 0))(psi)) : finish(constraint.gradient[i]));
+    }
+    const Ref rate = constraint.holonomic() ? bias(psi) : finish.imposed(m.velocity_form(constraint));  // A qdot + b
     symbolic::Substitution at_rest(dag, [&] {
       std::map<Symbol, Ref> zero;
       for (const std::uint32_t i : s.free) zero[coordinate(i, 1)] = dag.zero();

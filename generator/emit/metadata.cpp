@@ -146,6 +146,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["outputs"] = program.outputs;
   info["reactions"] = program.reactions;
   info["active_constraints"] = program.active_constraints;
+  for (const bool holonomic : program.holonomic) info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
   info["modes"] = {"smooth"};
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};

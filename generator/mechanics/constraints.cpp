@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Holonomic constraints: gradients, and the elimination of coordinates that a constraint fixes.
+// Constraints: gradients of psi and coefficients of velocities, and the elimination of coordinates that a constraint fixes.
 #include <algorithm>
 #include <set>
 
@@ -58,24 +58,62 @@ void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduc
               same ? "remove it" : "remove it, or the constraint that it contradicts");
 }
 
+void add_position_form(const Mechanics& m, Lowering& lower, Constraint& result) {
+  result.psi = lower.scalar(result.written);
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    result.gradient.push_back(symbolic::partial(*m.dag, {SymbolKind::coordinate, i, 0})(result.psi));
+  }
+  result.rate = lower.explicit_rate(result.psi);
+}
+
+// f_i = d e/d qdot_i and b = e at rest, of an expression e that is linear in the velocities.
+void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) {
+  Dag& dag = *m.dag;
+  result.kind = ConstraintKind::velocity;
+  result.psi = dag.zero();
+  const Ref e = lower.scalar(result.written);
+  std::map<Symbol, Ref> zero;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) zero[{SymbolKind::coordinate, i, 1}] = dag.zero();
+  symbolic::Substitution at_rest(dag, zero);
+  std::vector<Ref> curvature;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(e);
+    for (std::uint32_t k = 0; k <= i; ++k) curvature.push_back(symbolic::partial(dag, {SymbolKind::coordinate, k, 1})(slope));
+    result.gradient.push_back(slope);
+  }
+  if (!vanishes(dag, curvature)) {
+    throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
+                "constraint '" + result.label + "' is not linear in the velocities",
+                "write an expression that is linear in them: d'Alembert's principle says what force keeps such a constraint, "
+                "and nothing of one that is not linear");
+  }
+  for (Ref& slope : result.gradient) slope = at_rest(slope);  // velocities that cancel may still be written there
+  result.rate = at_rest(e);
+  if (!vanishes(dag, {dag.sub(e, m.velocity_form(result))})) {
+    throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
+                "constraint '" + result.label + "' divides by a velocity", "multiply it out, so that it reads f*x_dot + g*y_dot + h");
+  }
+}
+
 }  // namespace
 
 void add_constraints(Mechanics& m, Lowering& lower) {
-  Dag& dag = *m.dag;
   for (const model::Constraint& constraint : m.model->constraints) {
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) {
       Constraint result;
       result.name = constraint.name;
       result.label = constraint.psi.size() > 1 ? constraint.name + "." + std::to_string(k + 1) : constraint.name;
-      result.psi = lower.scalar(constraint.psi[k]);
-      for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-        result.gradient.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(result.psi));
+      result.written = constraint.psi[k];
+      if (constraint.velocity) {
+        add_velocity_form(m, lower, result);
+      } else {
+        add_position_form(m, lower, result);
       }
-      result.rate = lower.explicit_rate(result.psi);
-      if (vanishes(dag, result.gradient)) {
+      if (vanishes(*m.dag, result.gradient)) {
         throw Error("mechanics", m.model->where(constraint.span),
-                    "constraint '" + result.label + "' does not depend on any coordinate",
-                    "a constraint relates coordinates, such as holonomic = \"R - d\"");
+                    "constraint '" + result.label + "' does not depend on any " + (constraint.velocity ? "velocity" : "coordinate"),
+                    constraint.velocity ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
+                                        : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
       m.constraints.push_back(std::move(result));
     }
@@ -88,7 +126,7 @@ void eliminate_coordinates(Mechanics& m) {
   for (bool changed = true; changed;) {
     changed = false;
     for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-      if (used[k]) continue;
+      if (used[k] || !m.constraints[k].holonomic()) continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
       if (coordinates_in(*m.dag, reduced).empty()) refuse_repeated(m, m.constraints[k], reduced);
       FixedCoordinate fixed{};

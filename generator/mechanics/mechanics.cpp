@@ -110,6 +110,12 @@ bool Mechanics::is_eliminated(std::uint32_t coordinate) const {
   return std::any_of(fixed.begin(), fixed.end(), [=](const FixedCoordinate& f) { return f.coordinate == coordinate; });
 }
 
+Ref Mechanics::velocity_form(const Constraint& constraint) const {
+  Ref sum = constraint.rate;
+  for (std::size_t i = 0; i < qdot.size(); ++i) sum = dag->add(sum, dag->mul(constraint.gradient[i], qdot[i]));
+  return sum;
+}
+
 void add_masses(Mechanics& m, Lowering& lower) {
   Dag& dag = *m.dag;
   m.kinetic_given = lower.scalar(m.model->energy.kinetic);

@@ -34,13 +34,20 @@ struct Load {
   Vec3 at_velocity;
 };
 
-/// One scalar equation psi(q, t) = 0.
+enum class ConstraintKind { holonomic, velocity };
+
+/// One scalar equation: psi(q, t) = 0, or f . qdot + b = 0 with f(q, t), b(q, t). Either way the force on the system is
+/// lambda f, eqs. (2.31), (2.50), with f = d psi/d q of a holonomic one.
 struct Constraint {
   std::string name;   // "sphere"
   std::string label;  // "sphere", or "sphere.2" where the constraint has several equations
-  Ref psi;
-  std::vector<Ref> gradient;  // d psi/d q_i, all coordinates
-  Ref rate;                   // d psi/d t at fixed q
+  ConstraintKind kind = ConstraintKind::holonomic;
+  Ref psi;                    // 0 of a velocity constraint
+  std::vector<Ref> gradient;  // f_i, all coordinates
+  Ref rate;                   // b: d psi/d t at fixed q
+  model::NodeId written = model::no_node;  // psi, or what is 0 of a velocity constraint, in the model
+
+  bool holonomic() const { return kind == ConstraintKind::holonomic; }
 };
 
 /// psi = 0 read as q_c = value(t): such a coordinate is eliminated (Approach I and II, eqs. (2.96)-(2.101)).
@@ -77,6 +84,8 @@ struct Mechanics {
   std::vector<Ref> scalar_definition;                // per definition; 0 for vectors
 
   bool is_eliminated(std::uint32_t coordinate) const;
+  /// f . qdot + b of a constraint.
+  Ref velocity_form(const Constraint& constraint) const;
 };
 
 /// Spells the model out on a Dag and classifies its constraints. Throws Error{stage "mechanics"}: a constraint or force

@@ -129,6 +129,7 @@ struct Constraint {
   std::string name;
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
   bool curve = false;       // holonomic = ["psi1", "psi2"]
+  bool velocity = false;    // velocity = "..": psi binds velocities
   Span span;
 };
 

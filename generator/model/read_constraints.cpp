@@ -9,8 +9,8 @@ namespace eomgen::model {
 void Reader::declare_constraints() {
   for (const Value* table : sections("constraint")) {
     check_keys(*table, {"[[constraint]]",
-                        {"name", "holonomic", "holds"},
-                        {"velocity", "rolling", "sliding", "friction", "restitution", "shape"}});
+                        {"name", "holonomic", "velocity", "holds"},
+                        {"rolling", "sliding", "friction", "restitution", "shape"}});
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
     Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
@@ -34,17 +34,35 @@ void Reader::read_constraints() {
                      "write holds = \"bilateral\"");
       }
     }
-    read_holonomic(constraint, needed(*table, "holonomic", what, "add holonomic = \"psi\", the expression that is 0"));
+    const Value* velocity = table->find("velocity");
+    if (velocity != nullptr && table->find("holonomic") != nullptr) {
+      source_.fail(velocity->span, fmt::format("{} is both 'holonomic' and 'velocity'", what),
+                   "write one [[constraint]] for each; the velocities of a holonomic one follow");
+    }
+    constraint.velocity = velocity != nullptr;
+    read_equations(constraint,
+                   velocity != nullptr
+                       ? *velocity
+                       : needed(*table, "holonomic", what,
+                                "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
   }
 }
 
-void Reader::read_holonomic(Constraint& constraint, const Value& value) {
+void Reader::read_equations(Constraint& constraint, const Value& value) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   Context context{what, on_motion, Shape::either, std::nullopt,
                   "a holonomic constraint is made of coordinates, functions of time, parameters and t; "
-                  "constraints on velocities come with a later version"};
+                  "one of velocities is given as velocity = \"..\""};
+  if (constraint.velocity) {
+    context.allowed = on_motion | on_velocity;
+    context.remedy = "a constraint on velocities is made of velocities, coordinates, functions of time, parameters and t";
+  }
   const auto with_motion = [&](const Typed& typed, Span span) {
-    if (typed.facts & on_coordinate) return;
+    if (typed.facts & (constraint.velocity ? on_velocity : on_coordinate)) return;
+    if (constraint.velocity) {
+      source_.fail(span, fmt::format("{} contains no velocity", what),
+                   "write holonomic = \"..\" for a constraint on positions, or velocities such as \"y_dot + z*x_dot\"");
+    }
     source_.fail(span, fmt::format("{} contains no coordinate, so that it cannot hold anything", what),
                  "write the expression of coordinates that is to be 0, such as \"R - L\"");
   };

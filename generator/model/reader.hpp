@@ -120,7 +120,7 @@ private:
   // read_constraints.cpp: [[constraint]], [energy]
   void declare_constraints();
   void read_constraints();
-  void read_holonomic(Constraint& constraint, const Value& value);
+  void read_equations(Constraint& constraint, const Value& value);
   void read_energy();
 
   // read_scenes.cpp, scene_values.cpp, scene_outputs.cpp: [scene.NAME]

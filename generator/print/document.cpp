@@ -163,6 +163,9 @@ class Document {
     if (statements.empty()) return;
     heading("Constraint forces");
     text_ += "The force of a constraint $\\psi = 0$ on the system is its multiplier times $\\partial\\psi/\\partial\\mathbf{r}$.\n";
+    const bool velocities = std::any_of(form.constraints.begin(), form.constraints.end(),
+                                        [](const reading::ReadConstraint& c) { return !c.holonomic; });
+    if (velocities) text_ += "Of a constraint on velocities it is the multiplier times the coefficients of the velocities.\n";
     for (const Statement& s : statements) display(s.formula);
   }
 

@@ -22,6 +22,11 @@ using reading::SymbolKind;
 namespace {
 
 Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
+Formula dotted(const Formula& f) {
+  Formula result = reading::wrap(Form::dot, {f});
+  result.order = 1;
+  return result;
+}
 Formula multiplier(std::uint32_t k) { return reading::symbol({SymbolKind::multiplier, k, 0}); }
 
 /// Letters of mechanics that the model has not taken for something of its own: a rod of length L leaves the Lagrangian
@@ -70,15 +75,6 @@ Formula right_side(const Equation& equation) {
   const auto positive = std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
   if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
   return reading::sum(std::move(terms));
-}
-
-// psi of mechanics' constraint k in the model: several may stand in one [[constraint]].
-model::NodeId constraint_in_model(const Mechanics& m, std::uint32_t k) {
-  for (const model::Constraint& constraint : m.model->constraints) {
-    if (k < constraint.psi.size()) return constraint.psi[k];
-    k -= static_cast<std::uint32_t>(constraint.psi.size());
-  }
-  return model::no_node;
 }
 
 }  // namespace
@@ -136,13 +132,17 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
     };
     const Formula zero = reading::number(0);
     const Formula psi = form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
-    const Formula written = reading::as_written(*m.model, constraint_in_model(m, c.constraint)).value_or(arrange(c.psi));
+    const Formula written = reading::as_written(*m.model, m.constraints[c.constraint].written)
+                                .value_or(arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms));
     if (c.fixes) {
       const std::uint32_t q = c.fixes->coordinate;
       add("fixes a coordinate", reading::relation({psi, written, zero}));
       add("fixes a coordinate", reading::wrap(Form::list, {reading::relation({coordinate(q, 0), arrange(c.value)}),
                                                            reading::relation({coordinate(q, 1), arrange(c.value_rate)}),
                                                            reading::relation({coordinate(q, 2), arrange(c.value_acceleration)})}));
+    } else if (!c.holonomic) {
+      add("binds velocities", reading::relation({written, zero}));
+      add("its time derivative", reading::relation({arrange(c.acceleration, Layout::terms), zero}));
     } else {
       add("keeps its multiplier", reading::relation({psi, written, zero}));
       add("its first time derivative", reading::relation({arrange(c.rate, Layout::terms), zero}));
@@ -169,7 +169,10 @@ Formula by_parts(const Mechanics& m, const Equation& equation) {
   right.push_back(reading::negative(reading::wrap(Form::partial, {mark("U"), q})));
   right.push_back(mark("Q", {q}));
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    right.push_back(reading::product({multiplier(k), reading::wrap(Form::partial, {mark("psi", {reading::number(k + 1)}), q})}));
+    const Formula psi = mark("psi", {reading::number(k + 1)});
+    const Formula slope = m.constraints[k].holonomic() ? reading::wrap(Form::partial, {psi, q})
+                                                       : reading::wrap(Form::partial, {dotted(psi), coordinate(equation.coordinate, 1)});
+    right.push_back(reading::product({multiplier(k), slope}));
   }
   return reading::relation({reading::sum(std::move(left)), reading::sum(std::move(right))});
 }

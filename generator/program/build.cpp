@@ -140,6 +140,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.approach = system.approach;
   program.tried = tried(candidates, systems);
   program.active_constraints = system.active.size();
+  program.holonomic = system.holonomic;
   program.functions.push_back(finished(chosen.best, chosen.rhs));
   const auto add = [&](const WantedFunction& wanted) {
     const std::vector<Polynomials> graphs = starts(*chosen.functions, wanted);

@@ -71,6 +71,7 @@ struct Program {
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
   std::size_t active_constraints = 0;
+  std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only
 };
 
 }  // namespace eomgen::program

@@ -82,7 +82,8 @@ Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagran
   result.slope = bridge.substitute(slope, values);
   result.force = bridge.substitute(generalized_force(m, bridge, i), values);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    const Sum gradient = bridge.derivative(bridge.sum(m.constraints[k].psi), coordinate_symbol(i, 0));
+    const mechanics::Constraint& c = m.constraints[k];
+    const Sum gradient = c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(i, 0)) : simplify(bridge.sum(c.gradient[i]));
     Sum imposed = bridge.substitute(gradient, values);
     if (!imposed.is_zero()) result.multipliers.push_back({k, std::move(imposed)});
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reading/approaches.hpp"
+#include "reading/trig.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -15,8 +16,9 @@ void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
     ReadConstraint c;
     c.constraint = k;
     c.label = m.constraints[k].label;
-    c.psi = bridge.sum(m.constraints[k].psi);
-    c.rate = bridge.total_derivative(c.psi);
+    c.holonomic = m.constraints[k].holonomic();
+    if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
+    c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
     c.acceleration = bridge.total_derivative(c.rate);
     const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
     if (const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes); found != m.fixed.end()) {

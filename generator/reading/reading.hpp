@@ -18,10 +18,11 @@ namespace eomgen::reading {
 
 using Components = std::array<Sum, 3>;
 
-/// One constraint psi = 0, with its first and second total time derivatives.
+/// One constraint psi = 0, with its first and second total time derivatives; of one on velocities `rate` is what is 0.
 struct ReadConstraint {
   std::uint32_t constraint;  // index into Mechanics::constraints
   std::string label;
+  bool holonomic = true;
   Sum psi, rate, acceleration;
   std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t)
   Sum value, value_rate, value_acceleration;        // of that coordinate

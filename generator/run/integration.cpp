@@ -13,6 +13,14 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(found - names.begin());
 }
 
+namespace {
+
+std::size_t holonomic_count(const Code& code) {
+  return static_cast<std::size_t>(std::count(code.holonomic.begin(), code.holonomic.end(), true));
+}
+
+}  // namespace
+
 Integration::Integration(const RunRequest& request, std::string solver)
     : request_(request),
       code_(request.code),
@@ -24,7 +32,12 @@ Integration::Integration(const RunRequest& request, std::string solver)
       psi_(request.code.active_constraints),
       A_(request.code.active_constraints * n_),
       b_(request.code.active_constraints),
-      projection_(n_, request.code.active_constraints) {
+      projection_(n_, request.code.active_constraints, holonomic_count(request.code)) {
+  for (const bool positions : {true, false}) {
+    for (std::size_t k = 0; k < psi_.size(); ++k) {
+      if (request.code.holonomic[k] == positions) order_.push_back(k);
+    }
+  }
   // Before the first piece starts: just inside it, so that a table gives its value right of t0.
   side_ = std::nextafter(request.scene.t0, request.scene.t1);
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
@@ -61,8 +74,27 @@ double Integration::constraint_defect(double t, const double* x) {
   // Where psi has no value the drift is infinite, not what it was a step ago.
   if (code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data()) != 0) return HUGE_VAL;
   double largest = 0;
-  for (const double psi : psi_) largest = std::isnan(psi) ? HUGE_VAL : std::max(largest, std::abs(psi));
+  for (std::size_t k = 0; k < psi_.size(); ++k) {
+    double defect = psi_[k];
+    if (!code_.holonomic[k]) {
+      defect = b_[k];
+      for (std::size_t i = 0; i < n_; ++i) defect += A_[k + psi_.size() * i] * x[n_ + i];
+    }
+    largest = std::isnan(defect) ? HUGE_VAL : std::max(largest, std::abs(defect));
+  }
   return largest;
+}
+
+// The projection wants the constraints on positions first.
+int Integration::ordered_constraints(double t, const double* x, double* psi, double* A, double* b) {
+  const std::size_t m = psi_.size();
+  const int code = code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data());
+  for (std::size_t k = 0; k < m; ++k) {
+    psi[k] = psi_[order_[k]];
+    b[k] = b_[order_[k]];
+    for (std::size_t i = 0; i < n_; ++i) A[k + m * i] = A_[order_[k] + m * i];
+  }
+  return code;
 }
 
 int Integration::project(double t, double* x) {
@@ -72,7 +104,7 @@ int Integration::project(double t, double* x) {
   const eom::ProjectionResult moved = projection_(
       t, x,
       [&](double at, const double* state, double* psi, double* A, double* b) {
-        return code_.constraints(at, state, p, psi, A, b);
+        return ordered_constraints(at, state, psi, A, b);
       },
       [&](double at, const double* state, double* M, double* h) { return code_.mass(at, state, p, M, h); });
   if (moved.code != 0) return moved.code;

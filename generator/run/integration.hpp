@@ -19,7 +19,7 @@ class Integration {
 
   std::vector<double> initial_state() const;
   int outputs(double t, const double* x, std::span<double> y) const;
-  /// Largest |psi| of a state; 0 without active constraints.
+  /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x);
 
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
@@ -27,6 +27,7 @@ class Integration {
  private:
   int rhs(double t, const double* x, double* dx);
   int project(double t, double* x);
+  int ordered_constraints(double t, const double* x, double* psi, double* A, double* b);
   const double* inputs(double t) const;
 
   const RunRequest& request_;
@@ -37,6 +38,7 @@ class Integration {
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
   mutable std::vector<double> u_;
   std::vector<double> y_, psi_, A_, b_;
+  std::vector<std::size_t> order_;  // of the constraints in the projection
   eom::Projection projection_;
 };
 

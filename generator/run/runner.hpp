@@ -23,6 +23,7 @@ struct Code {
   std::vector<std::string> output_names;  // entries of y: begins with every coordinate and its _dot
   std::vector<std::uint32_t> free;        // coordinates that are state
   std::size_t active_constraints = 0;
+  std::vector<bool> holonomic;            // per active constraint: false where it binds velocities only
 };
 
 struct Invariant {
@@ -47,7 +48,7 @@ struct RunResult {
   std::string estimate_note;  // where the estimate itself could not be made as told
   std::vector<Invariant> invariants;
   double power_balance = 0;      // largest |E - E(0) - W| relative to the energies exchanged
-  double constraint_drift = 0;   // largest |psi| at the end of a step
+  double constraint_drift = 0;   // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   std::vector<RunEvent> events;
 };

@@ -5,6 +5,7 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "derive/imposition.hpp"
@@ -28,7 +29,12 @@ constexpr double rank_tolerance = 1e-10;
 
 class StartSolver {
  public:
-  explicit StartSolver(StartProblem& problem) : p_(problem), s_(problem.system), n_(s_.free.size()), m_(s_.active.size()) {}
+  explicit StartSolver(StartProblem& problem) : p_(problem), s_(problem.system), n_(s_.free.size()), m_(s_.active.size()) {
+    for (std::size_t k = 0; k < m_; ++k) {
+      if (s_.holonomic[k]) rows_[0].push_back(k);
+      rows_[1].push_back(k);
+    }
+  }
 
   void run() {
     const std::size_t all = p_.mechanics.q.size();
@@ -101,15 +107,17 @@ class StartSolver {
     const std::vector<Ref>& constant = order == 0 ? s_.psi : s_.b;
     refs.insert(refs.end(), constant.begin(), constant.end());
     const std::vector<double> values = evaluate(refs);
-    A.resize(static_cast<Eigen::Index>(m_), static_cast<Eigen::Index>(n_));
-    residual.resize(static_cast<Eigen::Index>(m_));
-    for (std::size_t k = 0; k < m_; ++k) {
+    const std::vector<std::size_t>& bound = rows_[order];
+    A.resize(static_cast<Eigen::Index>(bound.size()), static_cast<Eigen::Index>(n_));
+    residual.resize(static_cast<Eigen::Index>(bound.size()));
+    for (std::size_t row = 0; row < bound.size(); ++row) {
+      const std::size_t k = bound[row];
       double sum = values[m_ * n_ + k];
       for (std::size_t i = 0; i < n_; ++i) {
-        A(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = values[k * n_ + i];
+        A(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(i)) = values[k * n_ + i];
         if (order == 1) sum += values[k * n_ + i] * p_.qdot[s_.free[i]];
       }
-      residual(static_cast<Eigen::Index>(k)) = sum;
+      residual(static_cast<Eigen::Index>(row)) = sum;
     }
   }
 
@@ -141,7 +149,7 @@ class StartSolver {
   }
 
   void solve(std::uint8_t order) {
-    if (m_ == 0) return;
+    if (rows_[order].empty()) return;
     const std::vector<std::size_t> free = unknowns(order);
     for (const std::size_t i : free) {
       const auto guess = p_.guess.find({s_.free[i], order});
@@ -207,7 +215,7 @@ class StartSolver {
     MatrixXd A;
     linearise(order, residual, A);
     const auto row = static_cast<Eigen::Index>(k);
-    const mechanics::Constraint& constraint = p_.mechanics.constraints[s_.active[k]];
+    const mechanics::Constraint& constraint = p_.mechanics.constraints[s_.active[rows_[order][k]]];
     std::string given, open;
     model::Span span = p_.scene.span;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -227,7 +235,7 @@ class StartSolver {
             : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve", open);
     throw Error("scene", p_.mechanics.model->where(span),
                 fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
-                            constraint.label, order == 0 ? "" : " in its rates", residual(row),
+                            constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", residual(row),
                             relative(residual, A, order, row), start_tolerance),
                 remedy);
   }
@@ -237,6 +245,7 @@ class StartSolver {
   StartProblem& p_;
   const system::EquationSystem& s_;
   std::size_t n_, m_;
+  std::array<std::vector<std::size_t>, 2> rows_;  // constraints on positions (order 0), on velocities: all
 };
 
 }  // namespace

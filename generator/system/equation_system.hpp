@@ -43,6 +43,7 @@ struct EquationSystem {
 
   std::vector<Ref> M;      // n x n, row-major, symmetric
   std::vector<Ref> f;      // n
+  std::vector<bool> holonomic;  // m: false of constraints on velocities, whose psi is 0
   std::vector<Ref> psi;    // m
   std::vector<Ref> A;      // m x n, row-major
   std::vector<Ref> b;      // m: A qdot + b = 0

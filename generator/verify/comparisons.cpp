@@ -63,7 +63,7 @@ double motion_residual(const SystemValues& v) {
   return largest;
 }
 
-/// psi = 0, A = dpsi/dq and A qdot + b = 0 of the constraints that keep a multiplier.
+/// psi = 0, A = dpsi/dq (of velocities: their coefficients) and A qdot + b = 0 of the constraints that keep a multiplier.
 double constraint_residual(const EquationSystem& s, const SystemValues& v) {
   double largest = 0;
   const std::size_t n = s.free.size();
@@ -81,7 +81,8 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
       largest = std::max(largest, relative(v.A[k * n + i] - slope, length));
     }
     rate.add(v.b[k]);
-    largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length)});
+    largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length),
+                        relative(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
   }
   return largest;
 }

@@ -42,8 +42,10 @@ double relative(const Real& difference, const Real& scale) {
 double Residual::relative() const { return verify::relative(value, scale); }
 
 Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
-  for (const model::Constraint& constraint : model.constraints)
+  for (const model::Constraint& constraint : model.constraints) {
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
+    holonomic_.insert(holonomic_.end(), constraint.psi.size(), !constraint.velocity);
+  }
 }
 
 bool Judge::is_independent_parameter(std::size_t index) const {
@@ -190,32 +192,43 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   add_inertia(model_, state, now, sums);
   add_energies(model_, now, unaccelerated, sums);
   subtract_forces(model_, precision_, now, sums);
-  Interpreter& by_q = now.by_coordinates(false);
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    const Jet psi = by_q.scalar(psi_[k]);
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * psi.slope(by_q.level(), i).real());
+    const std::vector<Real> f = row(k, now, sums.size());
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * f[i]);
   }
   return sums;
 }
 
+std::vector<Real> Judge::row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const {
+  const bool positions = holonomic_[constraint];
+  Interpreter& varied = now.by_coordinates(!positions);
+  const Jet value = varied.scalar(psi_[constraint]);
+  std::vector<Real> result;
+  for (std::size_t i = 0; i < coordinates; ++i)
+    result.push_back(value.slope(varied.level(), positions ? i : coordinates + i).real());
+  return result;
+}
+
 ConstraintValues Judge::constraint_values(const State& state, Margin* margin) const {
   Interpreter now = interpreter(state, margin);
-  Interpreter& by_q = now.by_coordinates(false);
   Interpreter& later = now.along_time();
   ConstraintValues values;
-  for (const model::NodeId id : psi_) {
-    const Jet rate = later.scalar(id);
-    values.psi.push_back(rate.real());
-    values.psi_dot.push_back(rate.slope(later.level(), 0).real());
-    if (!state.qddot.empty()) {
-      Interpreter& twice = later.along_time();
-      const Jet both = twice.scalar(id).slope(twice.level(), 0);
-      values.psi_ddot.push_back(both.slope(later.level(), 0).real());
+  for (std::size_t k = 0; k < psi_.size(); ++k) {
+    const Jet rate = later.scalar(psi_[k]);
+    if (holonomic_[k]) {
+      values.psi.push_back(rate.real());
+      values.psi_dot.push_back(rate.slope(later.level(), 0).real());
+      if (!state.qddot.empty()) {
+        Interpreter& twice = later.along_time();
+        const Jet both = twice.scalar(psi_[k]).slope(twice.level(), 0);
+        values.psi_ddot.push_back(both.slope(later.level(), 0).real());
+      }
+    } else {
+      values.psi.push_back(0);
+      values.psi_dot.push_back(rate.real());
+      if (!state.qddot.empty()) values.psi_ddot.push_back(rate.slope(later.level(), 0).real());
     }
-    const Jet psi = by_q.scalar(id);
-    std::vector<Real> row;
-    for (std::size_t i = 0; i < state.q.size(); ++i) row.push_back(psi.slope(by_q.level(), i).real());
-    values.gradient.push_back(std::move(row));
+    values.gradient.push_back(row(k, now, state.q.size()));
   }
   return values;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The independent judge. In: a Model and a state with accelerations and multipliers. Out: by how much d'Alembert's
 // principle fails there, per coordinate,
-//   sum_particles (d(m v)/dt - F) . dr/dq_i - Q_i - sum_k lambda_k dpsi_k/dq_i      ((2.74), (2.163), (2.31), (3.20)),
+//   sum_particles (d(m v)/dt - F) . dr/dq_i - Q_i - sum_k lambda_k f_ki      ((2.74), (2.163), (2.31), (2.50), (3.20)),
+// f_ki = dpsi_k/dq_i, or de_k/dqdot_i of a constraint e_k = 0 on velocities,
 // with the Euler-Lagrange residual d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of energies that are given as such; the
 // constraints and their rates; and the energies with theirs.
 //
@@ -31,10 +32,11 @@ struct Residual {
   double relative() const;  // |value| / scale; 0 where both are 0
 };
 
-/// Of all scalar equations psi_k = 0 in the order of the model; N coordinates, K equations.
+/// Of all scalar equations in the order of the model; N coordinates, K equations. A constraint e = 0 on velocities has
+/// psi = 0, psi_dot = e.
 struct ConstraintValues {
   std::vector<Real> psi, psi_dot, psi_ddot;  // along the path
-  std::vector<std::vector<Real>> gradient;   // K x N: dpsi_k/dq_i
+  std::vector<std::vector<Real>> gradient;   // K x N: dpsi_k/dq_i, de_k/dqdot_i
 };
 
 struct EnergyValues {
@@ -52,6 +54,7 @@ class Judge {
   const Precision& precision() const { return precision_; }
   int digits() const { return digits_; }
   const std::vector<model::NodeId>& constraints() const { return psi_; }
+  bool holonomic(std::size_t constraint) const { return holonomic_[constraint]; }
 
   std::vector<Real> default_parameters() const;
   /// Every parameter, those that are expressions of others computed; `given` holds the independent ones.
@@ -68,11 +71,13 @@ class Judge {
 
  private:
   void add_functions(Environment& environment) const;
+  std::vector<Real> row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const;
 
   const model::Model& model_;
   int digits_;
   Precision precision_;
   std::vector<model::NodeId> psi_;
+  std::vector<bool> holonomic_;
 };
 
 }  // namespace eomgen::verify

@@ -164,9 +164,17 @@ State Points::draw() {
 }
 
 /// The least change, measured by the scales, that removes the defect: W A^T (A W A^T)^-1 (-defect).
-std::vector<Real> Points::correction(const State& state, const std::vector<Real>& defect, bool rates) const {
-  const ConstraintValues c = judge_.constraint_values(state);
-  const std::size_t rows = c.gradient.size(), n = choices_.size();
+std::vector<Real> Points::correction(const State& state, bool rates) const {
+  ConstraintValues c = judge_.constraint_values(state);
+  const std::size_t n = choices_.size();
+  std::vector<Real> defect = rates ? c.psi_dot : c.psi;
+  for (std::size_t k = c.gradient.size(); k-- > 0 && !rates;) {
+    if (judge_.holonomic(k)) continue;  // binds no position
+    c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
+    defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
+  }
+  const std::size_t rows = c.gradient.size();
+  if (rows == 0) return std::vector<Real>(n, Real(0));
   std::vector<Real> weight;
   for (const Choice& choice : choices_) {
     const Real scale = exact(rates ? choice.rate_scale : choice.scale);
@@ -192,7 +200,7 @@ void Points::project_positions(State& s) const {
   // Convergence is quadratic: after a step of relative size 10^-h the error is of the order 10^-2h.
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 + 2));
   for (int iteration = 0; iteration < 40; ++iteration) {
-    const std::vector<Real> step = correction(s, judge_.constraint_values(s).psi, false);
+    const std::vector<Real> step = correction(s, false);
     Real size = 0;
     for (std::size_t i = 0; i < step.size(); ++i) {
       s.q[i] = s.q[i] + step[i];
@@ -206,7 +214,7 @@ void Points::project_positions(State& s) const {
 
 void Points::project_velocities(State& s) const {
   if (judge_.constraints().empty()) return;
-  const std::vector<Real> change = correction(s, judge_.constraint_values(s).psi_dot, true);
+  const std::vector<Real> change = correction(s, true);
   for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
 }
 

@@ -44,7 +44,7 @@ class Points {
   double draw_coordinate(const Choice& choice);
   void project_positions(State& state) const;
   void project_velocities(State& state) const;
-  std::vector<Real> correction(const State& state, const std::vector<Real>& defect, bool rates) const;
+  std::vector<Real> correction(const State& state, bool rates) const;
   void require_inside(const State& state) const;
   void require_smooth(const State& state) const;
 

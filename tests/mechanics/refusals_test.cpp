@@ -55,6 +55,21 @@ TEST_CASE("mechanics refuses: a constraint that contradicts the one before it") 
   CHECK(r.message.starts_with("constraint 'b' fixes nothing"));
 }
 
+TEST_CASE("mechanics refuses: a constraint that is not linear in the velocities") {
+  const Refusal r = refusal(planar + "[[constraint]]\nname = \"speed\"\nvelocity = \"x_dot^2 + y_dot^2 - 1\"\n");
+  CHECK(r.message == "constraint 'speed' is not linear in the velocities");
+  CHECK(r.line == 11);
+}
+
+TEST_CASE("mechanics accepts: velocities whose squares cancel") {
+  CHECK(refusal(planar + "[[constraint]]\nname = \"c\"\nvelocity = \"(x_dot + y)^2 - x_dot^2 + y_dot*x\"\n").message == "accepted");
+}
+
+TEST_CASE("mechanics refuses: a constraint that divides by a velocity, linear as it is") {
+  const Refusal r = refusal(planar + "[[constraint]]\nname = \"c\"\nvelocity = \"(x_dot^2 + x_dot*y_dot*x)/x_dot\"\n");
+  CHECK(r.message == "constraint 'c' divides by a velocity");
+}
+
 TEST_CASE("mechanics refuses: a coordinate that moves no mass") {
   const Refusal r = refusal(planar + "[coordinates]\ns = {}\n[[force]]\non = \"P\"\nforce = \"-s*E1\"\n");
   CHECK(r.message.find("coordinate 's'") != std::string::npos);

@@ -41,3 +41,29 @@ TEST_CASE("P7: the reaction along the run is (2.111), and the power balance hold
     CHECK(run.rows.at(i, "reaction.sphere") == doctest::Approx(lambda).epsilon(1e-11));
   }
 }
+
+TEST_CASE("P7: with a constraint on velocities both reactions are those of (2.114)") {
+  const test::Finished run = test::run_model("P7_moving_sphere_pfaffian", [](cli::SimulationRequest& request) {
+    request.overrides.rtol = 1e-12;
+    request.overrides.atol = 1e-12;
+  });
+  const auto p = [&](const char* name) { return run.parameter(name); };
+  const double m = p("m"), g = p("g"), D = p("D"), a = p("a"), w = p("w"), kappa = p("kappa"), eta = p("eta"), nu = p("nu");
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    const double t = run.rows.t[i], d = run.rows.at(i, "R"), d1 = a * w * std::cos(w * t), d2 = -a * w * w * std::sin(w * t);
+    const double phi = run.rows.at(i, "phi"), phi1 = run.rows.at(i, "phi_dot");
+    const double theta = run.rows.at(i, "theta"), theta1 = run.rows.at(i, "theta_dot");
+    const double s = std::sin(phi), c = std::cos(phi), f1 = -kappa * std::sin(theta - w * t);  // f2 = 1, f3 = -eta
+    // The equations of phi and theta read I phi'' = Q_phi + lambda2 and I s^2 theta'' = Q_theta + lambda2 f1.
+    const double I = m * d * d, Q_phi = I * s * c * theta1 * theta1 - 2 * m * d * d1 * phi1 + m * g * d * s;
+    const double Q_theta = D * d * d * s - 2 * I * s * c * phi1 * theta1 - 2 * m * d * s * s * d1 * theta1;
+    const double f1_dot = -kappa * std::cos(theta - w * t) * (theta1 - w);
+    const double rest = f1_dot * theta1 - eta * d2 + nu * w * std::sin(w * t);  // phi'' + f1 theta'' + rest = 0
+    const double lambda2 = -(rest + Q_phi / I + f1 * Q_theta / (I * s * s)) / (1 / I + f1 * f1 / (I * s * s));
+    const double lambda1 = m * d2 - m * d * (phi1 * phi1 + s * s * theta1 * theta1) + m * g * c + eta * lambda2;
+    CHECK(run.rows.at(i, "reaction.tilt") == doctest::Approx(lambda2).epsilon(1e-10));
+    CHECK(run.rows.at(i, "reaction.sphere") == doctest::Approx(lambda1).epsilon(1e-10));
+    CHECK(std::abs(phi1 + f1 * theta1 - eta * d1 - nu * std::cos(w * t)) < 1e-11);  // rows lie between steps
+  }
+  CHECK(run.simulation.result.power_balance < 1e-9);
+}

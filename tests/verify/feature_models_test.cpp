@@ -213,3 +213,43 @@ potential = "m*9.81*l*cos(psi - phi)*exp(-W*t/9)"
 gravity = "-9.81*E3*(1 + W*t/50)"
 )toml");
 }
+
+TEST_CASE("features: constraints on velocities: a vector, a list, moving ones, beside holonomic ones that keep multipliers") {
+  check_passes(R"toml(
+[parameters]
+m = 2
+L = 1.5
+v = 0.3
+[functions]
+slope = "v*sin(2*t) + 1"
+[[particle]]
+name = "P"
+mass = "m"
+position = { cylindrical = ["r", "alpha", "z"] }
+[[particle]]
+name = "Q"
+mass = "m/(2 + t)"
+position = { spherical = ["R", "phi", "theta"], from = "P" }
+[[particle]]
+name = "S"
+mass = "3"
+position = { cartesian = ["x1", "x2", "x3"] }
+[[force]]
+gravity = "-9.81*E3"
+[[constraint]]
+name = "rod"
+holonomic = "dot(Q, Q) - 4*L^2*(1 + t/9)"
+[[constraint]]
+name = "chase"
+velocity = ["r_dot + slope*z_dot*alpha - v", "dot(velocity(Q), P.e_alpha) + slope_dot*R"]
+[[constraint]]
+name = "tow"
+velocity = "velocity(S) - cross(E3 + t*E1, velocity(P)) + v*E2"
+[[constraint]]
+name = "stay"
+holonomic = "R - L*sqrt(1 + t/9)"
+[scene.default]
+t = [0, 2]
+initial = { r = 2, phi = 1, alpha = 0.4 }
+)toml");
+}

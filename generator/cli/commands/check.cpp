@@ -30,8 +30,10 @@ json constraints_of(const mechanics::Mechanics& m) {
       if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
     }
     // A holonomic constraint is its own integral; those that repeat others are refused before this.
-    result.push_back({{"name", c.label}, {"kind", "holonomic"}, {"integrable", "yes"},
-                      {"integral", shown(m, c.psi) + " = 0"}, {"redundant", false}, {"use", use}});
+    result.push_back({{"name", c.label}, {"kind", c.holonomic() ? "holonomic" : "velocity"},
+                      {"integrable", c.holonomic() ? "yes" : "unknown"},
+                      {"integral", c.holonomic() ? json(shown(m, c.psi) + " = 0") : json(nullptr)},
+                      {"redundant", false}, {"use", use}});
   }
   return result;
 }
@@ -100,7 +102,7 @@ void print_readable(const json& found) {
   for (const json& p : found["parameters"]) fmt::print("  {:<20} {} {}\n", text(p["name"]), text(p["value"]), text(p["unit"]));
   if (!found["constraints"].empty()) heading("constraints");
   for (const json& c : found["constraints"]) {
-    fmt::print("  {:<20} {}   ({}, {})\n", text(c["name"]), text(c["integral"]), text(c["kind"]), text(c["use"]));
+    fmt::print("  {:<20} {}   ({}, {})\n", text(c["name"]), c["integral"].is_null() ? "" : text(c["integral"]), text(c["kind"]), text(c["use"]));
   }
   if (!found["forces"].empty()) heading("forces");
   for (const json& f : found["forces"]) {
