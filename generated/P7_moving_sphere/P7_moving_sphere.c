@@ -4,13 +4,13 @@
  *
  * model       P7_moving_sphere
  * content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
- * equations   approach I, route expanded
- * verified    pass: 5 points at 50 digits, 48 comparisons
+ * equations   approach II, route christoffel
+ * verified    pass: 5 points at 50 digits, 98 comparisons
  * singular    R = 0
  * singular    phi = 0, phi = pi
  * singular    d = 0
  * rhs         24 flops (5 additions, 19 multiplications), 2 divisions, 4 sines, cosines, tangents
- * jac         69 flops (13 additions, 56 multiplications), 3 divisions, 4 sines, cosines, tangents
+ * jac         78 flops (17 additions, 61 multiplications), 3 divisions, 4 sines, cosines, tangents
  * mass        28 flops (5 additions, 23 multiplications), 4 sines, cosines, tangents
  * reactions   14 flops (4 additions, 10 multiplications), 3 sines, cosines, tangents
  * outputs     30 flops (9 additions, 21 multiplications), 4 sines, cosines, tangents
@@ -62,12 +62,12 @@ const char* P7_moving_sphere_info(void)
       "\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\",\"theta_dot\":\"rad/s\",\"R\""
       ":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a\":\"m\",\"w\":\"rad/s\"},\"de"
       "faults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1.0,0.1,2.0],\"u\":[]},\"approac"
-      "h\":\"I\",\"route\":\"expanded\",\"verdict\":\"pass: 5 points at 50 digits, 48 comparisons\",\"s"
-      "ingular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":{\"add\":5,\"mul\""
-      ":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":13,\"mul\":56,\"div\":3,\"sqrt"
-      "\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\":0,\"trig\":4,\"ot"
-      "her\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig\":3,\"other\":0},\"outp"
-      "uts\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}}}";
+      "h\":\"II\",\"route\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digits, 98 comparisons\""
+      ",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":{\"add\":5,\"m"
+      "ul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"mul\":61,\"div\":3,\""
+      "sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\":0,\"trig\":4,"
+      "\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig\":3,\"other\":0},\""
+      "outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}}}";
 }
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -138,47 +138,52 @@ int P7_moving_sphere_jac(double t, const double* x, const double* p, const doubl
   /* values */
   const double v4 = v2*a + d0;
   if (v4 == 0.0) return 1;
-  const double v5 = cos_phi*theta_dot;
-  const double v6 = v4*theta_dot*v5 + g;
-  const double v7 = sin_phi*theta_dot;
-  const double v8 = 1.0/v4;
+  const double v5 = theta_dot*theta_dot;
+  const double v6 = v4*(sin_phi*sin_phi - cos_phi*cos_phi);
+  const double v7 = 1.0/v4;
+  const double v8 = v4*D;
   const double v9 = w*a;
   const double v10 = v3*v9;
-  const double v11 = v4*phi_dot;
-  const double v12 = sin_phi*v10 + cos_phi*v11;
-  const double v13 = 2.0*m;
-  const double v14 = theta_dot*v13;
-  const double v15 = v4*D - v12*v14;
-  const double v16 = 1.0/sin_phi;
-  const double v17 = v16*v8;
-  const double v18 = v17/m;
-  const double v19 = 2.0*v10;
-  const double v20 = w*v2;
-  const double v21 = v8*v9;
-  const double v22 = v8*(v3*(sin_phi*v6 - phi_dot*v19) - v4*(v3*v7*v5 + 2.0*phi_dot*v20))*v21;
-  const double v23 = v18*v21*(v3*v15 - v4*(v3*D + v14*(sin_phi*v20 - cos_phi*v3*phi_dot)));
+  const double v11 = sin_phi*v10;
+  const double v12 = 4.0*m*theta_dot;
+  const double v13 = cos_phi*v4;
+  const double v14 = v11 + phi_dot*v13;
+  const double v15 = 2.0*theta_dot;
+  const double v16 = m*v15;
+  const double v17 = 2.0*(v8 - v14*v16);
+  const double v18 = 1.0/sin_phi;
+  const double v19 = v18*v7;
+  const double v20 = v19/m;
+  const double v21 = 2.0*v10;
+  const double v22 = cos_phi*v15;
+  const double v23 = v5*v13;
+  const double v24 = w*(v2*v4 - v3*v3*a);
+  const double v25 = v3*(sin_phi*g - 2.0*(sin_phi*(g + v23) - phi_dot*v21)) + 2.0*(sin_phi*v3*v23 +
+      phi_dot*v24);
+  const double v26 = v7*v9;
+  const double v27 = v20*v26*(sin_phi*v16*v24 - v3*(v4*(cos_phi*v12*phi_dot - 2.0*D) + v17));
 
   /* results */
   dfdx[0] = 0.0;  /* d/d phi */
   dfdx[1] = 0.0;
-  dfdx[2] = v8*(cos_phi*v6 - v4*v7*v7);
-  dfdx[3] = -v16*(cos_phi*v15 - v7*(sin_phi*v11 - cos_phi*v10)*v13)*v18;
+  dfdx[2] = v7*(cos_phi*g - v5*v6);
+  dfdx[3] = v18*(cos_phi*(v8 - v11*v12 - v17) + v6*phi_dot*v16)*v20;
   dfdx[4] = 0.0;  /* d/d theta */
   dfdx[5] = 0.0;
   dfdx[6] = 0.0;
   dfdx[7] = 0.0;
   dfdx[8] = 1.0;  /* d/d phi_dot */
   dfdx[9] = 0.0;
-  dfdx[10] = -v8*v19;
-  dfdx[11] = -2.0*v16*v5;
+  dfdx[10] = -v7*v21;
+  dfdx[11] = -v18*v22;
   dfdx[12] = 0.0;  /* d/d theta_dot */
   dfdx[13] = 1.0;
-  dfdx[14] = 2.0*cos_phi*v7;
-  dfdx[15] = -2.0*v12*v17;
+  dfdx[14] = sin_phi*v22;
+  dfdx[15] = -2.0*v14*v19;
   dfdt[0] = 0.0;
   dfdt[1] = 0.0;
-  dfdt[2] = -v22;
-  dfdt[3] = -v23;
+  dfdt[2] = v7*v25*v26;
+  dfdt[3] = v27;
   return 0;
 }
 
@@ -194,22 +199,20 @@ int P7_moving_sphere_mass(double t, const double* x, const double* p, double* M,
   const double sin_phi = sin(phi);
   const double cos_phi = cos(phi);
 
-  /* mass matrix */
+  /* values */
   const double v4 = v2*a + d0;
   const double v5 = v4*m;
-  const double M_11 = v4*v5;
-
-  /* values */
-  const double v6 = cos_phi*v4;
-  const double v7 = w*v3*a;
+  const double v6 = sin_phi*v4;
+  const double v7 = cos_phi*v4;
+  const double v8 = w*v3*a;
 
   /* results */
-  M[0] = M_11;
+  M[0] = v4*v5;
   M[1] = 0.0;
   M[2] = 0.0;
-  M[3] = sin_phi*sin_phi*M_11;
-  h[0] = -v5*(sin_phi*(theta_dot*theta_dot*v6 + g) - 2.0*phi_dot*v7);
-  h[1] = -sin_phi*v4*(v4*D - 2.0*m*theta_dot*(sin_phi*v7 + v6*phi_dot));
+  M[3] = m*v6*v6;
+  h[0] = -v5*(sin_phi*(theta_dot*theta_dot*v7 + g) - 2.0*phi_dot*v8);
+  h[1] = -v6*(v4*D - 2.0*m*theta_dot*(sin_phi*v8 + phi_dot*v7));
   return 0;
 }
 
@@ -221,16 +224,16 @@ int P7_moving_sphere_reactions(double t, const double* x, const double* p, const
   const double m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double v1 = sin(t*w);
   const double cos_phi = cos(phi);
   const double sin_phi = sin(phi);
+  const double v1 = sin(t*w);
 
   /* values */
   const double v2 = v1*a;
   const double v3 = sin_phi*theta_dot;
 
   /* results */
-  lambda[0] = -m*(w*w*v2 + (v2 + d0)*(v3*v3 + phi_dot*phi_dot) - cos_phi*g);  /* sphere */
+  lambda[0] = m*(cos_phi*g - w*w*v2 - (v2 + d0)*(v3*v3 + phi_dot*phi_dot));  /* sphere */
   return 0;
 }
 

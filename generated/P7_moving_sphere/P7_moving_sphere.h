@@ -4,13 +4,13 @@
  *
  * model       P7_moving_sphere
  * content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
- * equations   approach I, route expanded
- * verified    pass: 5 points at 50 digits, 48 comparisons
+ * equations   approach II, route christoffel
+ * verified    pass: 5 points at 50 digits, 98 comparisons
  * singular    R = 0
  * singular    phi = 0, phi = pi
  * singular    d = 0
  * rhs         24 flops (5 additions, 19 multiplications), 2 divisions, 4 sines, cosines, tangents
- * jac         69 flops (13 additions, 56 multiplications), 3 divisions, 4 sines, cosines, tangents
+ * jac         78 flops (17 additions, 61 multiplications), 3 divisions, 4 sines, cosines, tangents
  * mass        28 flops (5 additions, 23 multiplications), 4 sines, cosines, tangents
  * reactions   14 flops (4 additions, 10 multiplications), 3 sines, cosines, tangents
  * outputs     30 flops (9 additions, 21 multiplications), 4 sines, cosines, tangents

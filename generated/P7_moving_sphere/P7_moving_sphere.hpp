@@ -4,13 +4,13 @@
 //
 // model       P7_moving_sphere
 // content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
-// equations   approach I, route expanded
-// verified    pass: 5 points at 50 digits, 48 comparisons
+// equations   approach II, route christoffel
+// verified    pass: 5 points at 50 digits, 98 comparisons
 // singular    R = 0
 // singular    phi = 0, phi = pi
 // singular    d = 0
 // rhs         24 flops (5 additions, 19 multiplications), 2 divisions, 4 sines, cosines, tangents
-// jac         69 flops (13 additions, 56 multiplications), 3 divisions, 4 sines, cosines, tangents
+// jac         78 flops (17 additions, 61 multiplications), 3 divisions, 4 sines, cosines, tangents
 // mass        28 flops (5 additions, 23 multiplications), 4 sines, cosines, tangents
 // reactions   14 flops (4 additions, 10 multiplications), 3 sines, cosines, tangents
 // outputs     30 flops (9 additions, 21 multiplications), 4 sines, cosines, tangents
@@ -73,12 +73,12 @@ inline const char* info() {
       "\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\",\"theta_dot\":\"rad/s\",\"R\""
       ":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a\":\"m\",\"w\":\"rad/s\"},\"de"
       "faults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1.0,0.1,2.0],\"u\":[]},\"approac"
-      "h\":\"I\",\"route\":\"expanded\",\"verdict\":\"pass: 5 points at 50 digits, 48 comparisons\",\"s"
-      "ingular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":{\"add\":5,\"mul\""
-      ":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":13,\"mul\":56,\"div\":3,\"sqrt"
-      "\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\":0,\"trig\":4,\"ot"
-      "her\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig\":3,\"other\":0},\"outp"
-      "uts\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}}}";
+      "h\":\"II\",\"route\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digits, 98 comparisons\""
+      ",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":{\"add\":5,\"m"
+      "ul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"mul\":61,\"div\":3,\""
+      "sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\":0,\"trig\":4,"
+      "\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig\":3,\"other\":0},\""
+      "outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}}}";
 }
 #if defined(__GNUC__)
 #pragma GCC diagnostic pop
@@ -153,47 +153,52 @@ int jac(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dfd
   // values
   const Real v4 = v2*a + d0;
   if (v4 == Real(0)) return 1;
-  const Real v5 = cos_phi*theta_dot;
-  const Real v6 = v4*theta_dot*v5 + g;
-  const Real v7 = sin_phi*theta_dot;
-  const Real v8 = Real(1)/v4;
+  const Real v5 = theta_dot*theta_dot;
+  const Real v6 = v4*(sin_phi*sin_phi - cos_phi*cos_phi);
+  const Real v7 = Real(1)/v4;
+  const Real v8 = v4*D;
   const Real v9 = w*a;
   const Real v10 = v3*v9;
-  const Real v11 = v4*phi_dot;
-  const Real v12 = sin_phi*v10 + cos_phi*v11;
-  const Real v13 = Real(2)*m;
-  const Real v14 = theta_dot*v13;
-  const Real v15 = v4*D - v12*v14;
-  const Real v16 = Real(1)/sin_phi;
-  const Real v17 = v16*v8;
-  const Real v18 = v17/m;
-  const Real v19 = Real(2)*v10;
-  const Real v20 = w*v2;
-  const Real v21 = v3*(sin_phi*v6 - phi_dot*v19) - v4*(v3*v7*v5 + Real(2)*phi_dot*v20);
-  const Real v22 = v8*v9;
-  const Real v23 = v18*v22*(v3*v15 - v4*(v3*D + v14*(sin_phi*v20 - cos_phi*v3*phi_dot)));
+  const Real v11 = sin_phi*v10;
+  const Real v12 = Real(4)*m*theta_dot;
+  const Real v13 = cos_phi*v4;
+  const Real v14 = v11 + phi_dot*v13;
+  const Real v15 = Real(2)*theta_dot;
+  const Real v16 = m*v15;
+  const Real v17 = Real(2)*(v8 - v14*v16);
+  const Real v18 = Real(1)/sin_phi;
+  const Real v19 = v18*v7;
+  const Real v20 = v19/m;
+  const Real v21 = Real(2)*v10;
+  const Real v22 = cos_phi*v15;
+  const Real v23 = v5*v13;
+  const Real v24 = w*(v2*v4 - v3*v3*a);
+  const Real v25 = v3*(sin_phi*g - Real(2)*(sin_phi*(g + v23) - phi_dot*v21)) + Real(2)*(sin_phi*v3*v23 +
+      phi_dot*v24);
+  const Real v26 = v7*v9;
+  const Real v27 = sin_phi*v16*v24 - v3*(v4*(cos_phi*v12*phi_dot - Real(2)*D) + v17);
 
   // results
   dfdx[0] = Real(0);  // d/d phi
   dfdx[1] = Real(0);
-  dfdx[2] = v8*(cos_phi*v6 - v4*v7*v7);
-  dfdx[3] = -v16*(cos_phi*v15 - v7*(sin_phi*v11 - cos_phi*v10)*v13)*v18;
+  dfdx[2] = v7*(cos_phi*g - v5*v6);
+  dfdx[3] = v18*(cos_phi*(v8 - v11*v12 - v17) + v6*phi_dot*v16)*v20;
   dfdx[4] = Real(0);  // d/d theta
   dfdx[5] = Real(0);
   dfdx[6] = Real(0);
   dfdx[7] = Real(0);
   dfdx[8] = Real(1);  // d/d phi_dot
   dfdx[9] = Real(0);
-  dfdx[10] = -v8*v19;
-  dfdx[11] = -Real(2)*v16*v5;
+  dfdx[10] = -v7*v21;
+  dfdx[11] = -v18*v22;
   dfdx[12] = Real(0);  // d/d theta_dot
   dfdx[13] = Real(1);
-  dfdx[14] = Real(2)*cos_phi*v7;
-  dfdx[15] = -Real(2)*v12*v17;
+  dfdx[14] = sin_phi*v22;
+  dfdx[15] = -Real(2)*v14*v19;
   dfdt[0] = Real(0);
   dfdt[1] = Real(0);
-  dfdt[2] = -v8*v21*v22;
-  dfdt[3] = -v23;
+  dfdt[2] = v7*v25*v26;
+  dfdt[3] = v20*v26*v27;
   return 0;
 }
 
@@ -211,23 +216,20 @@ int mass(Real t, const Real* x, const Real* p, Real* M, Real* h) {
   const Real sin_phi = sin(phi);
   const Real cos_phi = cos(phi);
 
-  // mass matrix
+  // values
   const Real v4 = v2*a + d0;
   const Real v5 = v4*m;
-  const Real M_11 = v4*v5;
-
-  // values
-  const Real v6 = cos_phi*v4;
-  const Real v7 = w*v3*a;
-  const Real v8 = sin_phi*v4*(v4*D - Real(2)*m*theta_dot*(sin_phi*v7 + v6*phi_dot));
+  const Real v6 = sin_phi*v4;
+  const Real v7 = cos_phi*v4;
+  const Real v8 = w*v3*a;
 
   // results
-  M[0] = M_11;
+  M[0] = v4*v5;
   M[1] = Real(0);
   M[2] = Real(0);
-  M[3] = sin_phi*sin_phi*M_11;
-  h[0] = -v5*(sin_phi*(theta_dot*theta_dot*v6 + g) - Real(2)*phi_dot*v7);
-  h[1] = -v8;
+  M[3] = m*v6*v6;
+  h[0] = -v5*(sin_phi*(theta_dot*theta_dot*v7 + g) - Real(2)*phi_dot*v8);
+  h[1] = -v6*(v4*D - Real(2)*m*theta_dot*(sin_phi*v8 + phi_dot*v7));
   return 0;
 }
 
@@ -240,16 +242,16 @@ int reactions(Real t, const Real* x, const Real* p, const Real* u, int mode, Rea
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real v1 = sin(t*w);
   const Real cos_phi = cos(phi);
   const Real sin_phi = sin(phi);
+  const Real v1 = sin(t*w);
 
   // values
   const Real v2 = v1*a;
   const Real v3 = sin_phi*theta_dot;
 
   // results
-  lambda[0] = -m*(w*w*v2 + (v2 + d0)*(v3*v3 + phi_dot*phi_dot) - cos_phi*g);  // sphere
+  lambda[0] = m*(cos_phi*g - w*w*v2 - (v2 + d0)*(v3*v3 + phi_dot*phi_dot));  // sphere
   return 0;
 }
 

@@ -24,7 +24,7 @@ FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
 
 }  // namespace
 
-bool expanded_applies(const Mechanics& m, system::Approach) {
+bool expanded_applies(Mechanics& m, system::Approach) {
   if (m.q.size() > coordinate_budget) return false;
   symbolic::Expander expander(*m.dag, term_budget);
   return expander(m.kinetic).has_value();

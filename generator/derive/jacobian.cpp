@@ -45,7 +45,7 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
 
 }  // namespace
 
-bool jacobian_applies(const Mechanics& m, system::Approach) {
+bool jacobian_applies(Mechanics& m, system::Approach) {
   return !m.masses.empty() && m.dag->is_zero(m.kinetic_given);
 }
 

@@ -13,7 +13,7 @@ namespace eomgen::derive {
 struct RouteEntry {
   const char* name;
   const char* title;
-  bool (*applies)(const mechanics::Mechanics&, system::Approach);
+  bool (*applies)(mechanics::Mechanics&, system::Approach);
   system::EquationSystem (*derive)(mechanics::Mechanics&, system::Approach);
 };
 

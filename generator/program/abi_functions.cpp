@@ -29,6 +29,15 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   for (auto* list : {&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma}) {
     for (Ref& r : *list) r = fixed(r);
   }
+  if (s.quasi) {
+    for (auto* list : {&s.quasi->M, &s.quasi->f}) {
+      for (Ref& r : *list) r = fixed(r);
+    }
+  }
+  if (s.solution) {
+    for (Ref& r : s.solution->qddot) r = fixed(r);
+    for (Pivot& pivot : s.solution->pivots) pivot = {fixed(pivot.pivot), fixed(pivot.scale)};
+  }
   for (auto& reaction : s.reactions) reaction.value = fixed(reaction.value);
   for (auto& output : s.outputs) output.value = fixed(output.value);
 }
@@ -46,10 +55,9 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   fix_parameters(system_, fix);
   Dag& dag = *system_.dag;
   std::map<Symbol, Ref> solution;
-  solve_ = std::make_unique<Solve>(system_, ties);
-  std::vector<Ref> c;
-  for (const Ref gamma : system_.gamma) c.push_back(dag.neg(gamma));
-  std::tie(qddot_, lambda_) = (*solve_)(system_.f, c);
+  ties_ = ties;
+  if (system_.solution) qddot_ = system_.solution->qddot;
+  else std::tie(qddot_, lambda_) = solve().motion();
   for (std::size_t i = 0; i < n_; ++i) {
     qdot_.push_back(dag.symbol({SymbolKind::coordinate, system_.free[i], 1}));
     const Symbol qddot{SymbolKind::coordinate, system_.free[i], 2};
@@ -62,6 +70,11 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
     solution[lambda] = lambda_[k];
   }
   solution_ = std::make_unique<Substitution>(dag, std::move(solution));
+}
+
+const Solve& AbiFunctions::solve() {
+  if (!solve_) solve_ = std::make_unique<Solve>(system_, ties_);
+  return *solve_;
 }
 
 void AbiFunctions::label_matrices(WantedFunction& function) {
@@ -87,7 +100,13 @@ void AbiFunctions::add_solution(WantedFunction& function) {
     for (const auto& result : function.results) roots.insert(roots.end(), result.second.begin(), result.second.end());
     return system_.dag->reachable(roots);
   }();
-  for (const Pivot& pivot : solve_->pivots()) {
+  std::vector<Pivot> pivots;
+  if (system_.solution) pivots = system_.solution->pivots;
+  if (solve_) {
+    const std::vector<Pivot> more = solve_->pivots();
+    pivots.insert(pivots.end(), more.begin(), more.end());
+  }
+  for (const Pivot& pivot : pivots) {
     if (std::binary_search(needed.begin(), needed.end(), pivot.pivot)) function.pivots.push_back(pivot);
   }
   label_matrices(function);
@@ -129,7 +148,7 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
     for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + j]), qddot_[j]));
     c.push_back(dag.neg(sum));
   }
-  return (*solve_)(std::move(r), c).first;
+  return solve()(std::move(r), c).first;
 }
 
 WantedFunction AbiFunctions::jac() {

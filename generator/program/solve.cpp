@@ -15,11 +15,14 @@ namespace eomgen::program {
 using symbolic::Symbol;
 
 Solve::Solve(const system::EquationSystem& system, Ties ties)
-    : dag_(system.dag), n_(system.free.size()), m_(system.active.size()), A_(system.A) {
+    : dag_(system.dag), n_(system.free.size()), m_(system.active.size()), A_(system.A), f_(system.f), gamma_(system.gamma),
+      quasi_(system.quasi) {
   Dag& dag = *dag_;
-  std::vector<Ref> M = system.M;
+  std::vector<Ref> M = quasi_ ? quasi_->M : system.M;
   augmented_ = is_singular_everywhere(dag, M, n_);
   if (augmented_) {
+    quasi_.reset();
+    M = system.M;
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) {
         for (std::size_t c = 0; c < m_; ++c) {
@@ -36,13 +39,52 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   if (m_ == 0) return;
   for (std::size_t c = 0; c < m_; ++c) {
     const auto row = A_.begin() + static_cast<std::ptrdiff_t>(c * n_);
-    Y_.push_back(mass_->forward({row, row + static_cast<std::ptrdiff_t>(n_)}));
+    Y_.push_back(forward({row, row + static_cast<std::ptrdiff_t>(n_)}));
   }
   std::vector<Ref> S(m_ * m_);
   for (std::size_t i = 0; i < m_; ++i) {
     for (std::size_t j = 0; j <= i; ++j) S[i * m_ + j] = S[j * m_ + i] = mass_->inner(Y_[i], Y_[j]);
   }
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
+}
+
+namespace {
+
+// sum_i C[i * n + a] r_i, the transposed matrix applied.
+std::vector<Ref> transposed(Dag& dag, const std::vector<symbolic::Rational>& C, const std::vector<Ref>& r) {
+  const std::size_t n = r.size();
+  std::vector<Ref> result(n, dag.zero());
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t i = 0; i < n; ++i) result[a] = dag.add(result[a], dag.mul(dag.constant(C[i * n + a]), r[i]));
+  }
+  return result;
+}
+
+std::vector<Ref> applied(Dag& dag, const std::vector<symbolic::Rational>& C, const std::vector<Ref>& x) {
+  const std::size_t n = x.size();
+  std::vector<Ref> result(n, dag.zero());
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t a = 0; a < n; ++a) result[i] = dag.add(result[i], dag.mul(dag.constant(C[i * n + a]), x[a]));
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Ref> Solve::forward(const std::vector<Ref>& r) const {
+  return mass_->forward(quasi_ ? transposed(*dag_, quasi_->S_inverse, r) : r);
+}
+
+std::vector<Ref> Solve::backward(const std::vector<Ref>& z) const {
+  const std::vector<Ref> x = mass_->backward(z);
+  return quasi_ ? applied(*dag_, quasi_->S_inverse, x) : x;
+}
+
+std::pair<std::vector<Ref>, std::vector<Ref>> Solve::motion() const {
+  std::vector<Ref> c;
+  for (const Ref gamma : gamma_) c.push_back(dag_->neg(gamma));
+  if (quasi_) return from(mass_->forward(quasi_->f), c);
+  return (*this)(f_, c);
 }
 
 std::pair<std::vector<Ref>, std::vector<Ref>> Solve::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
@@ -52,7 +94,11 @@ std::pair<std::vector<Ref>, std::vector<Ref>> Solve::operator()(std::vector<Ref>
       for (std::size_t k = 0; k < m_; ++k) r[i] = dag.add(r[i], dag.mul(A_[k * n_ + i], c[k]));
     }
   }
-  std::vector<Ref> z = mass_->forward(r);
+  return from(forward(r), c);
+}
+
+std::pair<std::vector<Ref>, std::vector<Ref>> Solve::from(std::vector<Ref> z, const std::vector<Ref>& c) const {
+  Dag& dag = *dag_;
   std::vector<Ref> lambda;
   if (m_ > 0) {
     std::vector<Ref> excess;
@@ -62,7 +108,7 @@ std::pair<std::vector<Ref>, std::vector<Ref>> Solve::operator()(std::vector<Ref>
       for (std::size_t i = 0; i < n_; ++i) z[i] = dag.add(z[i], dag.mul(Y_[k][i], lambda[k]));
     }
   }
-  return {mass_->backward(z), lambda};
+  return {backward(z), lambda};
 }
 
 std::vector<Pivot> Solve::pivots() const {

@@ -3,7 +3,8 @@
 //   M qddot = f + A^T lambda,   A qddot = -gamma                              (docs/theory.md, index-1 form)
 // by M = L D L^T, unrolled in an order that keeps the zeros of M, then
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
-// Structural zeros cost nothing; a diagonal M gives plain divisions. Where M alone is singular (a coordinate without
+// Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix is
+// factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without
 // mass) M + A^T A takes its place, with f - A^T gamma for f: on the constraints nothing changes.
 #pragma once
 
@@ -30,13 +31,20 @@ class Solve {
 
   /// x, lambda of M x = r + A^T lambda, A x = c.
   std::pair<std::vector<Ref>, std::vector<Ref>> operator()(std::vector<Ref> r, const std::vector<Ref>& c) const;
+  /// qddot, lambda of the equations of motion themselves.
+  std::pair<std::vector<Ref>, std::vector<Ref>> motion() const;
   std::vector<Pivot> pivots() const;
   bool augmented() const { return augmented_; }
 
  private:
+  std::vector<Ref> forward(const std::vector<Ref>& r) const;
+  std::vector<Ref> backward(const std::vector<Ref>& z) const;
+  std::pair<std::vector<Ref>, std::vector<Ref>> from(std::vector<Ref> z, const std::vector<Ref>& c) const;
+
   std::shared_ptr<Dag> dag_;
   std::size_t n_, m_;
-  std::vector<Ref> A_;
+  std::vector<Ref> A_, f_, gamma_;
+  std::optional<system::QuasiEquations> quasi_;
   bool augmented_ = false;
   std::unique_ptr<Factorisation> mass_, schur_;
   std::vector<std::vector<Ref>> Y_;

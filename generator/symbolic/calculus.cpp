@@ -116,6 +116,21 @@ Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, 
   return Derivation(dag, std::move(seeds));
 }
 
+Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& a) {
+  switch (node.op) {
+    case Op::add: return dag.add(a[0], a[1]);
+    case Op::sub: return dag.sub(a[0], a[1]);
+    case Op::mul: return dag.mul(a[0], a[1]);
+    case Op::div: return dag.div(a[0], a[1]);
+    case Op::neg: return dag.neg(a[0]);
+    case Op::power: return dag.power(a[0], node.payload);
+    case Op::pow: return dag.pow(a[0], a[1]);
+    case Op::select: return dag.select(a[0], a[1], a[2], a[3]);
+    case Op::atan2: case Op::min: case Op::max: return dag.call(node.op, a[0], a[1]);
+    default: return dag.call(node.op, a[0]);
+  }
+}
+
 Ref Substitution::operator()(Ref expression) {
   for (const Ref r : dag_.reachable({expression})) {
     if (memo_.contains(r.id)) continue;
@@ -130,18 +145,7 @@ Ref Substitution::operator()(Ref expression) {
     if (node.op == Op::symbol) {
       if (const auto found = values_.find(dag_.symbol_of(r)); found != values_.end()) result = found->second;
     } else if (changed) {
-      switch (node.op) {
-        case Op::add: result = dag_.add(a[0], a[1]); break;
-        case Op::sub: result = dag_.sub(a[0], a[1]); break;
-        case Op::mul: result = dag_.mul(a[0], a[1]); break;
-        case Op::div: result = dag_.div(a[0], a[1]); break;
-        case Op::neg: result = dag_.neg(a[0]); break;
-        case Op::power: result = dag_.power(a[0], node.payload); break;
-        case Op::pow: result = dag_.pow(a[0], a[1]); break;
-        case Op::select: result = dag_.select(a[0], a[1], a[2], a[3]); break;
-        case Op::atan2: case Op::min: case Op::max: result = dag_.call(node.op, a[0], a[1]); break;
-        default: result = dag_.call(node.op, a[0]); break;
-      }
+      result = rebuilt(dag_, node, a);
     }
     memo_.emplace(r.id, result);
   }

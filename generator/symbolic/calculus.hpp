@@ -33,6 +33,9 @@ Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, 
 /// Partial time derivative at fixed coordinates and velocities: t -> 1, f -> f'.
 Derivation explicit_time(Dag& dag, std::size_t functions);
 
+/// A node of the same operation with other operands (no leaf).
+Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& operands);
+
 class Substitution {
  public:
   Substitution(Dag& dag, std::map<Symbol, Ref> values) : dag_(dag), values_(std::move(values)) {}

@@ -7,10 +7,11 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "symbolic/dag.hpp"
+#include "symbolic/factorisation.hpp"
 
 namespace eomgen::system {
 
@@ -33,6 +34,19 @@ struct Output {
   Ref value;         // may use qddot of free coordinates and multipliers
 };
 
+/// M = S^T M_theta S, f = S^T f_theta for rates theta_dot = S qdot with constant S: cheaper to solve where M_theta is
+/// the simpler matrix (relative angles).
+struct QuasiEquations {
+  std::vector<symbolic::Rational> S_inverse;  // n x n row-major
+  std::vector<Ref> M, f;                      // n x n, n
+};
+
+/// The equations solved by the route itself; nothing is left to factorise.
+struct Solution {
+  std::vector<Ref> qddot;  // n, without accelerations and multipliers
+  std::vector<symbolic::Pivot> pivots;
+};
+
 struct EquationSystem {
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
@@ -48,6 +62,9 @@ struct EquationSystem {
   std::vector<Ref> A;      // m x n, row-major
   std::vector<Ref> b;      // m: A qdot + b = 0
   std::vector<Ref> gamma;  // m: A qddot + gamma = 0
+
+  std::optional<QuasiEquations> quasi;  // another way to M and f
+  std::optional<Solution> solution;     // equal to what M, f, A, gamma give
 
   std::vector<Reaction> reactions;  // all constraints, in model order
   std::vector<Output> outputs;      // everything that can be asked for, in the order of docs/model-format.md

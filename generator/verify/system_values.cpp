@@ -69,6 +69,8 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
   if (!solution.exists() || solution.condition > worst_condition) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < n; ++i) out.qddot.push_back(solution.x()[i]);
   for (std::size_t k = 0; k < m; ++k) out.lambda.push_back(-solution.x()[n + k]);
+  // What the route solved itself counts, not what its matrix would give.
+  if (s.solution) out.qddot = symbolic::evaluate(*s.dag, s.solution->qddot, lookup, digits);
   out.inverse.assign(solution.columns.begin() + 1, solution.columns.end());
   return out;
 }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/articulated.hpp"
+
+#include "derive/tensions.hpp"
+#include "derive/tree_equations.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+/// q = S^-1 theta, for the second rates.
+std::vector<Ref> in_model(Dag& dag, const QuasiCoordinates& coordinates, const std::vector<Ref>& theta_ddot) {
+  if (coordinates.identity()) return theta_ddot;
+  const std::size_t n = theta_ddot.size();
+  std::vector<Ref> result;
+  for (std::size_t i = 0; i < n; ++i) {
+    Ref sum = dag.zero();
+    for (std::size_t a = 0; a < n; ++a) {
+      sum = dag.add(sum, dag.mul(dag.constant(coordinates.S_inverse[i * n + a]), theta_ddot[a]));
+    }
+    result.push_back(sum);
+  }
+  return result;
+}
+
+}  // namespace
+
+bool articulated_applies(Mechanics& m, system::Approach approach) {
+  if (!m.active.empty() || !tree_applies(m, approach)) return false;
+  const std::optional<Branches> tree = branches(m, m.free, true);
+  return rods_of(*m.dag, *tree).has_value();
+}
+
+system::EquationSystem articulated(Mechanics& m, system::Approach approach) {
+  Dag& dag = *m.dag;
+  const TreeEquations motion = tree_equations(m, m.free, true);
+  system::EquationSystem s = assemble_tree(m, motion, "articulated", approach);
+  system::Solution solution = accelerations(dag, motion.tree, *rods_of(dag, motion.tree));
+  symbolic::Substitution back = motion.tree.coordinates.back(dag);
+  for (Ref& r : solution.qddot) r = back(r);
+  for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};
+  solution.qddot = in_model(dag, motion.tree.coordinates, solution.qddot);
+  s.solution = std::move(solution);
+  return s;
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/tree_equations.hpp"
+
+#include <numeric>
+
+namespace eomgen::derive {
+namespace {
+
+std::vector<std::uint32_t> all_coordinates(const Mechanics& m) {
+  std::vector<std::uint32_t> all(m.q.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
+}
+
+/// Per link: what the particles beyond it exert by their inertia and weight, d(m v)/dt - m g without second rates.
+std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
+  const Vec3 none{dag.zero(), dag.zero(), dag.zero()};
+  std::vector<Vec3> force(b.links.size(), none);
+  symbolic::Derivation bias = b.coordinates.bias(dag);
+  for (std::size_t l = b.links.size(); l-- > 0;) {
+    for (const std::size_t k : b.links[l].particles) {
+      const Carried& particle = b.particles[k];
+      const Ref mass_rate = bias(particle.mass);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Ref felt = dag.mul(particle.mass, dag.sub(particle.bias[i], b.gravity[i]));
+        force[l][i] = dag.add(force[l][i], dag.add(felt, dag.mul(mass_rate, particle.velocity[i])));
+      }
+    }
+    if (b.links[l].parent < 0) continue;
+    Vec3& inner = force[static_cast<std::size_t>(b.links[l].parent)];
+    for (std::size_t i = 0; i < 3; ++i) inner[i] = dag.add(inner[i], force[l][i]);
+  }
+  return force;
+}
+
+system::QuasiEquations in_theta(Dag& dag, const Branches& b) {
+  const std::size_t n = b.J.size();
+  system::QuasiEquations result{b.coordinates.S_inverse, std::vector<Ref>(n * n, dag.zero()), {}};
+  const std::vector<Vec3> force = inertia_beyond(dag, b);
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t c = 0; c <= a; ++c) {
+      const std::size_t outer = b.beyond(b.of[a], b.of[c]) ? b.of[a] : b.of[c];
+      if (!b.beyond(outer, b.of[a]) || !b.beyond(outer, b.of[c])) continue;
+      const Ref entry = dag.mul(b.links[outer].mass_beyond, dot(dag, b.J[a], b.J[c]));
+      result.M[a * n + c] = result.M[c * n + a] = entry;
+    }
+    result.f.push_back(dag.sub(b.f[a], dot(dag, b.J[a], force[b.of[a]])));
+  }
+  symbolic::Substitution back = b.coordinates.back(dag);
+  for (Ref& r : result.M) r = back(r);
+  for (Ref& r : result.f) r = back(r);
+  return result;
+}
+
+FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const system::QuasiEquations& e) {
+  if (coordinates.identity()) return {e.M, e.f};
+  const std::size_t n = e.f.size();
+  const std::vector<Rational>& S = coordinates.S;
+  const auto combined = [&](const auto& entry, std::size_t i) {  // sum_a S_ai entry(a)
+    Ref sum = dag.zero();
+    for (std::size_t a = n; a-- > 0;) {
+      if (!cln::zerop(S[a * n + i])) sum = dag.add(sum, dag.mul(dag.constant(S[a * n + i]), entry(a)));
+    }
+    return sum;
+  };
+  std::vector<Ref> half(n * n);  // M_theta S
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t j = 0; j < n; ++j) half[a * n + j] = combined([&](std::size_t c) { return e.M[a * n + c]; }, j);
+  }
+  FullEquations result{std::vector<Ref>(n * n), {}};
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i; j < n; ++j) {
+      result.M[i * n + j] = result.M[j * n + i] = combined([&](std::size_t a) { return half[a * n + j]; }, i);
+    }
+    result.f.push_back(combined([&](std::size_t a) { return e.f[a]; }, i));
+  }
+  return result;
+}
+
+}  // namespace
+
+bool tree_applies(Mechanics& m, system::Approach approach) {
+  if (approach == system::Approach::one && !m.fixed.empty()) return false;
+  return branches(m, m.free, true) && (m.fixed.empty() || branches(m, all_coordinates(m), false));
+}
+
+TreeEquations tree_equations(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
+  TreeEquations result{*branches(m, of, imposed), {}, {}};
+  result.quasi = in_theta(*m.dag, result.tree);
+  result.of_model = in_model(*m.dag, result.tree.coordinates, result.quasi);
+  return result;
+}
+
+system::EquationSystem assemble_tree(Mechanics& m, const TreeEquations& motion, const char* route, system::Approach approach) {
+  if (m.fixed.empty()) return assemble(m, motion.of_model, nullptr, route, approach);
+  const FullEquations full = tree_equations(m, all_coordinates(m), false).of_model;
+  return assemble(m, full, &motion.of_model, route, approach);
+}
+
+}  // namespace eomgen::derive
