@@ -58,7 +58,7 @@ class Run {
   }
 
   Result run() {
-    const int code = locator_.start(total_.t, total_.x.data(), g_);
+    const int code = locator_.start(total_.t, total_.x.data(), g_, t1_ >= total_.t);
     if (code != 0) {
       total_.outcome = outcome_of_abi_code(code);
       total_.detail = "an event function returned code " + std::to_string(code) + " at the start";
@@ -177,14 +177,14 @@ class Run {
     const double progress = std::abs(crossing.t - total_.t);
     total_.t = crossing.t;
     if (!go_on) return end(Outcome::stopped_by_event, "stopped by the observer");
-    crowded_ = progress > 1e-14 * std::max(std::abs(crossing.t), std::abs(h)) ? 0 : crowded_ + 1;
+    crowded_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : crowded_ + 1;
     const AtEvent answer = handler_(EventPoint{crossing.t, total_.x, crossing, locator_.functions()});
     if (answer == AtEvent::stop) return end(Outcome::stopped_by_event, "");
     if (crowded_ >= events_without_progress)
       return end(Outcome::step_too_small, "events follow one another without time going on");
     piece.initial_step = answer == AtEvent::go_on ? std::abs(h) : options_.initial_step;
     if (answer == AtEvent::go_on) return true;
-    const int code = locator_.start(total_.t, total_.x.data(), g_, {&crossing, 1});
+    const int code = locator_.start(total_.t, total_.x.data(), g_, h > 0, {&crossing, 1});
     return code == 0 || end(outcome_of_abi_code(code), "an event function returned code " + std::to_string(code));
   }
 

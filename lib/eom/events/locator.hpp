@@ -36,6 +36,7 @@ enum class Watch {
 struct EventFunction {
   Direction direction = Direction::any;
   Watch watch = Watch::breaking;
+  bool guard = false;  // of a direction up or down: to start beyond the surface, or to leave it that way, is a crossing too
 };
 
 struct Crossing {
@@ -52,6 +53,7 @@ class EventLocator {
         side_(functions_.size(), 0),
         position_(functions_.size(), 0),
         size_(functions_.size(), 0),
+        residual_(functions_.size(), 0),
         values_(functions_.size()),
         samples_(places.size() * functions_.size()),
         x_(n) {}
@@ -63,12 +65,17 @@ class EventLocator {
 
   /// Takes the sides at (t, x) afresh; those of `crossed` functions, and those within rounding of zero, are not known.
   template <class G>
-  int start(double t, const double* x, G& g, std::span<const Crossing> crossed = {}) {
+  int start(double t, const double* x, G& g, bool forward = true, std::span<const Crossing> crossed = {}) {
     if (functions_.empty()) return 0;
     const int code = g(t, x, values_.data());
     if (code != 0) return code;
-    for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = beyond(i, values_[i], 0) ? sign(values_[i]) : 0;
+    std::fill(residual_.begin(), residual_.end(), 0.0);
+    for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = beyond(i, values_[i]) ? sign(values_[i]) : 0;
     for (const Crossing& c : crossed) side_[c.function] = 0;
+    for (std::size_t i = 0; i < functions_.size(); ++i)
+      if (side_[i] == 0 && std::isfinite(values_[i])) residual_[i] = std::abs(values_[i]);
+    for (std::size_t i = 0; i < functions_.size(); ++i)
+      if (functions_[i].guard && side_[i] != 0) side_[i] = inner_side(functions_[i], forward);
     return 0;
   }
 
@@ -113,7 +120,7 @@ class EventLocator {
       bool known = functions_[i].watch != Watch::off && side_[i] != 0;
       for (std::size_t k = 0; k < places.size(); ++k) known = known && std::isfinite(sample(k, i));
       const double last = sample(places.size() - 1, i);
-      if (!known) side_[i] = beyond(i, last, 0) ? sign(last) : 0;
+      if (!known) side_[i] = beyond(i, last) ? sign(last) : 0;
     }
   }
 
@@ -130,9 +137,11 @@ class EventLocator {
   static constexpr double rounding = 1e-13;          // of the largest value seen: smaller ones have no sign
   static constexpr double dip_worth_a_look = 0.5;    // of the smallest sample: where a parabola's vertex lies lower
 
+  /// The side from which a function with a direction may be crossed.
+  static int inner_side(const EventFunction& f, bool forward) { return (f.direction == Direction::up) == forward ? -1 : 1; }
   static int sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
-  bool beyond(std::size_t i, double value, double noise) const {
-    return std::isfinite(value) && value != 0 && std::abs(value) > std::max(noise, rounding * size_[i]);
+  bool beyond(std::size_t i, double value) const {
+    return std::isfinite(value) && std::abs(value) > std::max(4 * residual_[i], rounding * size_[i]);
   }
   static double at(const StepView& view, double s) {
     return s <= 0 ? view.t0 : s >= 1 ? view.t1 : view.t0 + s * (view.t1 - view.t0);
@@ -158,24 +167,34 @@ class EventLocator {
     return values_[i];
   }
 
-  /// The side of a function that starts on its surface: that of its first value beyond rounding.
+  /// The side of a function that starts on its surface: that of its first value beyond rounding. What grows steadily
+  /// over three decades of time is no rounding, however small it is.
   template <class G>
   void find_side(const StepView& view, std::size_t i, G& g) {
-    const double noise = std::isfinite(sample(0, i)) ? 4 * std::abs(sample(0, i)) : 0;
-    for (double s = tolerance; s < 0.05; s *= 10) {
-      const double v = value(view, s, i, g);
-      if (!beyond(i, v, noise)) continue;
-      side_[i] = sign(v);
-      position_[i] = s;
-      return;
+    constexpr std::size_t decades = 12;
+    std::array<double, decades> v;
+    double s = tolerance;
+    for (double& entry : v) {
+      entry = value(view, s, i, g);
+      s *= 10;
+    }
+    const auto grows = [&](std::size_t k) { return v[k] * v[k + 1] > 0 && std::abs(v[k + 1]) > 3 * std::abs(v[k]); };
+    s = tolerance;
+    for (std::size_t k = 0; k < decades; ++k, s *= 10) {
+      if (!(std::abs(v[k]) > 4 * residual_[i])) continue;
+      if (beyond(i, v[k]) || (k + 2 < decades && grows(k) && grows(k + 1))) return arm(view, i, sign(v[k]), s);
     }
     for (std::size_t k = 1; k < places.size(); ++k) {
-      if (!beyond(i, sample(k, i), noise)) continue;
-      side_[i] = sign(sample(k, i));
-      position_[i] = places[k];
-      return;
+      if (beyond(i, sample(k, i))) return arm(view, i, sign(sample(k, i)), places[k]);
     }
     position_[i] = 1;
+  }
+
+  void arm(const StepView& view, std::size_t i, int side, double s) {
+    const int inner = inner_side(functions_[i], view.t1 > view.t0);
+    const bool beyond_guard = functions_[i].guard && side != inner;
+    side_[i] = beyond_guard ? inner : side;
+    position_[i] = beyond_guard ? 0 : s;
   }
 
   /// The first crossing after the function's position. Beyond a place without a value nothing is looked for.
@@ -236,6 +255,7 @@ class EventLocator {
   std::vector<int> side_;
   std::vector<double> position_;  // fraction of the step up to which crossings are known
   std::vector<double> size_;      // largest value seen
+  std::vector<double> residual_;  // value at the start, of a function that started on its surface
   std::vector<double> values_;
   std::vector<double> samples_;
   std::vector<double> x_;

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: MIT
+// Systems with modes (sliding and sticking, contact and flight): one right-hand side per mode, and surfaces that lead from
+// one to another. In: rhs(t, x, mode, dx) -> code, events(t, x, mode, values) -> code, what is watched in each mode,
+// a rule for the transitions. Out: ModeResult: how the run ended, in which mode, and what happened when.
+//
+// What is watched in a mode bounds it: a function watched `down` has to be positive there, one watched `up` negative.
+// Where a mode is entered beyond one of its surfaces, or leaves it the wrong way at once, the rule is asked again at the same time, so
+// that several changes at one instant follow one another and no motion goes on in a mode that does not hold. A surface
+// on which a mode is entered is not met again until the motion has left it.
+//
+// Chattering (Zeno): transitions that follow one another ever faster, down to 1e-7 of the first interval, accumulate at a
+// time that is extrapolated; there the rule's settle(point), if it has one, says how to go on, and otherwise the run
+// ends as step_too_small with that time in `detail`.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdio>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "eom/events/integrate.hpp"
+
+namespace eom {
+
+struct WatchedSurface {
+  std::size_t function;  // of the array that events() fills
+  Direction direction;   // any: no bound of the mode, only a place where the rule is asked
+};
+
+struct Mode {
+  std::string name;
+  std::vector<WatchedSurface> watched;
+};
+
+/// What the rule is given; it may change x (an impact), and puts it onto the surface where that matters.
+struct ModePoint {
+  double t;
+  std::span<double> x;
+  int mode;
+  Crossing crossing;
+};
+
+/// What the rule answers.
+struct Transition {
+  int mode = 0;                     // the next one; may be the same
+  std::string kind = {}, name = {}; // recorded: "slip", "stick", "contact", ... and whose; kind empty: not recorded
+  Outcome outcome = Outcome::done;  // another one ends the run here: stopped_by_event, friction_no_solution, ...
+};
+
+struct ModeEvent {
+  double t;
+  std::string kind, name;
+  int from, to;
+};
+
+struct ModeResult : Result {
+  int mode = 0;
+  std::vector<ModeEvent> events;
+  std::size_t transitions = 0;
+  double accumulation = std::numeric_limits<double>::quiet_NaN();  // where chattering that ended the run would end
+};
+
+namespace modes {
+
+/// Times of transitions, and whether they accumulate.
+class Chatter {
+ public:
+  /// The time at which the transitions seen so far accumulate, once they are fast enough to tell.
+  std::optional<double> see(double t) {
+    const double interval = std::abs(t - last_), before = interval_;
+    interval_ = interval;
+    const double direction = t < last_ ? -1 : 1;
+    last_ = t;
+    if (!(interval < before)) {  // also the first, and after NaN
+      first_ = interval;
+      shrinking_ = 0;
+      return std::nullopt;
+    }
+    ++shrinking_;
+    if (shrinking_ < fewest || !(interval < smallest * first_)) return std::nullopt;
+    const double ratio = interval / before;
+    return t + direction * interval * ratio / (1 - ratio);
+  }
+
+  void forget() { *this = Chatter{}; }
+
+ private:
+  static constexpr int fewest = 10;
+  static constexpr double smallest = 1e-7;
+  double last_ = std::numeric_limits<double>::quiet_NaN();
+  double interval_ = std::numeric_limits<double>::quiet_NaN();
+  double first_ = 0;
+  int shrinking_ = 0;
+};
+
+template <class F, class G, class Rule, class Observer, class AfterStep>
+class Machine {
+ public:
+  Machine(F& rhs, G& events, std::span<const Mode> table, std::size_t functions, Rule& rule, int mode,
+          Observer& observer, AfterStep& after_step)
+      : rhs_(rhs), events_(events), table_(table), functions_(functions), rule_(rule), observer_(observer),
+        after_step_(after_step) {
+    result_.mode = mode;
+    for (EventFunction& f : functions_) f.watch = Watch::off;
+    watch(functions_);
+  }
+
+  ModeResult run(std::string_view method, double t0, std::span<const double> x0, double t1, const Options& options) {
+    const Result end = integrate_events(
+        method, [this](double t, const double* x, double* dx) { return rhs_(t, x, result_.mode, dx); }, t0, x0, t1, options,
+        [this](double t, const double* x, double* g) { return events_(t, x, result_.mode, g); }, functions_,
+        [this](const EventPoint& point) { return take(point); },
+        [this](const StepView& view) { return observer_(view, result_.mode); },
+        [this](double t, double* x) { return after_step_(t, x, result_.mode); });
+    static_cast<Result&>(result_) = end;
+    if (ended_ != Outcome::done) {
+      result_.outcome = ended_;
+      result_.detail = detail_;
+    }
+    return std::move(result_);
+  }
+
+ private:
+  void watch(std::span<EventFunction> functions) const {
+    for (EventFunction& f : functions) f.watch = Watch::off;
+    for (const WatchedSurface& s : table_[static_cast<std::size_t>(result_.mode)].watched)
+      functions[s.function] = {s.direction, Watch::breaking, s.direction != Direction::any};
+  }
+
+  AtEvent take(const EventPoint& point) {
+    const ModePoint here{point.t, point.x, result_.mode, point.crossing};
+    ++result_.transitions;
+    std::optional<Transition> next;
+    if (const std::optional<double> accumulation = chatter_.see(point.t)) {
+      if constexpr (requires { rule_.settle(here); }) {
+        next = rule_.settle(here);
+        chatter_.forget();
+      }
+      if (!next) return end_chattering(*accumulation);
+    }
+    if (!next) next = rule_(here);
+    if (!next->kind.empty()) result_.events.push_back({point.t, next->kind, next->name, result_.mode, next->mode});
+    result_.mode = next->mode;
+    watch(point.functions);
+    if (next->outcome == Outcome::done) return AtEvent::restart;
+    ended_ = next->outcome;
+    return AtEvent::stop;
+  }
+
+  AtEvent end_chattering(double accumulation) {
+    result_.accumulation = accumulation;
+    ended_ = Outcome::step_too_small;
+    char text[160];
+    std::snprintf(text, sizeof text, "chattering: after %zu changes of mode they accumulate at t = %.17g",
+                  result_.transitions, accumulation);
+    detail_ = text;
+    return AtEvent::stop;
+  }
+
+  F& rhs_;
+  G& events_;
+  std::span<const Mode> table_;
+  std::vector<EventFunction> functions_;
+  Rule& rule_;
+  Observer& observer_;
+  AfterStep& after_step_;
+  ModeResult result_;
+  Chatter chatter_;
+  Outcome ended_ = Outcome::done;
+  std::string detail_;
+};
+
+struct NoObserver {
+  bool operator()(const StepView&, int) const { return true; }
+};
+struct NoProjection {
+  int operator()(double, double*, int) const { return 0; }
+};
+
+}  // namespace modes
+
+/// Integrates from (t0, x0) in `mode`. functions: how many values events() fills; table: what is watched in each mode.
+/// rule(ModePoint) -> Transition; observer(StepView, mode) -> bool; after_step(t, x, mode) -> code. Throws what
+/// integrate() throws.
+template <class F, class G, class Rule, class Observer = modes::NoObserver, class AfterStep = modes::NoProjection>
+ModeResult integrate_modes(std::string_view method, F&& rhs, double t0, std::span<const double> x0, int mode, double t1,
+                           const Options& options, G&& events, std::size_t functions, std::span<const Mode> table,
+                           Rule&& rule, Observer&& observer = {}, AfterStep&& after_step = {}) {
+  return modes::Machine<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Rule>,
+                        std::remove_reference_t<Observer>, std::remove_reference_t<AfterStep>>(
+             rhs, events, table, functions, rule, mode, observer, after_step)
+      .run(method, t0, x0, t1, options);
+}
+
+}  // namespace eom
