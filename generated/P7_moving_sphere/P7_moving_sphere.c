@@ -36,11 +36,105 @@
  */
 #include "P7_moving_sphere.h"
 
+#include <float.h>
 #include <math.h>
+#include <string.h>
 
-#ifdef __FAST_MATH__
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
 #error "this code tells numbers that are not finite and singular matrices: compile it without -ffast-math"
 #endif
+
+#if defined(FLT_EVAL_METHOD) && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16)
+#define EOM_EXACT /* doubles are not kept in wider registers */
+#endif
+#if defined(__GNUC__)
+typedef double P7_moving_sphere_lanes __attribute__((vector_size(16)));
+typedef unsigned long long P7_moving_sphere_bits __attribute__((vector_size(16)));
+enum { P7_moving_sphere_width = 2 };
+#define EOM_GATHER(a) {(a)[0], (a)[1]}
+#else
+typedef double P7_moving_sphere_lanes;
+typedef unsigned long long P7_moving_sphere_bits;
+enum { P7_moving_sphere_width = 1 };
+#define EOM_GATHER(a) (a)[0]
+#endif
+
+/* Sines and cosines of several angles at once, wrong by less than one unit in the last place while |angle| <= 65536:
+ * multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. Lanes do not depend on one
+ * another. `size` becomes |angle|; what it is for larger angles and those that are not finite means nothing. */
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* angle, P7_moving_sphere_lanes* size, P7_moving_sphere_lanes* sine, P7_moving_sphere_lanes* cosine)
+{
+  P7_moving_sphere_bits sign, quarter, s, c, swap;
+  P7_moving_sphere_lanes a;
+  memcpy(&sign, angle, sizeof sign);
+  s = sign & 0x7fffffffffffffffULL;
+  sign ^= s;
+  memcpy(&a, &s, sizeof a);
+  /* 1.5*2^52 leaves no digits behind the point: the last bits of `shifted` count quarter turns. */
+  const P7_moving_sphere_lanes shifted = a*0.6366197723675814 + 6755399441055744.0;
+  const P7_moving_sphere_lanes turns = shifted - 6755399441055744.0;
+  memcpy(&quarter, &shifted, sizeof quarter);
+  /* The first two parts of pi/2 have 36 bits, so that their products and the first difference are exact. */
+  const P7_moving_sphere_lanes first = a - turns*1.5707963267923333;
+  const P7_moving_sphere_lanes second = turns*2.5633441515839558e-12;
+  const P7_moving_sphere_lanes r = first - second;
+  const P7_moving_sphere_lanes rest = ((first - r) - second) - turns*1.0562999066987428e-23;
+  const P7_moving_sphere_lanes z = r*r, zz = z*z, half = 0.5*z, most = 1.0 - half;
+  const P7_moving_sphere_lanes sine_r = r + (rest + r*z*((-0.1666666666666663 + 0.00833333333332209*z) +
+      zz*((-0.00019841269829566106 + 2.755731361296573e-06*z) +
+      zz*(-2.5050746401506983e-08 + 1.5896148880482264e-10*z))));
+  const P7_moving_sphere_lanes cosine_r = most + (((1.0 - most) - half) + (zz*((0.0416666666666666 - 0.00138888888888741*z) +
+      zz*((2.4801587289467693e-05 - 2.755731434796057e-07*z) +
+      zz*(2.0875722655237486e-09 - 1.1359614648017376e-11*z))) - r*rest));
+  memcpy(&s, &sine_r, sizeof s);
+  memcpy(&c, &cosine_r, sizeof c);
+  swap = (s ^ c) & (0ULL - (quarter & 1ULL));
+  s ^= swap ^ ((quarter & 2ULL) << 62) ^ sign;
+  c ^= swap ^ (((quarter + 1ULL) & 2ULL) << 62);
+  memcpy(size, &a, sizeof a);
+  memcpy(sine, &s, sizeof s);
+  memcpy(cosine, &c, sizeof c);
+}
+
+/* Sines and cosines of `count` angles; those beyond 65536 and those that are not finite are left to the C library. What
+ * comes out for an angle does not depend on the others, and only by fused multiplications on the processor. The arrays
+ * have room for an even number, and zeros behind the last angle. */
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+static inline void P7_moving_sphere_sincos(int count, const double* angle, double* sine, double* cosine)
+{
+#ifdef EOM_EXACT
+  P7_moving_sphere_lanes sizes = {0};
+  double sums[P7_moving_sphere_width], sum = 0;
+#if defined(__GNUC__)
+#pragma GCC unroll 8
+#endif
+  for (int i = 0; i < count; i += P7_moving_sphere_width) {
+    const P7_moving_sphere_lanes x = EOM_GATHER(angle + i);
+    P7_moving_sphere_lanes size, s, c;
+    P7_moving_sphere_sincos_lanes(&x, &size, &s, &c);
+    sizes += size;
+    memcpy(sine + i, &s, sizeof s);
+    memcpy(cosine + i, &c, sizeof c);
+  }
+  memcpy(sums, &sizes, sizeof sums);
+  for (int j = 0; j < P7_moving_sphere_width; ++j) sum += sums[j];
+  if (sum <= 65536.0) return;
+#endif
+  for (int i = 0; i < count; ++i) {
+#ifdef EOM_EXACT
+    if (angle[i] >= -65536.0 && angle[i] <= 65536.0) continue;
+#endif
+    sine[i] = sin(angle[i]);
+    cosine[i] = cos(angle[i]);
+  }
+}
+#undef EOM_EXACT
+#undef EOM_GATHER
 
 int P7_moving_sphere_abi(void)
 {
@@ -95,26 +189,28 @@ int P7_moving_sphere_rhs(double t, const double* x, const double* p, const doubl
   if (m == 0.0) return 1;
 
   /* sines and cosines */
-  const double sin_phi = sin(phi);
+  const double angle[2] = {phi, t*w};
+  double sine[2], cosine[2];
+  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  const double sin_phi = sine[0];
   if (sin_phi == 0.0) return 1;
-  const double cos_phi = cos(phi);
-  const double v1 = t*w;
-  const double v2 = sin(v1);
-  const double v3 = cos(v1);
+  const double cos_phi = cosine[0];
+  const double v1 = sine[1];
+  const double v2 = cosine[1];
 
   /* values */
-  const double v4 = v2*a + d0;
-  if (v4 == 0.0) return 1;
-  const double v5 = cos_phi*v4;
-  const double v6 = w*v3*a;
-  const double v7 = 1.0/v4;
-  const double v8 = v7*(2.0*m*theta_dot*(sin_phi*v6 + phi_dot*v5) - v4*D)/(sin_phi*m);
+  const double v3 = v1*a + d0;
+  if (v3 == 0.0) return 1;
+  const double v4 = cos_phi*v3;
+  const double v5 = w*v2*a;
+  const double v6 = 1.0/v3;
+  const double v7 = v6*(2.0*m*theta_dot*(sin_phi*v5 + phi_dot*v4) - v3*D)/(sin_phi*m);
 
   /* results */
   dx[0] = phi_dot;
   dx[1] = theta_dot;
-  dx[2] = v7*(sin_phi*(theta_dot*theta_dot*v5 + g) - 2.0*phi_dot*v6);  /* phi_ddot */
-  dx[3] = -v8;  /* theta_ddot */
+  dx[2] = v6*(sin_phi*(theta_dot*theta_dot*v4 + g) - 2.0*phi_dot*v5);  /* phi_ddot */
+  dx[3] = -v7;  /* theta_ddot */
   const double finite = dx[2] + dx[3];
   return finite - finite == 0.0 ? 0 : 5;
 }
@@ -128,62 +224,64 @@ int P7_moving_sphere_jac(double t, const double* x, const double* p, const doubl
   if (m == 0.0) return 1;
 
   /* sines and cosines */
-  const double sin_phi = sin(phi);
+  const double angle[2] = {phi, t*w};
+  double sine[2], cosine[2];
+  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  const double sin_phi = sine[0];
   if (sin_phi == 0.0) return 1;
-  const double cos_phi = cos(phi);
-  const double v1 = t*w;
-  const double v2 = sin(v1);
-  const double v3 = cos(v1);
+  const double cos_phi = cosine[0];
+  const double v1 = sine[1];
+  const double v2 = cosine[1];
 
   /* values */
-  const double v4 = v2*a + d0;
-  if (v4 == 0.0) return 1;
-  const double v5 = theta_dot*theta_dot;
-  const double v6 = v4*(sin_phi*sin_phi - cos_phi*cos_phi);
-  const double v7 = 1.0/v4;
-  const double v8 = v4*D;
-  const double v9 = w*a;
-  const double v10 = v3*v9;
-  const double v11 = sin_phi*v10;
-  const double v12 = 4.0*m*theta_dot;
-  const double v13 = cos_phi*v4;
-  const double v14 = v11 + phi_dot*v13;
-  const double v15 = 2.0*theta_dot;
-  const double v16 = m*v15;
-  const double v17 = 2.0*(v8 - v14*v16);
-  const double v18 = 1.0/sin_phi;
-  const double v19 = v18*v7;
-  const double v20 = v19/m;
-  const double v21 = 2.0*v10;
-  const double v22 = cos_phi*v15;
-  const double v23 = v5*v13;
-  const double v24 = w*(v2*v4 - v3*v3*a);
-  const double v25 = v3*(sin_phi*g - 2.0*(sin_phi*(g + v23) - phi_dot*v21)) + 2.0*(sin_phi*v3*v23 +
-      phi_dot*v24);
-  const double v26 = v7*v9;
-  const double v27 = v20*v26*(sin_phi*v16*v24 - v3*(v4*(cos_phi*v12*phi_dot - 2.0*D) + v17));
+  const double v3 = v1*a + d0;
+  if (v3 == 0.0) return 1;
+  const double v4 = theta_dot*theta_dot;
+  const double v5 = v3*(sin_phi*sin_phi - cos_phi*cos_phi);
+  const double v6 = 1.0/v3;
+  const double v7 = v3*D;
+  const double v8 = w*a;
+  const double v9 = v2*v8;
+  const double v10 = sin_phi*v9;
+  const double v11 = 4.0*m*theta_dot;
+  const double v12 = cos_phi*v3;
+  const double v13 = v10 + phi_dot*v12;
+  const double v14 = 2.0*theta_dot;
+  const double v15 = m*v14;
+  const double v16 = 2.0*(v7 - v13*v15);
+  const double v17 = 1.0/sin_phi;
+  const double v18 = v17*v6;
+  const double v19 = v18/m;
+  const double v20 = 2.0*v9;
+  const double v21 = cos_phi*v14;
+  const double v22 = v4*v12;
+  const double v23 = w*(v1*v3 - v2*v2*a);
+  const double v24 = v2*(sin_phi*g - 2.0*(sin_phi*(g + v22) - phi_dot*v20)) + 2.0*(sin_phi*v2*v22 +
+      phi_dot*v23);
+  const double v25 = v6*v8;
+  const double v26 = v19*v25*(sin_phi*v15*v23 - v2*(v3*(cos_phi*v11*phi_dot - 2.0*D) + v16));
 
   /* results */
   dfdx[0] = 0.0;  /* d/d phi */
   dfdx[1] = 0.0;
-  dfdx[2] = v7*(cos_phi*g - v5*v6);
-  dfdx[3] = v18*(cos_phi*(v8 - v11*v12 - v17) + v6*phi_dot*v16)*v20;
+  dfdx[2] = v6*(cos_phi*g - v4*v5);
+  dfdx[3] = v17*(cos_phi*(v7 - v10*v11 - v16) + v5*phi_dot*v15)*v19;
   dfdx[4] = 0.0;  /* d/d theta */
   dfdx[5] = 0.0;
   dfdx[6] = 0.0;
   dfdx[7] = 0.0;
   dfdx[8] = 1.0;  /* d/d phi_dot */
   dfdx[9] = 0.0;
-  dfdx[10] = -v7*v21;
-  dfdx[11] = -v18*v22;
+  dfdx[10] = -v6*v20;
+  dfdx[11] = -v17*v21;
   dfdx[12] = 0.0;  /* d/d theta_dot */
   dfdx[13] = 1.0;
-  dfdx[14] = sin_phi*v22;
-  dfdx[15] = -2.0*v14*v19;
+  dfdx[14] = sin_phi*v21;
+  dfdx[15] = -2.0*v13*v18;
   dfdt[0] = 0.0;
   dfdt[1] = 0.0;
-  dfdt[2] = v7*v25*v26;
-  dfdt[3] = v27;
+  dfdt[2] = v6*v24*v25;
+  dfdt[3] = v26;
   return 0;
 }
 
@@ -193,26 +291,28 @@ int P7_moving_sphere_mass(double t, const double* x, const double* p, double* M,
   const double m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double v1 = t*w;
-  const double v2 = sin(v1);
-  const double v3 = cos(v1);
-  const double sin_phi = sin(phi);
-  const double cos_phi = cos(phi);
+  const double angle[2] = {phi, t*w};
+  double sine[2], cosine[2];
+  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  const double sin_phi = sine[0];
+  const double cos_phi = cosine[0];
+  const double v1 = sine[1];
+  const double v2 = cosine[1];
 
   /* values */
-  const double v4 = v2*a + d0;
-  const double v5 = v4*m;
-  const double v6 = sin_phi*v4;
-  const double v7 = cos_phi*v4;
-  const double v8 = w*v3*a;
+  const double v3 = v1*a + d0;
+  const double v4 = v3*m;
+  const double v5 = sin_phi*v3;
+  const double v6 = cos_phi*v3;
+  const double v7 = w*v2*a;
 
   /* results */
-  M[0] = v4*v5;
+  M[0] = v3*v4;
   M[1] = 0.0;
   M[2] = 0.0;
-  M[3] = m*v6*v6;
-  h[0] = -v5*(sin_phi*(theta_dot*theta_dot*v7 + g) - 2.0*phi_dot*v8);
-  h[1] = -v6*(v4*D - 2.0*m*theta_dot*(sin_phi*v8 + phi_dot*v7));
+  M[3] = m*v5*v5;
+  h[0] = -v4*(sin_phi*(theta_dot*theta_dot*v6 + g) - 2.0*phi_dot*v7);
+  h[1] = -v5*(v3*D - 2.0*m*theta_dot*(sin_phi*v7 + phi_dot*v6));
   return 0;
 }
 
@@ -224,9 +324,12 @@ int P7_moving_sphere_reactions(double t, const double* x, const double* p, const
   const double m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double cos_phi = cos(phi);
-  const double sin_phi = sin(phi);
-  const double v1 = sin(t*w);
+  const double angle[2] = {phi, t*w};
+  double sine[2], cosine[2];
+  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  const double sin_phi = sine[0];
+  const double cos_phi = cosine[0];
+  const double v1 = sine[1];
 
   /* values */
   const double v2 = v1*a;
@@ -244,24 +347,26 @@ int P7_moving_sphere_outputs(double t, const double* x, const double* p, const d
   const double m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double v1 = t*w;
-  const double v2 = cos(v1);
-  const double v3 = sin(v1);
-  const double cos_phi = cos(phi);
-  const double sin_phi = sin(phi);
+  const double angle[2] = {phi, t*w};
+  double sine[2], cosine[2];
+  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  const double sin_phi = sine[0];
+  const double cos_phi = cosine[0];
+  const double v1 = sine[1];
+  const double v2 = cosine[1];
 
   /* values */
-  const double v4 = w*w;
-  const double v5 = cos_phi*g;
-  const double v6 = v3*a;
-  const double v7 = sin_phi*theta_dot;
-  const double v8 = v7*v7 + phi_dot*phi_dot;
-  const double v9 = d0*v8;
-  const double v10 = a*(0.5*v2*v2*a*v4 + v3*(v5 + (0.5*v6 + d0)*v8)) + d0*(v5 + 0.5*v9);
+  const double v3 = w*w;
+  const double v4 = cos_phi*g;
+  const double v5 = v1*a;
+  const double v6 = sin_phi*theta_dot;
+  const double v7 = v6*v6 + phi_dot*phi_dot;
+  const double v8 = d0*v7;
+  const double v9 = a*(0.5*v2*v2*a*v3 + v1*(v4 + (0.5*v5 + d0)*v7)) + d0*(v4 + 0.5*v8);
 
   /* results */
-  y[0] = m*v10;  /* energy */
-  y[1] = m*(v5 - v6*(v4 + v8) - v9);  /* reaction_sphere */
+  y[0] = m*v9;  /* energy */
+  y[1] = m*(v4 - v5*(v3 + v7) - v8);  /* reaction_sphere */
   return 0;
 }
 

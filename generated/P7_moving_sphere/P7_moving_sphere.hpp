@@ -35,10 +35,12 @@
 //   [1] reaction.sphere
 #pragma once
 
+#include <cfloat>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 
-#ifdef __FAST_MATH__
+#if defined(__FAST_MATH__) || defined(__ASSOCIATIVE_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__ > 0)
 #error "this code tells numbers that are not finite and singular matrices: compile it without -ffast-math"
 #endif
 
@@ -99,36 +101,138 @@ void defaults(Real* x, Real* p) {
   p[5] = Real(2.0);  // w
 }
 
+template <class Real>
+void eom_sincos(int count, const Real* angle, Real* sine, Real* cosine) {
+  using std::cos; using std::sin;
+  for (int i = 0; i < count; ++i) {
+    sine[i] = sin(angle[i]);
+    cosine[i] = cos(angle[i]);
+  }
+}
+#if defined(FLT_EVAL_METHOD) && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16)
+#define EOM_EXACT /* doubles are not kept in wider registers */
+#endif
+#if defined(__GNUC__)
+typedef double eom_lanes __attribute__((vector_size(16)));
+typedef unsigned long long eom_bits __attribute__((vector_size(16)));
+enum { eom_width = 2 };
+#define EOM_GATHER(a) {(a)[0], (a)[1]}
+#else
+typedef double eom_lanes;
+typedef unsigned long long eom_bits;
+enum { eom_width = 1 };
+#define EOM_GATHER(a) (a)[0]
+#endif
+
+/* Sines and cosines of several angles at once, wrong by less than one unit in the last place while |angle| <= 65536:
+ * multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. Lanes do not depend on one
+ * another. `size` becomes |angle|; what it is for larger angles and those that are not finite means nothing. */
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes* sine, eom_lanes* cosine)
+{
+  eom_bits sign, quarter, s, c, swap;
+  eom_lanes a;
+  std::memcpy(&sign, angle, sizeof sign);
+  s = sign & 0x7fffffffffffffffULL;
+  sign ^= s;
+  std::memcpy(&a, &s, sizeof a);
+  /* 1.5*2^52 leaves no digits behind the point: the last bits of `shifted` count quarter turns. */
+  const eom_lanes shifted = a*0.6366197723675814 + 6755399441055744.0;
+  const eom_lanes turns = shifted - 6755399441055744.0;
+  std::memcpy(&quarter, &shifted, sizeof quarter);
+  /* The first two parts of pi/2 have 36 bits, so that their products and the first difference are exact. */
+  const eom_lanes first = a - turns*1.5707963267923333;
+  const eom_lanes second = turns*2.5633441515839558e-12;
+  const eom_lanes r = first - second;
+  const eom_lanes rest = ((first - r) - second) - turns*1.0562999066987428e-23;
+  const eom_lanes z = r*r, zz = z*z, half = 0.5*z, most = 1.0 - half;
+  const eom_lanes sine_r = r + (rest + r*z*((-0.1666666666666663 + 0.00833333333332209*z) +
+      zz*((-0.00019841269829566106 + 2.755731361296573e-06*z) +
+      zz*(-2.5050746401506983e-08 + 1.5896148880482264e-10*z))));
+  const eom_lanes cosine_r = most + (((1.0 - most) - half) + (zz*((0.0416666666666666 - 0.00138888888888741*z) +
+      zz*((2.4801587289467693e-05 - 2.755731434796057e-07*z) +
+      zz*(2.0875722655237486e-09 - 1.1359614648017376e-11*z))) - r*rest));
+  std::memcpy(&s, &sine_r, sizeof s);
+  std::memcpy(&c, &cosine_r, sizeof c);
+  swap = (s ^ c) & (0ULL - (quarter & 1ULL));
+  s ^= swap ^ ((quarter & 2ULL) << 62) ^ sign;
+  c ^= swap ^ (((quarter + 1ULL) & 2ULL) << 62);
+  std::memcpy(size, &a, sizeof a);
+  std::memcpy(sine, &s, sizeof s);
+  std::memcpy(cosine, &c, sizeof c);
+}
+
+/* Sines and cosines of `count` angles; those beyond 65536 and those that are not finite are left to the C library. What
+ * comes out for an angle does not depend on the others, and only by fused multiplications on the processor. The arrays
+ * have room for an even number, and zeros behind the last angle. */
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+inline void eom_sincos(int count, const double* angle, double* sine, double* cosine)
+{
+#ifdef EOM_EXACT
+  eom_lanes sizes = {0};
+  double sums[eom_width], sum = 0;
+#if defined(__GNUC__)
+#pragma GCC unroll 8
+#endif
+  for (int i = 0; i < count; i += eom_width) {
+    const eom_lanes x = EOM_GATHER(angle + i);
+    eom_lanes size, s, c;
+    eom_sincos_lanes(&x, &size, &s, &c);
+    sizes += size;
+    std::memcpy(sine + i, &s, sizeof s);
+    std::memcpy(cosine + i, &c, sizeof c);
+  }
+  std::memcpy(sums, &sizes, sizeof sums);
+  for (int j = 0; j < eom_width; ++j) sum += sums[j];
+  if (sum <= 65536.0) return;
+#endif
+  for (int i = 0; i < count; ++i) {
+#ifdef EOM_EXACT
+    if (angle[i] >= -65536.0 && angle[i] <= 65536.0) continue;
+#endif
+    sine[i] = std::sin(angle[i]);
+    cosine[i] = std::cos(angle[i]);
+  }
+}
+#undef EOM_EXACT
+#undef EOM_GATHER
+
+
 // dx = d/dt of the state x.
 template <class Real>
 int rhs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dx) {
   (void)u; (void)mode;
-  using std::cos; using std::sin;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
   if (m == Real(0)) return 1;
 
   // sines and cosines
-  const Real sin_phi = sin(phi);
+  const Real angle[2] = {phi, t*w};
+  Real sine[2], cosine[2];
+  eom_sincos(2, angle, sine, cosine);
+  const Real sin_phi = sine[0];
   if (sin_phi == Real(0)) return 1;
-  const Real cos_phi = cos(phi);
-  const Real v1 = t*w;
-  const Real v2 = sin(v1);
-  const Real v3 = cos(v1);
+  const Real cos_phi = cosine[0];
+  const Real v1 = sine[1];
+  const Real v2 = cosine[1];
 
   // values
-  const Real v4 = v2*a + d0;
-  if (v4 == Real(0)) return 1;
-  const Real v5 = cos_phi*v4;
-  const Real v6 = w*v3*a;
-  const Real v7 = Real(1)/v4;
-  const Real v8 = v7*(Real(2)*m*theta_dot*(sin_phi*v6 + phi_dot*v5) - v4*D)/(sin_phi*m);
+  const Real v3 = v1*a + d0;
+  if (v3 == Real(0)) return 1;
+  const Real v4 = cos_phi*v3;
+  const Real v5 = w*v2*a;
+  const Real v6 = Real(1)/v3;
+  const Real v7 = v6*(Real(2)*m*theta_dot*(sin_phi*v5 + phi_dot*v4) - v3*D)/(sin_phi*m);
 
   // results
   dx[0] = phi_dot;
   dx[1] = theta_dot;
-  dx[2] = v7*(sin_phi*(theta_dot*theta_dot*v5 + g) - Real(2)*phi_dot*v6);  // phi_ddot
-  dx[3] = -v8;  // theta_ddot
+  dx[2] = v6*(sin_phi*(theta_dot*theta_dot*v4 + g) - Real(2)*phi_dot*v5);  // phi_ddot
+  dx[3] = -v7;  // theta_ddot
   const Real finite = dx[2] + dx[3];
   return finite - finite == Real(0) ? 0 : 5;
 }
@@ -137,99 +241,101 @@ int rhs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dx)
 template <class Real>
 int jac(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dfdx, Real* dfdt) {
   (void)u; (void)mode;
-  using std::cos; using std::sin;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
   if (m == Real(0)) return 1;
 
   // sines and cosines
-  const Real sin_phi = sin(phi);
+  const Real angle[2] = {phi, t*w};
+  Real sine[2], cosine[2];
+  eom_sincos(2, angle, sine, cosine);
+  const Real sin_phi = sine[0];
   if (sin_phi == Real(0)) return 1;
-  const Real cos_phi = cos(phi);
-  const Real v1 = t*w;
-  const Real v2 = sin(v1);
-  const Real v3 = cos(v1);
+  const Real cos_phi = cosine[0];
+  const Real v1 = sine[1];
+  const Real v2 = cosine[1];
 
   // values
-  const Real v4 = v2*a + d0;
-  if (v4 == Real(0)) return 1;
-  const Real v5 = theta_dot*theta_dot;
-  const Real v6 = v4*(sin_phi*sin_phi - cos_phi*cos_phi);
-  const Real v7 = Real(1)/v4;
-  const Real v8 = v4*D;
-  const Real v9 = w*a;
-  const Real v10 = v3*v9;
-  const Real v11 = sin_phi*v10;
-  const Real v12 = Real(4)*m*theta_dot;
-  const Real v13 = cos_phi*v4;
-  const Real v14 = v11 + phi_dot*v13;
-  const Real v15 = Real(2)*theta_dot;
-  const Real v16 = m*v15;
-  const Real v17 = Real(2)*(v8 - v14*v16);
-  const Real v18 = Real(1)/sin_phi;
-  const Real v19 = v18*v7;
-  const Real v20 = v19/m;
-  const Real v21 = Real(2)*v10;
-  const Real v22 = cos_phi*v15;
-  const Real v23 = v5*v13;
-  const Real v24 = w*(v2*v4 - v3*v3*a);
-  const Real v25 = v3*(sin_phi*g - Real(2)*(sin_phi*(g + v23) - phi_dot*v21)) + Real(2)*(sin_phi*v3*v23 +
-      phi_dot*v24);
-  const Real v26 = v7*v9;
-  const Real v27 = sin_phi*v16*v24 - v3*(v4*(cos_phi*v12*phi_dot - Real(2)*D) + v17);
+  const Real v3 = v1*a + d0;
+  if (v3 == Real(0)) return 1;
+  const Real v4 = theta_dot*theta_dot;
+  const Real v5 = v3*(sin_phi*sin_phi - cos_phi*cos_phi);
+  const Real v6 = Real(1)/v3;
+  const Real v7 = v3*D;
+  const Real v8 = w*a;
+  const Real v9 = v2*v8;
+  const Real v10 = sin_phi*v9;
+  const Real v11 = Real(4)*m*theta_dot;
+  const Real v12 = cos_phi*v3;
+  const Real v13 = v10 + phi_dot*v12;
+  const Real v14 = Real(2)*theta_dot;
+  const Real v15 = m*v14;
+  const Real v16 = Real(2)*(v7 - v13*v15);
+  const Real v17 = Real(1)/sin_phi;
+  const Real v18 = v17*v6;
+  const Real v19 = v18/m;
+  const Real v20 = Real(2)*v9;
+  const Real v21 = cos_phi*v14;
+  const Real v22 = v4*v12;
+  const Real v23 = w*(v1*v3 - v2*v2*a);
+  const Real v24 = v2*(sin_phi*g - Real(2)*(sin_phi*(g + v22) - phi_dot*v20)) + Real(2)*(sin_phi*v2*v22 +
+      phi_dot*v23);
+  const Real v25 = v6*v8;
+  const Real v26 = sin_phi*v15*v23 - v2*(v3*(cos_phi*v11*phi_dot - Real(2)*D) + v16);
 
   // results
   dfdx[0] = Real(0);  // d/d phi
   dfdx[1] = Real(0);
-  dfdx[2] = v7*(cos_phi*g - v5*v6);
-  dfdx[3] = v18*(cos_phi*(v8 - v11*v12 - v17) + v6*phi_dot*v16)*v20;
+  dfdx[2] = v6*(cos_phi*g - v4*v5);
+  dfdx[3] = v17*(cos_phi*(v7 - v10*v11 - v16) + v5*phi_dot*v15)*v19;
   dfdx[4] = Real(0);  // d/d theta
   dfdx[5] = Real(0);
   dfdx[6] = Real(0);
   dfdx[7] = Real(0);
   dfdx[8] = Real(1);  // d/d phi_dot
   dfdx[9] = Real(0);
-  dfdx[10] = -v7*v21;
-  dfdx[11] = -v18*v22;
+  dfdx[10] = -v6*v20;
+  dfdx[11] = -v17*v21;
   dfdx[12] = Real(0);  // d/d theta_dot
   dfdx[13] = Real(1);
-  dfdx[14] = sin_phi*v22;
-  dfdx[15] = -Real(2)*v14*v19;
+  dfdx[14] = sin_phi*v21;
+  dfdx[15] = -Real(2)*v13*v18;
   dfdt[0] = Real(0);
   dfdt[1] = Real(0);
-  dfdt[2] = v7*v25*v26;
-  dfdt[3] = v20*v26*v27;
+  dfdt[2] = v6*v24*v25;
+  dfdt[3] = v19*v25*v26;
   return 0;
 }
 
 // M qddot + h = A^T lambda: M by columns, h.
 template <class Real>
 int mass(Real t, const Real* x, const Real* p, Real* M, Real* h) {
-  using std::cos; using std::sin;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real v1 = t*w;
-  const Real v2 = sin(v1);
-  const Real v3 = cos(v1);
-  const Real sin_phi = sin(phi);
-  const Real cos_phi = cos(phi);
+  const Real angle[2] = {phi, t*w};
+  Real sine[2], cosine[2];
+  eom_sincos(2, angle, sine, cosine);
+  const Real sin_phi = sine[0];
+  const Real cos_phi = cosine[0];
+  const Real v1 = sine[1];
+  const Real v2 = cosine[1];
 
   // values
-  const Real v4 = v2*a + d0;
-  const Real v5 = v4*m;
-  const Real v6 = sin_phi*v4;
-  const Real v7 = cos_phi*v4;
-  const Real v8 = w*v3*a;
+  const Real v3 = v1*a + d0;
+  const Real v4 = v3*m;
+  const Real v5 = sin_phi*v3;
+  const Real v6 = cos_phi*v3;
+  const Real v7 = w*v2*a;
 
   // results
-  M[0] = v4*v5;
+  M[0] = v3*v4;
   M[1] = Real(0);
   M[2] = Real(0);
-  M[3] = m*v6*v6;
-  h[0] = -v5*(sin_phi*(theta_dot*theta_dot*v7 + g) - Real(2)*phi_dot*v8);
-  h[1] = -v6*(v4*D - Real(2)*m*theta_dot*(sin_phi*v8 + phi_dot*v7));
+  M[3] = m*v5*v5;
+  h[0] = -v4*(sin_phi*(theta_dot*theta_dot*v6 + g) - Real(2)*phi_dot*v7);
+  h[1] = -v5*(v3*D - Real(2)*m*theta_dot*(sin_phi*v7 + phi_dot*v6));
   return 0;
 }
 
@@ -237,14 +343,16 @@ int mass(Real t, const Real* x, const Real* p, Real* M, Real* h) {
 template <class Real>
 int reactions(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* lambda) {
   (void)u; (void)mode;
-  using std::cos; using std::sin;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real cos_phi = cos(phi);
-  const Real sin_phi = sin(phi);
-  const Real v1 = sin(t*w);
+  const Real angle[2] = {phi, t*w};
+  Real sine[2], cosine[2];
+  eom_sincos(2, angle, sine, cosine);
+  const Real sin_phi = sine[0];
+  const Real cos_phi = cosine[0];
+  const Real v1 = sine[1];
 
   // values
   const Real v2 = v1*a;
@@ -259,29 +367,30 @@ int reactions(Real t, const Real* x, const Real* p, const Real* u, int mode, Rea
 template <class Real>
 int outputs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* y) {
   (void)u; (void)mode;
-  using std::cos; using std::sin;
   const Real phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real v1 = t*w;
-  const Real v2 = cos(v1);
-  const Real v3 = sin(v1);
-  const Real cos_phi = cos(phi);
-  const Real sin_phi = sin(phi);
+  const Real angle[2] = {phi, t*w};
+  Real sine[2], cosine[2];
+  eom_sincos(2, angle, sine, cosine);
+  const Real sin_phi = sine[0];
+  const Real cos_phi = cosine[0];
+  const Real v1 = sine[1];
+  const Real v2 = cosine[1];
 
   // values
-  const Real v4 = w*w;
-  const Real v5 = cos_phi*g;
-  const Real v6 = v3*a;
-  const Real v7 = sin_phi*theta_dot;
-  const Real v8 = v7*v7 + phi_dot*phi_dot;
-  const Real v9 = d0*v8;
-  const Real v10 = a*(Real(0.5)*v2*v2*a*v4 + v3*(v5 + (Real(0.5)*v6 + d0)*v8)) + d0*(v5 + Real(0.5)*v9);
+  const Real v3 = w*w;
+  const Real v4 = cos_phi*g;
+  const Real v5 = v1*a;
+  const Real v6 = sin_phi*theta_dot;
+  const Real v7 = v6*v6 + phi_dot*phi_dot;
+  const Real v8 = d0*v7;
+  const Real v9 = a*(Real(0.5)*v2*v2*a*v3 + v1*(v4 + (Real(0.5)*v5 + d0)*v7)) + d0*(v4 + Real(0.5)*v8);
 
   // results
-  y[0] = m*v10;  // energy
-  y[1] = m*(v5 - v6*(v4 + v8) - v9);  // reaction_sphere
+  y[0] = m*v9;  // energy
+  y[1] = m*(v4 - v5*(v3 + v7) - v8);  // reaction_sphere
   return 0;
 }
 

@@ -25,7 +25,7 @@ constexpr std::string_view keywords[] = {
 // Functions that emitted code calls, and variables of the C library.
 constexpr std::string_view functions[] = {
     "acos", "asin", "atan", "atan2", "cos", "cosh", "exp", "log", "pow", "sin", "sinh", "sqrt", "tan", "tanh", "abs", "fabs",
-    "isfinite", "size_t", "signgam", "environ", "timezone", "daylight", "tzname", "program_invocation_name",
+    "sincos", "isfinite", "size_t", "signgam", "environ", "timezone", "daylight", "tzname", "program_invocation_name",
     "stdin", "stdout", "stderr", "errno", "main"};
 
 // Macros without arguments, of compilers and of headers that a program of this kind may include before ours.

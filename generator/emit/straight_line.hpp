@@ -17,6 +17,7 @@ struct Dialect {
   std::string (*value)(double);                      // of a default
   std::string pi;
   std::string absolute;                              // name of the function |x|
+  std::string sincos;                                // name of the function (count, angles, sines, cosines)
   bool line_comments = false;
   bool using_std = false;                            // `using std::sin;` before calls
 };
@@ -34,6 +35,7 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
 struct FunctionText {
   std::vector<std::string> results;  // names of the result arguments, in order
   std::string body;                  // statements, without braces
+  std::uint32_t packs = 0;           // of sines and cosines that are computed together
 };
 
 /// `checks_finite`: code 5 where an entry of the results' lower half is not finite.

@@ -26,6 +26,7 @@ struct Operand {
   Slot slot = Slot::value;
   std::uint32_t index = 0;  // constant: into Function::constants; value: of the instruction that made it
   bool negated = false;
+  friend bool operator==(const Operand&, const Operand&) = default;
 };
 
 struct Instruction {
@@ -34,6 +35,9 @@ struct Instruction {
   long exponent = 0;                    // of Op::power
   std::string name;                     // a name that means something, or empty; "{3}_ddot": {3} is coordinate 3's
   std::string section;                  // heading that starts here, or empty
+  // Sines and cosines that are ready at the same time come one after another and are computed together: the number of
+  // their pack, from 1 (0: alone), and the place of the angle in it.
+  std::uint32_t pack = 0, lane = 0;
 };
 
 /// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix. Where the scale

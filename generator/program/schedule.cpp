@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "program/polynomials.hpp"
 
@@ -14,6 +15,9 @@ using symbolic::Op;
 
 // x^1, x^2, x^3 are written out as factors; beyond, halves are squared.
 constexpr std::int32_t written_out = 3;
+
+// Two angles in a pack take half the time of the C library's functions, one takes as long.
+constexpr std::size_t smallest_pack = 2;
 
 std::size_t power_factors(std::int32_t e) { return static_cast<std::size_t>(e <= written_out ? e : 2 + e % 2); }
 std::size_t power_cost(std::int32_t e) {  // of the halves that need an instruction
@@ -73,14 +77,8 @@ class Schedule {
     prepare();
     Walk walk(graph_);
     const auto take = [this](NodeId id) { emit(id); };
-    const std::vector<NodeId> order = graph_.order();
     section_ = "sines and cosines";
-    for (const NodeId id : order) {
-      if (!graph_.is_trig(id)) continue;
-      walk.from(id, take);
-      NodeId other = 0;
-      if (graph_.partner(id, other) && needed_[other]) walk.from(other, take);
-    }
+    for (const std::vector<NodeId>& level : trig_levels()) emit_together(level, walk);
     section_.clear();
     for (const Label& label : graph_.labels) {
       if (!needed_[label.value.factors[0].node]) continue;
@@ -112,6 +110,60 @@ class Schedule {
                      });
       name_[id] = negative && !flipped_[id] ? "minus_" + label.name : label.name;
     }
+  }
+
+  /// Sines and cosines by how many others their angles need; a sine and the cosine of the same angle are neighbours.
+  std::vector<std::vector<NodeId>> trig_levels() const {
+    std::vector<std::size_t> depth(graph_.size(), 0);
+    std::vector<bool> taken(graph_.size(), false);
+    std::vector<std::vector<NodeId>> levels;
+    for (const NodeId id : graph_.order()) {
+      for (const Term& term : graph_[id].terms) {
+        for (const Factor& f : term.factors) depth[id] = std::max(depth[id], depth[f.node]);
+      }
+      if (!graph_.is_trig(id)) continue;
+      const std::size_t level = depth[id]++;
+      if (levels.size() <= level) levels.resize(level + 1);
+      NodeId other = 0;
+      for (const NodeId next : {id, graph_.partner(id, other) && needed_[other] ? other : id}) {
+        if (!taken[next]) levels[level].push_back(next);
+        taken[next] = true;
+      }
+    }
+    return levels;
+  }
+
+  void emit_together(const std::vector<NodeId>& trig, Walk& walk) {
+    const auto take = [this](NodeId id) { emit(id); };
+    std::vector<std::pair<Operand, NodeId>> angles;
+    for (const NodeId id : trig) {
+      const Term& angle = graph_[id].terms[0];
+      walk.from(angle, take);
+      angles.emplace_back(angle.is_constant() ? constant(angle.coefficient) : term(angle, ""), id);
+    }
+    const auto angle_of = [](const auto& pair) { return std::tuple(pair.first.slot, pair.first.index, pair.first.negated); };
+    std::stable_sort(angles.begin(), angles.end(), [&](const auto& a, const auto& b) {
+      return std::tuple(angle_of(a), graph_[a.second].op) < std::tuple(angle_of(b), graph_[b.second].op);
+    });
+    std::vector<std::uint32_t> lanes;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      const bool same = i > 0 && angles[i].first == angles[i - 1].first;
+      lanes.push_back(i == 0 ? 0 : lanes.back() + (same ? 0 : 1));
+    }
+    const bool pack = lanes.back() + 1 >= smallest_pack;
+    packs_ += pack ? 1 : 0;
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      const Operand& angle = angles[i].first;
+      walk.from(angles[i].second, [&](NodeId id) { value_[id] = add_instruction(graph_[id].op, {angle}, name_of(id)); });
+      if (!pack) continue;
+      function_.code.back().pack = packs_;
+      function_.code.back().lane = lanes[i];
+    }
+  }
+
+  std::string name_of(NodeId id) const {
+    const auto named = name_.find(id);
+    return named == name_.end() ? "" : named->second;
   }
 
   Operand constant(const Rational& value) {
@@ -167,9 +219,8 @@ class Schedule {
   Operand reciprocal(NodeId id) {
     if (!has_reciprocal_[id]) {
       has_reciprocal_[id] = true;
-      const auto named = name_.find(id);
-      reciprocal_[id] = add_instruction(Op::div, {constant(1), value_[id]},
-                                        named == name_.end() ? "" : "inverse_" + named->second);
+      const std::string name = name_of(id);
+      reciprocal_[id] = add_instruction(Op::div, {constant(1), value_[id]}, name.empty() ? "" : "inverse_" + name);
     }
     return reciprocal_[id];
   }
@@ -195,8 +246,7 @@ class Schedule {
 
   void emit(NodeId id) {
     const Node& node = graph_[id];
-    const auto named = name_.find(id);
-    const std::string name = named == name_.end() ? "" : named->second;
+    const std::string name = name_of(id);
     if (node.kind == Node::Kind::leaf) {
       value_[id] = node.leaf;
       function_.uses_input = function_.uses_input || node.leaf.slot == Slot::input;
@@ -261,6 +311,7 @@ class Schedule {
   std::vector<std::uint32_t> divides_;
   std::map<NodeId, std::string> name_;
   std::string section_, last_section_;
+  std::uint32_t packs_ = 0;
 };
 
 }  // namespace

@@ -61,14 +61,17 @@ TEST_CASE("emitted code: hostile names and texts stay what they are") {
   compiles_everywhere(example("template", double_pendulum(), {"class", "sin"}, {"v1", "v2", "Real", "State", "std"}));
   compiles_everywhere(example("9 lives-%", double_pendulum(), {"x", "x_"}, {"p", "u", "mode", "INT_MAX", "errno"}));
   compiles_everywhere(example("eom", cart_pendulum(), {"M", "h"}, {"rhs", "finite", "M_11", "sin_theta", "lambda"}, {"selftest"}));
+  compiles_everywhere(example("two", double_pendulum(), {"two_sincos", "sincos"}, {"angle", "sine", "eom_sincos", "eom_lanes", "two_bits"}));
 }
 
 TEST_CASE("emitted code: -ffast-math is refused") {
   const Folder folder;
   const Example e = examples()[0];
   emit::write_files(folder.path, emit::emit(e.program, e.context));
-  const auto said = complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
-  CHECK(said.find("without -ffast-math") != std::string::npos);
+  for (const char* flag : {"-ffast-math", "-ffinite-math-only"}) {
+    const auto said = complaints({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
+    CHECK(said.find("without -ffast-math") != std::string::npos);
+  }
 }
 
 TEST_CASE("emitted header: float, long double and a number type of one's own") {

@@ -42,6 +42,8 @@ inline constexpr double same_value = 1e-45;
 inline constexpr double difference_quotient = 1e-20;
 // A solve in binary64 against another, condition numbers up to 1e4.
 inline constexpr double unrolled_solve = 1e-11;
+// The packed sines and cosines: half a unit for the last rounding, the rest for the angle's and the polynomials'.
+inline constexpr double packed_sincos_ulps = 1;
 // Deriving nothing, only optimising: half a second on one core; a shared machine may take some times that.
 inline constexpr double chain_seconds = 10;
 

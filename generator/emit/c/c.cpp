@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/text.hpp"
 #include "skeletons/c_model_c.hpp"
@@ -47,12 +48,15 @@ std::string sizes(const std::string& name, const program::Program& program, cons
 
 std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
-  const Dialect dialect = c_dialect();
   const std::string name = mangled_id(context.id);
+  Dialect dialect = c_dialect();
+  dialect.sincos = name + "_sincos";
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
+  bool packs = false;
   for (const program::Function& function : program.functions) {
     const FunctionText text = print_function(function, names, context, dialect);
+    packs = packs || text.packs > 0;
     functions.push_back({{"purpose", purpose(function.name)},
                          {"prototype", prototype(name, function)},
                          {"head", function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double")},
@@ -61,6 +65,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},
+      {"includes", packs ? "#include <float.h>\n#include <math.h>\n#include <string.h>" : "#include <math.h>"},
+      {"kernels", packs ? sincos_kernel(name + "_", "static inline", "") + "\n" : ""},
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},
       {"defaults", defaults_body(program, context, dialect)},

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "emit/c/c.hpp"
+#include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/text.hpp"
 #include "skeletons/cpp_model_hpp.hpp"
@@ -35,6 +36,8 @@ std::string real_constant(const symbolic::Rational& value) {
   return whole(above) + "/" + whole(below);
 }
 
+const std::string kernel_prefix = "eom_";
+
 Dialect cpp_dialect() {
   Dialect dialect;
   dialect.real = "Real";
@@ -42,10 +45,23 @@ Dialect cpp_dialect() {
   dialect.value = [](double value) { return "Real(" + decimal(value) + ")"; };
   dialect.pi = "Real(3.141592653589793238462643383279502884L)";
   dialect.absolute = "abs";
+  dialect.sincos = kernel_prefix + "sincos";
   dialect.line_comments = true;
   dialect.using_std = true;
   return dialect;
 }
+
+// What other types than double take in place of templates/kernels/sincos.
+const std::string generic_sincos = R"(
+template <class Real>
+void eom_sincos(int count, const Real* angle, Real* sine, Real* cosine) {
+  using std::cos; using std::sin;
+  for (int i = 0; i < count; ++i) {
+    sine[i] = sin(angle[i]);
+    cosine[i] = cos(angle[i]);
+  }
+}
+)";
 
 /// Named indices into the arrays: x[State::theta].
 std::string enums(const ModelNames& names) {
@@ -75,8 +91,10 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
   const std::string name = mangled_id(context.id);
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
+  bool packs = false;
   for (const program::Function& function : program.functions) {
     const FunctionText text = print_function(function, names, context, dialect);
+    packs = packs || text.packs > 0;
     functions.push_back({{"purpose", purpose(function.name)},
                          {"head", function_head(function.name, function, text, names, "Real")},
                          {"body", text.body}});
@@ -86,6 +104,8 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
        rendered(skeleton::cpp_model_hpp,
                 {{"banner", banner(program, context, "// ", "// ", "")},
                  {"name", name},
+                {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>" : "#include <cmath>\n#include <cstddef>"},
+                {"kernels", packs ? generic_sincos + sincos_kernel(kernel_prefix, "inline", "std::") : ""},
                  {"enums", enums(names)},
                  {"info", string_literal(info_json(program, context), "      ")},
                  {"defaults", defaults_body(program, context, dialect)},

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/expressions.hpp"
+
+#include <fmt/format.h>
+
+namespace eomgen::emit {
+
+using program::Function;
+using program::Instruction;
+using program::Operand;
+using program::Slot;
+using symbolic::Op;
+using Expression = Expressions::Expression;
+
+namespace {
+
+std::string in_parentheses(const Expression& e) { return fmt::format("({})", e.text); }
+std::string at_least(const Expression& e, Expression::Binding binding) {
+  return e.binding >= binding && e.text[0] != '-' ? e.text : in_parentheses(e);
+}
+
+const char* function_name(Op op) {
+  switch (op) {
+    case Op::pow: return "pow";
+    case Op::sqrt: return "sqrt";
+    case Op::sin: return "sin";
+    case Op::cos: return "cos";
+    case Op::tan: return "tan";
+    case Op::asin: return "asin";
+    case Op::acos: return "acos";
+    case Op::atan: return "atan";
+    case Op::sinh: return "sinh";
+    case Op::cosh: return "cosh";
+    case Op::tanh: return "tanh";
+    case Op::exp: return "exp";
+    case Op::log: return "log";
+    case Op::atan2: return "atan2";
+    default: return nullptr;
+  }
+}
+
+Expression conditional(const std::string& a, const std::string& b, const std::string& x, const std::string& y) {
+  return {fmt::format("({} < {} ? {} : {})", a, b, x, y), Expression::atom};
+}
+
+}  // namespace
+
+bool repeats_operands(Op op) { return op == Op::min || op == Op::max || op == Op::sign || op == Op::select; }
+
+Expressions::Expressions(const Function& function, const ModelNames& names, const Dialect& dialect)
+    : function_(function), names_(names), dialect_(dialect), value_(function.code.size()) {}
+
+Expression Expressions::size_of(const Operand& operand) const {
+  switch (operand.slot) {
+    case Slot::constant: {
+      const std::string text = dialect_.constant(function_.constants[operand.index]);
+      return {text, text.find('/') == std::string::npos ? Expression::atom : Expression::product};
+    }
+    case Slot::pi: return {dialect_.pi, Expression::atom};
+    case Slot::time: return {names_.arguments_t, Expression::atom};
+    case Slot::state: return {names_.state[operand.index], Expression::atom};
+    case Slot::parameter: return {names_.parameters[operand.index], Expression::atom};
+    case Slot::input: return {names_.inputs[operand.index], Expression::atom};
+    case Slot::value: break;
+  }
+  return value_[operand.index];
+}
+
+Expression Expressions::signed_value(const Operand& operand) const {
+  const Expression size = size_of(operand);
+  if (!operand.negated) return size;
+  return {fmt::format("-{}", at_least(size, Expression::product)), Expression::product};
+}
+
+Expression Expressions::of(const Instruction& instruction) {
+  const auto& o = instruction.operands;
+  const auto name = [&](std::size_t i) { return at_least(signed_value(o[i]), Expression::atom); };
+  switch (instruction.op) {
+    case Op::add: return sum(o);
+    case Op::mul: return product(o);
+    case Op::div: return {fmt::format("{}/{}", first_factor(o[0]), name(1)), Expression::product};
+    case Op::abs: return call(dialect_.absolute, o);
+    case Op::min: return conditional(name(1), name(0), name(1), name(0));
+    case Op::max: return conditional(name(0), name(1), name(1), name(0));
+    case Op::select: return conditional(name(0), name(1), name(2), name(3));
+    case Op::sign: {
+      const std::string zero = dialect_.constant(0), one = dialect_.constant(1);
+      return {fmt::format("({0} > {1} ? {2} : {0} < {1} ? -{2} : {1})", name(0), zero, one), Expression::atom};
+    }
+    default: return call(function_name(instruction.op), o);
+  }
+}
+
+Expression Expressions::call(const std::string& name, const std::vector<Operand>& operands) {
+  called_.insert(name);
+  std::string arguments;
+  for (const Operand& operand : operands) arguments += fmt::format("{}{}", arguments.empty() ? "" : ", ", signed_value(operand).text);
+  return {fmt::format("{}({})", name, arguments), Expression::atom};
+}
+
+std::string Expressions::first_factor(const Operand& operand) const {
+  return operand.negated ? signed_value(operand).text : at_least(size_of(operand), Expression::product);
+}
+
+Expression Expressions::product(const std::vector<Operand>& operands) const {
+  std::string text = first_factor(operands[0]);
+  for (std::size_t i = 1; i < operands.size(); ++i) {
+    text += fmt::format("*{}", at_least(signed_value(operands[i]), Expression::atom));
+  }
+  return {text, Expression::product};
+}
+
+Expression Expressions::sum(const std::vector<Operand>& operands) const {
+  std::string text = first_factor(operands[0]);
+  for (std::size_t i = 1; i < operands.size(); ++i) {
+    text += operands[i].negated ? " - " : " + ";
+    text += at_least(size_of(operands[i]), Expression::product);
+  }
+  return {text, Expression::sum};
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One instruction of a Function as an expression of C or C++.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "emit/straight_line.hpp"
+
+namespace eomgen::emit {
+
+/// True for operations whose printed form repeats their operands, which must be names then.
+bool repeats_operands(symbolic::Op op);
+
+class Expressions {
+ public:
+  /// A piece of text and how tightly it binds.
+  struct Expression {
+    enum Binding : std::uint8_t { sum, product, atom };
+    std::string text;
+    Binding binding = atom;
+  };
+
+  Expressions(const program::Function& function, const ModelNames& names, const Dialect& dialect);
+
+  Expression of(const program::Instruction& instruction);
+  Expression size_of(const program::Operand& operand) const;
+  Expression signed_value(const program::Operand& operand) const;
+  /// What stands for the value of instruction `index` from now on.
+  void set(std::size_t index, Expression value) { value_[index] = std::move(value); }
+
+  const std::set<std::string>& called() const { return called_; }  // functions of the library
+  void call(const std::string& name) { called_.insert(name); }
+
+ private:
+  Expression call(const std::string& name, const std::vector<program::Operand>& operands);
+  std::string first_factor(const program::Operand& operand) const;
+  Expression product(const std::vector<program::Operand>& operands) const;
+  Expression sum(const std::vector<program::Operand>& operands) const;
+
+  const program::Function& function_;
+  const ModelNames& names_;
+  const Dialect& dialect_;
+  std::vector<Expression> value_;
+  std::set<std::string> called_;
+};
+
+}  // namespace eomgen::emit

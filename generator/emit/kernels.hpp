@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Numerical functions that emitted code brings along: templates/kernels/.
+#pragma once
+
+#include <string>
+
+namespace eomgen::emit {
+
+/// PREFIXsincos(count, angles, sines, cosines) for double, in C. `linkage`: "static inline", "inline"; `standard`: what
+/// functions of the C library are called by, "" or "std::".
+std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard);
+
+}  // namespace eomgen::emit

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/names.hpp"
+#include "emit/straight_line.hpp"
+
+namespace eomgen::emit {
+
+ModelNames model_names(const program::Program& program, const EmissionContext& context) {
+  NameTable table;
+  ModelNames names;
+  for (const std::string& prefix : {mangled_id(context.id), std::string("eom")}) {  // of the kernels
+    for (const char* name : {"_sincos", "_sincos_lanes", "_lanes", "_bits", "_width"}) table.declare(prefix + name);
+  }
+  for (const Quantity& coordinate : context.coordinates) names.all_coordinates.push_back(identifier(coordinate.name));
+  for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name));
+  for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name + "_dot"));
+  for (const std::uint32_t i : program.free) names.acceleration.push_back(context.coordinates.at(i).name + "_ddot");
+  for (const Quantity& q : context.parameters) names.parameters.push_back(table.declare(q.name));
+  for (const Quantity& q : context.inputs) names.inputs.push_back(table.declare(q.name));
+  names.arguments_t = table.declare("t");
+  names.x = table.declare("x");
+  names.p = table.declare("p");
+  names.u = table.declare("u");
+  names.mode = table.declare("mode");
+  NameTable outputs, reactions;
+  for (const std::string& name : program.outputs) names.outputs.push_back(outputs.declare(name));
+  for (const std::string& name : program.reactions) names.reactions.push_back(reactions.declare(name));
+  return names;
+}
+
+}  // namespace eomgen::emit
