@@ -10,12 +10,13 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
     : compiled_(std::move(compiled)),
       outputs_(program.outputs),
       free_(program.free),
+      integrals_(program.integrals.size()),
       active_(program.active_constraints),
       holonomic_(program.holonomic) {}
 
 verify::CompiledForm CompiledCode::form() const {
   const emit::RhsFunction rhs = compiled_.model.rhs;
-  const std::size_t size = 2 * free_.size();
+  const std::size_t size = 2 * free_.size() + integrals_;
   return {"emitted code", [rhs, size](double t, const std::vector<double>& x, const std::vector<double>& p,
                                       const std::vector<double>& u) -> std::optional<std::vector<double>> {
             std::vector<double> dx(size);
@@ -26,7 +27,7 @@ verify::CompiledForm CompiledCode::form() const {
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  return {model.rhs, model.outputs, model.mass, model.constraints, outputs_, free_, active_, holonomic_};
+  return {model.rhs, model.outputs, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
 }
 
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context) {

@@ -20,6 +20,7 @@ class CompiledCode {
   emit::Compiled compiled_;
   std::vector<std::string> outputs_;
   std::vector<std::uint32_t> free_;
+  std::size_t integrals_;
   std::size_t active_;
   std::vector<bool> holonomic_;
 };

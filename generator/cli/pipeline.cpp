@@ -172,6 +172,11 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
   context.start_time = scene.t0;
   for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
   for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);
+  context.start.insert(context.start.end(), program.integrals.size(), 0.0);
+  for (const model::Integral& integral : model.integrals) {
+    context.integrals.push_back({integral.name, integral.unit.text, "", 0});
+  }
+  if (model.start_time) context.start_parameter = model.parameters[*model.start_time].name;
   context.tests = test_vectors(program, context);
   return context;
 }

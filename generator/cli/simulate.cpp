@@ -29,6 +29,9 @@ std::vector<std::string> state_names(const Derived& derived) {
   for (const char* suffix : {"", "_dot"}) {
     for (const std::uint32_t i : derived.mechanics.free) names.push_back(derived.model.coordinates[i].name + suffix);
   }
+  for (const system::IntegralState& integral : derived.candidates.front().integrals) {
+    names.push_back(derived.model.integrals[integral.integral].name);
+  }
   return names;
 }
 

@@ -35,7 +35,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   }
   const bool energy_conserved = !result.empty() && result.front().name == "energy";
   std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
-  must_vanish.push_back(symbolic::Derivation(dag, {{{SymbolKind::time, 0, 0}, dag.one()}})(L));
+  must_vanish.push_back(symbolic::explicit_time(dag, m.model->functions.size())(L));
   must_vanish.push_back(input_power);
   if (!energy_conserved && mechanics::vanishes(dag, must_vanish)) {
     result.push_back({"jacobi", "Jacobi integral T2 - T0 + U", jacobi});

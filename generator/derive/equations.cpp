@@ -111,6 +111,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   s.approach = approach;
   s.free = m.free;
   s.active = m.active;
+  s.integrals = integral_states(m);
   const std::size_t all = m.q.size();
   if (motion != nullptr) {
     s.M = motion->M;

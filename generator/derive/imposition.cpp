@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/imposition.hpp"
 
+#include <algorithm>
+
+#include "symbolic/definite_integral.hpp"
+
 namespace eomgen::derive {
 namespace {
 
@@ -21,31 +25,97 @@ symbolic::Substitution impose(const Mechanics& m) {
   return {*m.dag, std::move(values)};
 }
 
-symbolic::Substitution write_out(const Mechanics& m) {
+namespace {
+
+using Values = std::map<Symbol, Ref>;
+
+Values with_derivatives(Dag& dag, const std::vector<Ref>& value) {
+  Values values;
+  symbolic::Derivation ddt = symbolic::total_time(dag, 0, value.size());
+  for (std::uint32_t i = 0; i < value.size(); ++i) {
+    Ref derivative = value[i];
+    for (std::uint8_t order = 0; order <= highest_order; ++order) {
+      values[{SymbolKind::function, i, order}] = derivative;
+      derivative = ddt(derivative);
+    }
+  }
+  return values;
+}
+
+// Every function of time and its derivatives, of t, parameters and integrals; the integrands likewise.
+Values written_functions(const Mechanics& m, std::vector<Ref>& integrands) {
   Dag& dag = *m.dag;
-  const std::size_t n = m.function_value.size();
   // Functions may use one another, without cycles: n rounds reach the bottom of the longest chain.
   std::vector<Ref> value = m.function_value;
-  for (std::size_t round = 0; round < n; ++round) {
-    std::map<Symbol, Ref> values;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      Ref derivative = value[i];
-      symbolic::Derivation ddt = symbolic::total_time(dag, 0, n);
-      for (std::uint8_t order = 0; order <= highest_order; ++order) {
-        values[{SymbolKind::function, i, order}] = derivative;
-        derivative = ddt(derivative);
-      }
-    }
+  Values values = with_derivatives(dag, value);
+  for (bool changed = !value.empty(); changed;) {
+    changed = false;
     symbolic::Substitution substitute(dag, values);
-    bool changed = false;
-    for (std::uint32_t i = 0; i < n; ++i) {
-      const Ref next = substitute(value[i]);
-      changed = changed || next != value[i];
-      value[i] = next;
+    for (Ref& r : value) {
+      const Ref next = substitute(r);
+      changed = changed || next != r;
+      r = next;
     }
-    if (!changed) return {dag, std::move(values)};
+    if (changed) values = with_derivatives(dag, value);
   }
-  return {dag, {}};
+  // Functions come in again with the rates of integrals.
+  for (const auto& [symbol, rate] : dag.rates()) integrands.push_back(rate);
+  for (bool changed = !integrands.empty(); changed;) {
+    changed = false;
+    symbolic::Substitution substitute(dag, values);
+    const auto replace = [&](Ref& r) {
+      const Ref next = substitute(r);
+      changed = changed || next != r;
+      r = next;
+    };
+    for (auto& [symbol, r] : values) replace(r);
+    for (Ref& r : integrands) replace(r);
+  }
+  return values;
+}
+
+bool holds_integral(const Dag& dag, Ref expression) {
+  const std::vector<Symbol> symbols = dag.symbols({expression});
+  return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::integral; });
+}
+
+// Integrals in closed form, where there is one: inside ones first. What is left becomes states.
+Values closed_integrals(const Mechanics& m, std::vector<Ref>& integrands) {
+  Dag& dag = *m.dag;
+  Values closed;
+  if (integrands.empty()) return closed;
+  const Ref start = dag.symbol({SymbolKind::parameter, *m.model->start_time, 0});
+  for (std::uint32_t i = 0; i < integrands.size(); ++i) {  // inner ones come before those that use them
+    symbolic::Substitution inner(dag, closed);
+    integrands[i] = inner(integrands[i]);
+    if (holds_integral(dag, integrands[i])) continue;
+    const auto found = symbolic::definite_integral(dag, integrands[i], {SymbolKind::time, 0, 0}, start);
+    if (found) closed[{SymbolKind::integral, i, 0}] = *found;
+  }
+  return closed;
+}
+
+}  // namespace
+
+symbolic::Substitution write_out(const Mechanics& m) {
+  std::vector<Ref> integrands;
+  Values values = written_functions(m, integrands);
+  const Values closed = closed_integrals(m, integrands);
+  symbolic::Substitution substitute(*m.dag, closed);
+  for (auto& [symbol, value] : values) value = substitute(value);
+  values.insert(closed.begin(), closed.end());
+  return {*m.dag, std::move(values)};
+}
+
+std::vector<system::IntegralState> integral_states(const Mechanics& m) {
+  std::vector<Ref> integrands;
+  written_functions(m, integrands);
+  const Values closed = closed_integrals(m, integrands);
+  std::vector<system::IntegralState> states;
+  for (std::uint32_t i = 0; i < integrands.size(); ++i) {
+    if (!closed.contains({SymbolKind::integral, i, 0})) states.push_back({i, integrands[i]});
+  }
+  return states;
 }
 
 }  // namespace eomgen::derive

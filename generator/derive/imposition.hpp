@@ -4,6 +4,7 @@
 #pragma once
 
 #include "mechanics/mechanics.hpp"
+#include "system/equation_system.hpp"
 
 namespace eomgen::derive {
 
@@ -15,7 +16,10 @@ using symbolic::Ref;
 /// q_c -> d(t), qdot_c -> d'(t), qddot_c -> d''(t); functions of time stay named.
 symbolic::Substitution impose(const Mechanics& mechanics);
 
-/// Functions of time (any derivative) -> expressions in t and parameters.
+/// Functions of time (any derivative) -> expressions in t, parameters and integrals that have no closed form.
 symbolic::Substitution write_out(const Mechanics& mechanics);
+
+/// The integrals of functions of time for which write_out has no closed form: states of the system.
+std::vector<system::IntegralState> integral_states(const Mechanics& mechanics);
 
 }  // namespace eomgen::derive

@@ -29,6 +29,8 @@ struct EmissionContext {
   std::vector<Quantity> coordinates;  // all of the model, in declared order; those not in Program::free are eliminated
   std::vector<Quantity> parameters;   // all of the model, in declared order: the array p
   std::vector<Quantity> inputs;       // the array u
+  std::vector<Quantity> integrals;    // all of the model; those in Program::integrals are states after the velocities
+  std::string start_parameter;        // name of the parameter that holds the start of the run; empty: there is none
   std::vector<std::string> singular;  // "sin(phi) = 0"
   double start_time = 0;
   std::vector<double> start;          // x at the start of the default scene

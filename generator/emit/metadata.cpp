@@ -32,6 +32,7 @@ std::vector<Quantity> states(const program::Program& program, const EmissionCont
     rate.unit = rate_unit(rate.unit);
     result.push_back(std::move(rate));
   }
+  for (const std::uint32_t i : program.integrals) result.push_back(context.integrals.at(i));
   return result;
 }
 
@@ -150,6 +151,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["modes"] = {"smooth"};
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};
+  if (!context.start_parameter.empty()) info["start_parameter"] = context.start_parameter;
   info["approach"] = approach_name(program.approach);
   info["route"] = program.route;
   info["verdict"] = context.verdict;
@@ -180,7 +182,7 @@ std::string defaults_body(const program::Program& program, const EmissionContext
 
 std::string selftest_body(const program::Program& program, const EmissionContext& context, const std::string& rhs,
                           const std::string& null, const Dialect& dialect) {
-  const std::size_t n = 2 * program.free.size(), parameters = context.parameters.size(), inputs = context.inputs.size();
+  const std::size_t n = program.state_count(), parameters = context.parameters.size(), inputs = context.inputs.size();
   const char* open = dialect.line_comments ? "  // " : "  /* ";
   const char* close = dialect.line_comments ? "" : " */";
   if (context.tests.empty()) return fmt::format("{}no values were given{}\n  return 0;", open, close);
@@ -235,8 +237,9 @@ void require_consistent(const program::Program& program, const EmissionContext& 
   const auto require = [](bool ok, const char* what) {
     if (!ok) throw Error("emit", {}, fmt::format("what is emitted does not match the program: {}", what), "this is a defect: please report the model");
   };
-  const std::size_t n = 2 * program.free.size();
+  const std::size_t n = program.state_count();
   for (const std::uint32_t i : program.free) require(i < context.coordinates.size(), "coordinates");
+  for (const std::uint32_t i : program.integrals) require(i < context.integrals.size(), "integrals");
   require(n > 0, "no coordinate is free");
   require(context.start.size() == n, "start values");
   for (const TestVector& test : context.tests) {

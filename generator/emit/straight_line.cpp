@@ -190,7 +190,7 @@ class Printer {
     const std::string& dx = text_.results[0];
     const std::size_t n = names_.acceleration.size();
     std::string sum = fmt::format("{}[{}]", dx, n);
-    for (std::size_t i = 1; i < n; ++i) sum += fmt::format(" + {}[{}]", dx, n + i);
+    for (std::size_t i = n + 1; i < names_.state.size(); ++i) sum += fmt::format(" + {}[{}]", dx, i);
     // inf - inf and nan - nan are nan, which equals nothing
     const std::string finite = table_.declare("finite");
     line(fmt::format("const {} {} = {};", dialect_.real, finite, sum));
@@ -199,11 +199,11 @@ class Printer {
 
   /// What an entry is, behind its line.
   std::string remark(std::size_t result, std::size_t entry) const {
-    const std::size_t n = names_.acceleration.size();
+    const std::size_t n = names_.acceleration.size(), all = names_.state.size();
     std::string text;
-    if (function_.name == "rhs") text = entry < n ? "" : names_.acceleration[entry - n];
-    if (function_.name == "jac" && result == 0 && entry % (2 * n) == 0) text = fmt::format("d/d {}", names_.state[entry / (2 * n)]);
-    if (function_.name == "jac_p" && entry % (2 * n) == 0) text = fmt::format("d/d {}", names_.parameters[entry / (2 * n)]);
+    if (function_.name == "rhs" && entry >= n && entry < 2 * n) text = names_.acceleration[entry - n];
+    if (function_.name == "jac" && result == 0 && entry % all == 0) text = fmt::format("d/d {}", names_.state[entry / all]);
+    if (function_.name == "jac_p" && entry % all == 0) text = fmt::format("d/d {}", names_.parameters[entry / all]);
     if (function_.name == "outputs") text = names_.outputs[entry];
     if (function_.name == "reactions") text = names_.reactions[entry];
     if (text.empty()) return "";

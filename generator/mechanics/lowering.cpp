@@ -75,7 +75,7 @@ Lowering::Value Lowering::lower(const model::Node& node) {
   using model::Op;
   switch (node.op) {
     case Op::number: case Op::pi: case Op::time: case Op::parameter: case Op::function: case Op::input:
-    case Op::coordinate: case Op::definition: case Op::extension:
+    case Op::coordinate: case Op::definition: case Op::extension: case Op::integral:
       return lower_leaf(node);
     case Op::add: case Op::subtract: case Op::negate: case Op::multiply: case Op::divide: case Op::power: case Op::call:
     case Op::conditional: case Op::dot: case Op::norm:
@@ -98,6 +98,7 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
     case Op::input: return of(dag_.symbol({SymbolKind::input, node.index, 0}));
     case Op::coordinate: return of(dag_.symbol({SymbolKind::coordinate, node.index, node.order}));
     case Op::definition: return value(m_.model->definitions[node.index].is);
+    case Op::integral: return of(dag_.symbol({SymbolKind::integral, node.index, 0}));
     default: return of(extension_);
   }
 }

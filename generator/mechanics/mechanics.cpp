@@ -32,6 +32,15 @@ void add_values(Mechanics& m, Lowering& lower) {
   }
 }
 
+// The rate of an integral must be known before anything that holds it is differentiated, and so before the Lowering is
+// made that does it; integrals inside of integrals come first.
+void add_integrals(Mechanics& m) {
+  for (std::uint32_t i = 0; i < m.model->integrals.size(); ++i) {
+    const Ref integrand = Lowering(m).scalar(m.model->integrals[i].integrand);
+    m.dag->set_rate({SymbolKind::integral, i, 0}, integrand);
+  }
+}
+
 // Parameters that are declared positive, and coordinates whose range starts at 0 or above.
 void add_assumptions(Mechanics& m, Lowering& lower) {
   Dag& dag = *m.dag;
@@ -137,6 +146,7 @@ Mechanics build_mechanics(const model::Model& model) {
   m.model = &model;
   m.dag = std::make_shared<Dag>();
   add_symbols(m);
+  add_integrals(m);
   Lowering lower(m);
   add_assumptions(m, lower);
   add_masses(m, lower);

@@ -32,6 +32,7 @@ enum class Op : std::uint8_t {
   coordinate,  // index into Model::coordinates, order = 0, 1, 2
   definition,  // index into Model::definitions; scalar or vector
   extension,   // of the spring whose energy expression this is
+  integral,    // index into Model::integrals; args[0] is the integrand
   // scalar or vector by Node::vector (multiply: one side may be a vector; divide: vector by scalar)
   add,
   subtract,

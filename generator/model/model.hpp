@@ -40,6 +40,12 @@ struct Function {  // of time
   std::string tex;
   Span span;
 };
+struct Integral {  // integral(e) of a function of time, from the start of the run
+  std::string name;  // "integral_1", for where it becomes a state; no other name of the model is like it
+  NodeId integrand = no_node;
+  Unit unit;
+  Span span;
+};
 struct Input {
   std::string name;
   NodeId fallback = no_node;  // the value where a scene gives none
@@ -177,6 +183,8 @@ struct Model {
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
+  std::vector<Integral> integrals;          // inner ones before those that use them
+  std::optional<std::uint32_t> start_time;  // the parameter that holds t0 of the run: the last; where there are integrals
   std::vector<Input> inputs;
   std::vector<Coordinate> coordinates;  // in order of declaration or first appearance
   std::vector<Definition> definitions;

@@ -2,6 +2,7 @@
 #include "model/reader.hpp"
 
 #include "model/declared_order.hpp"
+#include "model/start_time.hpp"
 
 #include <fmt/format.h>
 
@@ -92,8 +93,10 @@ Model Reader::read() {
 Model read_model_text(const std::string& text, const std::string& file) {
   const Source source(file, text);
   const Value root = read_document(source);
-  Model model = Reader(source, root).read();
+  Reader reader(source, root);
+  Model model = reader.read();
   restore_declared_order(model);
+  add_start_time(model, reader.units_stated());
   model.file = file;
   model.id = std::filesystem::path(file).stem().string();
   model.lines = source.lines();

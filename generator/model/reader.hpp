@@ -32,6 +32,7 @@ class Reader {
 public:
   Reader(const Source& source, const Value& root);
   Model read();
+  bool units_stated() const { return resolver_.units_stated(); }
 
 private:
   // keys.cpp

@@ -25,18 +25,18 @@ Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
   if (name == "diff") return partial_derivative(syntax, node);
   if (name == "dot" || name == "cross" || name == "norm" || name == "unit") return vector_call(syntax, node);
   if (name == "position" || name == "velocity" || name == "acceleration") return place_call(syntax, node);
-  if (name == "integral" || name == "initial" || name == "omega") {
+  if (name == "integral") return integral(syntax, node);
+  if (name == "initial" || name == "omega") {
     source_.fail(node.span, fmt::format("{}() is not supported yet", name),
-                 name == "omega"     ? "rigid bodies come with a later version; models of particles work now"
-                 : name == "initial" ? "give the start value a name in [parameters] and use that in the scene too"
-                                     : "state the antiderivative as a function of t in [functions]");
+                 name == "omega" ? "rigid bodies come with a later version; models of particles work now"
+                                 : "give the start value a name in [parameters] and use that in the scene too");
   }
   const std::string hint = did_you_mean(name, function_names());
   const bool value = scope_.find(name) != nullptr;
   source_.fail(node.span, fmt::format("there is no function {}", quote(name)),
                value          ? fmt::format("'{}' is a name: write {}*(...) for a product", name, name)
                : hint.empty() ? "the functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs "
-                                "sign min max, if, ddt, diff, dot, cross, norm, unit, position, velocity, acceleration"
+                                "sign min max, if, ddt, diff, integral, dot, cross, norm, unit, position, velocity, acceleration"
                               : hint);
 }
 
@@ -141,10 +141,56 @@ Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node)
     source_.fail(by.span, "diff() takes a derivative with respect to a name",
                  "write diff(e, x) with a coordinate, a velocity, a function, a parameter, an input or t");
   }
+  if ((op == Op::parameter || op == Op::function) && holds_integral(inner.node)) {
+    source_.fail(node.span, "diff() of an integral by what its integrand may depend on is not supported",
+                 "write the derivative of the integrand inside: integral(diff(e, p))");
+  }
   Typed result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
   result.loose = inner.loose;
   if (inner.dimension && variable.dimension) result.dimension = quotient(*inner.dimension, *variable.dimension);
   return result;
+}
+
+Typed Resolver::integral(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 1, 1);
+  const Typed inner = this->node(syntax, node.children[0]);
+  if (inner.vector) {
+    source_.fail(syntax.nodes[node.children[0]].span, "integral() takes a scalar, and this is a vector",
+                 "integrate its components one by one");
+  }
+  const Facts motion = inner.facts & static_cast<Facts>(~on_time);
+  if (motion != 0) {
+    source_.fail(syntax.nodes[node.children[0]].span,
+                 "integral() is of a function of time, and this depends on the motion or on an input",
+                 "use t, functions of time, parameters and numbers");
+  }
+  Typed result = make(Op::integral, false, {inner}, node.span);
+  result.facts |= on_time;
+  if (inner.dimension) result.dimension = product(*inner.dimension, dimension_of("s"));
+  allow(result.facts, node.span, "integral()");
+  model_.arena.nodes[result.node].index = static_cast<std::uint32_t>(model_.integrals.size());
+  Integral integral;
+  integral.integrand = inner.node;
+  integral.unit = unit_of(result.dimension);
+  integral.span = node.span;
+  model_.integrals.push_back(std::move(integral));
+  return result;
+}
+
+// Also through definitions; functions of time are held fixed by diff().
+bool Resolver::holds_integral(NodeId root) const {
+  std::vector<NodeId> stack{root};
+  std::set<NodeId> seen;
+  while (!stack.empty()) {
+    const NodeId id = stack.back();
+    stack.pop_back();
+    if (id == no_node || !seen.insert(id).second) continue;
+    const Node& node = model_.arena[id];
+    if (node.op == Op::integral) return true;
+    if (node.op == Op::definition) stack.push_back(model_.definitions[node.index].is);
+    stack.insert(stack.end(), node.args.begin(), node.args.end());
+  }
+  return false;
 }
 
 Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {

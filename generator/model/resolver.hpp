@@ -81,6 +81,7 @@ public:
 
   /// Whether the model states any unit; without, nothing is checked.
   void units_stated(bool stated) { units_stated_ = stated; }
+  bool units_stated() const { return units_stated_; }
   void warn(Span span, std::string message, std::string remedy);
 
 private:
@@ -106,6 +107,8 @@ private:
   Typed conditional(const Syntax& syntax, const SyntaxNode& node);
   Typed time_derivative(const Syntax& syntax, const SyntaxNode& node);
   Typed partial_derivative(const Syntax& syntax, const SyntaxNode& node);
+  Typed integral(const Syntax& syntax, const SyntaxNode& node);
+  bool holds_integral(NodeId root) const;
   Typed vector_call(const Syntax& syntax, const SyntaxNode& node);
   Typed place_call(const Syntax& syntax, const SyntaxNode& node);
 

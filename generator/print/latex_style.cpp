@@ -125,6 +125,10 @@ class LatexStyle final : public Style {
   Piece dot_product(const Piece& a, const Piece& b) const override {
     return {a.text + " \\cdot " + b.text, Piece::product};
   }
+  Piece integral(const Piece& inside) const override {
+    const std::string of = inside.binding < Piece::product ? bracket(inside.text) : inside.text;
+    return {"\\int_{t_{0}}^{t} " + of + "\\,dt", Piece::product};
+  }
   Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return in_brackets(inside); }
   std::string plus() const override { return " + "; }

@@ -100,6 +100,11 @@ class MathmlStyle final : public Style {
     return {"<mover accent=\"true\">" + base.text + op(dots == 1 ? "˙" : "¨") + "</mover>", Piece::atom};
   }
   Piece dot_product(const Piece& a, const Piece& b) const override { return {row(a.text + op("·") + b.text), Piece::product}; }
+  Piece integral(const Piece& inside) const override {
+    const std::string of = inside.binding < Piece::product ? bracket(inside.text) : inside.text;
+    return {row("<msubsup><mo>∫</mo><msub><mi>t</mi><mn>0</mn></msub><mi>t</mi></msubsup>" + of + "<mi>d</mi><mi>t</mi>"),
+            Piece::product};
+  }
   Piece differential(const Piece& a) const override { return {row("<mi>d</mi>" + a.text), Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return row(op("(") + inside + op(")")); }
   std::string plus() const override { return op("+"); }

@@ -93,9 +93,14 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::coordinate:
       return named(model_->coordinates[symbol.index].name, model_->coordinates[symbol.index].tex);
     case SymbolKind::multiplier: return multiplier(symbol.index);
+    case SymbolKind::integral: return split_name("I_" + std::to_string(symbol.index + 1));
     case SymbolKind::extra: break;
   }
   return split_name("e_" + std::to_string(symbol.index + 1));
+}
+
+std::optional<reading::Formula> Notation::integrand(std::uint32_t integral) const {
+  return reading::as_written(*model_, model_->integrals[integral].integrand);
 }
 
 std::string latex(const Glyph& glyph) {

@@ -3,11 +3,13 @@
 // Nothing of the user's is copied into LaTeX or MathML but through here (a `tex` override was checked by the reader).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
+#include "reading/reading.hpp"
 
 namespace eomgen::print {
 
@@ -28,6 +30,8 @@ class Notation {
  public:
   explicit Notation(const mechanics::Mechanics& mechanics);
   Glyph operator()(const symbolic::Symbol& symbol) const;
+  /// What an integral of the model is of; nothing where that cannot be written as one formula.
+  std::optional<reading::Formula> integrand(std::uint32_t integral) const;
   Glyph multiplier(std::uint32_t constraint) const;  // lambda, or lambda_2 where there are several
 
  private:

@@ -18,7 +18,7 @@ class Walk {
     switch (f.form) {
       case Form::number: return f.word.empty() ? style_.number(f.number) : style_.literal(f.word);
       case Form::pi: return style_.pi();
-      case Form::symbol: return style_.symbol(notation_(f.symbol));
+      case Form::symbol: return symbol(f.symbol);
       case Form::mark: return style_.mark(f.word, texts(f.lower), texts(f.upper));
       case Form::call: return style_.call(f.op, pieces(f.args));
       case Form::power: return power(f);
@@ -61,6 +61,12 @@ class Walk {
   std::string at_least(const Formula& f, Piece::Binding binding) const {
     const Piece piece = (*this)(f);
     return piece.binding < binding ? style_.bracket(piece.text) : piece.text;
+  }
+  Piece symbol(const reading::Symbol& of) const {
+    if (of.kind == symbolic::SymbolKind::integral) {
+      if (const auto integrand = notation_.integrand(of.index)) return style_.integral((*this)(*integrand));
+    }
+    return style_.symbol(notation_(of));
   }
   std::vector<Piece> pieces(const std::vector<Formula>& list) const {
     std::vector<Piece> result;

@@ -44,6 +44,7 @@ class Style {
   virtual Piece partial(const Piece& above, const Piece& below) const = 0;
   virtual Piece dotted(const Piece& base, int dots) const = 0;
   virtual Piece dot_product(const Piece& a, const Piece& b) const = 0;
+  virtual Piece integral(const Piece& inside) const = 0;  // over time, from the start of the run
   virtual Piece differential(const Piece& a) const = 0;
   virtual std::string bracket(const std::string& inside) const = 0;
   virtual std::string plus() const = 0;

@@ -92,6 +92,7 @@ class TextStyle final : public Style {
     return {base.text + (dots == 1 ? "_dot" : dots == 2 ? "_ddot" : ""), Piece::atom};
   }
   Piece dot_product(const Piece& a, const Piece& b) const override { return {a.text + " . " + b.text, Piece::product}; }
+  Piece integral(const Piece& inside) const override { return {"integral(" + inside.text + ")", Piece::call}; }
   Piece differential(const Piece& a) const override { return {"d" + a.text, Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return "(" + inside + ")"; }
   std::string plus() const override { return " + "; }

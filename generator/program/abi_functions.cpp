@@ -38,6 +38,7 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
     for (Ref& r : s.solution->qddot) r = fixed(r);
     for (Pivot& pivot : s.solution->pivots) pivot = {fixed(pivot.pivot), fixed(pivot.scale)};
   }
+  for (auto& integral : s.integrals) integral.rate = fixed(integral.rate);
   for (auto& reaction : s.reactions) reaction.value = fixed(reaction.value);
   for (auto& output : s.outputs) output.value = fixed(output.value);
 }
@@ -127,6 +128,7 @@ WantedFunction AbiFunctions::rhs() {
   WantedFunction function{"rhs", {{"dx", qdot_}}, {}, {}};
   auto& dx = function.results[0].second;
   dx.insert(dx.end(), qddot_.begin(), qddot_.end());
+  for (const system::IntegralState& integral : system_.integrals) dx.push_back(integral.rate);
   add_solution(function);
   return function;
 }
@@ -148,7 +150,9 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
     for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + j]), qddot_[j]));
     c.push_back(dag.neg(sum));
   }
-  return solve()(std::move(r), c).first;
+  std::vector<Ref> lower = solve()(std::move(r), c).first;
+  for (const system::IntegralState& integral : system_.integrals) lower.push_back(d(integral.rate));
+  return lower;
 }
 
 WantedFunction AbiFunctions::jac() {
@@ -162,6 +166,11 @@ WantedFunction AbiFunctions::jac() {
       const std::vector<Ref> lower = column({SymbolKind::coordinate, system_.free[j], order});
       dfdx.insert(dfdx.end(), lower.begin(), lower.end());
     }
+  }
+  for (const system::IntegralState& integral : system_.integrals) {
+    dfdx.insert(dfdx.end(), n_, dag.zero());
+    const std::vector<Ref> lower = column({SymbolKind::integral, integral.integral, 0});
+    dfdx.insert(dfdx.end(), lower.begin(), lower.end());
   }
   dfdt.assign(n_, dag.zero());
   const std::vector<Ref> lower = column({SymbolKind::time, 0, 0});

@@ -32,7 +32,8 @@ Polynomials tested(Polynomials graph) {
 
 /// The function as it was derived, and with small products multiplied out.
 std::vector<Polynomials> starts(const AbiFunctions& functions, const WantedFunction& wanted) {
-  const Polynomials graph = from_dag(*functions.system().dag, wanted, functions.system().free);
+  const system::EquationSystem& system = functions.system();
+  const Polynomials graph = from_dag(*system.dag, wanted, system.free, system.integrals);
   constexpr std::size_t worth_expanding = 3000;  // nodes; larger systems gain nothing by it
   std::vector<Polynomials> result = {tested(flatten(graph, false))};
   if (graph.size() < worth_expanding) result.push_back(tested(flatten(expand(graph), false)));
@@ -102,6 +103,7 @@ std::size_t parameter_count(const system::EquationSystem& system) {
   for (const auto* list : {&system.M, &system.f, &system.A, &system.gamma}) {
     roots.insert(roots.end(), list->begin(), list->end());
   }
+  for (const system::IntegralState& integral : system.integrals) roots.push_back(integral.rate);
   for (const symbolic::Symbol& symbol : system.dag->symbols(roots)) {
     if (symbol.kind == symbolic::SymbolKind::parameter) count = std::max<std::size_t>(count, symbol.index + 1);
   }
@@ -136,6 +138,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
 
   Program program;
   program.free = system.free;
+  for (const system::IntegralState& integral : system.integrals) program.integrals.push_back(integral.integral);
   program.route = system.route;
   program.approach = system.approach;
   program.tried = tried(candidates, systems);

@@ -13,7 +13,9 @@ using symbolic::SymbolKind;
 
 class Conversion {
  public:
-  Conversion(const symbolic::Dag& dag, const std::vector<std::uint32_t>& free) : dag_(dag), free_(free) {}
+  Conversion(const symbolic::Dag& dag, const std::vector<std::uint32_t>& free,
+             const std::vector<system::IntegralState>& integrals)
+      : dag_(dag), free_(free), integrals_(integrals) {}
 
   Polynomials run(const WantedFunction& wanted) {
     std::vector<Ref> roots;
@@ -88,6 +90,13 @@ class Conversion {
         const auto place = static_cast<std::uint32_t>(found - free_.begin());
         return {Slot::state, place + symbol.order * static_cast<std::uint32_t>(free_.size()), false};
       }
+      case SymbolKind::integral:
+        for (std::uint32_t i = 0; i < integrals_.size(); ++i) {
+          if (integrals_[i].integral == symbol.index) {
+            return {Slot::state, i + 2 * static_cast<std::uint32_t>(free_.size()), false};
+          }
+        }
+        break;
       default: break;
     }
     throw Error("program", {}, "an expression uses a quantity that the state does not hold",
@@ -96,6 +105,7 @@ class Conversion {
 
   const symbolic::Dag& dag_;
   const std::vector<std::uint32_t>& free_;
+  const std::vector<system::IntegralState>& integrals_;
   Polynomials graph_;
   std::vector<Term> value_;
   std::vector<bool> known_;
@@ -129,8 +139,9 @@ Monomial common_factor(const Polynomials& graph, const Term& a, const Term& b) {
 
 }  // namespace
 
-Polynomials from_dag(const symbolic::Dag& dag, const WantedFunction& wanted, const std::vector<std::uint32_t>& free) {
-  return Conversion(dag, free).run(wanted);
+Polynomials from_dag(const symbolic::Dag& dag, const WantedFunction& wanted, const std::vector<std::uint32_t>& free,
+                     const std::vector<system::IntegralState>& integrals) {
+  return Conversion(dag, free, integrals).run(wanted);
 }
 
 void reduce_pivots(Polynomials& graph) {

@@ -7,10 +7,12 @@
 
 namespace eomgen::program {
 
-/// The graph of one function, one node per Dag node, nothing rewritten; `free` tells which state entry a coordinate is.
+/// The graph of one function, one node per Dag node, nothing rewritten; `free` and `integrals` tell which
+/// state entries they are.
 /// Pivot tests are kept where they say something (see pivots.cpp). Throws Error where an expression uses what a
 /// program cannot have (accelerations, functions of time that were not written out).
-Polynomials from_dag(const symbolic::Dag& dag, const WantedFunction& wanted, const std::vector<std::uint32_t>& free);
+Polynomials from_dag(const symbolic::Dag& dag, const WantedFunction& wanted, const std::vector<std::uint32_t>& free,
+                     const std::vector<system::IntegralState>& integrals = {});
 
 /// Pivot tests reduced: the common factor of pivot and scale cancels, and a factor by which the program divides must
 /// only differ from zero. What the program does not divide by is not tested.

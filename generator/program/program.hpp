@@ -67,7 +67,9 @@ struct Tried {
 };
 
 struct Program {
-  std::vector<std::uint32_t> free;  // coordinates of the model; state x = (q_free, qdot_free)
+  std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
+  std::vector<std::uint32_t> integrals;  // of the model
+  std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
   system::Approach approach = system::Approach::two;
   std::vector<Function> functions;  // rhs first

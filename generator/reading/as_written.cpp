@@ -83,6 +83,7 @@ class Writer {
       case Op::function: return of(SymbolKind::function);
       case Op::input: return of(SymbolKind::input);
       case Op::coordinate: return of(SymbolKind::coordinate);
+      case Op::integral: return of(SymbolKind::integral);
       case Op::definition: return (*this)(model_.definitions[node.index].is);
       default: return std::nullopt;
     }

@@ -140,6 +140,8 @@ Sum Bridge::total_derivative(const Sum& sum) {
     } else if (s.kind == SymbolKind::function || s.kind == SymbolKind::coordinate) {
       const Symbol rate{s.kind, s.index, static_cast<std::uint8_t>(s.order + 1)};
       result += e.diff(symbol(s)) * symbol(rate);
+    } else if (s.kind == SymbolKind::integral) {
+      result += e.diff(symbol(s)) * from_dag(dag_.rates().at(s));
     }
   }
   return from_ginac(result);
@@ -154,6 +156,7 @@ Sum Bridge::explicit_derivative(const Sum& sum) {
   });
   for (const auto& [s, unused] : rates) {
     if (s.kind == SymbolKind::time) result += e.diff(symbol(s));
+    if (s.kind == SymbolKind::integral) result += e.diff(symbol(s)) * from_dag(dag_.rates().at(s));
     if (s.kind != SymbolKind::function) continue;
     result += e.diff(symbol(s)) * symbol({s.kind, s.index, static_cast<std::uint8_t>(s.order + 1)});
   }

@@ -47,6 +47,7 @@ std::vector<double> Integration::initial_state() const {
   std::vector<double> x;
   for (const std::uint32_t i : code_.free) x.push_back(request_.scene.q[i]);
   for (const std::uint32_t i : code_.free) x.push_back(request_.scene.qdot[i]);
+  x.insert(x.end(), code_.integrals, 0.0);
   if (request_.watch_power) x.push_back(0);  // the work done since the start
   return x;
 }
@@ -61,7 +62,7 @@ int Integration::rhs(double t, const double* x, double* dx) {
   const int code = code_.rhs(t, x, request_.scene.parameters.data(), u, 0, dx);
   if (code != 0 || !request_.watch_power) return code;
   const int watched = code_.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
-  dx[2 * n_] = y_[power_];
+  dx[2 * n_ + code_.integrals] = y_[power_];
   return watched;
 }
 

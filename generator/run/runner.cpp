@@ -83,7 +83,7 @@ class Watch {
       const bool energy = conserved_[i] == energy_;
       drifts_[i].see(y_[conserved_[i]], energy ? magnitude : 0);
     }
-    const double work = request_.watch_power ? x[2 * request_.code.free.size()] : 0;
+    const double work = request_.watch_power ? x[2 * request_.code.free.size() + request_.code.integrals] : 0;
     balance_.see(y_[energy_] - integration_.work, work, magnitude);
     defect_ = std::max(defect_, integration_.constraint_defect(t, x));
   }

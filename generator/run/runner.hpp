@@ -21,7 +21,8 @@ struct Code {
   int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
   int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
   std::vector<std::string> output_names;  // entries of y: begins with every coordinate and its _dot
-  std::vector<std::uint32_t> free;        // coordinates that are state
+  std::vector<std::uint32_t> free;        // coordinates that are state, with their rates
+  std::size_t integrals = 0;              // states after them: 0 at the start, never projected
   std::size_t active_constraints = 0;
   std::vector<bool> holonomic;            // per active constraint: false where it binds velocities only
 };

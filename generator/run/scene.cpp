@@ -47,7 +47,12 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
       throw Error("scene", {}, fmt::format("there is no parameter {} to set", model::quote(name)),
                   hint.empty() ? fmt::format("the parameters are {}", fmt::join(names, ", ")) : hint);
     }
-    formula[static_cast<std::size_t>(found - m.model->parameters.begin())] = m.dag->constant(value);
+    const auto index = static_cast<std::size_t>(found - m.model->parameters.begin());
+    if (index == m.model->start_time) {
+      throw Error("scene", {}, fmt::format("'{}' is the start of the run, from which integrals count: it cannot be set", name),
+                  "state it in the scene: t = [t0, t1]");
+    }
+    formula[index] = m.dag->constant(value);
   }
   std::vector<cln::cl_R> values(n, 0);
   std::vector<bool> known(n, false);
@@ -97,6 +102,15 @@ class SceneEvaluator {
 
   double number(model::NodeId id, const char* what) { return number(mechanics::lower_scalar(m_, id), id, what); }
   void set_start(double t0) { t0_ = cln::cl_R(t0); }
+  /// Closed forms divide by factors of t: where such a factor is 0 they have no value, and the run would have none.
+  void require_integrals(double t) {
+    const cln::cl_R start = t0_;
+    t0_ = cln::cl_R(t);
+    for (std::uint32_t i = 0; i < m_.model->integrals.size(); ++i) {
+      number(m_.dag->symbol({SymbolKind::integral, i, 0}), m_.model->integrals[i].integrand, "the integral of this");
+    }
+    t0_ = start;
+  }
   void give(std::uint32_t coordinate, std::uint8_t order, double value) {
     given_[{SymbolKind::coordinate, coordinate, order}] = cln::cl_R(value);
   }
@@ -108,6 +122,7 @@ class SceneEvaluator {
     const auto lookup = [&](const Symbol& s) -> cln::cl_R {
       if (s.kind == SymbolKind::parameter) return parameters_[s.index];
       if (s.kind == SymbolKind::time) return t0_;
+      if (s.kind == SymbolKind::integral) return 0;  // counts from here
       if (const auto found = given_.find(s); found != given_.end()) return found->second;
       throw Error("scene", m_.model->where(span), fmt::format("{} uses a value that is not given before it", what),
                   "give the values that it uses on earlier lines of `initial`");
@@ -147,7 +162,14 @@ void resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& val
       continue;
     }
     const model::NodeId id = given == scene.inputs.end() ? m.model->inputs[i].fallback : std::get<model::NodeId>(given->signal);
-    result.inputs.emplace_back(*m.dag, written(mechanics::lower_scalar(m, id)), result.parameters);
+    const Ref signal = written(mechanics::lower_scalar(m, id));
+    for (const Symbol& symbol : m.dag->symbols({signal})) {
+      if (symbol.kind != SymbolKind::integral) continue;
+      throw Error("scene", m.model->where(m.model->integrals[symbol.index].span),
+                  "this integral has no closed form, and a signal cannot carry a state of its own",
+                  "put the integral where the input is used, as integral(f) with f in [functions]");
+    }
+    result.inputs.emplace_back(*m.dag, signal, result.parameters);
   }
 }
 
@@ -191,6 +213,7 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
   const std::vector<double> values = symbolic::evaluate(*system.dag, system.M, [&](const symbolic::Symbol& s) {
     if (s.kind == symbolic::SymbolKind::parameter) return start.parameters[s.index];
     if (s.kind == symbolic::SymbolKind::time) return start.t0;
+    if (s.kind == symbolic::SymbolKind::integral) return 0.0;
     if (s.kind == symbolic::SymbolKind::coordinate) return (s.order == 0 ? start.q : start.qdot)[s.index];
     return std::nan("");
   });
@@ -224,6 +247,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   if (scene.t0 != model::no_node) result.t0 = value.number(scene.t0, "the start time");
   result.t1 = scene.t1 != model::no_node ? value.number(scene.t1, "the end time") : result.t0 + 10;
   value.set_start(result.t0);
+  value.require_integrals(result.t1);
   const auto number = [&](model::NodeId id, double& target, const char* what) {
     if (id != model::no_node) target = value.number(id, what);
   };

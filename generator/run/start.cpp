@@ -56,6 +56,7 @@ class StartSolver {
     switch (s.kind) {
       case SymbolKind::parameter: return p_.parameters[s.index];
       case SymbolKind::time: return p_.t0;
+      case SymbolKind::integral: return 0;  // counts from here
       case SymbolKind::coordinate: return s.order == 0 ? p_.q[s.index] : p_.qdot[s.index];
       default: return std::nan("");
     }

@@ -92,7 +92,8 @@ namespace {
 constexpr std::uint8_t highest_function_order = 6;
 
 std::map<Symbol, Ref> explicit_seeds(Dag& dag, std::size_t functions) {
-  std::map<Symbol, Ref> seeds{{{SymbolKind::time, 0, 0}, dag.one()}};
+  std::map<Symbol, Ref> seeds = dag.rates();
+  seeds[{SymbolKind::time, 0, 0}] = dag.one();
   for (std::uint32_t i = 0; i < functions; ++i) {
     for (std::uint8_t order = 0; order < highest_function_order; ++order) {
       seeds[{SymbolKind::function, i, order}] =

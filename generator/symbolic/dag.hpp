@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -41,6 +42,7 @@ enum class SymbolKind : std::uint8_t {
   input,
   multiplier,  // lambda of Mechanics::constraints[index]
   extra,       // an intermediate that a caller names itself (cut points of the solve, the extension of a spring)
+  integral,    // of a function of time, from the start of the run; its rate is told to the Dag
 };
 
 struct Symbol {
@@ -88,6 +90,9 @@ class Dag {
 
   /// From now on sqrt(x^2) is x for this symbol: a length, a radius inside its chart (docs/model-format.md, ranges).
   void assume_positive(Symbol symbol);
+  /// d/dt of an integral, for every later derivative with respect to time.
+  void set_rate(Symbol integral, Ref rate) { rates_[integral] = rate; }
+  const std::map<Symbol, Ref>& rates() const { return rates_; }
   /// Known to be positive wherever it is defined, by the assumptions; false says nothing.
   bool is_positive(Ref r) const;
 
@@ -119,6 +124,7 @@ class Dag {
   std::unordered_map<std::string, std::uint32_t> constant_index_;
   std::vector<std::pair<Symbol, std::uint32_t>> symbol_index_;  // sorted
   std::set<Symbol> positive_;
+  std::map<Symbol, Ref> rates_;
   Ref zero_, one_;
 };
 

@@ -47,14 +47,21 @@ struct Solution {
   std::vector<symbolic::Pivot> pivots;
 };
 
+/// An integral of a function of time without a closed form: a state that is 0 at the start, d/dt of it is `rate`.
+struct IntegralState {
+  std::uint32_t integral;  // index into Model::integrals
+  Ref rate;                // of t, parameters and integrals that are states
+};
+
 struct EquationSystem {
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
   Approach approach = Approach::two;
 
-  std::vector<std::uint32_t> free;    // n coordinates of the model, ascending; state x = (q_free, qdot_free)
+  std::vector<std::uint32_t> free;    // n coordinates of the model, ascending; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> active;  // m constraints with multipliers
 
+  std::vector<IntegralState> integrals;
   std::vector<Ref> M;      // n x n, row-major, symmetric
   std::vector<Ref> f;      // n
   std::vector<bool> holonomic;  // m: false of constraints on velocities, whose psi is 0

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
 #include "verify/motion.hpp"
 #include "verify/plain_forces.hpp"
@@ -136,6 +137,30 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge
   tally.note("outputs of " + name_of(s), judge_name, false, largest);
 }
 
+/// Closed forms against quadrature; the rates of integrals that are states against their integrands.
+void compare_integrals(const mechanics::Mechanics& mechanics, const EquationSystem& s, const SystemValues& v,
+                       const Judge& judge, Tally& tally) {
+  const model::Model& m = judge.model();
+  if (m.integrals.empty()) return;
+  const Lookup lookup(judge, v.state);
+  symbolic::Substitution written = derive::write_out(mechanics);
+  const Interpreter now = judge.interpreter(v.state);
+  double largest = 0;
+  for (std::uint32_t i = 0; i < m.integrals.size(); ++i) {
+    const Ref form = written(mechanics.dag->symbol({symbolic::SymbolKind::integral, i, 0}));
+    const Real value = symbolic::evaluate(*mechanics.dag, {form}, lookup, judge.digits())[0];
+    const Real span = v.state.t - v.state.parameters[*m.start_time];
+    const Real scale = cln::abs(span * now.environment().integrals[i][1].real());
+    largest = std::max(largest, relative(value - v.state.integrals[i], cln::abs(v.state.integrals[i]) + scale));
+  }
+  const std::vector<Real> rates = integral_rates(s, lookup, judge.digits());
+  for (std::size_t k = 0; k < rates.size(); ++k) {
+    const Real expected = now.environment().integrals[s.integrals[k].integral][1].real();
+    largest = std::max(largest, relative(rates[k] - expected, cln::abs(expected)));
+  }
+  tally.note("integrals of time", judge_name, false, largest);
+}
+
 void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
   std::vector<Ref> open{r};
   while (!open.empty()) {
@@ -187,12 +212,13 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
 double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
                       const SystemValues& v) {
   const std::size_t n = s.free.size();
-  if (a.size() != 2 * n) return 1;
+  if (a.size() != 2 * n + s.integrals.size() || b.size() != a.size()) return 1;
   double largest = 0;
   for (std::size_t i = 0; i < n; ++i) {
     largest = std::max(largest, relative(a[i] - b[i], cln::abs(b[i])));
     largest = std::max(largest, relative_to(a[n + i] - b[n + i], v.scale[s.free[i]]));
   }
+  for (std::size_t i = 2 * n; i < a.size(); ++i) largest = std::max(largest, relative(a[i] - b[i], cln::abs(b[i])));
   return largest;
 }
 
@@ -200,6 +226,7 @@ std::vector<Real> state_vector(const EquationSystem& s, const State& state) {
   std::vector<Real> x;
   for (const std::uint32_t i : s.free) x.push_back(state.q[i]);
   for (const std::uint32_t i : s.free) x.push_back(state.qdot[i]);
+  for (const system::IntegralState& integral : s.integrals) x.push_back(state.integrals[integral.integral]);
   return x;
 }
 
@@ -216,7 +243,7 @@ double compiled_difference(const CompiledForm& form, const EquationSystem& s, co
   };
   State at = v.state;
   at.t = exactly(at.t);
-  for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs})
+  for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
     for (Real& value : *part) value = exactly(value);
   const std::vector<Real> reference = right_hand_side(s, judge, at);
   const auto dx = form.rhs(cln::double_approx(at.t), rounded(state_vector(s, at)), rounded(at.parameters), rounded(at.inputs));
@@ -269,6 +296,7 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
   const SystemValues& v = values.front();
+  compare_integrals(mechanics, first, v, judge, tally);
   for (const ProgramForm& form : subjects.programs) {
     const std::vector<Real> x = state_vector(first, v.state);
     const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs);

@@ -3,6 +3,8 @@
 
 #include <cln/real.h>
 
+#include <set>
+
 #include "verify/plain_forces.hpp"
 #include "verify/uses.hpp"
 
@@ -46,6 +48,8 @@ Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(dig
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
     holonomic_.insert(holonomic_.end(), constraint.psi.size(), !constraint.velocity);
   }
+  constexpr int rounding = 5;  // digits that sums of many terms may lose
+  if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
 }
 
 bool Judge::is_independent_parameter(std::size_t index) const {
@@ -76,31 +80,38 @@ std::vector<Real> Judge::parameters(std::vector<Real> given) const {
   return given;
 }
 
-void Judge::add_functions(Environment& environment) const {
-  const std::size_t n = model_.functions.size();
-  environment.functions.assign(n, {});
-  // A function may use others, declared before or after it.
-  for (std::size_t done = 0, before = 1; done < n && done != before;) {
-    before = done;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!environment.functions[i].empty()) continue;
-      const auto unknown = [&](const model::Node& node) {
-        return node.op == model::Op::function && environment.functions[node.index].empty();
-      };
-      if (uses(model_, model_.functions[i].is, unknown)) continue;
-      Interpreter now(model_, environment, precision_);
-      Interpreter* at = &now;
-      std::vector<Jet> orders{now.scalar(model_.functions[i].is)};
-      for (unsigned k = 1; k <= function_orders; ++k) {
-        at = &at->along_time();
-        try {
-          orders.push_back(nested_slope(at->scalar(model_.functions[i].is), k));
-        } catch (const Error&) {
-          break;  // it uses a derivative of another function: fewer of its own are known
-        }
+void Judge::add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const {
+  environment.functions.assign(model_.functions.size(), {});
+  environment.integrals.assign(model_.integrals.size(), {});
+  // A function may use others, and integrals, declared before or after it.
+  const auto unknown = [&](const model::Node& node) {
+    return (node.op == model::Op::function && environment.functions[node.index].empty()) ||
+           (node.op == model::Op::integral && environment.integrals[node.index].empty());
+  };
+  bool progress = true;
+  const auto add = [&](model::NodeId expression, std::vector<Jet>& known) {
+    if (!known.empty() || uses(model_, expression, unknown)) return;
+    Interpreter now(model_, environment, precision_);
+    Interpreter* at = &now;
+    std::vector<Jet> found{now.scalar(expression)};
+    for (unsigned k = 1; k <= orders; ++k) {
+      at = &at->along_time();
+      try {
+        found.push_back(nested_slope(at->scalar(expression), k));
+      } catch (const Error&) {
+        break;  // it uses a derivative of another function: fewer of its own are known
       }
-      environment.functions[i] = std::move(orders);
-      ++done;
+    }
+    known = std::move(found);
+    progress = true;
+  };
+  while (progress) {
+    progress = false;
+    for (std::size_t i = 0; i < model_.functions.size(); ++i) add(model_.functions[i].is, environment.functions[i]);
+    for (std::size_t i = 0; i < integrals.size(); ++i) {
+      if (!environment.integrals[i].empty()) continue;
+      add(model_.integrals[i].integrand, environment.integrals[i]);  // its rate and further derivatives
+      if (!environment.integrals[i].empty()) environment.integrals[i].insert(environment.integrals[i].begin(), Jet(integrals[i]));
     }
   }
 }
@@ -110,7 +121,8 @@ Interpreter Judge::interpreter(const State& state, Margin* margin) const {
   environment.t = Jet(state.t);
   for (const Real& value : state.parameters) environment.parameters.emplace_back(value);
   for (const Real& value : state.inputs) environment.inputs.emplace_back(value);
-  add_functions(environment);
+  const bool known = state.integrals.size() == model_.integrals.size();
+  add_functions(environment, known ? state.integrals : integrals(state), function_orders);
   for (std::size_t i = 0; i < state.q.size(); ++i) {
     environment.coordinates.push_back({Jet(state.q[i]), Jet(state.qdot[i])});
     if (i < state.qddot.size()) environment.coordinates.back().emplace_back(state.qddot[i]);
@@ -118,8 +130,59 @@ Interpreter Judge::interpreter(const State& state, Margin* margin) const {
   return Interpreter(model_, std::move(environment), precision_, margin);
 }
 
+// Whether it or a function or integral in it asks for a time derivative.
+bool Judge::needs_derivatives(model::NodeId expression) const {
+  bool found = false;
+  std::vector<model::NodeId> open{expression};
+  std::set<model::NodeId> seen;
+  while (!open.empty() && !found) {
+    const model::NodeId id = open.back();
+    open.pop_back();
+    if (!seen.insert(id).second) continue;
+    found = uses(model_, id, [&](const model::Node& node) {
+      if (node.op == model::Op::function) open.push_back(model_.functions[node.index].is);
+      if (node.op == model::Op::integral) open.push_back(model_.integrals[node.index].integrand);
+      return node.order > 0 || node.op == model::Op::total_derivative || node.op == model::Op::partial_derivative;
+    });
+  }
+  return found;
+}
+
+Real Judge::integral_value(std::uint32_t integral, const State& state) const {
+  const model::NodeId integrand = model_.integrals[integral].integrand;
+  const std::size_t orders = needs_derivatives(integrand) ? function_orders : 0;
+  const auto value = [&](const Real& t) {
+    State at = state;
+    at.t = t;
+    Environment environment;
+    environment.t = Jet(t);
+    for (const Real& parameter : state.parameters) environment.parameters.emplace_back(parameter);
+    at.integrals.assign(integral, Real(0));
+    // Integrals inside of this one come before it.
+    for (std::uint32_t i = 0; i < integral; ++i) {
+      const auto inner = [i](const model::Node& node) { return node.op == model::Op::integral && node.index == i; };
+      if (uses(model_, integrand, inner)) at.integrals[i] = integral_value(i, at);
+    }
+    add_functions(environment, at.integrals, orders);
+    return Interpreter(model_, std::move(environment), precision_).scalar(integrand).real();
+  };
+  return (*quadrature_)(value, state.parameters.at(*model_.start_time), state.t);
+}
+
+std::vector<Real> Judge::integrals(const State& state) const {
+  std::vector<Real> values;
+  for (std::uint32_t i = 0; i < model_.integrals.size(); ++i) values.push_back(integral_value(i, state));
+  return values;
+}
+
 Real Judge::value(model::NodeId expression, const State& state) const {
   return interpreter(state).scalar(expression).real();
+}
+
+Real Judge::constant(model::NodeId expression, const std::vector<Real>& parameters) const {
+  Environment environment;
+  for (const Real& value : parameters) environment.parameters.emplace_back(value);
+  return Interpreter(model_, std::move(environment), precision_).scalar(expression).real();
 }
 
 namespace {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "verify/interpreter.hpp"
+#include "verify/quadrature.hpp"
 
 namespace eomgen::verify {
 
@@ -21,6 +22,7 @@ struct State {
   Real t = 0;
   std::vector<Real> q, qdot, qddot;  // every coordinate of the model
   std::vector<Real> parameters, inputs;
+  std::vector<Real> integrals;       // of functions of time, from the start of the run; empty: not computed yet
 };
 
 /// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.
@@ -67,10 +69,18 @@ class Judge {
   /// Value of an expression of the model, such as a start of a scene.
   Real value(model::NodeId expression, const State& state) const;
 
+  /// Of an expression of parameters alone.
+  Real constant(model::NodeId expression, const std::vector<Real>& parameters) const;
+  /// Every integral of the model at the state's time and parameters, by quadrature of its integrand.
+  std::vector<Real> integrals(const State& state) const;
+
   Interpreter interpreter(const State& state, Margin* margin = nullptr) const;
 
  private:
-  void add_functions(Environment& environment) const;
+  /// Functions of time and integrals with `orders` derivatives; `integrals` holds the values of the latter.
+  void add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const;
+  bool needs_derivatives(model::NodeId expression) const;
+  Real integral_value(std::uint32_t integral, const State& state) const;
   std::vector<Real> row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const;
 
   const model::Model& model_;
@@ -78,6 +88,7 @@ class Judge {
   Precision precision_;
   std::vector<model::NodeId> psi_;
   std::vector<bool> holonomic_;
+  std::optional<GaussLegendre> quadrature_;  // where the model has integrals
 };
 
 }  // namespace eomgen::verify

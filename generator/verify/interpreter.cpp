@@ -40,7 +40,7 @@ Interpreter& Interpreter::along_time() {
   Environment later = environment_;
   const unsigned level = ++later.level;
   later.t = Jet::variable(level, later.t, 0, 1);
-  for (auto* group : {&later.coordinates, &later.functions})
+  for (auto* group : {&later.coordinates, &later.functions, &later.integrals})
     for (std::vector<Jet>& orders : *group) {
       for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
       if (!orders.empty()) orders.pop_back();
@@ -81,10 +81,11 @@ Interpreter& Interpreter::by_leaf(const Node& node) {
     case Op::input: vary(seeded.inputs[node.index]); break;
     case Op::time:  // at fixed coordinates; functions of time go on
       vary(seeded.t);
-      for (std::vector<Jet>& orders : seeded.functions) {
-        for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
-        orders.pop_back();
-      }
+      for (auto* group : {&seeded.functions, &seeded.integrals})
+        for (std::vector<Jet>& orders : *group) {
+          for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
+          orders.pop_back();
+        }
       break;
     default: refuse(node, "diff is by a coordinate, a function, a parameter, an input or t");
   }
@@ -135,6 +136,7 @@ Jet Interpreter::leaf(const Node& node) {
     case Op::coordinate: return of_order(environment_.coordinates[node.index]);
     case Op::function: return of_order(environment_.functions[node.index]);
     case Op::definition: return scalar(model_.definitions[node.index].is);
+    case Op::integral: return of_order(environment_.integrals[node.index]);
     case Op::extension:
       if (spring_ != nullptr) return extension(*spring_);
       break;

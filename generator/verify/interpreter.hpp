@@ -33,6 +33,7 @@ struct Environment {
   Jet t;
   std::vector<std::vector<Jet>> coordinates;  // [coordinate][order]: as many orders as are known
   std::vector<std::vector<Jet>> functions;    // [function][order]
+  std::vector<std::vector<Jet>> integrals;    // [integral]: its value, the integrand and the integrand's derivatives
   std::vector<Jet> parameters, inputs;
   unsigned level = 0;  // the highest level in use
 };

@@ -45,27 +45,25 @@ Real Points::exact(double value) const { return judge_.precision().round(cln::ra
 void Points::read_scene() {
   const model::Model& m = judge_.model();
   State start;
+  start.integrals.assign(m.integrals.size(), Real(0));  // they count from the start
   start.parameters = judge_.default_parameters();
   const model::Scene* scene = m.scenes.empty() ? nullptr : &m.scenes.front();
   if (scene != nullptr)
-    for (const auto& [index, value] : scene->parameters) {
-      State now = start;
-      now.parameters = judge_.parameters(start.parameters);
-      start.parameters[index] = judge_.value(value, now);
-    }
+    for (const auto& [index, value] : scene->parameters)
+      start.parameters[index] = judge_.constant(value, judge_.parameters(start.parameters));
   defaults_ = start.parameters;
   start.parameters = judge_.parameters(defaults_);
+  if (scene != nullptr && scene->t0 != model::no_node) {
+    t0_ = cln::double_approx(judge_.constant(scene->t0, start.parameters));
+    t1_ = t0_ + 1;
+    if (scene->t1 != model::no_node) t1_ = cln::double_approx(judge_.constant(scene->t1, start.parameters));
+  }
+  t1_ = std::min(t1_, t0_ + longest_span);
+  start.t = exact(t0_);  // before functions of time are looked at, which may have no value at other times
   for (const model::Input& input : m.inputs) {
     start.inputs.push_back(judge_.value(input.fallback, start));
     input_defaults_.push_back(cln::double_approx(start.inputs.back()));
   }
-  if (scene != nullptr && scene->t0 != model::no_node) {
-    t0_ = cln::double_approx(judge_.value(scene->t0, start));
-    t1_ = t0_ + 1;
-    if (scene->t1 != model::no_node) t1_ = cln::double_approx(judge_.value(scene->t1, start));
-  }
-  t1_ = std::min(t1_, t0_ + longest_span);
-  start.t = exact(t0_);
   start.q.assign(m.coordinates.size(), exact(0));
   start.qdot = start.qddot = start.q;
   if (scene != nullptr)
@@ -151,6 +149,7 @@ State Points::draw() {
   fix(s.parameters);  // before: others depend on them; after: they may depend on others
   s.parameters = judge_.parameters(std::move(s.parameters));
   fix(s.parameters);
+  s.integrals = judge_.integrals(s);
   for (const double fallback : input_defaults_)
     s.inputs.push_back(exact(fallback + symmetric() * std::max(1.0, std::fabs(fallback))));
   for (std::size_t i = 0; i < choices_.size(); ++i) {

@@ -123,6 +123,7 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
 }  // namespace
 
 Lookup::Lookup(const Judge& of, State at) : judge(of), state(std::move(at)), lambda(of.constraints().size(), Real(0)) {
+  if (state.integrals.empty()) state.integrals = judge.integrals(state);
   const Interpreter now = judge.interpreter(state);
   for (const std::vector<Jet>& orders : now.environment().functions) {
     functions.emplace_back();
@@ -139,6 +140,7 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::parameter: return state.parameters.at(symbol.index);
     case SymbolKind::input: return state.inputs.at(symbol.index);
     case SymbolKind::multiplier: return lambda.at(symbol.index);
+    case SymbolKind::integral: return state.integrals.at(symbol.index);
     case SymbolKind::extra: break;
   }
   throw std::logic_error("verify: a symbol without a value");
@@ -170,11 +172,19 @@ SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mech
 }
 
 std::vector<Real> right_hand_side(const EquationSystem& s, const Judge& judge, const State& state) {
-  const Solved solved = solve_system(s, Lookup(judge, state), judge.digits(), false);
+  const Lookup lookup(judge, state);
+  const Solved solved = solve_system(s, lookup, judge.digits(), false);
   std::vector<Real> dx;
   for (const std::uint32_t i : s.free) dx.push_back(state.qdot[i]);
   dx.insert(dx.end(), solved.qddot.begin(), solved.qddot.end());
+  for (const Real& rate : integral_rates(s, lookup, judge.digits())) dx.push_back(rate);
   return dx;
+}
+
+std::vector<Real> integral_rates(const EquationSystem& s, const Lookup& lookup, int digits) {
+  std::vector<Ref> rates;
+  for (const system::IntegralState& integral : s.integrals) rates.push_back(integral.rate);
+  return symbolic::evaluate(*s.dag, rates, lookup, digits);
 }
 
 Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues& v, int digits) {
@@ -182,6 +192,7 @@ Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues
   const int more = 3 * digits + 10;
   const Precision precision(more);
   const Real h = precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)));
+  const std::vector<Real> rates = integral_rates(s, Lookup(judge, v.state), more);
   const auto energy_at = [&](const Real& step) {
     Lookup lookup(judge, v.state);
     State& at = lookup.state;
@@ -189,6 +200,10 @@ Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues
     for (const std::uint32_t i : s.free) {
       at.q[i] = precision.round(at.q[i]) + step * precision.round(at.qdot[i]);
       at.qdot[i] = precision.round(at.qdot[i]) + step * precision.round(at.qddot[i]);
+    }
+    for (std::size_t k = 0; k < rates.size(); ++k) {
+      Real& value = at.integrals[s.integrals[k].integral];
+      value = precision.round(value) + step * precision.round(rates[k]);
     }
     return symbolic::evaluate(*s.dag, {s.energy}, lookup, more)[0];
   };

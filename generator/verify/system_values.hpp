@@ -38,7 +38,10 @@ struct SystemValues {
 SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Judge& judge,
                        const State& state);
 
-/// Only qdot and qddot of the free coordinates, with their scales: what a right-hand side returns.
+/// d/dt of the integrals that are states.
+std::vector<Real> integral_rates(const system::EquationSystem& system, const Lookup& lookup, int digits);
+
+/// What a right-hand side returns: qdot and qddot of the free coordinates, the rates of integrals.
 std::vector<Real> right_hand_side(const system::EquationSystem& system, const Judge& judge, const State& state);
 
 /// dE/dt of the system's energy by central differences along the path of `values`, at three times the digits.

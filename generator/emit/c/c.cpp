@@ -36,7 +36,7 @@ std::string prototype(const std::string& name, const program::Function& function
 
 std::string sizes(const std::string& name, const program::Program& program, const EmissionContext& context) {
   const std::pair<const char*, std::size_t> entries[] = {
-      {"states", 2 * program.free.size()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
+      {"states", program.state_count()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
       {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
       {"output_count", program.outputs.size()}};
   std::vector<std::string> lines;

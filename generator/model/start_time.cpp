@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/start_time.hpp"
+
+#include <algorithm>
+
+#include "model/units.hpp"
+
+namespace eomgen::model {
+namespace {
+
+std::string free_name(const Model& model, std::string name) {
+  const auto taken = [&](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
+  };
+  while (taken(model.parameters) || taken(model.functions) || taken(model.inputs) || taken(model.coordinates) ||
+         taken(model.definitions) || taken(model.places) || taken(model.constraints) || taken(model.forces)) {
+    name += '_';
+  }
+  return name;
+}
+
+}  // namespace
+
+void add_start_time(Model& model, bool units_stated) {
+  if (model.integrals.empty()) return;
+  for (std::size_t i = 0; i < model.integrals.size(); ++i) {
+    model.integrals[i].name = free_name(model, "integral_" + std::to_string(i + 1));
+  }
+  Parameter start;
+  start.name = free_name(model, "t_start");
+  start.value = model.scenes.front().t0;
+  if (units_stated) start.unit = unit_of(dimension_of("s"));
+  start.tex = "t_{0}";
+  start.note = "start of the run, from which integrals count";
+  start.span = model.integrals.front().span;
+  start.used = true;
+  const auto index = static_cast<std::uint32_t>(model.parameters.size());
+  model.parameters.push_back(std::move(start));
+  model.start_time = index;
+  for (Scene& scene : model.scenes) scene.parameters.emplace_back(index, scene.t0);
+}
+
+}  // namespace eomgen::model
