@@ -216,6 +216,7 @@ std::vector<Statement> statements(const Mechanics& m, const ReadingForm& form, c
     if (wanted(key)) of_geometry.emplace_back(key);
   }
   if (!of_geometry.empty()) add_geometry(m, of_geometry, out);
+  if (wanted("frenet")) add_frenet(m, std::find(show.begin(), show.end(), "frenet") != show.end(), out);
   if (wanted("singular")) add_singular(m, out);
   return out;
 }

@@ -28,7 +28,12 @@ void add_constraints(const mechanics::Mechanics& mechanics, const reading::Readi
 void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
+/// x e_1 + y e_2 + z e_3
+reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
 void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys, std::vector<Statement>& out);
+
+/// Frenet triad, curvature, torsion, line element of the curve that is left; `asked`: throws Error where there is none.
+void add_frenet(const mechanics::Mechanics& mechanics, bool asked, std::vector<Statement>& out);
 
 void add_singular(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 

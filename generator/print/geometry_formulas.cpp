@@ -19,18 +19,6 @@ using reading::SymbolKind;
 
 Formula coordinate(std::uint32_t i) { return reading::symbol({SymbolKind::coordinate, i, 0}); }
 
-// x e_1 + y e_2 + z e_3
-Formula combination(const Components& components, const std::vector<Formula>& vectors) {
-  std::vector<Formula> terms;
-  for (std::size_t k = 0; k < 3; ++k) {
-    if (components[k].is_zero()) continue;
-    const bool minus = reading::leads_negative(components[k]);
-    Formula term = reading::product({arrange(minus ? -components[k] : components[k]), vectors[k]});
-    terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
-  }
-  return reading::sum(std::move(terms));
-}
-
 // qdot_i -> dq_i
 Formula with_differentials(const Formula& f) {
   if (f.form == Form::symbol && f.symbol.kind == SymbolKind::coordinate && f.symbol.order == 1) {
@@ -119,6 +107,17 @@ void tabulate(Tables tables, const std::string& key) {
 }
 
 }  // namespace
+
+Formula combination(const Components& components, const std::vector<Formula>& vectors) {
+  std::vector<Formula> terms;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (components[k].is_zero()) continue;
+    const bool minus = reading::leads_negative(components[k]);
+    Formula term = reading::product({arrange(minus ? -components[k] : components[k]), vectors[k]});
+    terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
+  }
+  return reading::sum(std::move(terms));
+}
 
 void add_geometry(const Mechanics& m, const std::vector<std::string>& keys, std::vector<Statement>& out) {
   const std::vector<Geometry> particles = reading::geometry(m);

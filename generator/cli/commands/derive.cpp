@@ -24,7 +24,7 @@ struct Options {
 };
 
 const std::vector<std::string>& show_keys() {
-  static const std::vector<std::string> keys{"basis", "metric", "christoffel", "line_element", "energies", "lagrangian",
+  static const std::vector<std::string> keys{"basis", "metric", "christoffel", "line_element", "frenet", "energies", "lagrangian",
                                              "equations", "constraints", "reactions", "conserved", "singular", "linear", "all"};
   return keys;
 }
