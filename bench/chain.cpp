@@ -10,10 +10,12 @@
 #include <string>
 #include <vector>
 
-#include "S6_chain_1.h"
-#include "S6_chain_2.h"
-#include "S6_chain_6.h"
-#include "handwritten_chain.hpp"
+#include "chain_1.h"
+#include "chain_10.h"
+#include "chain_2.h"
+#include "chain_3.h"
+#include "chain_6.h"
+#include "handwritten.hpp"
 
 namespace {
 
@@ -21,26 +23,28 @@ constexpr double p[] = {1.0, 1.0, 9.81};  // m, L, g
 constexpr int repeats = 31;
 constexpr double agreement = 1e-10;  // relative, of two ways to round a linear solve of condition below 1e3
 
-using Rhs = int (*)(double, const double*, const double*, const double*, int, double*);
+using eomgen::bench::Handwritten;
+using eomgen::bench::handwritten;
+using eomgen::bench::Rhs;
+using eomgen::bench::variants;
 
 struct Case {
   int n;
   Rhs emitted;
-  void (*handwritten)(const double*, double, double, double*);
+  const Handwritten (&handwritten)[variants];
 };
 
 constexpr int states = 64;
 
 // A different state with every call, so that nothing can be hoisted out of the loop, and none waits for the last result.
-template <class F>
-double nanoseconds(int n, int calls, F&& f) {
+double nanoseconds(int n, int calls, Rhs rhs) {
   const auto size = 2 * static_cast<std::size_t>(n);
   std::vector<double> x(size * states), dx(size * states);
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.3 + 0.1 * static_cast<double>(i * i % 37);
   const auto start = std::chrono::steady_clock::now();
   for (int k = 0; k < calls; ++k) {
     const std::size_t at = size * static_cast<std::size_t>(k % states);
-    f(x.data() + at, dx.data() + at);
+    if (rhs(0, x.data() + at, p, nullptr, 0, dx.data() + at) != 0) std::exit(1);
   }
   const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
   double sum = 0;
@@ -54,14 +58,14 @@ double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-void require_agreement(const Case& c) {
+void require_agreement(const Case& c, const Handwritten& other) {
   std::vector<double> x(2 * static_cast<std::size_t>(c.n)), a(x.size()), b(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.4 + 0.17 * static_cast<double>(i * i % 7);
   c.emitted(0, x.data(), p, nullptr, 0, a.data());
-  c.handwritten(x.data(), p[1], p[2], b.data());
+  other.rhs(0, x.data(), p, nullptr, 0, b.data());
   for (std::size_t i = 0; i < x.size(); ++i) {
     if (std::abs(a[i] - b[i]) <= agreement * (1 + std::abs(b[i]))) continue;
-    fmt::print(stderr, "n = {}: the two right-hand sides differ: {} and {}\n", c.n, a[i], b[i]);
+    fmt::print(stderr, "n = {}: emitted and {} differ: {} and {}\n", c.n, other.name, a[i], b[i]);
     std::exit(1);
   }
 }
@@ -77,21 +81,31 @@ std::string processor() {
 }  // namespace
 
 int main() {
-  using eomgen::bench::handwritten_chain;
-  const Case cases[] = {{1, S6_chain_1_rhs, handwritten_chain<1>},
-                        {2, S6_chain_2_rhs, handwritten_chain<2>},
-                        {6, S6_chain_6_rhs, handwritten_chain<6>}};
-  fmt::print("{}; g++ {}; medians of {} repeats in turn\n\n", processor(), __VERSION__, repeats);
-  fmt::print("| links | emitted, ns | by hand, ns | ratio (median of pairs) |\n|---|---|---|---|\n");
+  const Case cases[] = {{1, chain_1_rhs, handwritten<1>()},
+                        {2, chain_2_rhs, handwritten<2>()},
+                        {3, chain_3_rhs, handwritten<3>()},
+                        {6, chain_6_rhs, handwritten<6>()},
+                        {10, chain_10_rhs, handwritten<10>()}};
+  fmt::print("{}; g++ {}; medians of {} repeats in turn, ns\n\n| links | emitted", processor(), __VERSION__, repeats);
+  for (const Handwritten& h : cases[0].handwritten) fmt::print(" | {}", h.name);
+  fmt::print(" | emitted / best |\n|---|---|---|---|---|---|---|---|---|\n");
   for (const Case& c : cases) {
-    require_agreement(c);
+    for (const Handwritten& h : c.handwritten) require_agreement(c, h);
     const int calls = 200000 / (c.n * c.n);
-    std::vector<double> emitted, handwritten, ratio;
+    std::vector<double> emitted, by_hand[variants], ratio[variants];
     for (int r = 0; r < repeats; ++r) {
-      emitted.push_back(nanoseconds(c.n, calls, [&](const double* x, double* dx) { c.emitted(0, x, p, nullptr, 0, dx); }));
-      handwritten.push_back(nanoseconds(c.n, calls, [&](const double* x, double* dx) { c.handwritten(x, p[1], p[2], dx); }));
-      ratio.push_back(emitted.back() / handwritten.back());
+      emitted.push_back(nanoseconds(c.n, calls, c.emitted));
+      for (int v = 0; v < variants; ++v) {
+        by_hand[v].push_back(nanoseconds(c.n, calls, c.handwritten[v].rhs));
+        ratio[v].push_back(emitted.back() / by_hand[v].back());
+      }
     }
-    fmt::print("| {} | {:.1f} | {:.1f} | {:.2f} |\n", c.n, median(emitted), median(handwritten), median(ratio));
+    double worst = 0;
+    fmt::print("| {} | {:.1f}", c.n, median(emitted));
+    for (int v = 0; v < variants; ++v) {
+      fmt::print(" | {:.1f}", median(by_hand[v]));
+      worst = std::max(worst, median(ratio[v]));
+    }
+    fmt::print(" | {:.2f} |\n", worst);
   }
 }

@@ -10,13 +10,28 @@
 
 namespace eomgen::bench {
 
-template <int N>
+/// Sines and cosines of the C library; the arrays have room for an even number. False: start again with `Library`.
+struct Library {
+  template <int N>
+  [[gnu::always_inline]] static bool sincos(const double* angle, double* s, double* c) {
+#pragma GCC unroll 32
+    for (int i = 0; i < N; ++i) {
+      s[i] = std::sin(angle[i]);
+      c[i] = std::cos(angle[i]);
+    }
+    return true;
+  }
+};
+
+template <int N, class Sines = Library>
 inline void handwritten_chain(const double* x, double L, double g, double* dx) {
-  double s[N], c[N], w2[N], M[N][N], r[N];
+  constexpr int room = N + N % 2;
+  double angle[room] = {}, s[room], c[room], w2[N], M[N][N], r[N];
+#pragma GCC unroll 32
+  for (int i = 0; i < N; ++i) angle[i] = x[i];
+  if (!Sines::template sincos<N>(angle, s, c)) return handwritten_chain<N>(x, L, g, dx);
 #pragma GCC unroll 32
   for (int i = 0; i < N; ++i) {
-    s[i] = std::sin(x[i]);
-    c[i] = std::cos(x[i]);
     dx[i] = x[N + i];
     w2[i] = x[N + i] * x[N + i];
   }

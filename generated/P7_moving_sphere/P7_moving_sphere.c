@@ -44,27 +44,17 @@
 #error "this code tells numbers that are not finite and singular matrices: compile it without -ffast-math"
 #endif
 
-#if defined(FLT_EVAL_METHOD) && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16)
-#define EOM_EXACT /* doubles are not kept in wider registers */
-#endif
-#if defined(__GNUC__)
+/* Sines and cosines of two angles at once, wrong by less than one unit in the last place; angles beyond 65536 and those
+ * that are not finite are left to the C library. What comes out for an angle does not depend on the other, and only by
+ * fused multiplications on the processor. */
+#if defined(__GNUC__) && defined(FLT_EVAL_METHOD) && \
+    (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16) /* doubles are not kept in wider registers */
 typedef double P7_moving_sphere_lanes __attribute__((vector_size(16)));
 typedef unsigned long long P7_moving_sphere_bits __attribute__((vector_size(16)));
-enum { P7_moving_sphere_width = 2 };
-#define EOM_GATHER(a) {(a)[0], (a)[1]}
-#else
-typedef double P7_moving_sphere_lanes;
-typedef unsigned long long P7_moving_sphere_bits;
-enum { P7_moving_sphere_width = 1 };
-#define EOM_GATHER(a) (a)[0]
-#endif
 
-/* Sines and cosines of several angles at once, wrong by less than one unit in the last place while |angle| <= 65536:
- * multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. Lanes do not depend on one
- * another. `size` becomes |angle|; what it is for larger angles and those that are not finite means nothing. */
-#if defined(__GNUC__)
+/* One angle in each lane: multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. `size`
+ * becomes |angle|; where that is above 65536 or not finite, sine and cosine mean nothing. */
 __attribute__((always_inline))
-#endif
 static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* angle, P7_moving_sphere_lanes* size, P7_moving_sphere_lanes* sine, P7_moving_sphere_lanes* cosine)
 {
   P7_moving_sphere_bits sign, quarter, s, c, swap;
@@ -99,42 +89,65 @@ static inline void P7_moving_sphere_sincos_lanes(const P7_moving_sphere_lanes* a
   memcpy(cosine, &c, sizeof c);
 }
 
-/* Sines and cosines of `count` angles; those beyond 65536 and those that are not finite are left to the C library. What
- * comes out for an angle does not depend on the others, and only by fused multiplications on the processor. The arrays
- * have room for an even number, and zeros behind the last angle. */
-#if defined(__GNUC__)
+/* Adds |a| and |b| to `reach`: all is right while that stays below 65536. */
 __attribute__((always_inline))
-#endif
-static inline void P7_moving_sphere_sincos(int count, const double* angle, double* sine, double* cosine)
+static inline void P7_moving_sphere_sincos_near(double a, double b, double* sine, double* cosine, P7_moving_sphere_lanes* reach)
 {
-#ifdef EOM_EXACT
-  P7_moving_sphere_lanes sizes = {0};
-  double sums[P7_moving_sphere_width], sum = 0;
-#if defined(__GNUC__)
-#pragma GCC unroll 8
-#endif
-  for (int i = 0; i < count; i += P7_moving_sphere_width) {
-    const P7_moving_sphere_lanes x = EOM_GATHER(angle + i);
-    P7_moving_sphere_lanes size, s, c;
-    P7_moving_sphere_sincos_lanes(&x, &size, &s, &c);
-    sizes += size;
-    memcpy(sine + i, &s, sizeof s);
-    memcpy(cosine + i, &c, sizeof c);
-  }
-  memcpy(sums, &sizes, sizeof sums);
-  for (int j = 0; j < P7_moving_sphere_width; ++j) sum += sums[j];
-  if (sum <= 65536.0) return;
-#endif
-  for (int i = 0; i < count; ++i) {
-#ifdef EOM_EXACT
-    if (angle[i] >= -65536.0 && angle[i] <= 65536.0) continue;
-#endif
-    sine[i] = sin(angle[i]);
-    cosine[i] = cos(angle[i]);
-  }
+  const P7_moving_sphere_lanes angle = {a, b};
+  P7_moving_sphere_lanes size, s, c;
+  P7_moving_sphere_sincos_lanes(&angle, &size, &s, &c);
+  *reach += size;
+  sine[0] = s[0];
+  sine[1] = s[1];
+  cosine[0] = c[0];
+  cosine[1] = c[1];
 }
-#undef EOM_EXACT
-#undef EOM_GATHER
+
+__attribute__((always_inline))
+static inline int P7_moving_sphere_is_near(const P7_moving_sphere_lanes* reach)
+{
+  return (*reach)[0] + (*reach)[1] <= 65536.0;
+}
+
+__attribute__((cold))
+static inline void P7_moving_sphere_sincos_far(double a, double* sine, double* cosine)
+{
+  if (a >= -65536.0 && a <= 65536.0) return;
+  *sine = sin(a);
+  *cosine = cos(a);
+}
+
+static inline void P7_moving_sphere_sincos(double a, double b, double* sine, double* cosine)
+{
+  P7_moving_sphere_lanes reach = {0};
+  P7_moving_sphere_sincos_near(a, b, sine, cosine, &reach);
+  if (P7_moving_sphere_is_near(&reach)) return;
+  P7_moving_sphere_sincos_far(a, sine, cosine);
+  P7_moving_sphere_sincos_far(b, sine + 1, cosine + 1);
+}
+#else
+typedef struct { int unused; } P7_moving_sphere_lanes;
+
+static inline void P7_moving_sphere_sincos(double a, double b, double* sine, double* cosine)
+{
+  sine[0] = sin(a);
+  sine[1] = sin(b);
+  cosine[0] = cos(a);
+  cosine[1] = cos(b);
+}
+
+static inline void P7_moving_sphere_sincos_near(double a, double b, double* sine, double* cosine, P7_moving_sphere_lanes* reach)
+{
+  (void)reach;
+  P7_moving_sphere_sincos(a, b, sine, cosine);
+}
+
+static inline int P7_moving_sphere_is_near(const P7_moving_sphere_lanes* reach)
+{
+  (void)reach;
+  return 1;
+}
+#endif
 
 int P7_moving_sphere_abi(void)
 {
@@ -181,7 +194,12 @@ void P7_moving_sphere_defaults(double* x, double* p)
   p[5] = 2.0;  /* w */
 }
 
-int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, int mode, double* dx)
+/* -1: not guarded, and an angle is too far for that. */
+#if defined(__GNUC__)
+__attribute__((always_inline))
+#endif
+static inline int P7_moving_sphere_rhs_from(int guarded, double t, const double* x, const double* p, const double* u, int mode, double*
+                              dx)
 {
   (void)u; (void)mode;
   const double phi = x[0], phi_dot = x[2], theta_dot = x[3];
@@ -189,9 +207,14 @@ int P7_moving_sphere_rhs(double t, const double* x, const double* p, const doubl
   if (m == 0.0) return 1;
 
   /* sines and cosines */
-  const double angle[2] = {phi, t*w};
   double sine[2], cosine[2];
-  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  P7_moving_sphere_lanes reach = {0};
+  if (guarded) {
+    P7_moving_sphere_sincos(phi, t*w, sine, cosine);
+  } else {
+    P7_moving_sphere_sincos_near(phi, t*w, sine, cosine, &reach);
+    if (!P7_moving_sphere_is_near(&reach)) return -1;
+  }
   const double sin_phi = sine[0];
   if (sin_phi == 0.0) return 1;
   const double cos_phi = cosine[0];
@@ -212,8 +235,24 @@ int P7_moving_sphere_rhs(double t, const double* x, const double* p, const doubl
   dx[2] = v6*(sin_phi*(theta_dot*theta_dot*v4 + g) - 2.0*phi_dot*v5);  /* phi_ddot */
   dx[3] = -v7;  /* theta_ddot */
   const double finite = dx[2] + dx[3];
-  return finite - finite == 0.0 ? 0 : 5;
+  return finite - finite <= 0.0 ? 0 : 5;
 }
+
+#if defined(__GNUC__)
+__attribute__((cold, noinline))
+#endif
+static int P7_moving_sphere_rhs_far(double t, const double* x, const double* p, const double* u, int mode, double*
+                             dx)
+{
+  return P7_moving_sphere_rhs_from(1, t, x, p, u, mode, dx);
+}
+
+int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, int mode, double* dx)
+{
+  const int code = P7_moving_sphere_rhs_from(0, t, x, p, u, mode, dx);
+  return code >= 0 ? code : P7_moving_sphere_rhs_far(t, x, p, u, mode, dx);
+}
+
 
 int P7_moving_sphere_jac(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
                          double* dfdt)
@@ -224,9 +263,8 @@ int P7_moving_sphere_jac(double t, const double* x, const double* p, const doubl
   if (m == 0.0) return 1;
 
   /* sines and cosines */
-  const double angle[2] = {phi, t*w};
   double sine[2], cosine[2];
-  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  P7_moving_sphere_sincos(phi, t*w, sine, cosine);
   const double sin_phi = sine[0];
   if (sin_phi == 0.0) return 1;
   const double cos_phi = cosine[0];
@@ -285,15 +323,15 @@ int P7_moving_sphere_jac(double t, const double* x, const double* p, const doubl
   return 0;
 }
 
+
 int P7_moving_sphere_mass(double t, const double* x, const double* p, double* M, double* h)
 {
   const double phi = x[0], phi_dot = x[2], theta_dot = x[3];
   const double m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double angle[2] = {phi, t*w};
   double sine[2], cosine[2];
-  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  P7_moving_sphere_sincos(phi, t*w, sine, cosine);
   const double sin_phi = sine[0];
   const double cos_phi = cosine[0];
   const double v1 = sine[1];
@@ -316,6 +354,7 @@ int P7_moving_sphere_mass(double t, const double* x, const double* p, double* M,
   return 0;
 }
 
+
 int P7_moving_sphere_reactions(double t, const double* x, const double* p, const double* u, int mode, double*
                                lambda)
 {
@@ -324,9 +363,8 @@ int P7_moving_sphere_reactions(double t, const double* x, const double* p, const
   const double m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double angle[2] = {phi, t*w};
   double sine[2], cosine[2];
-  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  P7_moving_sphere_sincos(phi, t*w, sine, cosine);
   const double sin_phi = sine[0];
   const double cos_phi = cosine[0];
   const double v1 = sine[1];
@@ -340,6 +378,7 @@ int P7_moving_sphere_reactions(double t, const double* x, const double* p, const
   return 0;
 }
 
+
 int P7_moving_sphere_outputs(double t, const double* x, const double* p, const double* u, int mode, double* y)
 {
   (void)u; (void)mode;
@@ -347,9 +386,8 @@ int P7_moving_sphere_outputs(double t, const double* x, const double* p, const d
   const double m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   /* sines and cosines */
-  const double angle[2] = {phi, t*w};
   double sine[2], cosine[2];
-  P7_moving_sphere_sincos(2, angle, sine, cosine);
+  P7_moving_sphere_sincos(phi, t*w, sine, cosine);
   const double sin_phi = sine[0];
   const double cos_phi = cosine[0];
   const double v1 = sine[1];
@@ -369,6 +407,7 @@ int P7_moving_sphere_outputs(double t, const double* x, const double* p, const d
   y[1] = m*(v4 - v5*(v3 + v7) - v8);  /* reaction_sphere */
   return 0;
 }
+
 
 int P7_moving_sphere_selftest(void)
 {

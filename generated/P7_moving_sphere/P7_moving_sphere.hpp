@@ -102,34 +102,24 @@ void defaults(Real* x, Real* p) {
 }
 
 template <class Real>
-void eom_sincos(int count, const Real* angle, Real* sine, Real* cosine) {
+void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
   using std::cos; using std::sin;
-  for (int i = 0; i < count; ++i) {
-    sine[i] = sin(angle[i]);
-    cosine[i] = cos(angle[i]);
-  }
+  sine[0] = sin(a);
+  sine[1] = sin(b);
+  cosine[0] = cos(a);
+  cosine[1] = cos(b);
 }
-#if defined(FLT_EVAL_METHOD) && (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16)
-#define EOM_EXACT /* doubles are not kept in wider registers */
-#endif
-#if defined(__GNUC__)
+/* Sines and cosines of two angles at once, wrong by less than one unit in the last place; angles beyond 65536 and those
+ * that are not finite are left to the C library. What comes out for an angle does not depend on the other, and only by
+ * fused multiplications on the processor. */
+#if defined(__GNUC__) && defined(FLT_EVAL_METHOD) && \
+    (FLT_EVAL_METHOD == 0 || FLT_EVAL_METHOD == 1 || FLT_EVAL_METHOD == 16) /* doubles are not kept in wider registers */
 typedef double eom_lanes __attribute__((vector_size(16)));
 typedef unsigned long long eom_bits __attribute__((vector_size(16)));
-enum { eom_width = 2 };
-#define EOM_GATHER(a) {(a)[0], (a)[1]}
-#else
-typedef double eom_lanes;
-typedef unsigned long long eom_bits;
-enum { eom_width = 1 };
-#define EOM_GATHER(a) (a)[0]
-#endif
 
-/* Sines and cosines of several angles at once, wrong by less than one unit in the last place while |angle| <= 65536:
- * multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. Lanes do not depend on one
- * another. `size` becomes |angle|; what it is for larger angles and those that are not finite means nothing. */
-#if defined(__GNUC__)
+/* One angle in each lane: multiples of pi/2 subtracted in three parts (Cody and Waite), then two polynomials. `size`
+ * becomes |angle|; where that is above 65536 or not finite, sine and cosine mean nothing. */
 __attribute__((always_inline))
-#endif
 inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes* sine, eom_lanes* cosine)
 {
   eom_bits sign, quarter, s, c, swap;
@@ -164,42 +154,65 @@ inline void eom_sincos_lanes(const eom_lanes* angle, eom_lanes* size, eom_lanes*
   std::memcpy(cosine, &c, sizeof c);
 }
 
-/* Sines and cosines of `count` angles; those beyond 65536 and those that are not finite are left to the C library. What
- * comes out for an angle does not depend on the others, and only by fused multiplications on the processor. The arrays
- * have room for an even number, and zeros behind the last angle. */
-#if defined(__GNUC__)
+/* Adds |a| and |b| to `reach`: all is right while that stays below 65536. */
 __attribute__((always_inline))
-#endif
-inline void eom_sincos(int count, const double* angle, double* sine, double* cosine)
+inline void eom_sincos_near(double a, double b, double* sine, double* cosine, eom_lanes* reach)
 {
-#ifdef EOM_EXACT
-  eom_lanes sizes = {0};
-  double sums[eom_width], sum = 0;
-#if defined(__GNUC__)
-#pragma GCC unroll 8
-#endif
-  for (int i = 0; i < count; i += eom_width) {
-    const eom_lanes x = EOM_GATHER(angle + i);
-    eom_lanes size, s, c;
-    eom_sincos_lanes(&x, &size, &s, &c);
-    sizes += size;
-    std::memcpy(sine + i, &s, sizeof s);
-    std::memcpy(cosine + i, &c, sizeof c);
-  }
-  std::memcpy(sums, &sizes, sizeof sums);
-  for (int j = 0; j < eom_width; ++j) sum += sums[j];
-  if (sum <= 65536.0) return;
-#endif
-  for (int i = 0; i < count; ++i) {
-#ifdef EOM_EXACT
-    if (angle[i] >= -65536.0 && angle[i] <= 65536.0) continue;
-#endif
-    sine[i] = std::sin(angle[i]);
-    cosine[i] = std::cos(angle[i]);
-  }
+  const eom_lanes angle = {a, b};
+  eom_lanes size, s, c;
+  eom_sincos_lanes(&angle, &size, &s, &c);
+  *reach += size;
+  sine[0] = s[0];
+  sine[1] = s[1];
+  cosine[0] = c[0];
+  cosine[1] = c[1];
 }
-#undef EOM_EXACT
-#undef EOM_GATHER
+
+__attribute__((always_inline))
+inline int eom_is_near(const eom_lanes* reach)
+{
+  return (*reach)[0] + (*reach)[1] <= 65536.0;
+}
+
+__attribute__((cold))
+inline void eom_sincos_far(double a, double* sine, double* cosine)
+{
+  if (a >= -65536.0 && a <= 65536.0) return;
+  *sine = std::sin(a);
+  *cosine = std::cos(a);
+}
+
+inline void eom_sincos(double a, double b, double* sine, double* cosine)
+{
+  eom_lanes reach = {0};
+  eom_sincos_near(a, b, sine, cosine, &reach);
+  if (eom_is_near(&reach)) return;
+  eom_sincos_far(a, sine, cosine);
+  eom_sincos_far(b, sine + 1, cosine + 1);
+}
+#else
+typedef struct { int unused; } eom_lanes;
+
+inline void eom_sincos(double a, double b, double* sine, double* cosine)
+{
+  sine[0] = std::sin(a);
+  sine[1] = std::sin(b);
+  cosine[0] = std::cos(a);
+  cosine[1] = std::cos(b);
+}
+
+inline void eom_sincos_near(double a, double b, double* sine, double* cosine, eom_lanes* reach)
+{
+  (void)reach;
+  eom_sincos(a, b, sine, cosine);
+}
+
+inline int eom_is_near(const eom_lanes* reach)
+{
+  (void)reach;
+  return 1;
+}
+#endif
 
 
 // dx = d/dt of the state x.
@@ -211,9 +224,8 @@ int rhs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dx)
   if (m == Real(0)) return 1;
 
   // sines and cosines
-  const Real angle[2] = {phi, t*w};
   Real sine[2], cosine[2];
-  eom_sincos(2, angle, sine, cosine);
+  eom_sincos(phi, t*w, sine, cosine);
   const Real sin_phi = sine[0];
   if (sin_phi == Real(0)) return 1;
   const Real cos_phi = cosine[0];
@@ -234,7 +246,7 @@ int rhs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dx)
   dx[2] = v6*(sin_phi*(theta_dot*theta_dot*v4 + g) - Real(2)*phi_dot*v5);  // phi_ddot
   dx[3] = -v7;  // theta_ddot
   const Real finite = dx[2] + dx[3];
-  return finite - finite == Real(0) ? 0 : 5;
+  return finite - finite <= Real(0) ? 0 : 5;
 }
 
 // dfdx[i + N j] = d(dx_i)/d(x_j) with N entries of x; dfdt at fixed x.
@@ -246,9 +258,8 @@ int jac(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dfd
   if (m == Real(0)) return 1;
 
   // sines and cosines
-  const Real angle[2] = {phi, t*w};
   Real sine[2], cosine[2];
-  eom_sincos(2, angle, sine, cosine);
+  eom_sincos(phi, t*w, sine, cosine);
   const Real sin_phi = sine[0];
   if (sin_phi == Real(0)) return 1;
   const Real cos_phi = cosine[0];
@@ -314,9 +325,8 @@ int mass(Real t, const Real* x, const Real* p, Real* M, Real* h) {
   const Real m = p[0], g = p[1], D = p[2], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real angle[2] = {phi, t*w};
   Real sine[2], cosine[2];
-  eom_sincos(2, angle, sine, cosine);
+  eom_sincos(phi, t*w, sine, cosine);
   const Real sin_phi = sine[0];
   const Real cos_phi = cosine[0];
   const Real v1 = sine[1];
@@ -347,9 +357,8 @@ int reactions(Real t, const Real* x, const Real* p, const Real* u, int mode, Rea
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real angle[2] = {phi, t*w};
   Real sine[2], cosine[2];
-  eom_sincos(2, angle, sine, cosine);
+  eom_sincos(phi, t*w, sine, cosine);
   const Real sin_phi = sine[0];
   const Real cos_phi = cosine[0];
   const Real v1 = sine[1];
@@ -371,9 +380,8 @@ int outputs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real*
   const Real m = p[0], g = p[1], d0 = p[3], a = p[4], w = p[5];
 
   // sines and cosines
-  const Real angle[2] = {phi, t*w};
   Real sine[2], cosine[2];
-  eom_sincos(2, angle, sine, cosine);
+  eom_sincos(phi, t*w, sine, cosine);
   const Real sin_phi = sine[0];
   const Real cos_phi = cosine[0];
   const Real v1 = sine[1];

@@ -6,7 +6,8 @@
 
 namespace eomgen::emit {
 
-/// PREFIXsincos(count, angles, sines, cosines) for double, in C. `linkage`: "static inline", "inline"; `standard`: what
+/// PREFIXsincos(a, b, sines, cosines) for double, in C, and PREFIXsincos_near, PREFIXis_near (templates/kernels/sincos).
+/// `linkage`: "static inline", "inline"; `standard`: what
 /// functions of the C library are called by, "" or "std::".
 std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard);
 

@@ -23,12 +23,18 @@ using Expression = Expressions::Expression;
 // Shorter values that are used once are written where they are used.
 constexpr std::size_t longest_inline = 64;
 
+// Of a function that has been told that its angles are near, and found that they are not.
+constexpr int code_too_far = -1;
+
 class Printer {
  public:
   Printer(const Function& function, const ModelNames& names, const EmissionContext& context, const Dialect& dialect)
       : function_(function), names_(names), context_(context), dialect_(dialect), expressions_(function, names, dialect) {}
 
   FunctionText run() {
+    const auto& code = function_.code;
+    const bool packs = std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.pack > 0; });
+    text_.near_first = packs && dialect_.near_first && function_.name == "rhs";
     declare_names();
     count_uses();
     test_ready(-1);
@@ -47,6 +53,7 @@ class Printer {
       for (const std::string& name : *list) table_.declare(name);
     }
     for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.u, names_.mode}) table_.declare(name);
+    if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
     for (const auto& result : function_.results) text_.results.push_back(table_.declare(result.first));
   }
 
@@ -132,12 +139,25 @@ class Printer {
     const auto declared = [this](const char* name) {
       return table_.declare(text_.packs == 1 ? name : fmt::format("{}_{}", name, text_.packs));
     };
-    const std::string angle = declared("angle");
     sine_ = declared("sine");
     cosine_ = declared("cosine");
-    line(fmt::format("const {} {}[{}] = {{{}}};", dialect_.real, angle, angles.size(), fmt::join(angles, ", ")));
     line(fmt::format("{0} {2}[{1}], {3}[{1}];", dialect_.real, angles.size(), sine_, cosine_));
-    line(fmt::format("{}({}, {}, {}, {});", dialect_.sincos, count, angle, sine_, cosine_));
+    if (!text_.near_first) return sincos_of(angles, "  ", "sincos", "");
+    const std::string reach = declared("reach");
+    line(fmt::format("{}lanes {} = {{0}};", dialect_.kernels, reach));
+    body_ += fmt::format("  if ({}) {{\n", guarded_);
+    sincos_of(angles, "    ", "sincos", "");
+    body_ += "  } else {\n";
+    sincos_of(angles, "    ", "sincos_near", ", &" + reach);
+    body_ += fmt::format("    if (!{}is_near(&{})) return {};\n  }}\n", dialect_.kernels, reach, code_too_far);
+  }
+  void sincos_of(const std::vector<std::string>& angles, const std::string& indent, const std::string& function,
+                 const std::string& more) {
+    for (std::size_t i = 0; i < angles.size(); i += 2) {
+      const std::string place = i == 0 ? "" : fmt::format(" + {}", i);
+      body_ += wrapped(fmt::format("{}{}{}({}, {}, {}{}, {}{}{});", indent, dialect_.kernels, function, angles[i], angles[i + 1],
+                                   sine_, place, cosine_, place, more), indent + "    ") + "\n";
+    }
   }
   Expression from_pack(const Instruction& instruction) const {
     return {fmt::format("{}[{}]", instruction.op == Op::sin ? sine_ : cosine_, instruction.lane), Expression::atom};
@@ -194,7 +214,7 @@ class Printer {
     // inf - inf and nan - nan are nan, which equals nothing
     const std::string finite = table_.declare("finite");
     line(fmt::format("const {} {} = {};", dialect_.real, finite, sum));
-    line(fmt::format("return {0} - {0} == {1} ? 0 : 5;", finite, dialect_.constant(0)));
+    line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
   /// What an entry is, behind its line.
@@ -265,7 +285,7 @@ class Printer {
   FunctionText text_;
   std::vector<std::uint32_t> uses_;
   std::set<std::pair<Slot, std::uint32_t>> leaves_;
-  std::string body_, section_, printed_section_, sine_, cosine_;
+  std::string body_, section_, printed_section_, sine_, cosine_, guarded_;
   std::size_t temporaries_ = 0;
 };
 

@@ -17,7 +17,10 @@ struct Dialect {
   std::string (*value)(double);                      // of a default
   std::string pi;
   std::string absolute;                              // name of the function |x|
-  std::string sincos;                                // name of the function (count, angles, sines, cosines)
+  std::string kernels;                               // prefix of the kernels' names
+  // Sines and cosines of near angles first, without a call in between that would make the compiler keep what it has in
+  // memory; the function starts again where an angle turns out to be far (FunctionText::near_first).
+  bool near_first = false;
   bool line_comments = false;
   bool using_std = false;                            // `using std::sin;` before calls
 };
@@ -36,6 +39,8 @@ struct FunctionText {
   std::vector<std::string> results;  // names of the result arguments, in order
   std::string body;                  // statements, without braces
   std::uint32_t packs = 0;           // of sines and cosines that are computed together
+  bool near_first = false;           // it takes a first argument `guarded`; where that is 0 it may return -1: too far
+  std::string guarded;
 };
 
 /// `checks_finite`: code 5 where an entry of the results' lower half is not finite.

@@ -34,6 +34,22 @@ std::string prototype(const std::string& name, const program::Function& function
   return function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double");
 }
 
+/// The function; where it tries near angles first, what it is made of and the one for far angles before it.
+std::string definition(const std::string& name, const program::Function& function, const FunctionText& text,
+                       const ModelNames& names) {
+  const auto head = [&](const std::string& what) { return function_head(what, function, text, names, "double"); };
+  if (!text.near_first) return fmt::format("{}\n{{\n{}}}\n", head(name), text.body);
+  std::string arguments = fmt::format("{}, {}, {}, {}, {}", names.arguments_t, names.x, names.p, names.u, names.mode);
+  for (const std::string& result : text.results) arguments += ", " + result;
+  std::string inner = head(name + "_from");
+  inner.insert(inner.find('(') + 1, fmt::format("int {}, ", text.guarded));
+  return fmt::format("/* -1: not guarded, and an angle is too far for that. */\n"
+                     "#if defined(__GNUC__)\n__attribute__((always_inline))\n#endif\nstatic inline {}\n{{\n{}}}\n\n"
+                     "#if defined(__GNUC__)\n__attribute__((cold, noinline))\n#endif\nstatic {}\n{{\n  return {}_from(1, {});\n}}\n\n"
+                     "{}\n{{\n  const int code = {}_from(0, {});\n  return code >= 0 ? code : {}_far({});\n}}\n",
+                     inner, text.body, head(name + "_far"), name, arguments, head(name), name, arguments, name, arguments);
+}
+
 std::string sizes(const std::string& name, const program::Program& program, const EmissionContext& context) {
   const std::pair<const char*, std::size_t> entries[] = {
       {"states", program.state_count()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
@@ -50,7 +66,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   require_consistent(program, context);
   const std::string name = mangled_id(context.id);
   Dialect dialect = c_dialect();
-  dialect.sincos = name + "_sincos";
+  dialect.kernels = name + "_";
+  dialect.near_first = true;
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
   bool packs = false;
@@ -59,8 +76,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
     packs = packs || text.packs > 0;
     functions.push_back({{"purpose", purpose(function.name)},
                          {"prototype", prototype(name, function)},
-                         {"head", function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double")},
-                         {"body", text.body}});
+                         {"definition", definition(fmt::format("{}_{}", name, function.name), function, text, names)}});
   }
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},

@@ -45,7 +45,7 @@ Dialect cpp_dialect() {
   dialect.value = [](double value) { return "Real(" + decimal(value) + ")"; };
   dialect.pi = "Real(3.141592653589793238462643383279502884L)";
   dialect.absolute = "abs";
-  dialect.sincos = kernel_prefix + "sincos";
+  dialect.kernels = kernel_prefix;
   dialect.line_comments = true;
   dialect.using_std = true;
   return dialect;
@@ -54,12 +54,12 @@ Dialect cpp_dialect() {
 // What other types than double take in place of templates/kernels/sincos.
 const std::string generic_sincos = R"(
 template <class Real>
-void eom_sincos(int count, const Real* angle, Real* sine, Real* cosine) {
+void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
   using std::cos; using std::sin;
-  for (int i = 0; i < count; ++i) {
-    sine[i] = sin(angle[i]);
-    cosine[i] = cos(angle[i]);
-  }
+  sine[0] = sin(a);
+  sine[1] = sin(b);
+  cosine[0] = cos(a);
+  cosine[1] = cos(b);
 }
 )";
 
