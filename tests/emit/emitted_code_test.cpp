@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "emit/examples.hpp"
 #include "emit/shared_library/checksum.hpp"
@@ -193,6 +194,31 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
       }
     }
   }
+}
+
+TEST_CASE("emitted code: right-hand sides of angles that have gone round ten thousand times, and of infinite ones") {
+  const Folder cache;
+  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const Example e = examples()[1];
+  const auto files = emit::emit(e.program, e.context, "c");
+  const auto compiled = emit::compile_and_load(files[0].text, files[1].text, e.context.id);
+  program::Arguments<cln::cl_R> exact{exactly(0), {}, {}, {}};
+  for (const double value : e.context.tests[0].p) exact.p.push_back(exactly(value));
+  for (const auto& [first, second] : {std::pair{70000.25, 0.5}, {0.5, -3e5}, {1e9, 65536.5}, {1e15, -1e15}}) {
+    const double x[4] = {first, second, 0.25, -0.5};
+    exact.x.clear();
+    for (const double value : x) exact.x.push_back(exactly(value));
+    double dx[4];
+    CHECK(compiled.model.rhs(0, x, e.context.tests[0].p.data(), nullptr, 0, dx) == 0);
+    const auto expected = program::interpret(e.program.functions[0], exact, 60).results[0];
+    for (std::size_t i = 0; i < 4; ++i) {
+      const double value = cln::double_approx(expected[i]);
+      CHECK(std::abs(dx[i] - value) <= tolerances::unrolled_solve * (1 + std::abs(value)));
+    }
+  }
+  const double x[4] = {0.5, std::numeric_limits<double>::infinity(), 0.25, -0.5};
+  double dx[4];
+  CHECK(compiled.model.rhs(0, x, e.context.tests[0].p.data(), nullptr, 0, dx) == 5);
 }
 
 TEST_CASE("emission: the same bytes again, and no more functions than asked for") {
