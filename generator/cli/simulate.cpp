@@ -19,6 +19,10 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
   for (const char* name : {"energy", "kinetic", "potential"}) add(name);
   if (watch_power) add("power");
   for (const derive::Conserved& c : derived.conserved) add(c.name);
+  for (const mechanics::Integral& i : derived.mechanics.integrals) {
+    for (const std::uint32_t q : derived.mechanics.free) add(derive::differential_output(i, derived.model.coordinates[q].name));
+    add(derive::differential_output(i, "t"));
+  }
   for (const system::Reaction& r : derived.candidates.front().reactions) add("reaction." + r.label);
   for (const std::string& name : scene.outputs) add(name);
   return names;
@@ -43,6 +47,14 @@ bool energy_is_conserved(const Derived& derived) {
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
   for (const derive::Conserved& c : derived.conserved) run.conserved.push_back(c.name);
+  for (const mechanics::Integral& i : derived.mechanics.integrals) {
+    run::IntegralOutputs names{"integral." + i.label, {}};
+    for (const std::uint32_t q : derived.mechanics.free) {
+      names.slopes.push_back(derive::differential_output(i, derived.model.coordinates[q].name));
+    }
+    names.slopes.push_back(derive::differential_output(i, "t"));
+    run.integrals.push_back(std::move(names));
+  }
   return run;
 }
 

@@ -9,6 +9,10 @@ namespace eomgen::derive {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
+std::string differential_output(const mechanics::Integral& integral, const std::string& variable) {
+  return std::string(differential_prefix) + integral.label + "." + variable;
+}
+
 std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Conserved> result;
@@ -40,6 +44,18 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   if (!energy_conserved && mechanics::vanishes(dag, must_vanish)) {
     result.push_back({"jacobi", "Jacobi integral T2 - T0 + U", jacobi});
     s.outputs.push_back({"jacobi", jacobi});
+  }
+  symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
+  for (const mechanics::Integral& integral : m.integrals) {
+    const std::string name = "integral." + integral.label;
+    result.push_back({name, "what the constraint keeps, as it is at the start", integral.psi});
+    s.outputs.push_back({name, integral.psi});
+    // Its differential, for the projection: by the free coordinates and t.
+    for (const std::uint32_t i : s.free) {
+      const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(integral.psi);
+      s.outputs.push_back({differential_output(integral, m.model->coordinates[i].name), slope});
+    }
+    s.outputs.push_back({differential_output(integral, "t"), written(by_time(integral.psi))});
   }
   return result;
 }

@@ -17,7 +17,11 @@ struct Conserved {
   symbolic::Ref expression;  // in the symbols of the EquationSystem
 };
 
-/// Appends an output for each quantity that is not an output already (momenta, Jacobi integral).
+/// Output that is d psi/d q, or d psi/d t for "t", of an integral: for projections, not for tables.
+std::string differential_output(const mechanics::Integral& integral, const std::string& variable);
+inline constexpr const char* differential_prefix = "differential.";
+
+/// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of constraints).
 std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
 
 }  // namespace eomgen::derive

@@ -1,25 +1,24 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Imposing integrable constraints, eq. (2.97): eliminated coordinates become functions of time; and writing functions
-// of time out as expressions of t and parameters.
+// The names of mechanics that every route uses.
 #pragma once
 
-#include "mechanics/mechanics.hpp"
+#include "mechanics/imposition.hpp"
 #include "system/equation_system.hpp"
 
 namespace eomgen::derive {
 
+using mechanics::impose;
 using mechanics::Mechanics;
 using mechanics::Vec3;
+using mechanics::write_out;
 using symbolic::Dag;
 using symbolic::Ref;
 
-/// q_c -> d(t), qdot_c -> d'(t), qddot_c -> d''(t); functions of time stay named.
-symbolic::Substitution impose(const Mechanics& mechanics);
-
-/// Functions of time (any derivative) -> expressions in t, parameters and integrals that have no closed form.
-symbolic::Substitution write_out(const Mechanics& mechanics);
-
 /// The integrals of functions of time for which write_out has no closed form: states of the system.
-std::vector<system::IntegralState> integral_states(const Mechanics& mechanics);
+inline std::vector<system::IntegralState> integral_states(const Mechanics& mechanics) {
+  std::vector<system::IntegralState> states;
+  for (const mechanics::OpenIntegral& open : mechanics::open_integrals(mechanics)) states.push_back({open.integral, open.rate});
+  return states;
+}
 
 }  // namespace eomgen::derive

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mechanics/integrability.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
@@ -155,6 +156,8 @@ Mechanics build_mechanics(const model::Model& model) {
   eliminate_coordinates(m);
   add_values(m, lower);
   require_equations(m);
+  refuse_dependent_constraints(m);
+  classify_constraints(m);
   return m;
 }
 

@@ -57,6 +57,22 @@ struct FixedCoordinate {
   Ref value, rate, acceleration;  // functions of t and parameters (and of `function` symbols)
 };
 
+enum class Integrable { yes, no, unknown };
+const char* name(Integrable verdict);
+
+/// What a constraint is found to be; holonomic ones are their own integral.
+struct Classification {
+  Integrable integrable = Integrable::yes;
+  std::string reason;  // a sentence; empty of holonomic ones
+};
+
+/// psi(q, t) of free coordinates, t and independent parameters that constraints on velocities keep at its start value.
+struct Integral {
+  std::string label;  // of the constraint that it stands for
+  std::vector<std::uint32_t> of;  // constraints whose combination d psi is
+  Ref psi;
+};
+
 struct Mechanics {
   const model::Model* model = nullptr;
   std::shared_ptr<Dag> dag;  // later stages add nodes to it
@@ -77,6 +93,9 @@ struct Mechanics {
   std::vector<FixedCoordinate> fixed;  // in the order of elimination
   std::vector<std::uint32_t> free;     // coordinates that stay, ascending
   std::vector<std::uint32_t> active;   // constraints that stay, with multipliers, ascending
+
+  std::vector<Classification> classification;  // per constraint
+  std::vector<Integral> integrals;
 
   std::vector<Ref> function_value;                   // per Model::functions entry, as an expression of t
   std::vector<Ref> parameter_value;                  // per parameter, of other parameters or constants

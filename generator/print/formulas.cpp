@@ -68,6 +68,14 @@ Formula times_multiplier(std::uint32_t k, const Sum& slope) {
   return minus ? reading::negative(std::move(result)) : result;
 }
 
+Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
+  try {
+    return arrange(reading::read(m, expression));
+  } catch (const reading::TermBudget&) {
+    return mark("...");  // too long to be read
+  }
+}
+
 // Q + sum lambda_k dpsi_k/dq, a positive term first if there is one
 Formula right_side(const Equation& equation) {
   std::vector<Formula> terms = reading::arranged_terms(equation.force, Layout::terms);
@@ -141,7 +149,14 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
                                                            reading::relation({coordinate(q, 1), arrange(c.value_rate)}),
                                                            reading::relation({coordinate(q, 2), arrange(c.value_acceleration)})}));
     } else if (!c.holonomic) {
-      add("binds velocities", reading::relation({written, zero}));
+      const mechanics::Integrable found = m.classification[c.constraint].integrable;
+      add(found == mechanics::Integrable::yes  ? "binds velocities, integrable"
+          : found == mechanics::Integrable::no ? "binds velocities, not integrable"
+                                               : "binds velocities, integrability unknown",
+          reading::relation({written, zero}));
+      for (const mechanics::Integral& integral : m.integrals) {
+        if (integral.label == c.label) add("its integral", reading::relation({reading::wrap(Form::rate, {read_or_dots(m, integral.psi)}), zero}));
+      }
       add("its time derivative", reading::relation({arrange(c.acceleration, Layout::terms), zero}));
     } else {
       add("keeps its multiplier", reading::relation({psi, written, zero}));

@@ -3,23 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 namespace eomgen::run {
-
-std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) throw std::logic_error("the compiled code has no output '" + name + "'");
-  return static_cast<std::size_t>(found - names.begin());
-}
-
-namespace {
-
-std::size_t holonomic_count(const Code& code) {
-  return static_cast<std::size_t>(std::count(code.holonomic.begin(), code.holonomic.end(), true));
-}
-
-}  // namespace
 
 Integration::Integration(const RunRequest& request, std::string solver)
     : request_(request),
@@ -29,15 +14,8 @@ Integration::Integration(const RunRequest& request, std::string solver)
       energy_(index_of(request.code.output_names, "energy")),
       u_(std::max<std::size_t>(1, request.scene.inputs.size())),
       y_(request.code.output_names.size()),
-      psi_(request.code.active_constraints),
-      A_(request.code.active_constraints * n_),
-      b_(request.code.active_constraints),
-      projection_(n_, request.code.active_constraints, holonomic_count(request.code)) {
-  for (const bool positions : {true, false}) {
-    for (std::size_t k = 0; k < psi_.size(); ++k) {
-      if (request.code.holonomic[k] == positions) order_.push_back(k);
-    }
-  }
+      rows_(request),
+      projection_(n_, rows_.size(), rows_.on_positions()) {
   // Before the first piece starts: just inside it, so that a table gives its value right of t0.
   side_ = std::nextafter(request.scene.t0, request.scene.t1);
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
@@ -70,34 +48,6 @@ int Integration::outputs(double t, const double* x, std::span<double> y) const {
   return code_.outputs(t, x, request_.scene.parameters.data(), inputs(t), 0, y.data());
 }
 
-double Integration::constraint_defect(double t, const double* x) {
-  if (psi_.empty()) return 0;
-  // Where psi has no value the drift is infinite, not what it was a step ago.
-  if (code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data()) != 0) return HUGE_VAL;
-  double largest = 0;
-  for (std::size_t k = 0; k < psi_.size(); ++k) {
-    double defect = psi_[k];
-    if (!code_.holonomic[k]) {
-      defect = b_[k];
-      for (std::size_t i = 0; i < n_; ++i) defect += A_[k + psi_.size() * i] * x[n_ + i];
-    }
-    largest = std::isnan(defect) ? HUGE_VAL : std::max(largest, std::abs(defect));
-  }
-  return largest;
-}
-
-// The projection wants the constraints on positions first.
-int Integration::ordered_constraints(double t, const double* x, double* psi, double* A, double* b) {
-  const std::size_t m = psi_.size();
-  const int code = code_.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data());
-  for (std::size_t k = 0; k < m; ++k) {
-    psi[k] = psi_[order_[k]];
-    b[k] = b_[order_[k]];
-    for (std::size_t i = 0; i < n_; ++i) A[k + m * i] = A_[order_[k] + m * i];
-  }
-  return code;
-}
-
 int Integration::project(double t, double* x) {
   const double* p = request_.scene.parameters.data();
   outputs(t, x, y_);
@@ -105,7 +55,7 @@ int Integration::project(double t, double* x) {
   const eom::ProjectionResult moved = projection_(
       t, x,
       [&](double at, const double* state, double* psi, double* A, double* b) {
-        return ordered_constraints(at, state, psi, A, b);
+        return rows_(at, state, inputs(at), psi, A, b);
       },
       [&](double at, const double* state, double* M, double* h) { return code_.mass(at, state, p, M, h); });
   if (moved.code != 0) return moved.code;
@@ -133,9 +83,10 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   eom::Result total;
   total.x = initial_state();
   total.t = request_.scene.t0;
+  rows_.start(total.t, total.x.data(), inputs(total.t));
   const auto f = [this](double t, const double* x, double* dx) { return rhs(t, x, dx); };
   const auto watch = [&](const eom::StepView& step) { return !observer || observer(step); };
-  const auto after = [this](double t, double* x) { return psi_.empty() ? 0 : project(t, x); };
+  const auto after = [this](double t, double* x) { return rows_.size() == 0 ? 0 : project(t, x); };
   for (const double end : restarts) {
     side_ = (total.t + end) / 2;
     const eom::Result part = eom::integrate(solver_, f, total.t, total.x, end, piece, watch, after);

@@ -5,7 +5,7 @@
 
 #include <eom/constraints/projection.hpp>
 
-#include "run/runner.hpp"
+#include "run/constraint_rows.hpp"
 
 namespace eomgen::run {
 
@@ -20,14 +20,13 @@ class Integration {
   std::vector<double> initial_state() const;
   int outputs(double t, const double* x, std::span<double> y) const;
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
-  double constraint_defect(double t, const double* x);
+  double constraint_defect(double t, const double* x) { return rows_.defect(t, x); }
 
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
 
  private:
   int rhs(double t, const double* x, double* dx);
   int project(double t, double* x);
-  int ordered_constraints(double t, const double* x, double* psi, double* A, double* b);
   const double* inputs(double t) const;
 
   const RunRequest& request_;
@@ -37,11 +36,9 @@ class Integration {
   std::size_t power_ = 0, energy_ = 0;
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
   mutable std::vector<double> u_;
-  std::vector<double> y_, psi_, A_, b_;
-  std::vector<std::size_t> order_;  // of the constraints in the projection
+  std::vector<double> y_;
+  ConstraintRows rows_;
   eom::Projection projection_;
 };
-
-std::size_t index_of(const std::vector<std::string>& names, const std::string& name);
 
 }  // namespace eomgen::run

@@ -54,6 +54,12 @@ struct RunResult {
   std::vector<RunEvent> events;
 };
 
+/// The outputs that are an integral of constraints on velocities, and its derivatives by the free coordinates and t.
+struct IntegralOutputs {
+  std::string psi;
+  std::vector<std::string> slopes;
+};
+
 struct RunRequest {
   const Code& code;
   const Scene& scene;
@@ -65,6 +71,7 @@ struct RunRequest {
   std::function<void(double t, std::span<const double> y)> row;
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
+  std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
 };
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.

@@ -9,6 +9,7 @@
 #include <limits>
 #include <set>
 
+#include "derive/conserved.hpp"
 #include "derive/imposition.hpp"
 #include "model/names.hpp"
 #include "run/start.hpp"
@@ -310,7 +311,8 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     bool found = coordinates.contains(want.name);
     for (const system::Output& output : system.outputs) {
       const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      if (want.name != "all" && output.name != want.name && !part) continue;
+      const bool of_all = want.name == "all" && !output.name.starts_with(derive::differential_prefix);
+      if (!of_all && output.name != want.name && !part) continue;
       take(output.name);
       found = true;
     }

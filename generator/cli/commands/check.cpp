@@ -24,16 +24,24 @@ std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) {
 
 json constraints_of(const mechanics::Mechanics& m) {
   json result = json::array();
-  for (const mechanics::Constraint& c : m.constraints) {
+  for (std::size_t k = 0; k < m.constraints.size(); ++k) {
+    const mechanics::Constraint& c = m.constraints[k];
+    const mechanics::Classification& found = m.classification[k];
     std::string use = "keeps a multiplier";
     for (const mechanics::FixedCoordinate& fixed : m.fixed) {
       if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
     }
     // A holonomic constraint is its own integral; those that repeat others are refused before this.
+    json of = json::array();
+    json integral = c.holonomic() ? json(shown(m, c.psi) + " = 0") : json(nullptr);
+    for (const mechanics::Integral& i : m.integrals) {
+      if (i.label != c.label) continue;
+      integral = shown(m, i.psi) + " = constant";
+      for (const std::uint32_t part : i.of) of.push_back(m.constraints[part].label);
+    }
     result.push_back({{"name", c.label}, {"kind", c.holonomic() ? "holonomic" : "velocity"},
-                      {"integrable", c.holonomic() ? "yes" : "unknown"},
-                      {"integral", c.holonomic() ? json(shown(m, c.psi) + " = 0") : json(nullptr)},
-                      {"redundant", false}, {"use", use}});
+                      {"integrable", mechanics::name(found.integrable)}, {"integral", integral}, {"redundant", false},
+                      {"use", use}, {"reason", found.reason}, {"integral_of", of}});
   }
   return result;
 }
@@ -90,6 +98,14 @@ json examine(const model::Model& model) {
 
 std::string text(const json& value) { return value.get<std::string>(); }
 
+std::string from_others(const json& constraint) {
+  std::string others;
+  for (const json& name : constraint["integral_of"]) {
+    if (name != constraint["name"]) others += (others.empty() ? "" : ", ") + text(name);
+  }
+  return others.empty() ? "" : "   (with " + others + ")";
+}
+
 void print_readable(const json& found) {
   const auto heading = [](const char* name) { fmt::print("\n{}\n", name); };
   fmt::print("{}{}{}\n", text(found["model"]), text(found["title"]).empty() ? "" : ": ", text(found["title"]));
@@ -102,7 +118,11 @@ void print_readable(const json& found) {
   for (const json& p : found["parameters"]) fmt::print("  {:<20} {} {}\n", text(p["name"]), text(p["value"]), text(p["unit"]));
   if (!found["constraints"].empty()) heading("constraints");
   for (const json& c : found["constraints"]) {
-    fmt::print("  {:<20} {}   ({}, {})\n", text(c["name"]), c["integral"].is_null() ? "" : text(c["integral"]), text(c["kind"]), text(c["use"]));
+    const bool holonomic = c["kind"] == "holonomic";
+    fmt::print("  {:<20} {}({}, {})\n", text(c["name"]), holonomic ? text(c["integral"]) + "   " : "", text(c["kind"]), text(c["use"]));
+    if (holonomic) continue;
+    fmt::print("  {:<20}   integrable: {} ({})\n", "", text(c["integrable"]), text(c["reason"]));
+    if (!c["integral"].is_null()) fmt::print("  {:<20}   {}{}\n", "", text(c["integral"]), from_others(c));
   }
   if (!found["forces"].empty()) heading("forces");
   for (const json& f : found["forces"]) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "derive/imposition.hpp"
+#include "mechanics/imposition.hpp"
 
 #include <algorithm>
 
 #include "symbolic/definite_integral.hpp"
 
-namespace eomgen::derive {
+namespace eomgen::mechanics {
 namespace {
 
 using symbolic::Symbol;
@@ -17,7 +17,7 @@ constexpr std::uint8_t highest_order = 6;
 
 symbolic::Substitution impose(const Mechanics& m) {
   std::map<Symbol, Ref> values;
-  for (const mechanics::FixedCoordinate& fixed : m.fixed) {
+  for (const FixedCoordinate& fixed : m.fixed) {
     values[{SymbolKind::coordinate, fixed.coordinate, 0}] = fixed.value;
     values[{SymbolKind::coordinate, fixed.coordinate, 1}] = fixed.rate;
     values[{SymbolKind::coordinate, fixed.coordinate, 2}] = fixed.acceleration;
@@ -107,15 +107,15 @@ symbolic::Substitution write_out(const Mechanics& m) {
   return {*m.dag, std::move(values)};
 }
 
-std::vector<system::IntegralState> integral_states(const Mechanics& m) {
+std::vector<OpenIntegral> open_integrals(const Mechanics& m) {
   std::vector<Ref> integrands;
   written_functions(m, integrands);
   const Values closed = closed_integrals(m, integrands);
-  std::vector<system::IntegralState> states;
+  std::vector<OpenIntegral> states;
   for (std::uint32_t i = 0; i < integrands.size(); ++i) {
     if (!closed.contains({SymbolKind::integral, i, 0})) states.push_back({i, integrands[i]});
   }
   return states;
 }
 
-}  // namespace eomgen::derive
+}  // namespace eomgen::mechanics

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mechanics/integrability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/integrating_factor.hpp"
+#include "mechanics/pfaffian.hpp"
+#include "symbolic/antiderivative.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using symbolic::Substitution;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+constexpr std::uint32_t first_constant = 0x20000000u;  // of SymbolKind::extra: constants of integrals while others are sought
+
+/// A surface psi = c on which others are sought: one variable is given by the rest.
+struct Leaf {
+  std::size_t variable;
+  Ref value;
+};
+
+class Classifier {
+ public:
+  explicit Classifier(Mechanics& m) : m_(m), dag_(*m.dag), space_(m) {
+    for (const std::uint32_t k : m.active) {
+      if (m.constraints[k].holonomic()) {
+        holonomic_.push_back(space_.of(m.constraints[k]));
+        eliminate(space_.written(m.constraints[k].psi), dag_.zero());
+      } else {
+        velocity_.push_back(k);
+        forms_.push_back(space_.of(m.constraints[k]));
+      }
+    }
+  }
+
+  void run() {
+    std::vector<Vanishing> alone;
+    for (const Form& form : forms_) alone.push_back(frobenius(system({form})));
+    const Echelon terminal = last_derived(system(forms_));
+    for (std::size_t k = 0; k < forms_.size(); ++k) {
+      m_.classification[velocity_[k]] = verdict(k, alone[k], terminal);
+    }
+    for (std::size_t k = 0; k < forms_.size(); ++k) {
+      if (alone[k] == Vanishing::proven || alone[k] == Vanishing::at_points) seek(forms_[k], velocity_[k]);
+    }
+    seek_together(terminal);
+    for (std::size_t k = 0; k < forms_.size(); ++k) note_integral(velocity_[k]);
+  }
+
+ private:
+  std::vector<Form> system(std::vector<Form> forms) const {
+    forms.insert(forms.begin(), holonomic_.begin(), holonomic_.end());
+    return forms;
+  }
+
+  Vanishing all_vanish(const std::vector<Form>& forms) {
+    bool proven = true;
+    for (const Form& form : forms) {
+      for (const Ref entry : form) {
+        const Vanishing zero = space_.vanishing(entry);
+        if (zero == Vanishing::no || zero == Vanishing::unknown) return zero;
+        proven = proven && zero == Vanishing::proven;
+      }
+    }
+    return proven ? Vanishing::proven : Vanishing::at_points;
+  }
+
+  Vanishing frobenius(std::vector<Form> forms) {
+    const Echelon rows = space_.echelon(std::move(forms));
+    const Vanishing result = all_vanish(space_.curvature(rows));
+    return result == Vanishing::proven && !rows.exact ? Vanishing::at_points : result;
+  }
+
+  /// The largest integrable system among the combinations of the forms: those whose curvature vanishes, again and again.
+  Echelon last_derived(std::vector<Form> forms) {
+    while (true) {
+      Echelon rows = space_.echelon(std::move(forms));
+      const std::vector<Form> curvature = space_.curvature(rows);
+      const std::size_t count = rows.rows.size();
+      std::vector<Form> conditions;  // on the coefficients of a combination
+      for (std::size_t pair = 0; !curvature.empty() && pair < curvature[0].size(); ++pair) {
+        conditions.emplace_back();
+        for (std::size_t k = 0; k < count; ++k) conditions.back().push_back(curvature[k][pair]);
+      }
+      const Echelon bound = space_.echelon(std::move(conditions));
+      rows.exact = rows.exact && bound.exact;
+      if (bound.rows.empty()) return rows;
+      forms.clear();
+      for (std::size_t k = 0; k < count; ++k) {
+        if (std::find(bound.pivots.begin(), bound.pivots.end(), k) != bound.pivots.end()) continue;
+        Form sum = rows.rows[k];
+        for (std::size_t row = 0; row < bound.rows.size(); ++row) {
+          for (std::size_t i = 0; i < sum.size(); ++i) {
+            const Ref part = dag_.mul(bound.rows[row][k], rows.rows[bound.pivots[row]][i]);
+            sum[i] = dag_.sub(sum[i], part);
+          }
+        }
+        forms.push_back(std::move(sum));
+      }
+    }
+  }
+
+  bool within(const Form& form, const Echelon& rows) {
+    const Vanishing rest = all_vanish({space_.reduced(form, rows)});
+    return rest == Vanishing::proven || rest == Vanishing::at_points;
+  }
+
+  std::string others_in(std::size_t k, const Echelon& terminal) {
+    std::string text;
+    for (std::size_t j = 0; j < forms_.size(); ++j) {
+      if (j == k || !within(forms_[j], terminal)) continue;
+      text += (text.empty() ? "'" : ", '") + m_.constraints[velocity_[j]].label + "'";
+    }
+    return text;
+  }
+
+  Classification verdict(std::size_t k, Vanishing alone, const Echelon& terminal) {
+    switch (alone) {
+      case Vanishing::proven: return {Integrable::yes, "Frobenius' condition holds"};
+      case Vanishing::at_points:
+        return {Integrable::unknown, "Frobenius' condition holds at random points to 30 digits, but no proof was found"};
+      case Vanishing::unknown: return {Integrable::unknown, "its coefficients have no value at the points that were tried"};
+      case Vanishing::no: break;
+    }
+    const std::string why = "Frobenius' condition fails: omega ^ d omega is not zero, with t as a coordinate";
+    if (forms_.size() > 1 && within(forms_[k], terminal)) {
+      const std::string others = others_in(k, terminal);
+      if (terminal.exact) return {Integrable::yes, "not by itself, but together with " + others};
+      return {Integrable::unknown, "not by itself; together with " + others + " at random points, but no proof was found"};
+    }
+    if (terminal.rows.size() > holonomic_.size() + within_count(terminal)) {
+      return {Integrable::no, why + "; a combination of constraints is integrable"};
+    }
+    return {Integrable::no, why};
+  }
+
+  std::size_t within_count(const Echelon& terminal) {
+    return static_cast<std::size_t>(
+        std::count_if(forms_.begin(), forms_.end(), [&](const Form& form) { return within(form, terminal); }));
+  }
+
+  // ---- integrals
+
+  /// psi = c from now on, where it can be solved for one of its variables.
+  void eliminate(Ref psi, Ref c) {
+    for (const bool constant_slope : {true, false}) {
+      for (std::size_t i = 0; i + 1 < space_.variables().size(); ++i) {
+        const Symbol x = space_.variables()[i];
+        const Ref slope = symbolic::partial(dag_, x)(psi);
+        if (dag_.is_zero(slope) || symbolic::depends_on(dag_, slope, x)) continue;
+        const std::vector<Symbol> symbols = dag_.symbols({slope});
+        const auto moves = [](const Symbol& s) { return s.kind != SymbolKind::parameter; };
+        if (constant_slope && std::any_of(symbols.begin(), symbols.end(), moves)) continue;
+        const Ref rest = Substitution(dag_, {{x, dag_.zero()}})(psi);
+        leaves_.push_back({i, space_.simpler(dag_.div(dag_.sub(c, rest), slope))});
+        return;
+      }
+    }
+  }
+
+  Form on_leaves(Form form) {
+    for (const Leaf& leaf : leaves_) {
+      Substitution substitute(dag_, {{space_.variables()[leaf.variable], leaf.value}});
+      const Ref along = substitute(form[leaf.variable]);
+      for (std::size_t i = 0; i < form.size(); ++i) {
+        if (i == leaf.variable) {
+          form[i] = dag_.zero();
+          continue;
+        }
+        const Ref slope = space_.derivative(leaf.value, i);
+        form[i] = space_.simpler(dag_.add(substitute(form[i]), dag_.mul(along, slope)));
+      }
+    }
+    for (Ref& entry : form) {
+      if (space_.vanishing(entry) == Vanishing::proven) entry = dag_.zero();
+    }
+    return form;
+  }
+
+  Ref with_constants_written(Ref psi) {
+    std::map<Symbol, Ref> values;
+    for (std::uint32_t j = 0; j < m_.integrals.size(); ++j) values[constant(j)] = m_.integrals[j].psi;
+    return Substitution(dag_, values)(psi);
+  }
+
+  static Symbol constant(std::size_t j) { return {SymbolKind::extra, first_constant + static_cast<std::uint32_t>(j), 0}; }
+
+  bool seek(const Form& form, std::uint32_t constraint) {
+    const Form restricted = on_leaves(form);
+    if (std::all_of(restricted.begin(), restricted.end(), [&](Ref r) { return dag_.is_zero(r); })) return false;
+    const std::optional<Ref> on_leaf = find_integral(space_, restricted);
+    if (!on_leaf) return false;
+    const Ref psi = space_.simpler(with_constants_written(*on_leaf));
+    const Echelon all = space_.echelon(system(forms_));
+    if (all_vanish({space_.reduced(space_.differential(psi), all)}) != Vanishing::proven) return false;
+    eliminate(*on_leaf, dag_.symbol(constant(m_.integrals.size())));
+    m_.integrals.push_back({m_.constraints[constraint].label, parts_of(psi), psi});
+    return true;
+  }
+
+  void seek_together(const Echelon& terminal) {
+    for (bool found = true; found;) {
+      found = false;
+      for (const Form& row : terminal.rows) {
+        if (m_.integrals.size() + holonomic_.size() >= terminal.rows.size()) return;
+        const std::optional<std::uint32_t> label = unlabelled(terminal);
+        if (label && seek(row, *label)) found = true;
+      }
+    }
+  }
+
+  /// The first constraint of the system that no integral stands for.
+  std::optional<std::uint32_t> unlabelled(const Echelon& terminal) {
+    const auto has_integral = [&](std::uint32_t k) {
+      return std::any_of(m_.integrals.begin(), m_.integrals.end(),
+                         [&](const Integral& i) { return i.label == m_.constraints[k].label; });
+    };
+    for (const bool inside : {true, false}) {
+      for (std::size_t k = 0; k < forms_.size(); ++k) {
+        if (!has_integral(velocity_[k]) && (!inside || within(forms_[k], terminal))) return velocity_[k];
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Which constraints d psi is a combination of, by numbers.
+  std::vector<std::uint32_t> parts_of(Ref psi) {
+    std::vector<Form> rows = system(forms_);
+    rows.push_back(space_.differential(psi));
+    const std::size_t width = rows[0].size(), count = rows.size() - 1;
+    std::vector<Ref> entries;
+    for (const Form& row : rows) entries.insert(entries.end(), row.begin(), row.end());
+    std::vector<std::uint32_t> result;
+    try {
+      const std::vector<cln::cl_R> v = space_.values(entries, 0);
+      const auto dot = [&](std::size_t a, std::size_t b) {
+        cln::cl_R sum = 0;
+        for (std::size_t i = 0; i < width; ++i) sum = sum + v[a * width + i] * v[b * width + i];
+        return sum;
+      };
+      std::vector<std::vector<cln::cl_R>> gram(count, std::vector<cln::cl_R>(count));
+      std::vector<cln::cl_R> right, factor;
+      for (std::size_t a = 0; a < count; ++a) {
+        for (std::size_t b = 0; b < count; ++b) gram[a][b] = dot(a, b);
+        right.push_back(dot(a, count));
+      }
+      if (!solve_small(gram, right, factor)) return velocity_;
+      for (std::size_t k = 0; k < forms_.size(); ++k) {
+        if (std::abs(cln::double_approx(factor[holonomic_.size() + k])) > 1e-20) result.push_back(velocity_[k]);
+      }
+    } catch (const std::domain_error&) {
+      return velocity_;
+    }
+    return result;
+  }
+
+  void note_integral(std::uint32_t constraint) {
+    Classification& found = m_.classification[constraint];
+    const auto its = std::find_if(m_.integrals.begin(), m_.integrals.end(),
+                                  [&](const Integral& i) { return i.label == m_.constraints[constraint].label; });
+    if (its != m_.integrals.end()) {
+      // An integral whose differential is proven to be the constraint's is the proof that was missing.
+      if (found.integrable == Integrable::unknown && its->of == std::vector<std::uint32_t>{constraint}) {
+        found = {Integrable::yes, "an integral was found"};
+      }
+      return;
+    }
+    if (found.integrable == Integrable::yes) found.reason += "; no integral was found";
+  }
+
+  Mechanics& m_;
+  Dag& dag_;
+  FormSpace space_;
+  std::vector<std::uint32_t> velocity_;  // active constraints on velocities, ascending
+  std::vector<Form> forms_, holonomic_;
+  std::vector<Leaf> leaves_;
+};
+
+}  // namespace
+
+const char* name(Integrable verdict) {
+  switch (verdict) {
+    case Integrable::yes: return "yes";
+    case Integrable::no: return "no";
+    case Integrable::unknown: break;
+  }
+  return "unknown";
+}
+
+void classify_constraints(Mechanics& m) {
+  m.classification.assign(m.constraints.size(), {});
+  const bool velocities = std::any_of(m.constraints.begin(), m.constraints.end(), [](const Constraint& c) { return !c.holonomic(); });
+  if (velocities) Classifier(m).run();
+}
+
+}  // namespace eomgen::mechanics

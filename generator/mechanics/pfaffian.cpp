@@ -1,0 +1,269 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mechanics/pfaffian.hpp"
+
+#include <cln/float.h>
+#include <cln/rational.h>
+
+#include <algorithm>
+
+#include "mechanics/imposition.hpp"
+#include "symbolic/evaluate.hpp"
+#include "symbolic/polynomial.hpp"
+#include "symbolic/zero_proof.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+constexpr int digits = 50, agreed_digits = 30;
+constexpr std::size_t wanted_points = 4, tried_points = 40;
+constexpr std::size_t term_budget = 300;
+
+cln::cl_R small(int exponent) { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
+
+/// A value in (0.2, 1.2) by symbol and point; a fixed sequence, so that every process says the same.
+cln::cl_R sample(const Symbol& s, std::uint64_t point) {
+  std::uint64_t x = (point + 1) * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(s.kind) * 0xbf58476d1ce4e5b9ull +
+                    s.index * 0x94d049bb133111ebull + s.order * 0xd6e8feb86659fd93ull;
+  x = (x ^ (x >> 31)) * 0xbf58476d1ce4e5b9ull;
+  x ^= x >> 29;
+  const symbolic::Rational value = symbolic::Rational(static_cast<long>(x % 1000003)) / 1000003 + symbolic::Rational(1) / 5;
+  return cln::cl_float(cln::cl_R(value), cln::float_format(digits));
+}
+
+/// Parameters that are expressions of others -> those expressions; as many rounds as chains may be long.
+symbolic::Substitution independent_parameters(const Mechanics& m) {
+  std::map<Symbol, Ref> values;
+  for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i) {
+    if (!m.dag->symbols({m.parameter_value[i]}).empty()) values[{SymbolKind::parameter, i, 0}] = m.parameter_value[i];
+  }
+  for (std::size_t round = 0; round < m.parameter_value.size(); ++round) {
+    symbolic::Substitution substitute(*m.dag, values);
+    for (auto& entry : values) entry.second = substitute(entry.second);
+  }
+  return {*m.dag, std::move(values)};
+}
+
+}  // namespace
+
+bool solve_small(std::vector<std::vector<cln::cl_R>> A, std::vector<cln::cl_R> b, std::vector<cln::cl_R>& x) {
+  const std::size_t n = b.size();
+  std::vector<std::size_t> columns(n);
+  for (std::size_t i = 0; i < n; ++i) columns[i] = i;
+  for (std::size_t k = 0; k < n; ++k) {
+    std::size_t row = k, column = k;
+    for (std::size_t i = k; i < n; ++i) {
+      for (std::size_t j = k; j < n; ++j) {
+        if (cln::abs(A[i][columns[j]]) > cln::abs(A[row][columns[column]])) row = i, column = j;
+      }
+    }
+    if (cln::abs(A[row][columns[column]]) < small(agreed_digits)) return false;
+    std::swap(A[k], A[row]);
+    std::swap(b[k], b[row]);
+    std::swap(columns[k], columns[column]);
+    for (std::size_t i = 0; i < n; ++i) {
+      if (i == k) continue;
+      const cln::cl_R factor = A[i][columns[k]] / A[k][columns[k]];
+      for (std::size_t j = k; j < n; ++j) A[i][columns[j]] = A[i][columns[j]] - factor * A[k][columns[j]];
+      b[i] = b[i] - factor * b[k];
+    }
+  }
+  x.assign(n, cln::cl_R(0));
+  for (std::size_t k = 0; k < n; ++k) x[columns[k]] = b[k] / A[k][columns[k]];
+  return true;
+}
+
+FormSpace::FormSpace(Mechanics& m, Where where)
+    : m_(m), dag_(*m.dag), imposed_(impose(m)), written_(write_out(m)), parameters_(independent_parameters(m)) {
+  for (const std::uint32_t i : m.free) variables_.push_back({SymbolKind::coordinate, i, 0});
+  variables_.push_back({SymbolKind::time, 0, 0});
+  for (const std::uint32_t k : m.active) {
+    if (!m.constraints[k].holonomic()) continue;
+    psi_.push_back(written(m.constraints[k].psi));
+    gradient_.push_back(differential(psi_.back()));
+  }
+  for (std::uint64_t point = 0; point < tried_points && points_.size() < wanted_points; ++point) {
+    std::map<Symbol, cln::cl_R> values;
+    for (const Symbol& variable : variables_) values[variable] = sample(variable, point);
+    for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i) values[{SymbolKind::parameter, i, 0}] = sample({SymbolKind::parameter, i, 0}, point);
+    if (where == Where::anywhere || move_onto_constraints(values)) points_.push_back(std::move(values));
+  }
+}
+
+Ref FormSpace::written(Ref expression) { return parameters_(written_(imposed_(expression))); }
+
+Form FormSpace::of(const Constraint& constraint) {
+  Form form;
+  Ref rest = constraint.rate;
+  for (const FixedCoordinate& fixed : m_.fixed) {
+    rest = dag_.add(rest, dag_.mul(constraint.gradient[fixed.coordinate], fixed.rate));
+  }
+  for (const std::uint32_t i : m_.free) form.push_back(simpler(written(constraint.gradient[i])));
+  form.push_back(simpler(written(rest)));
+  return form;
+}
+
+Form FormSpace::differential(Ref psi) {
+  Form form;
+  for (std::size_t i = 0; i < variables_.size(); ++i) form.push_back(derivative(psi, i));
+  return form;
+}
+
+Ref FormSpace::derivative(Ref f, std::size_t variable) {
+  if (variables_[variable].kind != SymbolKind::time) return symbolic::partial(dag_, variables_[variable])(f);
+  return written(symbolic::explicit_time(dag_, m_.model->functions.size())(f));
+}
+
+std::vector<cln::cl_R> FormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
+  const auto lookup = [&](const Symbol& symbol) -> cln::cl_R {
+    const auto found = points_[point].find(symbol);
+    return found == points_[point].end() ? sample(symbol, point) : found->second;
+  };
+  return symbolic::evaluate(dag_, expressions, lookup, digits);
+}
+
+// Newton's method with the least change of the coordinates; t and parameters stay.
+bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const {
+  if (psi_.empty()) return true;
+  const std::size_t n = variables_.size() - 1, count = psi_.size();
+  std::vector<Ref> roots = psi_;
+  for (const Form& row : gradient_) roots.insert(roots.end(), row.begin(), row.end());
+  try {
+    for (int step = 0; step < 60; ++step) {
+      const std::vector<cln::cl_R> v =
+          symbolic::evaluate(dag_, roots, [&](const Symbol& s) { return point.at(s); }, digits);
+      const auto A = [&](std::size_t k, std::size_t i) -> const cln::cl_R& { return v[count + k * (n + 1) + i]; };
+      std::vector<std::vector<cln::cl_R>> gram(count, std::vector<cln::cl_R>(count, cln::cl_R(0)));
+      cln::cl_R size = 0;
+      for (std::size_t k = 0; k < count; ++k) {
+        size = cln::max(size, cln::abs(v[k]));
+        for (std::size_t j = 0; j < count; ++j) {
+          for (std::size_t i = 0; i < n; ++i) gram[k][j] = gram[k][j] + A(k, i) * A(j, i);
+        }
+      }
+      if (size < small(digits - 5)) return true;
+      std::vector<cln::cl_R> y;
+      if (!solve_small(gram, {v.begin(), v.begin() + static_cast<std::ptrdiff_t>(count)}, y)) return false;
+      for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t k = 0; k < count; ++k) point[variables_[i]] = point[variables_[i]] - A(k, i) * y[k];
+      }
+    }
+  } catch (const std::exception&) {  // outside the domain of a function, or far away
+  }
+  return false;
+}
+
+Vanishing FormSpace::vanishing(Ref expression) {
+  if (dag_.is_zero(expression)) return Vanishing::proven;
+  bool judged = false;
+  for (std::size_t point = 0; point < points_.size(); ++point) {
+    try {
+      if (cln::abs(values({expression}, point)[0]) > small(agreed_digits)) return Vanishing::no;
+      judged = true;
+    } catch (const std::domain_error&) {  // this point says nothing
+    }
+  }
+  if (!judged) return Vanishing::unknown;
+  return symbolic::is_proven_zero(dag_, expression) ? Vanishing::proven : Vanishing::at_points;
+}
+
+Ref FormSpace::simpler(Ref expression) {
+  symbolic::Expander expander(dag_, term_budget);
+  const std::optional<Ref> expanded = expander(expression);
+  if (!expanded) return expression;
+  return dag_.reachable({*expanded}).size() <= dag_.reachable({expression}).size() ? *expanded : expression;
+}
+
+// A constant pivot if there is one, else the one with the smallest expression: what follows stays readable.
+bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bool>& used, std::size_t columns,
+                             const std::vector<std::size_t>& pivots, std::pair<std::size_t, std::size_t>& at) const {
+  std::size_t best = 0;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t j = 0; j < columns && !used[i]; ++j) {
+      if (dag_.is_zero(rows[i][j]) || std::find(pivots.begin(), pivots.end(), j) != pivots.end()) continue;
+      const std::size_t size = dag_.symbols({rows[i][j]}).empty() ? 0 : dag_.reachable({rows[i][j]}).size();
+      if (best != 0 && size + 1 >= best) continue;
+      best = size + 1;
+      at = {i, j};
+    }
+  }
+  return best != 0;
+}
+
+Echelon FormSpace::echelon(std::vector<Form> rows, std::size_t columns) {
+  Echelon result;
+  std::vector<bool> used(rows.size(), false);
+  if (columns == 0 && !rows.empty()) columns = rows[0].size();
+  const auto clean = [&](Ref& entry) {
+    if (dag_.is_zero(entry)) return;
+    const Vanishing zero = vanishing(entry);
+    if (zero == Vanishing::no || zero == Vanishing::unknown) return;
+    if (zero == Vanishing::at_points) result.exact = false;
+    entry = dag_.zero();
+  };
+  for (Form& row : rows) {
+    for (Ref& entry : row) clean(entry);
+  }
+  std::vector<std::size_t> order;
+  for (std::pair<std::size_t, std::size_t> at; choose_pivot(rows, used, columns, result.pivots, at);) {
+    const auto [row, column] = at;
+    used[row] = true;
+    order.push_back(row);
+    result.pivots.push_back(column);
+    const Ref pivot = rows[row][column];
+    for (Ref& entry : rows[row]) entry = simpler(dag_.div(entry, pivot));
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      const Ref factor = rows[i][column];
+      if (i == row || dag_.is_zero(factor)) continue;
+      for (std::size_t j = 0; j < rows[i].size(); ++j) {
+        rows[i][j] = j == column ? dag_.zero() : simpler(dag_.sub(rows[i][j], dag_.mul(factor, rows[row][j])));
+        clean(rows[i][j]);
+      }
+    }
+  }
+  for (const std::size_t row : order) result.rows.push_back(rows[row]);
+  return result;
+}
+
+Form FormSpace::reduced(Form form, const Echelon& rows) {
+  for (std::size_t k = 0; k < rows.rows.size(); ++k) {
+    const Ref factor = form[rows.pivots[k]];
+    if (dag_.is_zero(factor)) continue;
+    for (std::size_t j = 0; j < form.size(); ++j) {
+      form[j] = j == rows.pivots[k] ? dag_.zero() : simpler(dag_.sub(form[j], dag_.mul(factor, rows.rows[k][j])));
+    }
+  }
+  return form;
+}
+
+// With omega_k = dx_pk + sum_j B_kj dx_j over the columns j without pivot and X_i = d/dx_i - sum_l B_li d/dx_pl:
+// d omega_k = sum_(i<j) (X_i B_kj - X_j B_ki) dx_i ^ dx_j modulo the rows.
+std::vector<Form> FormSpace::curvature(const Echelon& rows) {
+  std::vector<std::size_t> others;
+  for (std::size_t j = 0; j < variables_.size(); ++j) {
+    if (std::find(rows.pivots.begin(), rows.pivots.end(), j) == rows.pivots.end()) others.push_back(j);
+  }
+  const auto along = [&](std::size_t i, Ref f) {
+    Ref result = derivative(f, i);
+    for (std::size_t l = 0; l < rows.rows.size(); ++l) {
+      if (dag_.is_zero(rows.rows[l][i])) continue;
+      const Ref slope = derivative(f, rows.pivots[l]);
+      result = dag_.sub(result, dag_.mul(rows.rows[l][i], slope));
+    }
+    return result;
+  };
+  std::vector<Form> result;
+  for (const Form& row : rows.rows) {
+    result.emplace_back();
+    for (std::size_t a = 0; a < others.size(); ++a) {
+      for (std::size_t b = a + 1; b < others.size(); ++b) {
+        result.back().push_back(dag_.sub(along(others[a], row[others[b]]), along(others[b], row[others[a]])));
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace eomgen::mechanics

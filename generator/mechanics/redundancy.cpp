@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Constraints whose coefficients are combinations of those of others: they repeat them or contradict them.
+#include <cln/integer.h>
+#include <cln/integer_io.h>
+#include <cln/rational.h>
+
+#include <optional>
+#include <sstream>
+
+#include "mechanics/integrability.hpp"
+#include "mechanics/pfaffian.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using cln::cl_R;
+
+constexpr long largest_denominator = 12;  // of a coefficient that is named
+
+cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
+
+/// Values of the rows at a point: coefficients of the velocities, then b.
+using Rows = std::vector<std::vector<cl_R>>;
+
+struct Combination {
+  std::vector<cl_R> coefficients;  // of the rows before it
+  bool same_rate = false;          // b is that combination too
+};
+
+/// How row k of `rows` follows from the independent ones among those before it, if it does.
+std::optional<Combination> combination(const Rows& rows, const std::vector<std::size_t>& independent, std::size_t k) {
+  const std::size_t n = rows[k].size() - 1, count = independent.size();
+  const auto dot = [&](std::size_t a, std::size_t b) {
+    cl_R sum = 0;
+    for (std::size_t i = 0; i < n; ++i) sum = sum + rows[a][i] * rows[b][i];
+    return sum;
+  };
+  std::vector<std::vector<cl_R>> gram(count, std::vector<cl_R>(count));
+  std::vector<cl_R> right;
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t b = 0; b < count; ++b) gram[a][b] = dot(independent[a], independent[b]);
+    right.push_back(dot(independent[a], k));
+  }
+  Combination result;
+  if (!solve_small(gram, right, result.coefficients)) return std::nullopt;
+  std::vector<cl_R> rest = rows[k];
+  for (std::size_t a = 0; a < count; ++a) {
+    for (std::size_t i = 0; i <= n; ++i) rest[i] = rest[i] - result.coefficients[a] * rows[independent[a]][i];
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (cln::abs(rest[i]) > small(25)) return std::nullopt;
+  }
+  result.same_rate = cln::abs(rest[n]) < small(25);
+  return result;
+}
+
+/// "2 a - b/3"; empty where a coefficient is not a simple number.
+std::string named(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
+                  const std::vector<std::size_t>& independent, const Combination& at, const Combination& elsewhere) {
+  std::string text;
+  for (std::size_t a = 0; a < independent.size(); ++a) {
+    const cl_R& c = at.coefficients[a];
+    if (cln::abs(c) < small(25)) continue;
+    std::optional<symbolic::Rational> simple;
+    for (long denominator = 1; denominator <= largest_denominator && !simple; ++denominator) {
+      const cln::cl_I numerator = cln::round1(c * denominator);
+      if (cln::abs(c * denominator - numerator) < small(25)) simple = symbolic::Rational(numerator) / denominator;
+    }
+    if (!simple || cln::abs(c - elsewhere.coefficients[a]) > small(25)) return "";
+    const symbolic::Rational size = cln::abs(*simple);
+    std::ostringstream term;
+    if (cln::numerator(size) != 1) term << cln::numerator(size) << " ";
+    term << m.constraints[constraints[independent[a]]].label;
+    if (cln::denominator(size) != 1) term << "/" << cln::denominator(size);
+    const bool minus = cln::minusp(*simple);
+    text += (text.empty() ? (minus ? "-" : "") : (minus ? " - " : " + ")) + term.str();
+  }
+  return text;
+}
+
+std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
+                   const std::vector<std::size_t>& independent, const Combination& at) {
+  std::string text;
+  for (std::size_t a = 0; a < independent.size(); ++a) {
+    if (cln::abs(at.coefficients[a]) < small(25)) continue;
+    text += (text.empty() ? "'" : ", '") + m.constraints[constraints[independent[a]]].label + "'";
+  }
+  return text;
+}
+
+[[noreturn]] void refuse(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
+                         const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
+  const Constraint& constraint = m.constraints[constraints[k]];
+  const std::string others = listed(m, constraints, independent, here), formula = named(m, constraints, independent, here, there);
+  const Where where = m.model->where(m.model->arena[constraint.written].span);
+  std::string what = "constraint '" + constraint.label + "' ";
+  if (here.same_rate) {
+    what += others.empty() ? "follows from the constraints that fix its coordinates"
+                           : "follows from " + others + (formula.empty() ? ", with coefficients that depend on the state"
+                                                                         : ": " + constraint.label + " = " + formula);
+    throw Error("mechanics", where, what, "remove it: nothing would determine how the force is shared");
+  }
+  what += others.empty() ? "contradicts the constraints that fix its coordinates"
+                         : "contradicts " + others + (formula.empty() ? "" : ": its velocities are those of " + formula + ", the rest is not");
+  throw Error("mechanics", where, what, "remove one of them: no motion satisfies them all");
+}
+
+}  // namespace
+
+void refuse_dependent_constraints(Mechanics& m) {
+  if (m.active.empty()) return;
+  FormSpace space(m, FormSpace::Where::anywhere);
+  std::vector<std::uint32_t> constraints;  // what is given in positions comes first, so that the others are blamed
+  for (const bool holonomic : {true, false}) {
+    for (const std::uint32_t k : m.active) {
+      if (m.constraints[k].holonomic() == holonomic) constraints.push_back(k);
+    }
+  }
+  std::vector<Ref> entries;
+  for (const std::uint32_t k : constraints) {
+    const Form form = space.of(m.constraints[k]);
+    entries.insert(entries.end(), form.begin(), form.end());
+  }
+  const std::size_t width = space.variables().size();
+  std::vector<Rows> at;
+  for (std::size_t point = 0; point < space.points() && at.size() < 2; ++point) {
+    try {
+      const std::vector<cl_R> values = space.values(entries, point);
+      at.emplace_back();
+      for (std::size_t k = 0; k < constraints.size(); ++k) {
+        const auto first = values.begin() + static_cast<std::ptrdiff_t>(k * width);
+        at.back().emplace_back(first, first + static_cast<std::ptrdiff_t>(width));
+      }
+    } catch (const std::domain_error&) {
+      continue;  // outside the domain of a function: another point
+    }
+  }
+  if (at.size() < 2) return;  // no values: the start will tell
+  std::vector<std::size_t> independent;
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
+    if (here && there) refuse(m, constraints, k, independent, *here, *there);
+    independent.push_back(k);
+  }
+}
+
+}  // namespace eomgen::mechanics

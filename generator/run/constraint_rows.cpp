@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/constraint_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace eomgen::run {
+
+namespace {
+
+constexpr double largest_drift = 1e-3;  // of an integral, relative to what its terms may change
+
+}  // namespace
+
+std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) throw std::logic_error("the compiled code has no output '" + name + "'");
+  return static_cast<std::size_t>(found - names.begin());
+}
+
+ConstraintRows::ConstraintRows(const RunRequest& request) : request_(request), n_(request.code.free.size()) {
+  const Code& code = request.code;
+  for (const bool positions : {true, false}) {
+    for (std::size_t k = 0; k < code.active_constraints; ++k) {
+      if (code.holonomic[k] == positions) order_.push_back(k);
+    }
+    if (positions) holonomic_ = order_.size();
+  }
+  for (const IntegralOutputs& names : request.integrals) {
+    Integral integral{index_of(code.output_names, names.psi), {}};
+    for (const std::string& slope : names.slopes) integral.slopes.push_back(index_of(code.output_names, slope));
+    integrals_.push_back(std::move(integral));
+  }
+  y_.resize(code.output_names.size());
+  psi_.resize(order_.size());
+  A_.resize(order_.size() * n_);
+  b_.resize(order_.size());
+}
+
+void ConstraintRows::start(double t, const double* x, const double* u) {
+  if (integrals_.empty()) return;
+  request_.code.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
+  for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
+}
+
+int ConstraintRows::operator()(double t, const double* x, const double* u, double* psi, double* A, double* b) {
+  const double* p = request_.scene.parameters.data();
+  const std::size_t m = order_.size(), rows = size();
+  if (const int code = request_.code.constraints(t, x, p, psi_.data(), A_.data(), b_.data()); code != 0) return code;
+  for (std::size_t k = 0; k < m; ++k) {
+    const std::size_t row = k < holonomic_ ? k : k + integrals_.size();
+    psi[row] = psi_[order_[k]];
+    b[row] = b_[order_[k]];
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = A_[order_[k] + m * i];
+  }
+  if (integrals_.empty()) return 0;
+  if (const int code = request_.code.outputs(t, x, p, u, 0, y_.data()); code != 0) return code;
+  for (std::size_t k = 0; k < integrals_.size(); ++k) {
+    const Integral& integral = integrals_[k];
+    const std::size_t row = holonomic_ + k;
+    psi[row] = y_[integral.psi] - integral.constant;
+    b[row] = y_[integral.slopes[n_]];
+    bool finite = std::isfinite(psi[row]) && std::isfinite(b[row]);
+    for (std::size_t i = 0; i < n_; ++i) {
+      A[row + rows * i] = y_[integral.slopes[i]];
+      finite = finite && std::isfinite(A[row + rows * i]);
+    }
+    // Outside of its domain, or on another branch of an arc tangent, an integral says nothing, and its constraint goes on;
+    // the watch reports the drift. A true drift is far smaller than the coordinates.
+    double size = 0;
+    for (std::size_t i = 0; i < n_; ++i) size += std::abs(A[row + rows * i]) * std::max(1.0, std::abs(x[i]));
+    if (finite && std::abs(psi[row]) <= largest_drift * size) continue;
+    psi[row] = b[row] = 0;
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = 0;
+  }
+  return 0;
+}
+
+double ConstraintRows::defect(double t, const double* x) {
+  if (psi_.empty()) return 0;
+  const Code& code = request_.code;
+  // Where psi has no value the drift is infinite, not what it was a step ago.
+  if (code.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data()) != 0) return HUGE_VAL;
+  double largest = 0;
+  for (std::size_t k = 0; k < psi_.size(); ++k) {
+    double defect = psi_[k];
+    if (!code.holonomic[k]) {
+      defect = b_[k];
+      for (std::size_t i = 0; i < n_; ++i) defect += A_[k + psi_.size() * i] * x[n_ + i];
+    }
+    largest = std::isnan(defect) ? HUGE_VAL : std::max(largest, std::abs(defect));
+  }
+  return largest;
+}
+
+}  // namespace eomgen::run
