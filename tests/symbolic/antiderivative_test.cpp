@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Integrals that are found, against differences of their values; and zeros that are proven, and not proven.
+#include "symbolic/antiderivative.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "symbolic/evaluate.hpp"
+#include "symbolic/zero_proof.hpp"
+
+using namespace eomgen::symbolic;
+
+namespace {
+
+struct Letters {
+  Dag dag;
+  Symbol x_symbol{SymbolKind::coordinate, 0, 0};
+  Scalar x{&dag, dag.symbol(x_symbol)}, y{&dag, dag.symbol({SymbolKind::coordinate, 1, 0})}, a{&dag, dag.symbol({SymbolKind::parameter, 0, 0})};
+  Scalar number(long n) { return {&dag, dag.integer(n)}; }
+  Scalar f(Op op, Scalar u) { return {&dag, dag.call(op, u.ref)}; }
+  Scalar power(Scalar u, long n) { return {&dag, dag.power(u.ref, n)}; }
+
+  double value(Ref r, double at) {
+    return evaluate(dag, {r}, [&](const Symbol& s) { return s == x_symbol ? at : s.kind == SymbolKind::parameter ? 0.7 : 1.3; })[0];
+  }
+};
+
+}  // namespace
+
+TEST_CASE("antiderivatives: their slope, by differences, is the integrand") {
+  Letters l;
+  const Scalar x = l.x, y = l.y, a = l.a;
+  const Scalar s = l.f(Op::sin, a * x + y), c = l.f(Op::cos, a * x + y), e = l.f(Op::exp, l.number(-2) * x);
+  const std::vector<Scalar> integrands{
+      a * y, x, l.power(x, 3) * y, a / x, y / l.power(x, 2), s, l.power(s, 2), l.power(c, 3) * s, x * c, l.power(x, 2) * e, s * e,
+      x * l.f(Op::exp, x * x), x / l.f(Op::sqrt, x * x + y * y), l.f(Op::tan, x), l.number(1) / (x * x + y * y),
+      l.number(1) / l.power(l.f(Op::cos, x), 2), (x + y) * (x - y), l.f(Op::sinh, x) + l.f(Op::cosh, a * x)};
+  for (const Scalar& integrand : integrands) {
+    const std::optional<Ref> F = antiderivative(l.dag, integrand.ref, l.x_symbol);
+    REQUIRE(F);
+    constexpr double h = 1e-5;  // 1e-10 of truncation and of rounding
+    for (const double at : {0.4, 0.9}) {
+      const double slope = (l.value(*F, at + h) - l.value(*F, at - h)) / (2 * h);
+      CHECK(slope == doctest::Approx(l.value(integrand.ref, at)).epsilon(1e-8));
+    }
+  }
+  CHECK_FALSE(antiderivative(l.dag, l.f(Op::exp, x * x).ref, l.x_symbol));
+  CHECK_FALSE(antiderivative(l.dag, (l.f(Op::sin, x) / x).ref, l.x_symbol));
+}
+
+TEST_CASE("zeros: identities of angles, exponentials and fractions are proven, what is not zero never is") {
+  Letters l;
+  const Scalar x = l.x, y = l.y, one = l.number(1), two = l.number(2);
+  const auto sin = [&](Scalar u) { return l.f(Op::sin, u); };
+  const auto cos = [&](Scalar u) { return l.f(Op::cos, u); };
+  const std::vector<Scalar> zeros{
+      sin(x) * sin(x) + cos(x) * cos(x) - one,
+      sin(x + y) - sin(x) * cos(y) - cos(x) * sin(y),
+      cos(two * x) - one + two * sin(x) * sin(x),
+      l.f(Op::tan, x) * cos(x) - sin(x),
+      one / (x - y) - (x + y) / (x * x - y * y),
+      l.power(l.f(Op::cosh, x), 2) - l.power(l.f(Op::sinh, x), 2) - one,
+      l.f(Op::tanh, x) - l.f(Op::sinh, x) / l.f(Op::cosh, x),
+      l.power(sin(x), 4) - l.power(one - l.power(cos(x), 2), 2)};
+  for (const Scalar& zero : zeros) CHECK(is_proven_zero(l.dag, zero.ref));
+  const Scalar small{&l.dag, l.dag.constant(Rational(1) / cln::expt(Rational(10), 60))};
+  for (const Scalar& zero : zeros) CHECK_FALSE(is_proven_zero(l.dag, (zero + small * x).ref));
+  CHECK_FALSE(is_proven_zero(l.dag, sin(x).ref));
+}
