@@ -211,8 +211,9 @@ void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Stat
 void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
   for (const reading::ReadReaction& reaction : form.reactions) {
     if (!reaction.value) continue;
+    const bool long_sum = reaction.value->size() > 8;  // brackets cannot be broken over lines, terms can
     out.push_back({"reactions", reaction.label, "", "",
-                   reading::relation({multiplier(reaction.constraint), arrange(*reaction.value)})});
+                   reading::relation({multiplier(reaction.constraint), arrange(*reaction.value, long_sum ? Layout::terms : Layout::grouped)})});
   }
 }
 

@@ -62,7 +62,9 @@ class Tables {
     for (std::size_t i = 0; i < n_ && !g_.inverse.empty(); ++i) {
       for (std::size_t k = i; k < n_; ++k) entry("metric", mark(scalar, {}, {q(i), q(k)}), g_.inverse[i * n_ + k], "contravariant");
     }
-    if (!g_.inverse.empty()) entry("metric", mark("det " + letter_), g_.determinant, "determinant");
+    if (g_.inverse.empty()) return;
+    out_.push_back({"metric", g_.name, "", "determinant",
+                    reading::relation({mark("det " + letter_), reading::factored(g_.determinant)})});
   }
 
   void line_element() {

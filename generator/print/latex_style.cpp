@@ -99,7 +99,12 @@ class LatexStyle final : public Style {
   Piece call_power(Op op, const std::vector<Piece>& args, const std::string& exponent) const override {
     return {function_name(op) + "^{" + exponent + "}" + arguments(args), Piece::call};
   }
-  Piece power(const Piece& base, const std::string& exponent) const override {
+  Piece power(const Piece& base, const std::string& above) const override {
+    std::string exponent = above;
+    if (exponent.starts_with("\\tfrac{")) {  // x^{3/2}
+      exponent = exponent.substr(7, exponent.size() - 8);
+      exponent.replace(exponent.find("}{"), 2, "/");
+    }
     return {base.text + "^{" + exponent + "}", Piece::call};
   }
   Piece fraction(const Piece& above, const Piece& below) const override {

@@ -23,22 +23,30 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::R
   return items;
 }
 
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression) {
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, const reading::Sum& expression) {
   const Notation notation(mechanics);
   Item item;
   item.key = std::move(key);
   item.name = std::move(name);
+  const reading::Formula formula = reading::arrange(expression);
+  item.text = print(formula, notation, Format::text);
+  item.latex = print(formula, notation, Format::latex);
+  item.mathml = print(formula, notation, Format::mathml);
+  return item;
+}
+
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression) {
   try {
-    const reading::Formula formula = reading::arrange(reading::read(mechanics, expression));
-    item.text = print(formula, notation, Format::text);
-    item.latex = print(formula, notation, Format::latex);
-    item.mathml = print(formula, notation, Format::mathml);
+    return render_expression(mechanics, key, name, reading::read(mechanics, expression));
   } catch (const reading::TermBudget&) {
+    Item item;
+    item.key = std::move(key);
+    item.name = std::move(name);
     item.text = "(too long to be shown)";
     item.latex = "\\text{(too long to be shown)}";
     item.mathml = "<math><mtext>(too long to be shown)</mtext></math>";
+    return item;
   }
-  return item;
 }
 
 }  // namespace eomgen::print

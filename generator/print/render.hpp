@@ -26,6 +26,8 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::R
 /// Any expression of the Dag, simplified for reading: potentials, conserved quantities.
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression);
 
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, const reading::Sum& expression);
+
 /// A document of its own (article, amsmath): parameters, constraints, both approaches side by side, reactions.
 std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one,
                            const reading::ReadingForm& two);

@@ -58,6 +58,8 @@ enum class Layout {
   grouped,   // energies, reactions: common factors of terms of like kind are taken out
 };
 Formula arrange(const Sum& sum, Layout layout = Layout::grouped);
+/// As a product of irreducible factors, for determinants.
+Formula factored(const Sum& sum);
 /// The terms of arrange() one by one, each possibly `negative`.
 std::vector<Formula> arranged_terms(const Sum& sum, Layout layout);
 

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "reading/formula.hpp"
+#include "reading/rational_function.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -52,6 +53,28 @@ Formula factor_formula(const Factor& factor) {
   return wrap(Form::power, {std::move(base), number(exponent)});
 }
 
+std::vector<Formula> polynomial_terms(const Sum& sum);
+
+bool has_negative_term(const Sum& sum) {
+  return std::any_of(sum.terms().begin(), sum.terms().end(), [](const auto& term) { return cln::minusp(term.second); });
+}
+
+// -(a - b) as it is written: b - a.
+Formula negated_bracket(const Sum& base) {
+  std::vector<Formula> terms = polynomial_terms(-base);
+  const auto positive = std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
+  if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
+  return sum(std::move(terms));
+}
+
+// The factor 1/(a - b) of a negative term, which reads better as 1/(b - a) of a positive one.
+const Factor* sign_taker(const Monomial& monomial) {
+  for (const Factor& factor : monomial) {
+    if (factor.atom->op == Op::add && factor.exponent == -1 && has_negative_term(factor.atom->args[0])) return &factor;
+  }
+  return nullptr;
+}
+
 // coefficient * monomial * brackets * motion. Brackets of parameters, (m1 + m2) l^2, go where parameters do.
 Formula term_formula(const Rational& coefficient, const Monomial& monomial, std::vector<Formula> brackets = {},
                      const Monomial& motion = {}, bool brackets_first = false) {
@@ -60,8 +83,12 @@ Formula term_formula(const Rational& coefficient, const Monomial& monomial, std:
   const auto add_brackets = [&] {
     for (Formula& f : brackets) above.push_back(std::move(f));
   };
+  const Factor* const taker = cln::minusp(coefficient) ? sign_taker(monomial) : nullptr;
   const auto add_factors = [&](const Monomial& factors) {
-    for (const Factor& factor : factors) (cln::minusp(factor.exponent) ? below : above).push_back(factor_formula(factor));
+    for (const Factor& factor : factors) {
+      Formula f = &factor == taker ? negated_bracket(factor.atom->args[0]) : factor_formula(factor);
+      (cln::minusp(factor.exponent) ? below : above).push_back(std::move(f));
+    }
   };
   if (brackets_first) add_brackets();
   add_factors(monomial);
@@ -76,7 +103,7 @@ Formula term_formula(const Rational& coefficient, const Monomial& monomial, std:
     below.insert(below.begin(), number(bottom));
     result = fraction(product(std::move(above)), product(std::move(below)));
   }
-  return cln::minusp(coefficient) ? negative(std::move(result)) : result;
+  return cln::minusp(coefficient) && taker == nullptr ? negative(std::move(result)) : result;
 }
 
 // Splits a monomial into the factors that satisfy `pick` and the rest.
@@ -121,8 +148,6 @@ Factored factor_out(const Sum& sum) {
   }
   return result;
 }
-
-std::vector<Formula> polynomial_terms(const Sum& sum);
 
 Formula bracket(const Sum& rest) { return sum(polynomial_terms(rest)); }
 
@@ -284,6 +309,20 @@ std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
     first = last;
   }
   return result;
+}
+
+Formula factored(const Sum& whole) {
+  if (whole.size() < 2) return arrange(whole, Layout::terms);
+  const Factorisation parts = factorise(whole);
+  std::vector<Formula> brackets;
+  bool minus = parts.sign < 0;
+  for (const auto& [base, times] : parts.factors) {
+    const bool takes = minus && times % 2 != 0 && has_negative_term(base);
+    Formula f = takes ? negated_bracket(base) : sum(polynomial_terms(base));
+    minus = minus && !takes;
+    brackets.push_back(times == 1 ? std::move(f) : wrap(Form::power, {std::move(f), number(times)}));
+  }
+  return term_formula(minus ? -parts.content.number : parts.content.number, parts.content.monomial, std::move(brackets));
 }
 
 Formula arrange(const Sum& whole, Layout layout) { return sum(arranged_terms(whole, layout)); }

@@ -148,6 +148,19 @@ Sum cancel(const Sum& sum) {
   return result.size() <= sum.size() ? result : sum;
 }
 
+Sum absorb_roots(const Sum& sum) {
+  if (sum.size() < 2) return sum;
+  for (const Factor& root : content(sum).monomial) {
+    if (root.atom->op != Op::add || is_integer(root.exponent)) continue;
+    const Sum base = root.atom->args[0];
+    Sum rest = divide(sum, {1, {root}});
+    Rational exponent = root.exponent;
+    for (std::optional<Sum> q; rest.size() > 1 && (q = exact_quotient(rest, base)); exponent = exponent + 1) rest = *q;
+    if (exponent != root.exponent) return rest * Sum(Monomial{{root.atom, exponent}}, 1);
+  }
+  return sum;
+}
+
 Sum quotient(const Sum& a, const Sum& b) { return cancel(a * power(b, -1)); }
 
 }  // namespace eomgen::reading

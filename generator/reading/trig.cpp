@@ -254,7 +254,7 @@ Sum simplify(const Sum& sum) {
   Sum best = sum;
   for (int round = 0; round < most_rounds; ++round) {
     const Sum before = best;
-    best = cancel(recombine_angles(reduce_squares(best)));
+    best = absorb_roots(cancel(recombine_angles(reduce_squares(best))));
     if (best == before) break;
   }
   return best;

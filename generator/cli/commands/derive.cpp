@@ -83,12 +83,26 @@ void print_readable(const std::vector<print::Item>& items, const std::string& ap
   }
 }
 
+/// The same quantity from the reading form, where functions of time keep their names; nothing if it has no such form.
+std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, const reading::ReadingForm& form, const std::string& name) {
+  if (form.by_parts) return std::nullopt;
+  if (name == "energy" && m.fixed.empty()) return form.kinetic + form.potential;
+  for (const reading::Equation& equation : form.equations) {
+    if (name == "momentum." + m.model->coordinates[equation.coordinate].name) return equation.momentum;
+  }
+  if (name == "jacobi" && form.by_degree) return (*form.by_degree)[0] - (*form.by_degree)[2] + form.potential;
+  return std::nullopt;
+}
+
 void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
   const bool wanted = std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
   system::EquationSystem system = derive::routes().front().derive(mechanics, system::Approach::two);
+  const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
   for (const derive::Conserved& c : derive::conserved_quantities(mechanics, system)) {
-    print::Item item = print::render_expression(mechanics, "conserved", c.name, c.expression);
+    const auto named = in_named_functions(mechanics, form, c.name);
+    print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
+                             : print::render_expression(mechanics, "conserved", c.name, c.expression);
     item.role = c.title;
     items.push_back(std::move(item));
   }
