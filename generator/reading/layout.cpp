@@ -256,7 +256,8 @@ std::vector<Formula> share_brackets(const std::vector<ByMotion>& groups) {
 
 // (x^2 + y^2)/2 rather than x^2/2 + y^2/2, where most terms are the simpler for it.
 std::optional<Formula> number_in_front(const Sum& whole) {
-  if (whole.size() < 3) return std::nullopt;
+  constexpr std::size_t longest = 9;  // a bracket cannot be broken over lines
+  if (whole.size() < 3 || whole.size() > longest) return std::nullopt;
   const Rational number = content(whole).number;
   if (is_integer(number)) return std::nullopt;
   std::size_t simple = 0;
