@@ -7,14 +7,15 @@
 # The target's property EOM_NAME tells NAME.
 include_guard(GLOBAL)
 
-# The rule of `mangled_id`: NAME of the C ABI. A name that C reserves gets one more underscore, which only eomgen knows.
+# NAME of the C ABI, which eomgen alone knows: `int.toml` becomes int_, as C reserves int.
 function(_eom_name model result)
-  get_filename_component(id "${model}" NAME_WLE)
-  string(REGEX REPLACE "[^A-Za-z0-9_]" "_" id "${id}")
-  if(id STREQUAL "" OR id MATCHES "^[_0-9]")
-    string(PREPEND id "model_")
+  get_target_property(program eomgen::cli LOCATION)
+  execute_process(COMMAND "${program}" emit "${model}" -o . --print-name
+    OUTPUT_VARIABLE name OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_VARIABLE problem RESULT_VARIABLE code)
+  if(NOT code EQUAL 0)
+    message(FATAL_ERROR "eom_generate: ${program} does not tell the name of ${model}: ${problem}")
   endif()
-  set(${result} "${id}" PARENT_SCOPE)
+  set(${result} "${name}" PARENT_SCOPE)
 endfunction()
 
 function(_eom_refuse what)

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "cli/code.hpp"
@@ -22,6 +23,7 @@ using json = nlohmann::ordered_json;
 struct Options {
   std::string model, folder, target = "cpp", approach = "auto", form = "auto";
   std::vector<std::string> with, fix, outputs;
+  bool print_name = false;
 };
 
 program::Request request_of(const Options& options, Derived& derived, const run::Scene& scene) {
@@ -108,6 +110,10 @@ int emit_document(const Options& options, const Common& common) {
 }
 
 int execute(const Options& options, const Common& common) {
+  if (options.print_name) {
+    fmt::print("{}\n", emit::mangled_id(std::filesystem::path(options.model).stem().string()));
+    return 0;
+  }
   require_target(options.target);
   require_form(options.form);
   require_with(options.with);
@@ -158,6 +164,7 @@ Execute declare_emit(CLI::App& app) {
   add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto or multipliers")->capture_default_str();
+  app.add_flag("--print-name", options->print_name, "only prints NAME, which the model's file gives to files and symbols");
   add_list(app, "--fix", options->fix, "parameters that become numbers");
   return [options](const Common& common) { return execute(*options, common); };
 }
