@@ -50,7 +50,8 @@ enum {
   P7_moving_sphere_inputs = 0,
   P7_moving_sphere_constraints_active = 0,
   P7_moving_sphere_reaction_count = 1,
-  P7_moving_sphere_output_count = 2
+  P7_moving_sphere_output_count = 2,
+  P7_moving_sphere_prepared_size = 0
 };
 
 /* Version of this interface. */

@@ -11,23 +11,32 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
       outputs_(program.outputs),
       free_(program.free),
       integrals_(program.integrals.size()),
+      prepared_(program.prepared_count()),
       active_(program.active_constraints),
       holonomic_(program.holonomic) {}
 
 verify::CompiledForm CompiledCode::form() const {
   const emit::RhsFunction rhs = compiled_.model.rhs;
+  const emit::PrepareFunction prepare = compiled_.model.prepare;
+  const emit::PreparedRhsFunction rhs_prepared = compiled_.model.rhs_prepared;
   const std::size_t size = 2 * free_.size() + integrals_;
-  return {"emitted code", [rhs, size](double t, const std::vector<double>& x, const std::vector<double>& p,
+  return {"emitted code", [rhs, prepare, rhs_prepared, size, prepared = prepared_](double t, const std::vector<double>& x, const std::vector<double>& p,
                                       const std::vector<double>& u) -> std::optional<std::vector<double>> {
             std::vector<double> dx(size);
-            if (rhs(t, x.data(), p.data(), u.data(), 0, dx.data()) != 0) return std::nullopt;
+            std::vector<double> w(prepared);
+            // What `run` integrates; the self test has compared it with `rhs`.
+            const int code = prepared == 0 ? rhs(t, x.data(), p.data(), u.data(), 0, dx.data())
+                             : prepare(p.data(), w.data()) != 0
+                                 ? 1
+                                 : rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), 0, dx.data());
+            if (code != 0) return std::nullopt;
             return dx;
           }};
 }
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  return {model.rhs, model.outputs, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
+  return {model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
 }
 
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context) {

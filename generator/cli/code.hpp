@@ -21,6 +21,7 @@ class CompiledCode {
   std::vector<std::string> outputs_;
   std::vector<std::uint32_t> free_;
   std::size_t integrals_;
+  std::size_t prepared_ = 0;
   std::size_t active_;
   std::vector<bool> holonomic_;
 };

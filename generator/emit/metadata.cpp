@@ -88,7 +88,7 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
   lines.push_back("verified    " + (context.verdict.empty() ? "no" : context.verdict));
   for (const std::string& set : context.singular) lines.push_back("singular    " + set);
   for (const program::Function& function : program.functions) {
-    lines.push_back(fmt::format("{:11} {}", function.name, operations_text(function.operations)));
+    lines.push_back(fmt::format("{:11} {}", function.name == "rhs_prepared" ? "rhs after" : function.name, operations_text(function.operations)));
   }
   const std::vector<std::string> gone = eliminated(program, context);
   if (!gone.empty()) lines.push_back("eliminated  " + joined(gone));
@@ -148,6 +148,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["reactions"] = program.reactions;
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic) info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
+  info["prepared"] = program.prepared_count();
   info["modes"] = {"smooth"};
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};
@@ -180,8 +181,9 @@ std::string defaults_body(const program::Program& program, const EmissionContext
   return result;
 }
 
-std::string selftest_body(const program::Program& program, const EmissionContext& context, const std::string& rhs,
-                          const std::string& null, const Dialect& dialect) {
+std::string selftest_body(const program::Program& program, const EmissionContext& context,
+                          const std::function<std::string(const std::string&)>& called, const std::string& null,
+                          const Dialect& dialect) {
   const std::size_t n = program.state_count(), parameters = context.parameters.size(), inputs = context.inputs.size();
   const char* open = dialect.line_comments ? "  // " : "  /* ";
   const char* close = dialect.line_comments ? "" : " */";
@@ -202,18 +204,26 @@ std::string selftest_body(const program::Program& program, const EmissionContext
   text += "    const double* const point = values[k];\n";
   text += fmt::format("    const double* const expected = point + {};\n", at_dx);
   text += fmt::format("    double dx[{}], largest = 0.0;\n", n);
-  text += fmt::format("    if ({}(point[0], point + 1, point + {}, {}, 0, dx) != 0) return k + 1;\n", rhs, at_p,
-                      inputs > 0 ? fmt::format("point + {}", at_u) : null);
   const std::string absolute = dialect.line_comments ? "std::fabs" : "fabs";
   text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n      if ({}(expected[i]) > largest) largest = {}(expected[i]);\n    }}\n", n, absolute, absolute);
-  text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n", n);
-  text += fmt::format("      if (!({}(dx[i] - expected[i]) <= {}*largest)) return k + 1;\n    }}\n  }}\n  return 0;", absolute,
-                      decimal(selftest_tolerance));
-  return text;
+  const auto compare = [&](const std::string& function, const std::string& more) {
+    text += fmt::format("    if ({}(point[0], point + 1, point + {}, {}{}, 0, dx) != 0) return k + 1;\n", called(function), at_p, more,
+                        inputs > 0 ? fmt::format("point + {}", at_u) : null);
+    text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n", n);
+    text += fmt::format("      if (!({}(dx[i] - expected[i]) <= {}*largest)) return k + 1;\n    }}\n", absolute, decimal(selftest_tolerance));
+  };
+  compare("rhs", "");
+  if (const std::size_t prepared = program.prepared_count(); prepared > 0) {
+    text += fmt::format("    double w[{}];\n    if ({}(point + {}, w) != 0) return k + 1;\n", prepared, called("prepare"), at_p);
+    compare("rhs_prepared", "w, ");
+  }
+  return text + "  }\n  return 0;";
 }
 
 std::string purpose(const std::string& function) {
   if (function == "rhs") return "dx = d/dt of the state x.";
+  if (function == "prepare") return "w = what the right-hand side needs of the parameters only: to be called again where they change.";
+  if (function == "rhs_prepared") return "The same as rhs, with w from prepare.";
   if (function == "jac") return "dfdx[i + N j] = d(dx_i)/d(x_j) with N entries of x; dfdt at fixed x.";
   if (function == "jac_p") return "dfdp[i + N j] = d(dx_i)/d(p_j) with N entries of x.";
   if (function == "mass") return "M qddot + h = A^T lambda: M by columns, h.";
@@ -221,16 +231,6 @@ std::string purpose(const std::string& function) {
   if (function == "reactions") return "The multipliers of all constraints, in the order of the model.";
   if (function == "outputs") return "The outputs asked for.";
   return function;
-}
-
-std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
-                          const ModelNames& names, const std::string& real) {
-  std::string head = fmt::format("int {0}({1} {2}, const {1}* {3}, const {1}* {4}", name, real, names.arguments_t, names.x, names.p);
-  if (function.name != "mass" && function.name != "constraints") {
-    head += fmt::format(", const {}* {}, int {}", real, names.u, names.mode);
-  }
-  for (const std::string& result : text.results) head += fmt::format(", {}* {}", real, result);
-  return wrapped(head + ")", std::string(name.size() + 5, ' '));
 }
 
 void require_consistent(const program::Program& program, const EmissionContext& context) {

@@ -2,6 +2,7 @@
 // What every target of the C family says beside the functions: banner, JSON, defaults, self test.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,17 +20,14 @@ std::string banner(const program::Program& program, const EmissionContext& conte
 /// NAME_info, as JSON (docs/abi.md).
 std::string info_json(const program::Program& program, const EmissionContext& context);
 
-/// Bodies of NAME_defaults and NAME_selftest; `rhs` is how the right-hand side is called.
+/// Bodies of NAME_defaults and NAME_selftest; `called` is how a function of the ABI is called.
 std::string defaults_body(const program::Program& program, const EmissionContext& context, const Dialect& dialect);
-std::string selftest_body(const program::Program& program, const EmissionContext& context, const std::string& rhs,
-                          const std::string& null, const Dialect& dialect);
+std::string selftest_body(const program::Program& program, const EmissionContext& context,
+                          const std::function<std::string(const std::string&)>& called, const std::string& null,
+                          const Dialect& dialect);
 
 /// What a function of the ABI does, in a sentence.
 std::string purpose(const std::string& function);
-
-/// "int NAME(double t, const double* x, ...)" with the names that `text` and `names` give to the arguments.
-std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
-                          const ModelNames& names, const std::string& real);
 
 /// A skeleton of templates/, filled in. Nothing is escaped: values are code.
 std::string rendered(const std::string& skeleton, const std::vector<std::pair<std::string, std::string>>& values,

@@ -8,6 +8,7 @@
 
 #include "emit/expressions.hpp"
 #include "emit/names.hpp"
+#include "emit/signature.hpp"
 #include "emit/text.hpp"
 
 namespace eomgen::emit {
@@ -34,7 +35,7 @@ class Printer {
   FunctionText run() {
     const auto& code = function_.code;
     const bool packs = std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.pack > 0; });
-    text_.near_first = packs && dialect_.near_first && function_.name == "rhs";
+    text_.near_first = packs && dialect_.near_first && is_rhs();
     declare_names();
     count_uses();
     test_ready(-1);
@@ -52,7 +53,7 @@ class Printer {
     for (const auto* list : {&names_.state, &names_.parameters, &names_.inputs}) {
       for (const std::string& name : *list) table_.declare(name);
     }
-    for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.u, names_.mode}) table_.declare(name);
+    for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode}) table_.declare(name);
     if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
     for (const auto& result : function_.results) text_.results.push_back(table_.declare(result.first));
   }
@@ -203,7 +204,7 @@ class Printer {
         line(fmt::format("{}[{}] = {};", text_.results[r], i, expressions_.signed_value(entries[i]).text) + remark(r, i));
       }
     }
-    if (function_.name != "rhs") {
+    if (!is_rhs()) {
       line("return 0;");
       return;
     }
@@ -230,18 +231,17 @@ class Printer {
     return dialect_.line_comments ? fmt::format("  // {}", text) : fmt::format("  /* {} */", text);
   }
 
+  bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
   bool is_used(Slot slot) const {
-    return std::any_of(leaves_.begin(), leaves_.end(), [slot](const auto& leaf) { return leaf.first == slot; });
+    return std::any_of(leaves_.begin(), leaves_.end(), [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
   }
   /// The ABI gives these two functions no inputs: they see the defaults.
   bool takes_inputs() const { return function_.name != "mass" && function_.name != "constraints"; }
   std::string unused_arguments() const {
     std::vector<std::string> unused;
-    if (!is_used(Slot::time)) unused.push_back(names_.arguments_t);
-    if (!is_used(Slot::state)) unused.push_back(names_.x);
-    if (!is_used(Slot::parameter)) unused.push_back(names_.p);
-    if (takes_inputs() && !is_used(Slot::input)) unused.push_back(names_.u);
-    if (takes_inputs()) unused.push_back(names_.mode);
+    for (const Argument& argument : arguments(function_.name, text_, names_)) {
+      if (argument.kind != Argument::Kind::result && !is_used(argument.slot)) unused.push_back(argument.name);
+    }
     for (std::size_t r = 0; r < function_.results.size(); ++r) {
       if (function_.results[r].second.empty()) unused.push_back(text_.results[r]);
     }

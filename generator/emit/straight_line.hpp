@@ -31,7 +31,7 @@ struct ModelNames {
   std::vector<std::string> parameters, inputs, outputs, reactions;
   std::vector<std::string> acceleration;     // "theta_ddot", of the free coordinates
   std::vector<std::string> all_coordinates;  // of the model, also eliminated ones (for names that a Program suggests)
-  std::string arguments_t = "t", x, p, u, mode;  // names of the arguments that are left
+  std::string arguments_t = "t", x, p, w, u, mode;  // names of the arguments that are left
 };
 ModelNames model_names(const program::Program& program, const EmissionContext& context);
 

@@ -9,6 +9,7 @@
 
 #include "error.hpp"
 #include "program/from_dag.hpp"
+#include "program/hoist.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -40,10 +41,26 @@ std::vector<Polynomials> starts(const AbiFunctions& functions, const WantedFunct
   return result;
 }
 
+std::vector<std::pair<std::string, std::size_t>> shape(const WantedFunction& wanted) {
+  std::vector<std::pair<std::string, std::size_t>> result;
+  for (const auto& [argument, entries] : wanted.results) result.emplace_back(argument, entries.size());
+  return result;
+}
+
 Function finished(const Polynomials& graph, const WantedFunction& wanted) {
-  std::vector<std::pair<std::string, std::size_t>> shape;
-  for (const auto& [argument, entries] : wanted.results) shape.emplace_back(argument, entries.size());
-  return schedule(graph, wanted.name, shape);
+  return schedule(graph, wanted.name, shape(wanted));
+}
+
+void add_prepared(const Candidate& chosen, Program& program) {
+  constexpr std::size_t worth_searching = 1500;  // flops; larger programs are split as they are
+  std::vector<Polynomials> graphs{chosen.best};
+  if (chosen.operations.flops() < worth_searching) {
+    graphs.insert(graphs.begin(), chosen.starts.begin(), chosen.starts.end());
+  }
+  std::optional<Hoisted> hoisted = hoist(graphs, chosen.operations, "rhs_prepared", shape(chosen.rhs));
+  if (!hoisted) return;
+  program.functions.push_back(std::move(hoisted->prepare));
+  program.functions.push_back(std::move(hoisted->rest));
 }
 
 /// Both orders of elimination of every route, as they come out of the derivation.
@@ -160,6 +177,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
     add(chosen.functions->outputs(request.outputs));
     program.outputs = request.outputs;
   }
+  if (request.optimise) add_prepared(chosen, program);
   return program;
 }
 

@@ -21,7 +21,8 @@ struct Request {
 };
 
 /// Ranks the candidates by the raw cost of their right-hand sides, optimises those within 1.5 times of the cheapest,
-/// keeps the cheapest (ties: the first), and makes the other functions for it. `Program::tried` lists all candidates.
+/// keeps the cheapest (ties: the first), and makes the other functions for it: the right-hand side
+/// split into `prepare` and `rhs_prepared` where that is worth it, and those asked for. `Program::tried` lists all candidates.
 /// Throws Error for functions and outputs that do not exist or are not supported yet.
 Program build_program(std::vector<system::EquationSystem>& candidates, const Request& request);
 

@@ -16,6 +16,7 @@ template <class Real>
 struct Arguments {
   Real t{};
   std::vector<Real> x, p, u;
+  std::vector<Real> w{};  // what `prepare` made of p
 };
 
 template <class Real>

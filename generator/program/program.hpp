@@ -21,7 +21,7 @@ struct Operations {
 };
 
 /// Where an operand comes from.
-enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, value };
+enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, value };
 struct Operand {
   Slot slot = Slot::value;
   std::uint32_t index = 0;  // constant: into Function::constants; value: of the instruction that made it
@@ -51,7 +51,7 @@ struct PivotTest {
 inline constexpr double pivot_tolerance = 1e-13;
 
 struct Function {
-  std::string name;  // of the ABI: "rhs", "mass", ...
+  std::string name;  // of the ABI: "rhs", "prepare", "mass", ...
   std::vector<std::pair<std::string, std::vector<Operand>>> results;  // argument name, its entries (column-major)
   std::vector<symbolic::Rational> constants;
   std::vector<Instruction> code;
@@ -69,10 +69,17 @@ struct Tried {
 struct Program {
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
+  /// Entries of the array w; 0: there is no `prepare`.
+  std::size_t prepared_count() const {
+    for (const Function& function : functions) {
+      if (function.name == "prepare") return function.results[0].second.size();
+    }
+    return 0;
+  }
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
   system::Approach approach = system::Approach::two;
-  std::vector<Function> functions;  // rhs first
+  std::vector<Function> functions;  // rhs first; last `prepare` and `rhs_prepared` where they save work
   std::vector<Tried> tried;
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y

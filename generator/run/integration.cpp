@@ -18,6 +18,9 @@ Integration::Integration(const RunRequest& request, std::string solver)
       projection_(n_, rows_.size(), rows_.on_positions()) {
   // Before the first piece starts: just inside it, so that a table gives its value right of t0.
   side_ = std::nextafter(request.scene.t0, request.scene.t1);
+  // A code of prepare is told by rhs, which is asked then.
+  if (code_.prepare != nullptr) w_.resize(code_.prepared);
+  if (code_.prepare != nullptr && code_.prepare(request.scene.parameters.data(), w_.data()) != 0) w_.clear();
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
 }
 
@@ -37,7 +40,8 @@ const double* Integration::inputs(double t) const {
 
 int Integration::rhs(double t, const double* x, double* dx) {
   const double* u = inputs(t);
-  const int code = code_.rhs(t, x, request_.scene.parameters.data(), u, 0, dx);
+  const double* p = request_.scene.parameters.data();
+  const int code = w_.empty() ? code_.rhs(t, x, p, u, 0, dx) : code_.rhs_prepared(t, x, p, w_.data(), u, 0, dx);
   if (code != 0 || !request_.watch_power) return code;
   const int watched = code_.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
   dx[2 * n_ + code_.integrals] = y_[power_];

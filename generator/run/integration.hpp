@@ -36,6 +36,7 @@ class Integration {
   std::size_t power_ = 0, energy_ = 0;
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
   mutable std::vector<double> u_;
+  std::vector<double> w_;  // of code_.prepare
   std::vector<double> y_;
   ConstraintRows rows_;
   eom::Projection projection_;

@@ -17,6 +17,10 @@ namespace eomgen::run {
 /// The functions of the C ABI that a run calls (docs/abi.md); mass and constraints only where there are multipliers.
 struct Code {
   int (*rhs)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  // The same in two, null where it is not split: what needs parameters only, and the rest.
+  int (*prepare)(const double*, double*) = nullptr;
+  int (*rhs_prepared)(double, const double*, const double*, const double*, const double*, int, double*) = nullptr;
+  std::size_t prepared = 0;  // entries of what `prepare` writes
   int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
   int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;

@@ -126,6 +126,14 @@ int main() {
       if (!(std::fabs(DX[i].b - dfdx[i + 4 * j]) <= 1e-12)) return 3;
     }
   }
+  const model::Prepared<double> prepared(p);
+  double dx[4], again[4];
+  if (model::rhs<double>(0, x, p, nullptr, 0, dx) != 0 || prepared(0, x, nullptr, 0, again) != 0) return 5;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (!(std::fabs(dx[i] - again[i]) <= 1e-12 * (1 + std::fabs(dx[i])))) return 6;
+  }
+  p[model::Parameter::l] = 0;
+  if (model::Prepared<double>(p)(0, x, nullptr, 0, again) != 1) return 7;
   return x[model::State::theta_dot] == x[3] ? 0 : 4;
 }
 )";
@@ -171,6 +179,7 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
     for (const double value : test.u) exact.u.push_back(exactly(value));
     for (const auto& function : e.program.functions) {
       auto arguments = exact;
+      if (function.name == "rhs_prepared") arguments.w = program::interpret(e.program.functions.rbegin()[1], exact, 60).results[0];
       const bool no_inputs = function.name == "mass" || function.name == "constraints";
       for (std::size_t i = 0; i < arguments.u.size() && no_inputs; ++i) arguments.u[i] = exactly(e.context.inputs[i].value);
       const auto expected = program::interpret(function, arguments, 50).results;
@@ -179,6 +188,12 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
       const double *x = test.x.data(), *p = test.p.data();
       int code = 0;
       if (function.name == "rhs") code = m.rhs(test.t, x, p, u, 0, got[0].data());
+      std::vector<double> w(e.program.prepared_count() + 1);
+      if (function.name == "prepare") code = m.prepare(p, got[0].data());
+      if (function.name == "rhs_prepared") {
+        CHECK(m.prepare(p, w.data()) == 0);
+        code = m.rhs_prepared(test.t, x, p, w.data(), u, 0, got[0].data());
+      }
       if (function.name == "jac") code = m.jac(test.t, x, p, u, 0, got[0].data(), got[1].data());
       if (function.name == "jac_p") code = m.jac_p(test.t, x, p, u, 0, got[0].data());
       if (function.name == "mass") code = m.mass(test.t, x, p, got[0].data(), got[1].data());

@@ -83,6 +83,7 @@ TEST_CASE("packs: the chain's right-hand side has its sines and cosines in one p
   const auto system = chain(6);
   const auto built = build(system, {"jac"});
   for (const auto& function : built.functions) {
+    if (function.name == "prepare") continue;
     well_formed(function);
     CHECK(sizes(function) == std::vector<std::size_t>{6});
   }

@@ -109,6 +109,13 @@ int emit_document(const Options& options, const Common& common) {
   return 0;
 }
 
+/// What is computed once for the parameters, and the right-hand side that is left; null where it is not split.
+json hoisted(const program::Program& program) {
+  if (program.prepared_count() == 0) return nullptr;
+  return {{"prepare", to_json(program.functions.rbegin()[1].operations)},
+          {"rhs_prepared", to_json(program.functions.back().operations)}};
+}
+
 int execute(const Options& options, const Common& common) {
   if (options.print_name) {
     fmt::print("{}\n", emit::mangled_id(std::filesystem::path(options.model).stem().string()));
@@ -136,6 +143,7 @@ int execute(const Options& options, const Common& common) {
     for (const program::Tried& t : program.tried) tried.push_back({{"route", t.route}, {"approach", system::name(t.approach)}, {"operations", to_json(t.operations)}});
     const json document{{"format", 1}, {"files", files}, {"route", program.route}, {"approach", system::name(program.approach)},
                         {"tried", tried}, {"operations", to_json(program.functions.front().operations)},
+                        {"hoisted", hoisted(program)},
                         {"certificate", certificate.summary()},
                         {"seconds", {{"read", seconds.read}, {"derive", seconds.derive}, {"optimise", seconds.optimise},
                                      {"verify", seconds.verify}, {"print", seconds.print}}}};
@@ -144,6 +152,10 @@ int execute(const Options& options, const Common& common) {
   }
   fmt::print("route       {}, approach {}\n", program.route, system::name(program.approach));
   fmt::print("operations  {}\n", to_text(program.functions.front().operations));
+  if (program.prepared_count() > 0) {
+    fmt::print("prepared    {}, after {} once for the parameters\n", to_text(program.functions.back().operations),
+               to_text(program.functions.rbegin()[1].operations));
+  }
   for (const program::Tried& t : program.tried) {
     fmt::print("tried       {:<10} {:<3} {}\n", t.route, system::name(t.approach), to_text(t.operations));
   }

@@ -5,6 +5,7 @@
 
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
+#include "emit/signature.hpp"
 #include "emit/text.hpp"
 #include "skeletons/c_model_c.hpp"
 #include "skeletons/c_model_h.hpp"
@@ -29,6 +30,7 @@ std::string prototype(const std::string& name, const program::Function& function
   ModelNames names;
   names.x = "x";
   names.p = "p";
+  names.w = "w";
   names.u = "u";
   names.mode = "mode";
   return function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double");
@@ -39,8 +41,7 @@ std::string definition(const std::string& name, const program::Function& functio
                        const ModelNames& names) {
   const auto head = [&](const std::string& what) { return function_head(what, function, text, names, "double"); };
   if (!text.near_first) return fmt::format("{}\n{{\n{}}}\n", head(name), text.body);
-  std::string arguments = fmt::format("{}, {}, {}, {}, {}", names.arguments_t, names.x, names.p, names.u, names.mode);
-  for (const std::string& result : text.results) arguments += ", " + result;
+  const std::string arguments = argument_names(function, text, names);
   std::string inner = head(name + "_from");
   inner.insert(inner.find('(') + 1, fmt::format("int {}, ", text.guarded));
   return fmt::format("/* -1: not guarded, and an angle is too far for that. */\n"
@@ -54,7 +55,7 @@ std::string sizes(const std::string& name, const program::Program& program, cons
   const std::pair<const char*, std::size_t> entries[] = {
       {"states", program.state_count()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
       {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
-      {"output_count", program.outputs.size()}};
+      {"output_count", program.outputs.size()}, {"prepared_size", program.prepared_count()}};
   std::vector<std::string> lines;
   for (const auto& [what, count] : entries) lines.push_back(fmt::format("  {}_{} = {}", name, what, count));
   return fmt::format("{}", fmt::join(lines, ",\n"));
@@ -86,7 +87,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},
       {"defaults", defaults_body(program, context, dialect)},
-      {"selftest", selftest_body(program, context, fmt::format("{}_rhs", name), "0", dialect)}};
+      {"selftest", selftest_body(program, context, [&name](const std::string& f) { return name + "_" + f; }, "0", dialect)}};
   return {{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
           {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, functions)}};
 }

@@ -11,6 +11,7 @@
 #include "emit/c/c.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
+#include "emit/signature.hpp"
 #include "emit/text.hpp"
 #include "skeletons/cpp_model_hpp.hpp"
 
@@ -63,8 +64,22 @@ void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
 }
 )";
 
+const std::string prepared_struct = R"(
+// The right-hand side for given parameters, which have to stay where they are; what needs nothing else is computed once.
+template <class Real>
+struct Prepared {
+  explicit Prepared(const Real* parameters) : p(parameters), code(prepare(parameters, w)) {}
+  int operator()(Real t, const Real* x, const Real* u, int mode, Real* dx) const {
+    return code != 0 ? code : rhs_prepared(t, x, p, w, u, mode, dx);
+  }
+  const Real* p;
+  Real w[prepared_size];
+  int code;  // of prepare
+};
+)";
+
 /// Named indices into the arrays: x[State::theta].
-std::string enums(const ModelNames& names) {
+std::string enums(const ModelNames& names, std::size_t prepared) {
   std::string result;
   const auto add = [&result](const char* type, const char* count, const std::vector<std::string>& entries) {
     if (!entries.empty()) {
@@ -79,6 +94,7 @@ std::string enums(const ModelNames& names) {
   add("Input", "input_count", names.inputs);
   add("Output", "output_count", names.outputs);
   add("Reaction", "reaction_count", names.reactions);
+  result += fmt::format("inline constexpr std::size_t prepared_size = {};\n", prepared);
   result.pop_back();
   return result;
 }
@@ -106,10 +122,11 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
                  {"name", name},
                 {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>" : "#include <cmath>\n#include <cstddef>"},
                 {"kernels", packs ? generic_sincos + sincos_kernel(kernel_prefix, "inline", "std::") : ""},
-                 {"enums", enums(names)},
-                 {"info", string_literal(info_json(program, context), "      ")},
+                 {"enums", enums(names, program.prepared_count())},
+                 {"prepared", program.prepared_count() > 0 ? prepared_struct : ""},
+                {"info", string_literal(info_json(program, context), "      ")},
                  {"defaults", defaults_body(program, context, dialect)},
-                 {"selftest", selftest_body(program, context, "rhs<double>", "nullptr", dialect)}},
+                 {"selftest", selftest_body(program, context, [](const std::string& f) { return f + "<double>"; }, "nullptr", dialect)}},
                 functions)}};
   for (EmittedFile& file : emit_c(program, context)) files.push_back(std::move(file));
   return files;

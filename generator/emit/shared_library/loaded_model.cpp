@@ -37,6 +37,8 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   find(handle_, name + "_info", information);
   find(handle_, name + "_defaults", defaults);
   find(handle_, name + "_rhs", rhs);
+  find(handle_, name + "_prepare", prepare);
+  find(handle_, name + "_rhs_prepared", rhs_prepared);
   find(handle_, name + "_jac", jac);
   find(handle_, name + "_jac_p", jac_p);
   find(handle_, name + "_mass", mass);
@@ -66,6 +68,8 @@ LoadedModel::LoadedModel(LoadedModel&& other) noexcept { *this = std::move(other
 
 LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
   rhs = other.rhs;
+  prepare = other.prepare;
+  rhs_prepared = other.rhs_prepared;
   jac_p = other.jac_p;
   reactions = other.reactions;
   outputs = other.outputs;

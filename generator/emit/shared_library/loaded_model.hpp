@@ -9,6 +9,9 @@
 namespace eomgen::emit {
 
 using RhsFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dx);
+using PrepareFunction = int (*)(const double* p, double* w);
+using PreparedRhsFunction = int (*)(double t, const double* x, const double* p, const double* w, const double* u, int mode,
+                                    double* dx);
 using JacobianFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
                                  double* dfdt);
 using MassFunction = int (*)(double t, const double* x, const double* p, double* M, double* h);
@@ -27,6 +30,8 @@ class LoadedModel {
   LoadedModel& operator=(const LoadedModel&) = delete;
 
   RhsFunction rhs = nullptr;
+  PrepareFunction prepare = nullptr;           // null too where nothing is worth preparing
+  PreparedRhsFunction rhs_prepared = nullptr;  // there with `prepare`
   RhsFunction jac_p = nullptr;      // dfdp in place of dx
   RhsFunction reactions = nullptr;  // lambda in place of dx
   RhsFunction outputs = nullptr;    // y in place of dx

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Which arguments each function of the ABI takes (docs/abi.md).
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "emit/straight_line.hpp"
+
+namespace eomgen::emit {
+
+struct Argument {
+  enum class Kind : std::uint8_t { number, input, mode, result } kind;  // Real, const Real*, int, Real*
+  program::Slot slot = program::Slot::constant;  // what is read from it; constant: nothing
+  std::string name;
+};
+
+/// With the names that `text` and `names` give to them.
+std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names);
+
+/// "int NAME(double t, const double* x, ...)".
+std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
+                          const ModelNames& names, const std::string& real);
+
+/// "t, x, p, u, mode, dx": to hand them on.
+std::string argument_names(const program::Function& function, const FunctionText& text, const ModelNames& names);
+
+}  // namespace eomgen::emit
