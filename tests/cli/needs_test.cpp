@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Only what is asked for is emitted: requests and models that differ in one need differ in that symbol, that operation.
+#include <doctest/doctest.h>
+
+#include <set>
+#include <sstream>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+/// The functions that a user can call and the operations of the right-hand side.
+struct Emitted {
+  std::set<std::string> functions;  // without NAME_
+  std::string source;
+  Json report;
+
+  int operations() const {
+    int sum = 0;
+    for (const auto& [kind, count] : report["operations"].items()) sum += count.get<int>();
+    return sum;
+  }
+  std::string function(const std::string& name) const {  // its text, with that of the functions made for it
+    const std::size_t begin = source.find("_" + name + "_from(") != std::string::npos ? source.find("_" + name + "_from(")
+                                                                                      : source.find("_" + name + "(");
+    return source.substr(begin, source.find("\n}\n", begin) - begin);
+  }
+};
+
+Emitted emitted(const std::string& model, const Words& more = {}) {
+  const Folder folder;
+  Words words{"emit", model, "-o", ".", "--target", "c"};
+  std::string name = model;
+  if (contains(model, "\n")) {
+    name = "model";
+    folder.write("model.toml", model);
+    words[1] = "model.toml";
+  }
+  words.insert(words.end(), more.begin(), more.end());
+  Emitted result;
+  result.report = document(folder, words);
+  result.source = folder.read(name + ".c");
+  REQUIRE(run_child({{"cc", "-std=c11", "-O2", "-c", name + ".c"}, folder.path()}).status == 0);
+  const ChildResult symbols = run_child({{"nm", "-g", "--defined-only", name + ".o"}, folder.path()});
+  REQUIRE(symbols.status == 0);
+  std::istringstream lines(symbols.out);
+  for (std::string address, type, symbol; lines >> address >> type >> symbol;) {
+    REQUIRE(symbol.starts_with(name + "_"));
+    result.functions.insert(symbol.substr(name.size() + 1));
+  }
+  return result;
+}
+
+using Names = std::set<std::string>;
+Names with(Names names, const Names& more) {
+  names.insert(more.begin(), more.end());
+  return names;
+}
+
+const Names always{"abi", "info", "defaults", "rhs", "selftest"};
+const Names prepared{"prepare", "rhs_prepared"};
+
+std::string cart(const std::string& input, const std::string& force) {
+  return "format = 1\n[parameters]\nM = \"2 kg\"\nk = \"3 N/m\"\n" + input +
+         "[coordinates]\ns = \"m\"\n[energy]\nkinetic = \"M/2*s_dot^2\"\npotential = \"k/2*s^2\"\n" + force +
+         "[scene.default]\nt = [0, 1]\ninitial = { s = 1 }\n";
+}
+
+}  // namespace
+
+TEST_CASE("needs: a function that is asked for adds its symbol and leaves the right-hand side as it is") {
+  const Emitted bare = emitted("P7_moving_sphere");
+  CHECK(bare.functions == with(always, bare.report["hoisted"].is_null() ? Names{} : prepared));
+  CHECK_FALSE(contains(bare.source, "lambda"));
+  for (const auto& [words, function] : {std::pair<Words, std::string>{{"--with", "reactions"}, "reactions"},
+                                        {{"--with", "jac"}, "jac"},
+                                        {{"--with", "jac_p"}, "jac_p"},
+                                        {{"--with", "mass"}, "mass"},
+                                        {{"--with", "constraints"}, "constraints"},
+                                        {{"--output", "energy"}, "outputs"}}) {
+    CAPTURE(function);
+    const Emitted more = emitted("P7_moving_sphere", words);
+    CHECK(more.functions == with(bare.functions, {function}));
+    CHECK(more.function("rhs") == bare.function("rhs"));
+    CHECK(more.report["operations"] == bare.report["operations"]);
+  }
+}
+
+TEST_CASE("needs: parameters that are fixed are not read, and what is made of them is a number") {
+  const Emitted open = emitted("S5_double_pendulum"), fixed = emitted("S5_double_pendulum", {"--fix", "m1,m2,L1,L2,g"});
+  CHECK(open.functions == with(always, prepared));
+  CHECK(fixed.functions == always);  // nothing is left to prepare
+  CHECK(fixed.operations() < open.operations());
+  CHECK(contains(open.function("rhs"), " = p["));
+  CHECK_FALSE(contains(fixed.function("rhs"), " = p["));
+  CHECK(fixed.report["hoisted"].is_null());
+}
+
+TEST_CASE("needs: what is prepared is not done again") {
+  const Emitted open = emitted("S5_double_pendulum");
+  const auto cost = [](const Json& operations) { return operations["add"].get<int>() + operations["mul"].get<int>() + operations["div"].get<int>(); };
+  CHECK(cost(open.report["hoisted"]["rhs_prepared"]) < cost(open.report["operations"]));
+  CHECK(cost(open.report["hoisted"]["prepare"]) > 0);
+}
+
+TEST_CASE("needs: without an input none is read, and its operation is gone") {
+  const Emitted driven = emitted(cart("[inputs]\nF = { unit = \"N\", default = 0 }\n", "[[force]]\ngeneralized = { s = \"F\" }\n"));
+  const Emitted free = emitted(cart("", ""));
+  CHECK(driven.functions == free.functions);
+  CHECK(contains(driven.function("rhs"), "u ? u[0]"));
+  CHECK_FALSE(contains(free.function("rhs"), "u ?"));
+  CHECK(driven.operations() == free.operations() + 1);
+}
+
+TEST_CASE("needs: only where a chart is singular is that tested, and only where one divides") {
+  const Emitted spherical = emitted("G1_spherical"), cartesian = emitted("G1_cartesian");
+  CHECK(contains(spherical.function("rhs"), "return 1;"));
+  CHECK_FALSE(contains(cartesian.function("rhs"), "return 1;"));
+  CHECK(cartesian.operations() == 0);  // a diagonal mass matrix of equal masses: no solve at all
+}
+
+TEST_CASE("needs: a kernel for sines comes with two angles, not with one") {
+  const Emitted one = emitted("S6_chain_1"), two = emitted("S6_chain_2");
+  CHECK_FALSE(contains(one.source, "sincos"));
+  CHECK_FALSE(contains(one.source, "string.h"));
+  CHECK(contains(two.source, "S6_chain_2_sincos("));
+  CHECK(contains(one.function("rhs"), " sin("));
+}
