@@ -31,6 +31,16 @@ Polynomials tested(Polynomials graph) {
   return flatten(graph, false);
 }
 
+/// The optimised program; factors that only optimising has brought out of a pivot and its scale are cancelled.
+Polynomials optimised(const std::vector<Polynomials>& graphs) {
+  Polynomials best = optimise(graphs);
+  while (true) {
+    Polynomials again = tested(best);
+    if (count_operations(again).cost() >= count_operations(best).cost()) return best;
+    best = std::move(again);
+  }
+}
+
 /// The function as it was derived, and with small products multiplied out.
 std::vector<Polynomials> starts(const AbiFunctions& functions, const WantedFunction& wanted) {
   const system::EquationSystem& system = functions.system();
@@ -91,7 +101,7 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
     if (static_cast<double>(candidate.raw_cost) > worth_optimising * static_cast<double>(cheapest)) continue;
-    candidate.best = optimise(candidate.starts);
+    candidate.best = optimised(candidate.starts);
     candidate.operations = count_operations(candidate.best);
     if (!best || candidate.operations.cost() < candidates[*best].operations.cost()) best = i;
   }
@@ -164,7 +174,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.functions.push_back(finished(chosen.best, chosen.rhs));
   const auto add = [&](const WantedFunction& wanted) {
     const std::vector<Polynomials> graphs = starts(*chosen.functions, wanted);
-    program.functions.push_back(finished(request.optimise ? optimise(graphs) : graphs[0], wanted));
+    program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
   };
   for (const std::string& name : request.with) {
     if (name == "outputs" || name == "rhs") continue;  // by the names asked for; always
