@@ -57,25 +57,28 @@ bool Judge::is_independent_parameter(std::size_t index) const {
 }
 
 std::vector<Real> Judge::default_parameters() const {
-  Environment environment;
   std::vector<Real> values;
-  for (const model::Parameter& parameter : model_.parameters) {
-    Interpreter reader(model_, environment, precision_);  // of numbers and earlier parameters
-    values.push_back(precision_.round(reader.scalar(parameter.value).real()));
-    environment.parameters.emplace_back(values.back());
+  for (std::size_t i = 0; i < model_.parameters.size(); ++i) {
+    const bool number = is_independent_parameter(i);
+    values.push_back(number ? precision_.round(constant(model_.parameters[i].value, {})) : Real(0));
   }
+  values = parameters(std::move(values));
+  for (Real& value : values) value = precision_.round(value);
   return values;
 }
 
+// Parameters may use one another in any order of the file, without cycles: each round settles some.
 std::vector<Real> Judge::parameters(std::vector<Real> given) const {
   given.resize(model_.parameters.size(), Real(0));
-  Environment environment;
-  for (std::size_t i = 0; i < given.size(); ++i) {
-    if (!is_independent_parameter(i)) {
-      Interpreter reader(model_, environment, precision_);  // parameters are expressions of earlier ones
-      given[i] = reader.scalar(model_.parameters[i].value).real();
+  std::vector<bool> known;
+  for (std::size_t i = 0; i < given.size(); ++i) known.push_back(is_independent_parameter(i));
+  const auto unknown = [&](const model::Node& node) { return node.op == model::Op::parameter && !known[node.index]; };
+  for (std::size_t round = 0; round < given.size(); ++round) {
+    for (std::size_t i = 0; i < given.size(); ++i) {
+      if (known[i] || uses(model_, model_.parameters[i].value, unknown)) continue;
+      given[i] = constant(model_.parameters[i].value, given);
+      known[i] = true;
     }
-    environment.parameters.emplace_back(given[i]);
   }
   return given;
 }

@@ -253,3 +253,18 @@ t = [0, 2]
 initial = { r = 2, phi = 1, alpha = 0.4 }
 )toml");
 }
+
+TEST_CASE("features: parameters that use ones which come later in the file, over several steps") {
+  check_passes(R"toml(
+[parameters]
+k = "2*c/m"
+c = "b*b"
+b = 3
+m = 0.5
+[coordinates]
+x = {}
+[energy]
+kinetic = "m/2*x_dot^2"
+potential = "k*x^2/2"
+)toml");
+}
