@@ -8,6 +8,8 @@
 
 #include "cli/locate.hpp"
 #include "derive/routes.hpp"
+#include "print/notation.hpp"
+#include "print/printer.hpp"
 #include "print/render.hpp"
 #include "program/interpret.hpp"
 #include "reading/reading.hpp"
@@ -162,6 +164,11 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const model::Parameter& p = model.parameters[i];
     context.parameters.push_back({p.name, p.unit.text, p.note, scene.parameters[i]});
+    const symbolic::Ref formula = derived.mechanics.parameter_value[i];
+    if (derived.mechanics.dag->symbols({formula}).empty()) continue;
+    if (const auto written = reading::as_written(model, p.value)) {
+      context.parameters.back().expression = print::print(*written, print::Notation(derived.mechanics), print::Format::language);
+    }
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {
     const model::Input& input = model.inputs[i];

@@ -11,8 +11,9 @@ namespace eomgen::emit {
 struct Quantity {
   std::string name;
   std::string unit;  // "m/s^2", "1"; empty where unknown
-  std::string note;  // of the user's, or the expression of a dependent parameter
+  std::string note;  // of the user's
   double value = 0;  // parameters and inputs: the default
+  std::string expression = {};  // of a parameter that depends on others, in the language of model files
 };
 
 /// A right-hand side in full precision, for the self test.

@@ -152,6 +152,11 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["modes"] = {"smooth"};
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};
+  json dependent = json::object();
+  for (const Quantity& p : context.parameters) {
+    if (!p.expression.empty()) dependent[p.name] = p.expression;
+  }
+  if (!dependent.empty()) info["dependent"] = dependent;
   if (!context.start_parameter.empty()) info["start_parameter"] = context.start_parameter;
   info["approach"] = approach_name(program.approach);
   info["route"] = program.route;

@@ -10,7 +10,7 @@ using namespace test_systems;
 
 namespace {
 
-void compiles_and_imports(const Example& e) {
+void compiles_and_imports(const Example& e, const std::string& more = "pass") {
   const Folder folder;
   const Setting cache("EOMGEN_CACHE_DIR", folder.path);
   const auto files = emit::emit(e.program, e.context, "python");
@@ -25,8 +25,8 @@ void compiles_and_imports(const Example& e) {
   const std::string use = fmt::format(
       "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{0}'); import {1} as m; "
       "assert len(m.rhs(0, m.defaults['x'])) == len(m.states) == {2}; assert len(m.params) == {3}; "
-      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'", folder.path, name, e.context.start.size(),
-      e.context.parameters.size());
+      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'; {4}", folder.path, name, e.context.start.size(),
+      e.context.parameters.size(), more);
   const emit::Finished finished = emit::run_process({"python3", "-c", use});
   CHECK_MESSAGE(finished.status == 0, finished.output);
 }
@@ -46,4 +46,14 @@ TEST_CASE("target python: hostile names and texts stay what they are") {
   e.context.parameters[0].note = "\nexit(8)";
   e.context.parameters[1].unit = "'); exit(9)  # \xff";
   compiles_and_imports(e);
+}
+
+TEST_CASE("target python: a dict of parameters changes those that depend on them too, whatever their names") {
+  auto e = example("dependent", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
+  e.context.parameters[0].expression = "import^2 + if(numpy < 3, main, sqrt(4))";
+  e.context.parameters[1].expression = "2*None";
+  compiles_and_imports(e,
+                       "p = m._parameters({'None': 1.5, 'numpy': 1, 'main': 5}); assert list(p[:2]) == [14, 3], p; "
+                       "p = m._parameters({'import': 7, 'numpy': 4}); assert list(p[:2]) == [51, 7], p; "
+                       "p = m._parameters([1, 2, 3, 4, 5]); assert list(p) == [1, 2, 3, 4, 5], p");
 }
