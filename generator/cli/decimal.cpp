@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "error.hpp"
+#include "model/names.hpp"
 
 namespace eomgen::cli {
 
@@ -50,6 +51,18 @@ symbolic::Rational parse_decimal(const std::string& text, const std::string& sho
   const symbolic::Rational mantissa = cln::cl_I(digits.c_str());
   const symbolic::Rational value = mantissa * cln::expt(symbolic::Rational(10), static_cast<int>(exponent));
   return negative ? -value : value;
+}
+
+std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command, const std::vector<std::string>& assignments) {
+  std::map<std::string, symbolic::Rational> result;
+  for (const std::string& assignment : assignments) {
+    const std::size_t equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw Error(command, {}, fmt::format("{} sets nothing", model::quote(assignment)), "write --set NAME=VALUE, such as --set m=2.5");
+    }
+    result[assignment.substr(0, equals)] = parse_decimal(assignment.substr(equals + 1), assignment);
+  }
+  return result;
 }
 
 std::string decimal_text(const symbolic::Rational& value) {

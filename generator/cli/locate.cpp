@@ -76,9 +76,13 @@ std::string locate_model(const std::string& name) {
               hint.empty() ? "eomgen new NAME writes a starter model" : fmt::format("did you mean {}?", hint));
 }
 
+void tell_warnings(const model::Model& model) {
+  for (const Warning& warning : model.warnings) fmt::print(stderr, "{}", format_warning(warning));
+}
+
 model::Model load_model(const std::string& name) {
   model::Model model = model::read_model(locate_model(name));
-  for (const Warning& warning : model.warnings) fmt::print(stderr, "{}", format_warning(warning));
+  tell_warnings(model);
   return model;
 }
 

@@ -12,7 +12,10 @@ namespace eomgen::cli {
 /// did-you-mean where there is no such model.
 std::string locate_model(const std::string& name);
 
-/// Reads it and prints its warnings to standard error.
+/// Prints what the reader warned of to standard error.
+void tell_warnings(const model::Model& model);
+
+/// Reads it and tells its warnings.
 model::Model load_model(const std::string& name);
 
 }  // namespace eomgen::cli

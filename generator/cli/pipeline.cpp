@@ -42,7 +42,7 @@ void require_freedom(const mechanics::Mechanics& m) {
   throw Error("derive", m.model->where(last.span),
               m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
                              : "there are as many constraints as coordinates: nothing is left to move, unless constraints repeat one another",
-              "remove a constraint; eomgen derive shows the constraint forces of a motion that is prescribed");
+              "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
 }
 
 verify::ProgramForm program_form(const program::Program& program, int digits) {
@@ -130,6 +130,10 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
     if (form.by_parts) continue;
     subjects.reading.push_back({fmt::format("reading form {}", system::name(approach)),
                                 reading::residuals_on_dag(form, derived.mechanics)});
+  }
+  if (options.reductions) {
+    const reading::RouthForm routh = reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
+    subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
   }
   subjects.programs.push_back(program_form(program, options.digits));
   if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);

@@ -46,6 +46,7 @@ struct Verification {
   std::uint64_t seed = 1;
   const verify::CompiledForm* compiled = nullptr;
   std::map<std::uint32_t, symbolic::Rational> fixed = {};  // as the program was asked for
+  bool reductions = false;  // Routh's too, which no code is made of
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 

@@ -14,6 +14,7 @@ std::span<const Command> commands() {
       Command{"verify", "every derivation against an independent judge", declare_verify},
       Command{"emit", "C and C++ sources, or a LaTeX document", declare_emit},
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
+      Command{"inverse", "the forces that prescribed motions need", declare_inverse},
   };
   return entries;
 }

@@ -18,7 +18,10 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
   }
   for (const char* name : {"energy", "kinetic", "potential"}) add(name);
   if (watch_power) add("power");
-  for (const derive::Conserved& c : derived.conserved) add(c.name);
+  for (const derive::Conserved& c : derived.conserved) {
+    add(c.name);
+    if (c.magnitude) add(derive::magnitude_output(c));
+  }
   for (const mechanics::Integral& i : derived.mechanics.integrals) {
     for (const std::uint32_t q : derived.mechanics.free) add(derive::differential_output(i, derived.model.coordinates[q].name));
     add(derive::differential_output(i, "t"));
@@ -46,7 +49,10 @@ bool energy_is_conserved(const Derived& derived) {
 
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
-  for (const derive::Conserved& c : derived.conserved) run.conserved.push_back(c.name);
+  for (const derive::Conserved& c : derived.conserved) {
+    run.conserved.push_back(c.name);
+    run.magnitudes.push_back(c.magnitude ? derive::magnitude_output(c) : "");
+  }
   for (const mechanics::Integral& i : derived.mechanics.integrals) {
     run::IntegralOutputs names{"integral." + i.label, {}};
     for (const std::uint32_t q : derived.mechanics.free) {
@@ -63,6 +69,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach);
   mechanics::Mechanics& mechanics = derived->mechanics;
+  const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), request.overrides);
   run::choose_solver(scene.solver, scene);  // a wrong name is told before anything is compiled
@@ -70,6 +77,9 @@ Simulation simulate(const SimulationRequest& request) {
   const bool watch_power = !energy_is_conserved(*derived);
   program::Request wanted;
   wanted.outputs = code_outputs(*derived, scene, watch_power);
+  for (const std::string& name : prepared) {
+    if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end()) wanted.outputs.push_back(name);
+  }
   if (!system.active.empty()) wanted.with = {"mass", "constraints"};
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});

@@ -19,6 +19,8 @@ struct SimulationRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   bool estimate = true;
   std::uint64_t seed = 1;
+  /// Called once the model is derived: may add outputs to every candidate, and returns those that the code is to have.
+  std::function<std::vector<std::string>(Derived&)> prepare;
   /// Called once everything is derived and checked, before the compiler is called.
   std::function<void()> ready;
   /// Called before the first row with the names of all that the rows hold (at least the coordinates with their rates,

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/conserved.hpp"
 
+#include <algorithm>
+
+#include "derive/conservative.hpp"
 #include "derive/equations.hpp"
+#include "derive/momenta.hpp"
 #include "mechanics/vanishes.hpp"
+#include "symbolic/polynomial.hpp"
 
 namespace eomgen::derive {
 
@@ -13,15 +18,61 @@ std::string differential_output(const mechanics::Integral& integral, const std::
   return std::string(differential_prefix) + integral.label + "." + variable;
 }
 
+const char* name(Certainty certainty) {
+  switch (certainty) {
+    case Certainty::no: return "no";
+    case Certainty::numerical: return "numerical";
+    case Certainty::proven: break;
+  }
+  return "proven";
+}
+
+Ref shorter(Dag& dag, Ref expression) {
+  symbolic::Expander expand(dag);
+  return expand(expression).value_or(expression);
+}
+
+Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
+  if (!mechanics::vanishes(dag, expressions)) return Certainty::no;
+  const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(shorter(dag, r)); };
+  return std::all_of(expressions.begin(), expressions.end(), is_empty) ? Certainty::proven : Certainty::numerical;
+}
+
+std::string magnitude_output(const Conserved& conserved) { return magnitude_prefix + conserved.name; }
+
+namespace {
+
+/// Forces that are not in U and yet have a potential.
+struct Applied {
+  Ref potential;
+  std::vector<Ref> Q;  // of the other forces
+};
+
+Applied applied_potentials(Mechanics& m) {
+  Applied result{m.dag->zero(), generalized_forces(m)};
+  const std::vector<ForceClass> forces = classify_forces(m);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (forces[k].in_energy || forces[k].conservative != Verdict::yes || !forces[k].potential) continue;
+    result.potential = m.dag->add(result.potential, m.dag->sub(*forces[k].potential, m.potential_by_force[k]));
+    for (std::size_t i = 0; i < result.Q.size(); ++i) result.Q[i] = m.dag->sub(result.Q[i], m.force_components[k][i]);
+  }
+  return result;
+}
+
+}  // namespace
+
 std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Conserved> result;
-  if (mechanics::vanishes(dag, {s.power})) result.push_back({"energy", "total energy T + U", s.energy});
+  if (const Certainty c = vanishing(dag, {s.power}); c != Certainty::no) result.push_back({"energy", "total energy T + U", s.energy, c});
   // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = impose(m), written = write_out(m);
-  std::vector<Ref> Q = generalized_forces(m);
-  Ref jacobi = dag.neg(L);
+  const bool energy_conserved = !result.empty();
+  const std::vector<Ref> Q = generalized_forces(m);
+  const Applied applied = energy_conserved ? Applied{dag.zero(), Q} : applied_potentials(m);
+  const Ref V = written(imposed(applied.potential));
+  Ref jacobi = dag.sub(V, L);
   Ref input_power = dag.zero();
   for (std::size_t row = 0; row < s.free.size(); ++row) {
     const std::uint32_t i = s.free[row];
@@ -29,21 +80,23 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     const Ref force = written(imposed(Q[i]));
     const Ref rate = s.dag->symbol({SymbolKind::coordinate, i, 1});
     jacobi = dag.add(jacobi, dag.mul(rate, p));
-    input_power = dag.add(input_power, dag.mul(force, rate));
+    input_power = dag.add(input_power, dag.mul(written(imposed(applied.Q[i])), rate));
     std::vector<Ref> must_vanish{symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(L), force};
     for (std::size_t k = 0; k < s.active.size(); ++k) must_vanish.push_back(s.A[k * s.free.size() + row]);
-    if (!mechanics::vanishes(dag, must_vanish)) continue;
+    const Certainty certainty = vanishing(dag, must_vanish);
+    if (certainty == Certainty::no) continue;
     const std::string& name = m.model->coordinates[i].name;
-    result.push_back({"momentum." + name, "generalised momentum of " + name, p});
+    result.push_back({"momentum." + name, "generalised momentum of " + name, p, certainty, i});
     s.outputs.push_back({result.back().name, p});
   }
-  const bool energy_conserved = !result.empty() && result.front().name == "energy";
   std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
-  must_vanish.push_back(symbolic::explicit_time(dag, m.model->functions.size())(L));
+  must_vanish.push_back(symbolic::explicit_time(dag, m.model->functions.size())(dag.sub(L, V)));
   must_vanish.push_back(input_power);
-  if (!energy_conserved && mechanics::vanishes(dag, must_vanish)) {
-    result.push_back({"jacobi", "Jacobi integral T2 - T0 + U", jacobi});
-    s.outputs.push_back({"jacobi", jacobi});
+  if (const Certainty c = energy_conserved ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
+    const bool plain = dag.is_zero(V);
+    result.push_back({plain ? "jacobi" : "energy.applied",
+                      plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces", jacobi, c});
+    s.outputs.push_back({result.back().name, jacobi});
   }
   symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
   for (const mechanics::Integral& integral : m.integrals) {
@@ -56,6 +109,19 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
       s.outputs.push_back({differential_output(integral, m.model->coordinates[i].name), slope});
     }
     s.outputs.push_back({differential_output(integral, "t"), written(by_time(integral.psi))});
+  }
+  for (Conserved& momentum : conserved_momenta(m, s, result)) {
+    s.outputs.push_back({momentum.name, momentum.expression});
+    s.outputs.push_back({magnitude_output(momentum), *momentum.magnitude});
+    result.push_back(std::move(momentum));
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved) {
+  std::vector<std::uint32_t> result;
+  for (const Conserved& c : conserved) {
+    if (c.cyclic) result.push_back(*c.cyclic);
   }
   return result;
 }

@@ -3,6 +3,8 @@
 // Jacobi integral where the energy itself is not conserved (docs/theory.md, "Conserved quantities").
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,17 +13,36 @@
 
 namespace eomgen::derive {
 
+/// How far it is certain that an expression vanishes for all values of its symbols.
+enum class Certainty { no, numerical, proven };
+const char* name(Certainty certainty);  // "no", "numerical", "proven"
+
+/// `proven`: multiplied out, nothing is left; `numerical`: zero in 40 digits at random points.
+Certainty vanishing(symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
+
+/// Multiplied out with sin^2 + cos^2 = 1 used, where that is not too long; else as it is.
+symbolic::Ref shorter(symbolic::Dag& dag, symbolic::Ref expression);
+
 struct Conserved {
-  std::string name;   // "energy", "momentum.theta", "jacobi"; also the name of the output
+  std::string name;   // "energy", "momentum.theta", "jacobi", "linear_momentum.E1"; also the name of the output
   std::string title;  // for reading
   symbolic::Ref expression;  // in the symbols of the EquationSystem
+  Certainty certainty = Certainty::numerical;
+  std::optional<std::uint32_t> cyclic = {};  // the coordinate whose generalised momentum it is
+  std::optional<symbolic::Ref> magnitude = {};  // size of the terms that it is the sum of, for the drift of a run
 };
 
 /// Output that is d psi/d q, or d psi/d t for "t", of an integral: for projections, not for tables.
 std::string differential_output(const mechanics::Integral& integral, const std::string& variable);
 inline constexpr const char* differential_prefix = "differential.";
 
-/// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of constraints).
+inline constexpr const char* magnitude_prefix = "magnitude.";
+std::string magnitude_output(const Conserved& conserved);  // for runs, not for tables
+
+/// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of constraints),
+/// and for magnitudes.
 std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
+
+std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved);
 
 }  // namespace eomgen::derive

@@ -14,6 +14,9 @@ struct Statement {
   reading::Formula formula;
 };
 
+struct Item;  // render.hpp
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
+
 /// The statements that `show` names, in a fixed order of keys.
 std::vector<Statement> statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                                   const std::vector<std::string>& show);

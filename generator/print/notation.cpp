@@ -6,6 +6,8 @@
 #include <cctype>
 #include <utility>
 
+#include "reading/routh.hpp"
+
 namespace eomgen::print {
 namespace {
 
@@ -63,12 +65,14 @@ Glyph split_name(std::string_view name) {
 
 Notation::Notation(const mechanics::Mechanics& mechanics)
     : model_(mechanics.model), multipliers_(mechanics.constraints.size()), multiplier_letter_("lambda") {
-  const auto taken = [](const auto& list) {
-    return std::any_of(list.begin(), list.end(), [](const auto& e) { return split_name(e.name).base == "lambda"; });
+  const auto taken = [&](const char* letter) {
+    const auto in = [&](const auto& list) {
+      return std::any_of(list.begin(), list.end(), [&](const auto& e) { return split_name(e.name).base == letter; });
+    };
+    return in(model_->parameters) || in(model_->coordinates) || in(model_->functions) || in(model_->inputs);
   };
-  if (taken(model_->parameters) || taken(model_->coordinates) || taken(model_->functions) || taken(model_->inputs)) {
-    multiplier_letter_ = "mu";
-  }
+  if (taken("lambda")) multiplier_letter_ = "mu";
+  if (taken("p")) momentum_letter_ = "Pi";
 }
 
 Glyph Notation::multiplier(std::uint32_t constraint) const {
@@ -94,7 +98,9 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
       return named(model_->coordinates[symbol.index].name, model_->coordinates[symbol.index].tex);
     case SymbolKind::multiplier: return multiplier(symbol.index);
     case SymbolKind::integral: return split_name("I_" + std::to_string(symbol.index + 1));
-    case SymbolKind::extra: break;
+    case SymbolKind::extra:
+      if (symbol != reading::momentum_symbol(symbol.index)) break;
+      return split_name(momentum_letter_ + "_" + model_->coordinates[symbol.index].name);
   }
   return split_name("e_" + std::to_string(symbol.index + 1));
 }

@@ -37,6 +37,7 @@ class Notation {
  private:
   const model::Model* model_;
   std::size_t multipliers_;
+  std::string momentum_letter_ = "p";  // p_theta: the constant of a cyclic coordinate; Pi where a model has a p
   std::string multiplier_letter_;  // mu where a model has a lambda of its own
 };
 

@@ -5,11 +5,10 @@
 
 namespace eomgen::print {
 
-std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
-                         const std::vector<std::string>& show) {
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& all) {
   const Notation notation(mechanics);
   std::vector<Item> items;
-  for (const Statement& statement : statements(mechanics, form, show)) {
+  for (const Statement& statement : all) {
     Item item;
     item.key = statement.key;
     item.name = statement.name;
@@ -21,6 +20,11 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::R
     items.push_back(std::move(item));
   }
   return items;
+}
+
+std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                         const std::vector<std::string>& show) {
+  return render(mechanics, statements(mechanics, form, show));
 }
 
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, const reading::Sum& expression) {

@@ -7,6 +7,7 @@
 
 #include "print/printer.hpp"
 #include "reading/reading.hpp"
+#include "reading/routh.hpp"
 
 namespace eomgen::print {
 
@@ -22,6 +23,9 @@ struct Item {
 /// The items that `show` names (keys, or "all"); "equations" brings the explicit form along.
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                          const std::vector<std::string>& show);
+
+/// Routh's reduction under the key "routh": constant momenta, the rates that they give, the Routhian, the reduced equations.
+std::vector<Item> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);
 
 /// Any expression of the Dag, simplified for reading: potentials, conserved quantities.
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression);

@@ -112,7 +112,7 @@ class TextStyle final : public Style {
     if (word.starts_with("det ")) return "det(" + word.substr(4) + "_ik)";
     if (!word.starts_with("cal ")) return word;
     const std::string rest = word.substr(5);
-    return (word[4] == 'T' ? "kinetic" : word[4] == 'U' ? "potential" : "Lagrangian") + rest;
+    return (word[4] == 'T' ? "kinetic" : word[4] == 'U' ? "potential" : word[4] == 'R' ? "Routhian" : "Lagrangian") + rest;
   }
   static std::string joined(const std::vector<std::string>& parts, const char* separator) {
     std::string result;

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <eom/error_estimate.hpp>
@@ -31,6 +32,8 @@ class Watch {
       conserved_.push_back(index_of(names, name));
       drifts_.emplace_back(name);
     }
+    for (const std::string& name : request.magnitudes) magnitudes_.push_back(name.empty() ? no_output : index_of(names, name));
+    magnitudes_.resize(conserved_.size(), no_output);
     const std::vector<double> x = integration.initial_state();
     between_.resize(x.size());
     see(request.scene.t0, x.data());
@@ -80,8 +83,8 @@ class Watch {
     integration_.outputs(t, x, y_);
     const double magnitude = std::abs(y_[kinetic_]) + std::abs(y_[potential_]);
     for (std::size_t i = 0; i < conserved_.size(); ++i) {
-      const bool energy = conserved_[i] == energy_;
-      drifts_[i].see(y_[conserved_[i]], energy ? magnitude : 0);
+      const double terms = magnitudes_[i] == no_output ? 0 : y_[magnitudes_[i]];
+      drifts_[i].see(y_[conserved_[i]], conserved_[i] == energy_ ? magnitude : terms);
     }
     const double work = request_.watch_power ? x[2 * request_.code.free.size() + request_.code.integrals] : 0;
     balance_.see(y_[energy_] - integration_.work, work, magnitude);
@@ -126,7 +129,8 @@ class Watch {
   Integration& integration_;
   std::vector<double> y_, between_;
   std::size_t kinetic_ = 0, potential_ = 0, energy_ = 0;
-  std::vector<std::size_t> conserved_;
+  static constexpr std::size_t no_output = static_cast<std::size_t>(-1);
+  std::vector<std::size_t> conserved_, magnitudes_;
   std::vector<eom::Drift> drifts_;
   eom::PowerBalance balance_;
   double defect_ = 0;
@@ -220,7 +224,11 @@ RunResult integrate_scene(const RunRequest& request) {
   result.projection_work = integration.work;
   std::vector<double> y(request.code.output_names.size());
   integration.outputs(end.t, end.x.data(), y);
-  for (std::size_t i = 0; i < y.size(); ++i) result.final.emplace_back(request.code.output_names[i], y[i]);
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    const std::string& name = request.code.output_names[i];
+    const auto& sizes = request.magnitudes;
+    if (std::find(sizes.begin(), sizes.end(), name) == sizes.end()) result.final.emplace_back(name, y[i]);
+  }
   if (request.estimate && result.outcome == eom::Outcome::done) estimate_error(request, end, options, result);
   return result;
 }

@@ -76,6 +76,7 @@ struct RunRequest {
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
   std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
+  std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
 };
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.

@@ -221,7 +221,8 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
   Eigen::MatrixXd M = Eigen::Map<const Eigen::MatrixXd>(values.data(), n, n);
   if (!M.allFinite()) return;  // told by what has no value
   const Eigen::VectorXd scale = M.diagonal().cwiseSqrt();
-  bool regular = scale.size() == 0 || scale.minCoeff() > 0;
+  if (scale.size() == 0) return;  // nothing is free
+  bool regular = scale.minCoeff() > 0;
   if (regular) {
     M = scale.cwiseInverse().asDiagonal() * M * scale.cwiseInverse().asDiagonal();
     const Eigen::LDLT<Eigen::MatrixXd> factors(M);
@@ -311,7 +312,8 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     bool found = coordinates.contains(want.name);
     for (const system::Output& output : system.outputs) {
       const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      const bool of_all = want.name == "all" && !output.name.starts_with(derive::differential_prefix);
+      const bool table = !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix);
+      const bool of_all = want.name == "all" && table;
       if (!of_all && output.name != want.name && !part) continue;
       take(output.name);
       found = true;
@@ -319,7 +321,7 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     if (!found) {
       std::string names;
       for (const system::Output& output : system.outputs) {
-        if (!coordinates.contains(output.name)) names += (names.empty() ? "" : ", ") + output.name;
+        if (!coordinates.contains(output.name) && !output.name.starts_with(derive::magnitude_prefix)) names += (names.empty() ? "" : ", ") + output.name;
       }
       const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};
       throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");

@@ -205,7 +205,8 @@ void Points::project_positions(State& s) const {
       s.q[i] = s.q[i] + step[i];
       size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
     }
-    if (size > 1000) break;
+    // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a scale.
+    if (iteration > 0 && size > 1000) break;
     if (size < small) return;
   }
   throw Unfit("no configuration on the constraints was found");

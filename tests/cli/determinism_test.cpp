@@ -45,6 +45,12 @@ std::vector<Files> emit_repeatedly(const Words& words) {
   return result;
 }
 
+// Nothing to integrate, so no code: the equations for reading instead.
+bool is_prescribed(const std::string& model) {
+  const Folder folder;
+  return document(folder, {"check", model})["dof"] == 0;
+}
+
 void same_everywhere(const std::string& model, const Words& words, std::size_t files) {
   CAPTURE(model);
   const std::vector<Files> all = emit_repeatedly(words);
@@ -61,10 +67,16 @@ void same_everywhere(const std::string& model, const Words& words, std::size_t f
 
 TEST_CASE("every shipped model emits equal bytes in five fresh processes") {
   for (const std::string& model : shipped_models()) {
+    if (is_prescribed(model)) {
+      same_everywhere(model, {"derive", model, "--show", "all", "--json"}, 0);
+      continue;
+    }
     same_everywhere(model, {"emit", model, "-o", "out", "--with", "jac,reactions,outputs", "--output", "energy"}, 3);
   }
 }
 
 TEST_CASE("every shipped model's document has equal bytes in five fresh processes") {
-  for (const std::string& model : shipped_models()) same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
+  for (const std::string& model : shipped_models()) {
+    if (!is_prescribed(model)) same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
+  }
 }

@@ -75,6 +75,7 @@ const std::map<std::string, json>& right_documents() {
           {"power_balance", 1e-12},
           {"constraint_drift", 1e-14},
           {"events", {{{"t", 0.5}, {"kind", "stop"}, {"name", "floor"}}}}}},
+        {"inverse", {{"format", 1}, {"columns", {"t", "R", "R_dot", "force.R"}}, {"file", "P10_rocket_inverse.csv"}}},
     };
   }();
   return documents;

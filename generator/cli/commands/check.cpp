@@ -49,9 +49,13 @@ json constraints_of(const mechanics::Mechanics& m) {
 json forces_of(mechanics::Mechanics& m) {
   json result = json::array();
   for (const derive::ForceClass& force : derive::classify_forces(m)) {
-    const json potential = force.has_potential ? json(shown(m, force.potential)) : json(nullptr);
-    result.push_back({{"name", force.name}, {"conservative", derive::name(force.conservative)}, {"potential", potential},
-                      {"reason", force.reason}});
+    json domain = json::array();
+    for (const derive::DomainCondition& c : force.domain) domain.push_back(shown(m, c.expression) + " " + c.relation);
+    std::string reason = force.reason;
+    if (force.work) reason += ", of " + shown(m, *force.work) + " each time";
+    result.push_back({{"name", force.name}, {"conservative", derive::name(force.conservative)},
+                      {"potential", force.potential ? json(shown(m, *force.potential)) : json(nullptr)}, {"domain", domain},
+                      {"many_valued", force.many_valued}, {"in_energy", force.in_energy}, {"reason", reason}});
   }
   return result;
 }
@@ -84,7 +88,8 @@ json examine(const model::Model& model) {
     every_unit = every_unit && p.unit.dimension.has_value();
   }
   for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
-    conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)}});
+    conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)},
+                         {"certainty", derive::name(c.certainty)}});
   }
   for (const Warning& w : model.warnings) {
     warnings.push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
@@ -127,12 +132,16 @@ void print_readable(const json& found) {
   if (!found["forces"].empty()) heading("forces");
   for (const json& f : found["forces"]) {
     fmt::print("  {:<20} conservative: {}", text(f["name"]), text(f["conservative"]));
-    if (!f["potential"].is_null()) fmt::print(", U = {}", text(f["potential"]));
+    if (!f["potential"].is_null()) fmt::print(", {}U = {}", f["many_valued"].get<bool>() ? "locally " : "", text(f["potential"]));
+    for (const json& condition : f["domain"]) fmt::print("{}{}", &condition == &f["domain"].front() ? " where " : ", ", text(condition));
     if (!text(f["reason"]).empty()) fmt::print(" ({})", text(f["reason"]));
     fmt::print("\n");
   }
   if (!found["conserved"].empty()) heading("conserved");
-  for (const json& c : found["conserved"]) fmt::print("  {:<20} {} = {}\n", text(c["name"]), text(c["title"]), text(c["expression"]));
+  for (const json& c : found["conserved"]) {
+    fmt::print("  {:<20} {} = {}{}\n", text(c["name"]), text(c["title"]), text(c["expression"]),
+               c["certainty"] == "numerical" ? "   (shown by numbers)" : "");
+  }
   if (!found["singular"].empty()) heading("singular sets");
   for (const json& s : found["singular"]) fmt::print("  {:<20} (approach {})\n", text(s["set"]), text(s["approach"]));
   fmt::print("\nunits: {}\n", text(found["units"]));

@@ -14,5 +14,6 @@ Execute declare_derive(CLI::App& app);
 Execute declare_verify(CLI::App& app);
 Execute declare_emit(CLI::App& app);
 Execute declare_run(CLI::App& app);
+Execute declare_inverse(CLI::App& app);
 
 }  // namespace eomgen::cli

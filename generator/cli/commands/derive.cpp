@@ -25,7 +25,7 @@ struct Options {
 
 const std::vector<std::string>& show_keys() {
   static const std::vector<std::string> keys{"basis", "metric", "christoffel", "line_element", "frenet", "energies", "lagrangian",
-                                             "equations", "constraints", "reactions", "conserved", "singular", "linear", "all"};
+                                             "equations", "constraints", "reactions", "conserved", "singular", "routh", "linear", "all"};
   return keys;
 }
 
@@ -56,7 +56,7 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : show_keys()) {
     const bool wanted = std::find(show.begin(), show.end(), key) != show.end() ||
-                        (all && key != "linear");
+                        (all && key != "linear" && key != "routh");
     if (wanted && key != "all") result[key] = json::array();  // also where there turns out to be nothing to show
   }
   for (const print::Item& item : items) {
@@ -108,6 +108,17 @@ void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::strin
   }
 }
 
+// Only on request: it is another form of the equations that `all` shows already.
+void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
+  if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
+  system::EquationSystem system = derive::routes().front().derive(mechanics, system::Approach::two);
+  const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(derive::conserved_quantities(mechanics, system));
+  const reading::RouthForm form = reading::routh_form(mechanics, cyclic);
+  if (cyclic.empty()) fmt::print(stderr, "no coordinate is cyclic: there is nothing to reduce\n");
+  if (form.by_parts) fmt::print(stderr, "the reduction is too long to be written out, or the momenta do not give the rates\n");
+  for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
+}
+
 int execute(const Options& options, const Common& common) {
   require_keys(options.show);
   require_format(options.format);
@@ -120,6 +131,7 @@ int execute(const Options& options, const Common& common) {
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
   std::vector<print::Item> items = print::render(mechanics, form, options.show);
   add_conserved(mechanics, options.show, items);
+  add_routh(mechanics, options.show, items);
   if (common.json) {
     print_document(to_json(items, system::name(approach), options.show));
   } else {

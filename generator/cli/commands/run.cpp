@@ -15,7 +15,6 @@
 #include "cli/run_report.hpp"
 #include "cli/simulate.hpp"
 #include "cli/usage.hpp"
-#include "model/names.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -30,13 +29,7 @@ struct Options {
 
 run::Overrides overrides_of(const Options& options) {
   run::Overrides o;
-  for (const std::string& assignment : options.set) {
-    const std::size_t equals = assignment.find('=');
-    if (equals == std::string::npos || equals == 0) {
-      throw Error("run", {}, fmt::format("{} sets nothing", model::quote(assignment)), "write --set NAME=VALUE, such as --set m=2.5");
-    }
-    o.parameters[assignment.substr(0, equals)] = parse_decimal(assignment.substr(equals + 1), assignment);
-  }
+  o.parameters = parse_assignments("run", options.set);
   o.rtol = options.rtol;
   o.atol = options.atol;
   o.step = options.step;

@@ -53,6 +53,7 @@ int execute(const Options& options, const Common& common) {
   std::unique_ptr<Derived> derived = derive_model(options.model, ApproachChoice::automatic);
   const program::Program program = make_program(*derived, {});
   Verification verification{options.digits, static_cast<std::size_t>(options.points), common.seed, nullptr};
+  verification.reductions = true;
   std::optional<CompiledCode> code;
   verify::CompiledForm compiled;
   if (!options.no_compile) {

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all masses:
+// with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt.
+#include "derive/momenta.hpp"
+
+#include <cmath>
+
+#include "derive/equations.hpp"
+#include "derive/sample.hpp"
+#include "mechanics/vanishes.hpp"
+#include "symbolic/evaluate.hpp"
+#include "symbolic/factorisation.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+/// The least-squares solution of J x = d, if it is one: J is rows x n, row-major.
+bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std::size_t n) {
+  std::vector<double> N(n * n), y(n);
+  double size = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t r = 0; r < d.size(); ++r) {
+      y[i] += J[r * n + i] * d[r];
+      for (std::size_t k = 0; k < n; ++k) N[i * n + k] += J[r * n + i] * J[r * n + k];
+    }
+    size = std::max(size, N[i * n + i]);
+  }
+  for (std::size_t p = 0; p < n; ++p) {  // symmetric and positive definite: no pivoting
+    if (!(N[p * n + p] > 1e-10 * size)) return false;
+    for (std::size_t i = p + 1; i < n; ++i) {
+      const double factor = N[i * n + p] / N[p * n + p];
+      for (std::size_t k = p; k < n; ++k) N[i * n + k] -= factor * N[p * n + k];
+      y[i] -= factor * y[p];
+    }
+  }
+  for (std::size_t p = n; p-- > 0;) {
+    for (std::size_t k = p + 1; k < n; ++k) y[p] -= N[p * n + k] * y[k];
+    y[p] /= N[p * n + p];
+  }
+  double residual = 0, length = 0;
+  for (std::size_t r = 0; r < d.size(); ++r) {
+    double rest = d[r];
+    for (std::size_t i = 0; i < n; ++i) rest -= J[r * n + i] * y[i];
+    residual = std::max(residual, std::abs(rest));
+    length = std::max(length, std::abs(d[r]));
+  }
+  return residual <= 1e-5 * length;  // a screening: what passes is decided in many digits
+}
+
+class Search {
+ public:
+  Search(Mechanics& m, const system::EquationSystem& s) : m_(m), s_(s), dag_(*m.dag), n_(s.free.size()) {
+    symbolic::Substitution imposed = impose(m), written = write_out(m);
+    const auto all = [&](const Vec3& v) { return Vec3{written(imposed(v[0])), written(imposed(v[1])), written(imposed(v[2]))}; };
+    for (const mechanics::PointMass& mass : m.masses) {
+      mass_.push_back(written(mass.mass));
+      r_.push_back(all(mass.position));
+      v_.push_back(all(mass.velocity));
+    }
+    for (const Vec3& r : r_) {
+      for (const Ref x : r) {
+        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(x));
+      }
+    }
+    const std::vector<Ref> Q = generalized_forces(m);
+    for (const std::uint32_t i : s.free) {
+      const Ref slope = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(s.potential);
+      force_.push_back(dag_.sub(written(imposed(Q[i])), slope));
+    }
+  }
+
+  std::optional<Conserved> component(bool angular, std::size_t k) {
+    const std::vector<Ref> d = displacement(angular, k);
+    if (mechanics::vanishes(dag_, d) || !may_be_in_range(d)) return std::nullopt;
+    const Certainty certainty = vanishing(dag_, conditions(d));
+    if (certainty == Certainty::no) return std::nullopt;
+    Conserved result;
+    const std::string along = "E" + std::to_string(k + 1);
+    result.name = (angular ? "angular_momentum." : "linear_momentum.") + along;
+    result.title = (angular ? "angular momentum about the origin along " : "linear momentum along ") + along;
+    result.certainty = certainty;
+    Ref expression = dag_.zero(), magnitude = dag_.zero();
+    for (std::size_t p = 0; p < r_.size(); ++p) {
+      const Vec3 of{d[3 * p], d[3 * p + 1], d[3 * p + 2]};
+      expression = dag_.add(expression, dag_.mul(mass_[p], dot(dag_, of, v_[p])));
+      Ref squares = dot(dag_, v_[p], v_[p]);
+      if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
+      magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
+    }
+    result.expression = expression;
+    result.magnitude = magnitude;
+    return result;
+  }
+
+ private:
+  std::vector<Ref> displacement(bool angular, std::size_t k) const {
+    std::vector<Ref> d;
+    for (const Vec3& r : r_) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!angular) d.push_back(c == k ? dag_.one() : dag_.zero());
+        else if (c == k) d.push_back(dag_.zero());
+        else d.push_back(c == (k + 1) % 3 ? dag_.neg(r[(k + 2) % 3]) : r[(k + 1) % 3]);  // E_k x r
+      }
+    }
+    return d;
+  }
+
+  bool may_be_in_range(const std::vector<Ref>& d) const {
+    std::vector<Ref> both = J_;
+    both.insert(both.end(), d.begin(), d.end());
+    for (std::uint64_t point = 1; point <= 4; ++point) {
+      std::vector<double> value = symbolic::evaluate(dag_, both, [=](const Symbol& s) { return sample_value(s, point); });
+      if (!std::all_of(value.begin(), value.end(), [](double x) { return std::isfinite(x); })) continue;
+      const auto end = value.begin() + static_cast<std::ptrdiff_t>(J_.size());
+      return is_in_range({value.begin(), end}, {end, value.end()}, n_);
+    }
+    return false;
+  }
+
+  // What has to vanish: J xi - d, the work on xi, and the work of the constraint forces on it.
+  std::vector<Ref> conditions(const std::vector<Ref>& d) {
+    std::vector<Ref> N(n_ * n_, dag_.zero()), y(n_, dag_.zero());
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t r = 0; r < d.size(); ++r) {
+        y[i] = dag_.add(y[i], dag_.mul(J_[r * n_ + i], d[r]));
+        for (std::size_t k = 0; k < n_; ++k) N[i * n_ + k] = dag_.add(N[i * n_ + k], dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
+      }
+    }
+    for (Ref& entry : N) entry = shorter(dag_, entry);  // orthogonal coordinates leave a diagonal
+    const symbolic::Factorisation factors(dag_, N, n_, symbolic::Ties::ascending);
+    const std::vector<Ref> xi = factors.backward(factors.forward(y));
+    std::vector<Ref> result;
+    for (std::size_t r = 0; r < d.size(); ++r) result.push_back(dag_.sub(along(xi, J_, r), d[r]));
+    result.push_back(along(xi, force_, 0));
+    for (std::size_t k = 0; k < s_.active.size(); ++k) result.push_back(along(xi, s_.A, k));
+    return result;
+  }
+
+  Ref along(const std::vector<Ref>& xi, const std::vector<Ref>& matrix, std::size_t row) const {
+    Ref sum = dag_.zero();
+    for (std::size_t i = 0; i < n_; ++i) sum = dag_.add(sum, dag_.mul(matrix[row * n_ + i], xi[i]));
+    return sum;
+  }
+
+  Mechanics& m_;
+  const system::EquationSystem& s_;
+  Dag& dag_;
+  std::size_t n_;
+  std::vector<Ref> mass_, J_, force_;
+  std::vector<Vec3> r_, v_;
+};
+
+bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression, Dag& work) {
+  return std::any_of(known.begin(), known.end(), [&](const Conserved& c) {
+    return mechanics::vanishes(dag, {work.sub(c.expression, expression)}) || mechanics::vanishes(dag, {work.add(c.expression, expression)});
+  });
+}
+
+}  // namespace
+
+std::vector<Conserved> conserved_momenta(Mechanics& m, const system::EquationSystem& s, const std::vector<Conserved>& known) {
+  std::vector<Conserved> all = known, found;
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > most_coordinates) return found;
+  Search search(m, s);
+  for (const bool angular : {false, true}) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::optional<Conserved> c = search.component(angular, k);
+      if (!c || mechanics::vanishes(*m.dag, {c->expression}) || repeats(*m.dag, all, c->expression, *m.dag)) continue;
+      found.push_back(*c);
+      all.push_back(*c);
+    }
+  }
+  return found;
+}
+
+}  // namespace eomgen::derive

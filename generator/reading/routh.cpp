@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/routh.hpp"
+
+#include <algorithm>
+
+#include "reading/approaches.hpp"
+#include "reading/rational_function.hpp"
+#include "reading/small_matrix.hpp"
+#include "reading/trig.hpp"
+#include "reading/zero_test.hpp"
+
+namespace eomgen::reading {
+namespace {
+
+using mechanics::Mechanics;
+
+bool is_in(const std::vector<std::uint32_t>& list, std::uint32_t i) { return std::find(list.begin(), list.end(), i) != list.end(); }
+
+// M_ck of the cyclic coordinates from their momenta; false where these are not linear in the rates, or do not give them.
+bool solve_rates(Bridge& bridge, RouthForm& form) {
+  const std::size_t n = form.cyclic.size();
+  std::map<Symbol, Sum> at_rest;
+  for (const std::uint32_t c : form.cyclic) at_rest[coordinate_symbol(c, 1)] = Sum();
+  std::vector<Sum> inertia, right;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (const std::uint32_t c : form.cyclic) inertia.push_back(simplify(bridge.derivative(form.momenta[i], coordinate_symbol(c, 1))));
+    right.push_back(Sum(bridge.alphabet().atom(momentum_symbol(form.cyclic[i]))) - bridge.substitute(form.momenta[i], at_rest));
+  }
+  for (const Sum& entry : inertia) {
+    for (const std::uint32_t c : form.cyclic) {
+      if (contains(entry, coordinate_symbol(c, 1))) return false;
+    }
+  }
+  if (zero_test(determinant(inertia, n)) != Zero::no) return false;
+  const std::vector<Sum> inverse = inverse_matrix(inertia, n);
+  for (std::size_t i = 0; i < n; ++i) {
+    Sum rate;
+    for (std::size_t k = 0; k < n; ++k) rate += inverse[i * n + k] * right[k];
+    form.rates.push_back(simplify(cancel(rate)));
+  }
+  return true;
+}
+
+void reduce(const Mechanics& m, Bridge& bridge, RouthForm& form) {
+  ReadingForm whole;
+  whole.approach = system::Approach::two;
+  approach_two(m, bridge, whole);
+  for (const std::uint32_t c : form.cyclic) {
+    form.momenta.push_back(simplify(bridge.derivative(whole.lagrangian, coordinate_symbol(c, 1))));
+  }
+  if (!solve_rates(bridge, form)) {
+    form.by_parts = true;
+    return;
+  }
+  std::map<Symbol, Sum> values = imposed_values(m, bridge), rates;
+  Sum L = whole.lagrangian;
+  for (std::size_t i = 0; i < form.cyclic.size(); ++i) rates[coordinate_symbol(form.cyclic[i], 1)] = form.rates[i];
+  form.routhian = bridge.substitute(L, rates);
+  for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
+    form.routhian -= Sum(bridge.alphabet().atom(momentum_symbol(form.cyclic[i]))) * form.rates[i];
+  }
+  form.routhian = simplify(cancel(form.routhian));
+  values.insert(rates.begin(), rates.end());  // forces may depend on the rates that have left
+  Sum energy = -form.routhian;
+  for (const std::uint32_t i : m.free) {
+    if (is_in(form.cyclic, i)) continue;
+    form.equations.push_back(lagrange_equation(m, bridge, form.routhian, i, values));
+    energy += Sum(bridge.alphabet().atom(coordinate_symbol(i, 1))) * form.equations.back().momentum;
+  }
+  if (bridge.explicit_derivative(form.routhian).is_zero()) form.energy = simplify(cancel(energy));
+}
+
+}  // namespace
+
+Symbol momentum_symbol(std::uint32_t coordinate) { return {SymbolKind::extra, coordinate, 3}; }
+
+RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic) {
+  RouthForm form;
+  form.cyclic = cyclic;
+  Bridge bridge(m);
+  try {
+    reduce(m, bridge, form);
+  } catch (const TermBudget&) {
+    form.by_parts = true;
+  }
+  if (form.by_parts) form = RouthForm{true, cyclic, {}, {}, {}, {}, {}};
+  return form;
+}
+
+std::vector<symbolic::Ref> residuals_on_dag(const RouthForm& form, Mechanics& m) {
+  std::vector<symbolic::Ref> result;
+  if (form.by_parts || form.cyclic.empty()) return result;
+  symbolic::Dag& dag = *m.dag;
+  symbolic::Derivation ddt = symbolic::total_time(dag, m.q.size(), m.model->functions.size());
+  std::map<Symbol, symbolic::Ref> momenta;
+  for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
+    const symbolic::Ref p = to_dag(dag, form.momenta[i]);
+    momenta[momentum_symbol(form.cyclic[i])] = p;
+    result.push_back(ddt(p));
+  }
+  symbolic::Substitution written(dag, momenta);
+  ReadingForm reduced;
+  reduced.equations = form.equations;
+  for (const symbolic::Ref r : residuals_on_dag(reduced, m)) result.push_back(written(r));
+  return result;
+}
+
+}  // namespace eomgen::reading
