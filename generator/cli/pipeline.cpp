@@ -11,6 +11,7 @@
 #include "print/notation.hpp"
 #include "print/printer.hpp"
 #include "print/render.hpp"
+#include "program/constrained_solve.hpp"
 #include "program/interpret.hpp"
 #include "reading/reading.hpp"
 
@@ -43,6 +44,48 @@ void require_freedom(const mechanics::Mechanics& m) {
               m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
                              : "there are as many constraints as coordinates: nothing is left to move, unless constraints repeat one another",
               "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
+}
+
+// The candidates in the forms that are wanted.
+void take_forms(Derived& derived, FormChoice choice) {
+  if (choice == system::Form::multipliers) return;
+  std::vector<system::EquationSystem> others;
+  for (const system::EquationSystem& candidate : derived.candidates) {
+    if (candidate.active.empty() || candidate.quasi || candidate.solution) continue;
+    for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
+      if (choice && *choice != form) continue;
+      if (!program::form_applies(candidate, form, !choice)) continue;
+      others.push_back(candidate);
+      others.back().form = form;
+    }
+  }
+  if (choice && others.empty()) {
+    const bool any = !derived.mechanics.active.empty();
+    throw Error("derive", Where{derived.model.file, 0, 0, 1, ""},
+                any ? fmt::format("the constraints of this model hang together in blocks that are too large for form '{}'", system::name(*choice))
+                    : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none", system::name(*choice)),
+                any ? "leave --form out, or choose multipliers" : "leave --form out");
+  }
+  if (choice) derived.candidates.clear();
+  for (system::EquationSystem& other : others) derived.candidates.push_back(std::move(other));
+}
+
+// The other forms, as they come out of the derivation: all must say the same.
+std::vector<program::Program> other_forms(const Derived& derived, const program::Program& program, const std::map<std::uint32_t, symbolic::Rational>& fixed) {
+  std::vector<program::Program> result;
+  for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
+    if (form == program.form || derived.mechanics.active.empty()) continue;
+    std::vector<system::EquationSystem> one{derived.candidates.front()};
+    one[0].form = form;
+    one[0].quasi.reset();
+    one[0].solution.reset();
+    if (!program::form_applies(one[0], form, false)) continue;
+    program::Request request;
+    request.optimise = false;
+    request.fix = fixed;
+    result.push_back(program::build_program(one, request));
+  }
+  return result;
 }
 
 verify::ProgramForm program_form(const program::Program& program, int digits) {
@@ -91,7 +134,17 @@ ApproachChoice approach_choice(const std::string& text) {
   throw Error("cli", {}, fmt::format("there is no approach '{}'", text), "choose auto, I or II");
 }
 
-std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach) {
+FormChoice form_choice(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
+    if (text == system::name(form)) return form;
+  }
+  const bool later = text == "routh";
+  throw Error("cli", {}, later ? fmt::format("form '{}' is not supported yet", text) : fmt::format("there is no form '{}'", text),
+              "choose auto, multipliers, nullspace or chaplygin");
+}
+
+std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach, FormChoice form) {
   auto derived = std::make_unique<Derived>();
   Stopwatch watch;
   derived->model = load_model(name);
@@ -107,6 +160,7 @@ std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice ap
   for (system::EquationSystem& system : derived->candidates) {
     derived->conserved = derive::conserved_quantities(derived->mechanics, system);
   }
+  take_forms(*derived, form);
   derived->seconds.derive = watch.lap();
   return derived;
 }
@@ -136,6 +190,11 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
     subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
   }
   subjects.programs.push_back(program_form(program, options.digits));
+  const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
+  for (const program::Program& form : forms) {
+    subjects.programs.push_back(program_form(form, options.digits));
+    subjects.programs.back().name = fmt::format("form {}", system::name(form.form));
+  }
   if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);
   const verify::Certificate certificate =
       verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed});

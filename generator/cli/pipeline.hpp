@@ -4,6 +4,7 @@
 
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,10 @@ struct Timings {
 enum class ApproachChoice { automatic, one, two };
 ApproachChoice approach_choice(const std::string& text);  // "auto", "I", "II"; throws Error
 
+/// Nothing: the cheapest of those that hold everywhere.
+using FormChoice = std::optional<system::Form>;
+FormChoice form_choice(const std::string& text);  // "auto", "multipliers", "nullspace", "chaplygin"; throws Error
+
 struct Derived {
   model::Model model;
   mechanics::Mechanics mechanics;
@@ -34,7 +39,7 @@ struct Derived {
 };
 
 /// Reads, builds, derives. On the heap, since Mechanics points to its Model.
-std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach);
+std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach, FormChoice form = std::nullopt);
 
 /// The cheapest program of the candidates; counts its time.
 program::Program make_program(Derived& derived, const program::Request& request);

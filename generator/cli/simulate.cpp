@@ -67,7 +67,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 }  // namespace
 
 Simulation simulate(const SimulationRequest& request) {
-  std::unique_ptr<Derived> derived = derive_model(request.model, request.approach);
+  std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
   const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();

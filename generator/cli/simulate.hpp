@@ -17,6 +17,7 @@ struct SimulationRequest {
   std::string model, scene = "default";
   run::Overrides overrides;
   ApproachChoice approach = ApproachChoice::automatic;
+  FormChoice form = std::nullopt;
   bool estimate = true;
   std::uint64_t seed = 1;
   /// Called once the model is derived: may add outputs to every candidate, and returns those that the code is to have.

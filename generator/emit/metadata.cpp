@@ -78,6 +78,11 @@ std::string operations_text(const program::Operations& o) {
 
 const char* approach_name(system::Approach approach) { return approach == system::Approach::one ? "I" : "II"; }
 
+const char* form_name(system::Form form) {
+  if (form == system::Form::multipliers) return "multipliers";
+  return form == system::Form::nullspace ? "nullspace" : "chaplygin";
+}
+
 }  // namespace
 
 std::vector<std::string> banner_lines(const program::Program& program, const EmissionContext& context) {
@@ -160,6 +165,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   if (!context.start_parameter.empty()) info["start_parameter"] = context.start_parameter;
   info["approach"] = approach_name(program.approach);
   info["route"] = program.route;
+  if (program.active_constraints > 0) info["form"] = form_name(program.form);
   info["verdict"] = context.verdict;
   info["singular"] = context.singular;
   for (const program::Function& function : program.functions) {

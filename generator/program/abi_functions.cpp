@@ -73,8 +73,8 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   solution_ = std::make_unique<Substitution>(dag, std::move(solution));
 }
 
-const Solve& AbiFunctions::solve() {
-  if (!solve_) solve_ = std::make_unique<Solve>(system_, ties_);
+const LinearSolve& AbiFunctions::solve() {
+  if (!solve_) solve_ = make_solve(system_, ties_);
   return *solve_;
 }
 

@@ -53,10 +53,10 @@ class AbiFunctions {
   system::EquationSystem system_;
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
-  const Solve& solve();  // made when first needed: a system that is solved already may never ask
+  const LinearSolve& solve();  // made when first needed: a system that is solved already may never ask
 
   Ties ties_ = Ties::ascending;
-  std::unique_ptr<Solve> solve_;
+  std::unique_ptr<LinearSolve> solve_;
   std::vector<Ref> qddot_, lambda_;
   std::unique_ptr<symbolic::Substitution> solution_;
 };

@@ -115,7 +115,7 @@ std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::ve
   for (const Candidate& candidate : candidates) {
     const system::EquationSystem& system = systems[candidate.index];
     if (last != candidate.index) {
-      result.push_back({system.route, system.approach, candidate.operations});
+      result.push_back({system.route, system.approach, system.form, candidate.operations});
     } else if (candidate.operations.cost() < result.back().operations.cost()) {
       result.back().operations = candidate.operations;
     }
@@ -168,6 +168,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   for (const system::IntegralState& integral : system.integrals) program.integrals.push_back(integral.integral);
   program.route = system.route;
   program.approach = system.approach;
+  program.form = system.form;
   program.tried = tried(candidates, systems);
   program.active_constraints = system.active.size();
   program.holonomic = system.holonomic;

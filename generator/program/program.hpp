@@ -63,6 +63,7 @@ struct Function {
 struct Tried {
   std::string route;
   system::Approach approach = system::Approach::two;
+  system::Form form = system::Form::multipliers;
   Operations operations;
 };
 
@@ -79,6 +80,7 @@ struct Program {
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
   system::Approach approach = system::Approach::two;
+  system::Form form = system::Form::multipliers;
   std::vector<Function> functions;  // rhs first; last `prepare` and `rhs_prepared` where they save work
   std::vector<Tried> tried;
   std::vector<std::string> reactions;  // labels, in the order of the array lambda

@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "program/constrained_solve.hpp"
 #include "program/polynomials.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -109,6 +110,11 @@ std::pair<std::vector<Ref>, std::vector<Ref>> Solve::from(std::vector<Ref> z, co
     }
   }
   return {backward(z), lambda};
+}
+
+std::unique_ptr<LinearSolve> make_solve(const system::EquationSystem& system, Ties ties) {
+  if (system.form == system::Form::multipliers) return std::make_unique<Solve>(system, ties);
+  return std::make_unique<ConstrainedSolve>(system, ties);
 }
 
 std::vector<Pivot> Solve::pivots() const {

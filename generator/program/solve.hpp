@@ -24,16 +24,31 @@ using symbolic::Factorisation;
 using symbolic::Pivot;
 using symbolic::Ties;
 
+/// x and lambda.
+using Unknowns = std::pair<std::vector<Ref>, std::vector<Ref>>;
+
+/// The solver of one EquationSystem, in one of the forms.
+class LinearSolve {
+ public:
+  virtual ~LinearSolve() = default;
+  /// x, lambda of M x = r + A^T lambda, A x = c.
+  virtual Unknowns operator()(std::vector<Ref> r, const std::vector<Ref>& c) const = 0;
+  /// qddot, lambda of the equations of motion themselves.
+  virtual Unknowns motion() const = 0;
+  virtual std::vector<Pivot> pivots() const = 0;
+};
+
+/// By system.form.
+std::unique_ptr<LinearSolve> make_solve(const system::EquationSystem& system, Ties ties);
+
 /// The solver of one EquationSystem for any right-hand side.
-class Solve {
+class Solve : public LinearSolve {
  public:
   explicit Solve(const system::EquationSystem& system, Ties ties = Ties::ascending);
 
-  /// x, lambda of M x = r + A^T lambda, A x = c.
-  std::pair<std::vector<Ref>, std::vector<Ref>> operator()(std::vector<Ref> r, const std::vector<Ref>& c) const;
-  /// qddot, lambda of the equations of motion themselves.
-  std::pair<std::vector<Ref>, std::vector<Ref>> motion() const;
-  std::vector<Pivot> pivots() const;
+  Unknowns operator()(std::vector<Ref> r, const std::vector<Ref>& c) const override;
+  Unknowns motion() const override;
+  std::vector<Pivot> pivots() const override;
   bool augmented() const { return augmented_; }
 
  private:

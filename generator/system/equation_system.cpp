@@ -5,4 +5,13 @@ namespace eomgen::system {
 
 const char* name(Approach approach) { return approach == Approach::one ? "I" : "II"; }
 
+const char* name(Form form) {
+  switch (form) {
+    case Form::nullspace: return "nullspace";
+    case Form::chaplygin: return "chaplygin";
+    case Form::multipliers: break;
+  }
+  return "multipliers";
+}
+
 }  // namespace eomgen::system

@@ -21,6 +21,11 @@ using symbolic::Ref;
 enum class Approach { one, two };
 const char* name(Approach approach);  // "I", "II"
 
+/// How the equations are solved where constraints keep multipliers: by the Schur complement A M^-1 A^T, on a null space of
+/// A, or with the dependent velocities solved for.
+enum class Form { multipliers, nullspace, chaplygin };
+const char* name(Form form);  // "multipliers", "nullspace", "chaplygin"
+
 /// lambda of one constraint. For the active ones the bare multiplier symbol; for eliminated ones an expression in
 /// qddot (free) and the multipliers of the active constraints (the "(b)" equations of Approach I).
 struct Reaction {
@@ -57,6 +62,7 @@ struct EquationSystem {
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
   Approach approach = Approach::two;
+  Form form = Form::multipliers;
 
   std::vector<std::uint32_t> free;    // n coordinates of the model, ascending; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> active;  // m constraints with multipliers

@@ -8,6 +8,7 @@
 
 #include "error.hpp"
 #include "program/abi_functions.hpp"
+#include "program/constrained_solve.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/tolerances.hpp"
@@ -146,4 +147,41 @@ TEST_CASE("solve: the pivot test sees a matrix that is singular, and only then")
   CHECK(vanishes(0, 0));
   CHECK_FALSE(vanishes(1e-6, 0));
   CHECK_FALSE(vanishes(0, 0.01));
+}
+
+TEST_CASE("the null space and Chaplygin forms give what the full system gives, multipliers too, without inertia in one direction too") {
+  const Maker k;
+  const auto square = [](Scalar x) { return x * x; };
+  for (const bool massless : {false, true}) {
+    Scalar T = k.number(1, 2) * (k.p(0) * square(k.q(0, 1)) + k.p(1) * square(k.q(1, 1)) + k.q(0) * k.q(0, 1) * k.q(2, 1) + k.number(2) * square(k.q(2, 1)));
+    if (!massless) T = T + square(k.q(3, 1)) * k.p(0);
+    system::EquationSystem system = lagrange(k, 4, T, k.p(2) * k.q(0) * k.q(3) + square(k.q(1)), {k.q(1), k.number(1), k.q(0, 1), k.q(2)});
+    constrain(system, k, "a", k.q(0) * k.q(1) + square(k.q(3)) + k.q(2) * k.p(1));
+    for (const bool second : {false, true}) {
+      if (second) constrain(system, k, "b", k.cos(k.q(0)) + k.q(1) * k.q(3) - k.q(2));
+      for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
+        system.form = form;
+        REQUIRE(program::form_applies(system, form, false));
+        check_against_eigen(system);
+      }
+    }
+  }
+}
+
+TEST_CASE("which forms hold everywhere: minors of one column more than rows, or a determinant that cannot vanish") {
+  const Maker k;
+  const auto square = [](Scalar x) { return x * x; };
+  const Scalar T = square(k.q(0, 1)) + square(k.q(1, 1)) + square(k.q(2, 1));
+  system::EquationSystem two = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});
+  constrain(two, k, "a", square(k.q(0)) + square(k.q(1)));
+  CHECK(program::form_applies(two, system::Form::nullspace, true));
+  CHECK_FALSE(program::form_applies(two, system::Form::chaplygin, true));
+  CHECK(program::form_applies(two, system::Form::chaplygin, false));
+  system::EquationSystem three = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});
+  constrain(three, k, "a", square(k.q(0)) + square(k.q(1)) + square(k.q(2)));
+  CHECK_FALSE(program::form_applies(three, system::Form::nullspace, true));
+  system::EquationSystem linear = lagrange(k, 3, T, k.number(0), {k.number(0), k.number(0), k.number(0)});
+  constrain(linear, k, "a", square(k.q(0)) + square(k.q(1)) + k.q(2));
+  CHECK(program::form_applies(linear, system::Form::nullspace, true));
+  CHECK(program::form_applies(linear, system::Form::chaplygin, true));
 }

@@ -84,13 +84,6 @@ void require_target(const std::string& target) {
   throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), choice_of(target, known));
 }
 
-void require_form(const std::string& form) {
-  if (form == "auto" || form == "multipliers") return;
-  const bool known = form == "nullspace" || form == "chaplygin" || form == "routh";
-  throw Error("emit", {}, known ? fmt::format("form '{}' is not supported yet", form) : fmt::format("there is no form {}", model::quote(form)),
-              "choose auto or multipliers");
-}
-
 int emit_document(const Options& options, const Common& common) {
   const auto derived = derive_model(options.model, ApproachChoice::automatic);
   if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty()) {
@@ -122,11 +115,11 @@ int execute(const Options& options, const Common& common) {
     return 0;
   }
   require_target(options.target);
-  require_form(options.form);
+  const FormChoice form = form_choice(options.form);
   require_with(options.with);
   const ApproachChoice approach = approach_choice(options.approach);
   if (options.target == "latex") return emit_document(options, common);
-  const auto derived = derive_model(options.model, approach);
+  const auto derived = derive_model(options.model, approach, form);
   const run::Scene scene =
       run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
   const program::Request request = request_of(options, *derived, scene);
@@ -140,8 +133,8 @@ int execute(const Options& options, const Common& common) {
   const Timings& seconds = derived->seconds;
   if (common.json) {
     json tried = json::array();
-    for (const program::Tried& t : program.tried) tried.push_back({{"route", t.route}, {"approach", system::name(t.approach)}, {"operations", to_json(t.operations)}});
-    const json document{{"format", 1}, {"files", files}, {"route", program.route}, {"approach", system::name(program.approach)},
+    for (const program::Tried& t : program.tried) tried.push_back({{"route", t.route}, {"approach", system::name(t.approach)}, {"form", system::name(t.form)}, {"operations", to_json(t.operations)}});
+    const json document{{"format", 1}, {"files", files}, {"route", program.route}, {"approach", system::name(program.approach)}, {"form", system::name(program.form)},
                         {"tried", tried}, {"operations", to_json(program.functions.front().operations)},
                         {"hoisted", hoisted(program)},
                         {"certificate", certificate.summary()},
@@ -150,14 +143,16 @@ int execute(const Options& options, const Common& common) {
     print_document(document);
     return 0;
   }
-  fmt::print("route       {}, approach {}\n", program.route, system::name(program.approach));
+  const bool constrained = program.active_constraints > 0;
+  const auto with_form = [constrained](system::Form f) { return constrained ? fmt::format(", form {}", system::name(f)) : ""; };
+  fmt::print("route       {}, approach {}{}\n", program.route, system::name(program.approach), with_form(program.form));
   fmt::print("operations  {}\n", to_text(program.functions.front().operations));
   if (program.prepared_count() > 0) {
     fmt::print("prepared    {}, after {} once for the parameters\n", to_text(program.functions.back().operations),
                to_text(program.functions.rbegin()[1].operations));
   }
   for (const program::Tried& t : program.tried) {
-    fmt::print("tried       {:<10} {:<3} {}\n", t.route, system::name(t.approach), to_text(t.operations));
+    fmt::print("tried       {:<10} {:<3} {}{}\n", t.route, system::name(t.approach), to_text(t.operations), with_form(t.form));
   }
   fmt::print("certificate {}\n", certificate.summary());
   for (const std::string& file : files) fmt::print("wrote {}\n", file);
@@ -175,7 +170,8 @@ Execute declare_emit(CLI::App& app) {
            "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), energy");
   add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
-  app.add_option("--form", options->form, "auto or multipliers")->capture_default_str();
+  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin: how constraints that stay are solved")
+      ->capture_default_str();
   app.add_flag("--print-name", options->print_name, "only prints NAME, which the model's file gives to files and symbols");
   add_list(app, "--fix", options->fix, "parameters that become numbers");
   return [options](const Common& common) { return execute(*options, common); };

@@ -20,7 +20,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options {
-  std::string model, scene = "default", out, plot, approach = "auto";
+  std::string model, scene = "default", out, plot, approach = "auto", form = "auto";
   std::vector<std::string> set, outputs;
   std::optional<double> rtol, atol, step, t_end, every;
   std::optional<std::string> solver;
@@ -152,6 +152,7 @@ int execute(const Options& options, const Common& common) {
   request.scene = options.scene;
   request.overrides = overrides_of(options);
   request.approach = approach_choice(options.approach);
+  request.form = form_choice(options.form);
   request.estimate = !options.no_error_estimate;
   request.seed = common.seed;
   Progress progress;
@@ -198,6 +199,7 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--plot", options->plot, "an SVG plot of the coordinates over time");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
+  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/constrained_solve.hpp"
+
+#include <algorithm>
+
+#include "error.hpp"
+#include "symbolic/polynomial.hpp"
+
+namespace eomgen::program {
+namespace {
+
+constexpr std::size_t most_rows = 3, most_columns = 12;  // of a block whose determinants are written out
+constexpr std::size_t term_budget = 60;
+
+using Columns = std::vector<std::size_t>;
+
+/// det A[rows, columns] by cofactors of the first row; structural zeros cost nothing.
+Ref determinant(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows, const Columns& columns) {
+  if (rows.empty()) return dag.one();
+  Ref sum = dag.zero();
+  const Columns rest(rows.begin() + 1, rows.end());
+  for (std::size_t j = 0; j < columns.size(); ++j) {
+    const Ref entry = A[rows[0] * n + columns[j]];
+    if (dag.is_zero(entry)) continue;
+    Columns others = columns;
+    others.erase(others.begin() + static_cast<std::ptrdiff_t>(j));
+    const Ref part = dag.mul(entry, determinant(dag, A, n, rest, others));
+    sum = j % 2 == 0 ? dag.add(sum, part) : dag.sub(sum, part);
+  }
+  return sum;
+}
+
+bool never_vanishes(const Dag& dag, Ref r) {
+  if (dag.is_constant(r)) return !dag.is_zero(r);
+  return dag.is_positive(r) || (dag[r].op == symbolic::Op::neg && dag.is_positive(dag[r].args[0]));
+}
+
+/// Rows that share a column, directly or by others, and the columns that they have.
+std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::vector<Ref>& A, std::size_t n, std::size_t m) {
+  std::vector<std::size_t> label(m);
+  for (std::size_t k = 0; k < m; ++k) label[k] = k;
+  for (std::size_t i = 0; i < n; ++i) {
+    std::size_t first = m;
+    for (std::size_t k = 0; k < m; ++k) {
+      if (dag.is_zero(A[k * n + i])) continue;
+      if (first == m) first = k;
+      const std::size_t from = label[k], to = label[first];
+      for (std::size_t& l : label) l = l == from ? to : l;
+    }
+  }
+  std::vector<std::pair<Columns, Columns>> result;
+  for (std::size_t k = 0; k < m; ++k) {
+    Columns rows, columns;
+    for (std::size_t j = 0; j < m; ++j) {
+      if (label[j] == k) rows.push_back(j);
+    }
+    if (rows.empty()) continue;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (std::any_of(rows.begin(), rows.end(), [&](std::size_t j) { return !dag.is_zero(A[j * n + i]); })) columns.push_back(i);
+    }
+    result.emplace_back(std::move(rows), std::move(columns));
+  }
+  return result;
+}
+
+/// The choice of dependent columns whose determinant never vanishes, or else is the shortest that is not always zero.
+std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows, const Columns& columns) {
+  if (rows.size() > most_rows || columns.size() > most_columns || columns.size() < rows.size()) return std::nullopt;
+  std::optional<DependentBlock> best;
+  std::size_t best_size = 0;
+  std::vector<bool> chosen(columns.size(), false);
+  std::fill(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(rows.size()), true);
+  do {
+    DependentBlock block{rows, {}, {}, {}};
+    for (std::size_t j = 0; j < columns.size(); ++j) (chosen[j] ? block.dependent : block.independent).push_back(columns[j]);
+    block.determinant = determinant(dag, A, n, rows, block.dependent);
+    if (dag.is_zero(block.determinant) || is_singular_everywhere(dag, {dag.power(block.determinant, 2)}, 1)) continue;
+    const std::size_t size = never_vanishes(dag, block.determinant) ? 0 : dag.reachable({block.determinant}).size();
+    if (best && size >= best_size) continue;
+    best = std::move(block);
+    best_size = size;
+  } while (std::prev_permutation(chosen.begin(), chosen.end()));
+  return best;
+}
+
+}  // namespace
+
+std::optional<std::vector<DependentBlock>> dependent_blocks(const system::EquationSystem& s) {
+  std::vector<DependentBlock> result;
+  for (const auto& [rows, columns] : connected(*s.dag, s.A, s.free.size(), s.active.size())) {
+    std::optional<DependentBlock> block = block_of(*s.dag, s.A, s.free.size(), rows, columns);
+    if (!block) return std::nullopt;
+    result.push_back(std::move(*block));
+  }
+  return result;
+}
+
+bool form_applies(const system::EquationSystem& s, system::Form form, bool everywhere) {
+  if (form == system::Form::multipliers) return true;
+  if (s.active.empty() || s.active.size() >= s.free.size()) return false;
+  const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
+  if (!blocks || !everywhere) return blocks.has_value();
+  return std::all_of(blocks->begin(), blocks->end(), [&](const DependentBlock& block) {
+    // One more column than rows: the minors are a null vector wherever the rows are independent.
+    if (form == system::Form::nullspace && block.independent.size() <= 1) return true;
+    return never_vanishes(*s.dag, block.determinant);
+  });
+}
+
+ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
+    : dag_(s.dag), n_(s.free.size()), m_(s.active.size()), divided_(s.form == system::Form::chaplygin), M_(s.M), A_(s.A), f_(s.f),
+      gamma_(s.gamma) {
+  Dag& dag = *dag_;
+  const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
+  if (!blocks) {
+    throw Error("program", {}, "the constraints of this model hang together in blocks that are too large for this form",
+                "use --form multipliers");
+  }
+  blocks_ = *blocks;
+  std::vector<bool> bound(n_, false);
+  for (const DependentBlock& block : blocks_) {
+    for (const Columns* columns : {&block.dependent, &block.independent}) {
+      for (const std::size_t i : *columns) bound[i] = true;
+    }
+    add_null_vectors(block, divided_);
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (bound[i]) continue;
+    Z_.emplace_back(n_, dag.zero());
+    Z_.back()[i] = dag.one();
+  }
+  const std::size_t k = Z_.size();
+  std::vector<Ref> G(k * k, dag.zero());
+  for (std::size_t b = 0; b < k; ++b) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      Ref column = dag.zero();
+      for (std::size_t j = 0; j < n_; ++j) column = dag.add(column, dag.mul(M_[i * n_ + j], Z_[b][j]));
+      for (std::size_t a = 0; a <= b; ++a) G[a * k + b] = dag.add(G[a * k + b], dag.mul(Z_[a][i], column));
+    }
+    for (std::size_t a = 0; a <= b; ++a) G[b * k + a] = G[a * k + b] = simpler(G[a * k + b]);
+  }
+  reduced_ = std::make_unique<Factorisation>(dag, std::move(G), k, ties);
+  if (divided_) return;
+  std::vector<Ref> gram(m_ * m_, dag.zero());
+  for (std::size_t a = 0; a < m_; ++a) {
+    for (std::size_t b = 0; b < m_; ++b) {
+      for (std::size_t i = 0; i < n_; ++i) gram[a * m_ + b] = dag.add(gram[a * m_ + b], dag.mul(A_[a * n_ + i], A_[b * n_ + i]));
+      gram[a * m_ + b] = simpler(gram[a * m_ + b]);
+    }
+  }
+  gram_ = std::make_unique<Factorisation>(dag, std::move(gram), m_, ties);
+}
+
+// The dependent part of a null vector is -adj(A_d) A_i; with det(A_d) in place i, or 1 and divided.
+void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divided) {
+  Dag& dag = *dag_;
+  const std::size_t r = block.rows.size();
+  std::vector<Ref> adjugate(r * r);
+  for (std::size_t i = 0; i < r; ++i) {
+    for (std::size_t j = 0; j < r; ++j) {
+      Columns rows = block.rows, columns = block.dependent;
+      rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(j));
+      columns.erase(columns.begin() + static_cast<std::ptrdiff_t>(i));
+      const Ref minor = determinant(dag, A_, n_, rows, columns);
+      Ref& entry = adjugate[i * r + j] = (i + j) % 2 == 0 ? minor : dag.neg(minor);
+      if (divided) entry = dag.div(entry, block.determinant);
+    }
+  }
+  for (const std::size_t free : block.independent) {
+    Z_.emplace_back(n_, dag.zero());
+    Z_.back()[free] = divided ? dag.one() : block.determinant;
+    for (std::size_t i = 0; i < r; ++i) {
+      Ref sum = dag.zero();
+      for (std::size_t j = 0; j < r; ++j) sum = dag.sub(sum, dag.mul(adjugate[i * r + j], A_[block.rows[j] * n_ + free]));
+      Z_.back()[block.dependent[i]] = simpler(sum);
+    }
+  }
+  adjugate_.push_back(std::move(adjugate));
+}
+
+Ref ConstrainedSolve::simpler(Ref r) const {
+  symbolic::Expander expander(*dag_, term_budget);
+  const std::optional<Ref> expanded = expander(r);
+  return expanded && dag_->reachable({*expanded}).size() < dag_->reachable({r}).size() ? *expanded : r;
+}
+
+/// p with A p = c: the dependent part alone, or the shortest, which exists wherever the rows are independent.
+std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {
+  Dag& dag = *dag_;
+  std::vector<Ref> p(n_, dag.zero());
+  if (!divided_) {
+    const std::vector<Ref> y = gram_->backward(gram_->forward(c));
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t k = 0; k < m_; ++k) p[i] = dag.add(p[i], dag.mul(A_[k * n_ + i], y[k]));
+    }
+    return p;
+  }
+  for (std::size_t block = 0; block < blocks_.size(); ++block) {
+    const auto& [rows, dependent, independent, det] = blocks_[block];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (std::size_t j = 0; j < rows.size(); ++j) {
+        p[dependent[i]] = dag.add(p[dependent[i]], dag.mul(adjugate_[block][i * rows.size() + j], c[rows[j]]));
+      }
+    }
+  }
+  return p;
+}
+
+/// lambda of A^T lambda = excess.
+std::vector<Ref> ConstrainedSolve::multipliers(const std::vector<Ref>& excess) const {
+  Dag& dag = *dag_;
+  std::vector<Ref> lambda(m_, dag.zero());
+  if (!divided_) {
+    for (std::size_t k = 0; k < m_; ++k) {
+      for (std::size_t i = 0; i < n_; ++i) lambda[k] = dag.add(lambda[k], dag.mul(A_[k * n_ + i], excess[i]));
+    }
+    return gram_->backward(gram_->forward(lambda));
+  }
+  for (std::size_t block = 0; block < blocks_.size(); ++block) {
+    const auto& [rows, dependent, independent, det] = blocks_[block];
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+      for (std::size_t j = 0; j < rows.size(); ++j) {
+        lambda[rows[j]] = dag.add(lambda[rows[j]], dag.mul(adjugate_[block][i * rows.size() + j], excess[dependent[i]]));
+      }
+    }
+  }
+  return lambda;
+}
+
+Unknowns ConstrainedSolve::operator()(std::vector<Ref> r, const std::vector<Ref>& c) const {
+  Dag& dag = *dag_;
+  std::vector<Ref> x = particular(c);
+  const auto excess = [&] {
+    std::vector<Ref> result;
+    for (std::size_t i = 0; i < n_; ++i) {
+      Ref sum = dag.neg(r[i]);
+      for (std::size_t j = 0; j < n_; ++j) sum = dag.add(sum, dag.mul(M_[i * n_ + j], x[j]));
+      result.push_back(sum);
+    }
+    return result;
+  };
+  const std::vector<Ref> rest = excess();
+  std::vector<Ref> right;
+  for (const std::vector<Ref>& z : Z_) {
+    Ref sum = dag.zero();
+    for (std::size_t i = 0; i < n_; ++i) sum = dag.sub(sum, dag.mul(z[i], rest[i]));
+    right.push_back(sum);
+  }
+  const std::vector<Ref> w = reduced_->backward(reduced_->forward(right));
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t a = 0; a < w.size(); ++a) x[i] = dag.add(x[i], dag.mul(Z_[a][i], w[a]));
+  }
+  std::vector<Ref> lambda = multipliers(excess());
+  return {std::move(x), std::move(lambda)};
+}
+
+Unknowns ConstrainedSolve::motion() const {
+  std::vector<Ref> c;
+  for (const Ref gamma : gamma_) c.push_back(dag_->neg(gamma));
+  return (*this)(f_, c);
+}
+
+// Beside those of the two factorisations the determinants that are divided by, against the rows that they are of.
+std::vector<Pivot> ConstrainedSolve::pivots() const {
+  Dag& dag = *dag_;
+  std::vector<Pivot> result;
+  for (const DependentBlock& block : blocks_) {
+    if (!divided_ || never_vanishes(dag, block.determinant)) continue;
+    Ref scale = dag.zero();
+    for (const std::size_t k : block.rows) {
+      for (std::size_t i = 0; i < n_; ++i) scale = dag.add(scale, dag.power(A_[k * n_ + i], 2));
+    }
+    const auto rows = static_cast<long>(block.rows.size());
+    result.push_back({dag.power(block.determinant, 2), dag.power(simpler(scale), rows)});
+  }
+  result.insert(result.end(), reduced_->pivots().begin(), reduced_->pivots().end());
+  if (gram_) result.insert(result.end(), gram_->pivots().begin(), gram_->pivots().end());
+  return result;
+}
+
+}  // namespace eomgen::program
