@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "program/kinks.hpp"
+
 namespace eomgen::cli {
 
 CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& program)
     : compiled_(std::move(compiled)),
       outputs_(program.outputs),
+      kinks_(program.kinks),
       free_(program.free),
       integrals_(program.integrals.size()),
       prepared_(program.prepared_count()),
@@ -36,7 +39,10 @@ verify::CompiledForm CompiledCode::form() const {
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  return {model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
+  run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
+  code.kinks = kinks_;
+  code.first_kink_bit = program::first_kink_bit;
+  return code;
 }
 
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context) {

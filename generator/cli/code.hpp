@@ -18,7 +18,7 @@ class CompiledCode {
 
  private:
   emit::Compiled compiled_;
-  std::vector<std::string> outputs_;
+  std::vector<std::string> outputs_, kinks_;
   std::vector<std::uint32_t> free_;
   std::size_t integrals_;
   std::size_t prepared_ = 0;

@@ -237,6 +237,9 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
     const model::Input& input = model.inputs[i];
     context.inputs.push_back({input.name, input.unit.text, "", scene.inputs[i](scene.t0, scene.t0)});
   }
+  for (const model::Event& event : model.events) {
+    context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
+  }
   const reading::ReadingForm form = reading::derive_reading(derived.mechanics, system::Approach::two);
   for (const print::Item& item : print::render(derived.mechanics, form, {"singular"})) context.singular.push_back(item.text);
   context.start_time = scene.t0;

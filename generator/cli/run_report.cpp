@@ -72,7 +72,7 @@ nlohmann::ordered_json RunReport::json() const {
   const Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
   const Timings& seconds = derived.seconds;
-  Json final = Json::object(), invariants = Json::object(), events = Json::array();
+  Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
   for (const auto& [name, value] : result.final) {
     if (is_final(simulation, name)) final[name] = number(value);
   }
@@ -80,6 +80,7 @@ nlohmann::ordered_json RunReport::json() const {
     invariants[i.name] = {{"initial", number(i.initial)}, {"max_relative_drift", number(i.max_relative_drift)}};
   }
   for (const run::RunEvent& e : result.events) events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
+  for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.of}, {"crossings", k.count}});
   Json document{
       {"format", 1},
       {"model", derived.model.id},
@@ -102,6 +103,7 @@ nlohmann::ordered_json RunReport::json() const {
       {"constraint_drift", derived.mechanics.active.empty() ? Json(nullptr) : number(result.constraint_drift)},
       {"projection", {{"position", result.projection_position}, {"velocity", result.projection_velocity}, {"work", result.projection_work}}},
       {"events", events},
+      {"kinks", kinks},
       {"solved", scene.solved},
       {"route", program.route},
       {"approach", system::name(program.approach)},
@@ -132,6 +134,7 @@ std::string RunReport::text() const {
   out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
                                      result.detail.empty() ? "" : ": ", result.detail));
   for (const run::RunEvent& e : result.events) out += line("event", fmt::format("{} at t = {}: {}", e.kind, e.t, e.name));
+  for (const run::KinkCrossings& k : result.kinks) out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);

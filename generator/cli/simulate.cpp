@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "program/kinks.hpp"
+
 namespace eomgen::cli {
 namespace {
 
@@ -48,7 +50,7 @@ bool energy_is_conserved(const Derived& derived) {
 }
 
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
-  run::RunRequest run{code, scene, state_names(derived), {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
+  run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
   for (const derive::Conserved& c : derived.conserved) {
     run.conserved.push_back(c.name);
     run.magnitudes.push_back(c.magnitude ? derive::magnitude_output(c) : "");
@@ -60,6 +62,12 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     }
     names.slopes.push_back(derive::differential_output(i, "t"));
     run.integrals.push_back(std::move(names));
+  }
+  for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
+    const model::Event& event = derived.model.events[i];
+    run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});
+    if (event.direction == model::Event::Direction::up) run.events.back().direction = eom::Direction::up;
+    if (event.direction == model::Event::Direction::down) run.events.back().direction = eom::Direction::down;
   }
   return run;
 }
@@ -81,6 +89,7 @@ Simulation simulate(const SimulationRequest& request) {
     if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end()) wanted.outputs.push_back(name);
   }
   if (!system.active.empty()) wanted.with = {"mass", "constraints"};
+  if (!derived->model.events.empty() || program::has_kinks(system)) wanted.with.push_back("events");
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);

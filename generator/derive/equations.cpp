@@ -86,6 +86,14 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
   }
 }
 
+// A multiplier in an event is the reaction of that constraint, an expression where the constraint is eliminated.
+void add_events(Mechanics& m, EquationSystem& s) {
+  std::map<Symbol, Ref> forces;
+  for (const system::Reaction& r : s.reactions) forces[{SymbolKind::multiplier, r.constraint, 0}] = r.value;
+  symbolic::Substitution reacting(*m.dag, std::move(forces));
+  for (std::size_t i = 0; i < m.event.size(); ++i) s.events.push_back({m.model->events[i].name, reacting(m.event[i])});
+}
+
 }  // namespace
 
 Ref dot(Dag& dag, const Vec3& a, const Vec3& b) {
@@ -132,12 +140,14 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   s.energy = dag.add(m.kinetic, m.potential);
   s.power = power(m, s);
   add_outputs(m, s);
+  add_events(m, s);
   Finish finish{impose(m), write_out(m)};
   for (Ref* r : {&s.kinetic, &s.potential, &s.energy, &s.power}) *r = finish(*r);
   for (Ref& r : s.M) r = finish(r);
   for (Ref& r : s.f) r = finish(r);
   for (system::Reaction& reaction : s.reactions) reaction.value = finish(reaction.value);
   for (system::Output& output : s.outputs) output.value = finish(output.value);
+  for (system::Event& event : s.events) event.value = finish(event.value);
   add_constraints(m, s, finish);
   return s;
 }

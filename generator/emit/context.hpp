@@ -22,6 +22,10 @@ struct TestVector {
   std::vector<double> x, p, u, dx;
 };
 
+struct EventText {
+  std::string name, direction, action;
+};
+
 struct EmissionContext {
   std::string id;            // of the model; becomes NAME
   std::string title;
@@ -32,6 +36,7 @@ struct EmissionContext {
   std::vector<Quantity> inputs;       // the array u
   std::vector<Quantity> integrals;    // all of the model; those in Program::integrals are states after the velocities
   std::string start_parameter;        // name of the parameter that holds the start of the run; empty: there is none
+  std::vector<EventText> events;      // all of the model, in declared order
   std::vector<std::string> singular;  // "sin(phi) = 0"
   double start_time = 0;
   std::vector<double> start;          // x at the start of the default scene

@@ -8,6 +8,7 @@
 
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "program/kinks.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -151,6 +152,13 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["inputs"] = named(context.inputs);
   info["outputs"] = program.outputs;
   info["reactions"] = program.reactions;
+  for (std::size_t i = 0; i < program.events.size(); ++i) {
+    const EventText& event = context.events.at(i);
+    info["events"].push_back({{"name", event.name}, {"direction", event.direction}, {"action", event.action}});
+  }
+  for (std::size_t k = 0; k < program.kinks.size(); ++k) {
+    info["kinks"].push_back({{"of", program.kinks[k]}, {"bit", program::first_kink_bit + 2 * k}});
+  }
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic) info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
   info["prepared"] = program.prepared_count();
@@ -240,6 +248,7 @@ std::string purpose(const std::string& function) {
   if (function == "mass") return "M qddot + h = A^T lambda: M by columns, h.";
   if (function == "constraints") return "psi = 0, A qdot + b = 0 of the constraints with multipliers: A by columns.";
   if (function == "reactions") return "The multipliers of all constraints, in the order of the model.";
+  if (function == "events") return "Event functions: each event is where its entry changes its sign; kinks come last.";
   if (function == "outputs") return "The outputs asked for.";
   return function;
 }
@@ -252,6 +261,7 @@ void require_consistent(const program::Program& program, const EmissionContext& 
   for (const std::uint32_t i : program.free) require(i < context.coordinates.size(), "coordinates");
   for (const std::uint32_t i : program.integrals) require(i < context.integrals.size(), "integrals");
   require(n > 0, "no coordinate is free");
+  require(program.events.empty() || program.events.size() == context.events.size(), "events");
   require(context.start.size() == n, "start values");
   for (const TestVector& test : context.tests) {
     require(test.x.size() == n && test.dx.size() == n, "states of the self test");

@@ -24,9 +24,12 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   names.w = table.declare("w");
   names.u = table.declare("u");
   names.mode = table.declare("mode");
-  NameTable outputs, reactions;
+  for (std::size_t k = 0; k < program.kinks.size(); ++k) names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));
+  NameTable outputs, reactions, events;
   for (const std::string& name : program.outputs) names.outputs.push_back(outputs.declare(name));
   for (const std::string& name : program.reactions) names.reactions.push_back(reactions.declare(name));
+  for (const std::string& name : program.events) names.events.push_back(events.declare(name));
+  for (std::size_t k = 0; k < program.kinks.size(); ++k) names.events.push_back(events.declare("kink_" + std::to_string(k + 1)));
   return names;
 }
 

@@ -19,7 +19,7 @@ std::vector<Argument> arguments(const std::string& function, const FunctionText&
   if (function == "rhs_prepared") list.push_back({Kind::input, Slot::prepared, names.w});
   if (of_state && function != "mass" && function != "constraints") {
     list.push_back({Kind::input, Slot::input, names.u});
-    list.push_back({Kind::mode, Slot::constant, names.mode});
+    list.push_back({Kind::mode, Slot::side, names.mode});
   }
   for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
   return list;

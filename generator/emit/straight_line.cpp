@@ -10,6 +10,7 @@
 #include "emit/names.hpp"
 #include "emit/signature.hpp"
 #include "emit/text.hpp"
+#include "program/kinks.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -50,7 +51,7 @@ class Printer {
 
  private:
   void declare_names() {
-    for (const auto* list : {&names_.state, &names_.parameters, &names_.inputs}) {
+    for (const auto* list : {&names_.sides, &names_.state, &names_.parameters, &names_.inputs}) {
       for (const std::string& name : *list) table_.declare(name);
     }
     for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode}) table_.declare(name);
@@ -227,6 +228,7 @@ class Printer {
     if (function_.name == "jac_p" && entry % all == 0) text = fmt::format("d/d {}", names_.parameters[entry / all]);
     if (function_.name == "outputs") text = names_.outputs[entry];
     if (function_.name == "reactions") text = names_.reactions[entry];
+    if (function_.name == "events") text = names_.events[entry];
     if (text.empty()) return "";
     return dialect_.line_comments ? fmt::format("  // {}", text) : fmt::format("  /* {} */", text);
   }
@@ -272,6 +274,12 @@ class Printer {
     load(Slot::input, [&](std::uint32_t i) {
       if (!takes_inputs()) return dialect_.value(context_.inputs.at(i).value);
       return fmt::format("{0} ? {0}[{1}] : {2}", names_.u, i, dialect_.value(context_.inputs.at(i).value));
+    });
+    // Two bits for each kink: held above its surface, held below.
+    load(Slot::side, [&](std::uint32_t i) {
+      const std::size_t bit = program::first_kink_bit + 2 * i;
+      const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names_.mode, bit, bit + 1);
+      return dialect_.using_std ? dialect_.real + side : fmt::format("({}){}", dialect_.real, side);
     });
     return result;
   }

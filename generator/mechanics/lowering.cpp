@@ -75,7 +75,7 @@ Lowering::Value Lowering::lower(const model::Node& node) {
   using model::Op;
   switch (node.op) {
     case Op::number: case Op::pi: case Op::time: case Op::parameter: case Op::function: case Op::input:
-    case Op::coordinate: case Op::definition: case Op::extension: case Op::integral:
+    case Op::coordinate: case Op::definition: case Op::extension: case Op::integral: case Op::reaction:
       return lower_leaf(node);
     case Op::add: case Op::subtract: case Op::negate: case Op::multiply: case Op::divide: case Op::power: case Op::call:
     case Op::conditional: case Op::dot: case Op::norm:
@@ -99,8 +99,18 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
     case Op::coordinate: return of(dag_.symbol({SymbolKind::coordinate, node.index, node.order}));
     case Op::definition: return value(m_.model->definitions[node.index].is);
     case Op::integral: return of(dag_.symbol({SymbolKind::integral, node.index, 0}));
+    case Op::reaction: return of(multiplier(node));
     default: return of(extension_);
   }
+}
+
+// The multiplier of one equation of a constraint; Mechanics lists the equations of all constraints in one row.
+Ref Lowering::multiplier(const model::Node& node) {
+  const model::Constraint& wanted = m_.model->constraints[node.index];
+  for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
+    if (m_.constraints[k].name == wanted.name) return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
+  }
+  throw Error("mechanics", m_.model->where(node.span), "this constraint has no force", "name a constraint that holds something");
 }
 
 Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {

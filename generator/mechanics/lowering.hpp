@@ -43,6 +43,7 @@ class Lowering {
   const Value& value(model::NodeId id);
   Value lower(const model::Node& node);
   Value lower_leaf(const model::Node& node);
+  Ref multiplier(const model::Node& node);
   Value lower_arithmetic(const model::Node& node);
   Value lower_vector(const model::Node& node);
   Value lower_derivative(const model::Node& node);

@@ -25,6 +25,7 @@ void add_symbols(Mechanics& m) {
 }
 
 void add_values(Mechanics& m, Lowering& lower) {
+  for (const model::Event& event : m.model->events) m.event.push_back(lower.scalar(event.when));
   for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.is));
   for (const model::Parameter& parameter : m.model->parameters) m.parameter_value.push_back(lower.scalar(parameter.value));
   for (std::uint32_t i = 0; i < m.model->places.size(); ++i) m.place_position.emplace_back(lower.position(i));

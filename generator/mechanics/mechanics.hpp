@@ -97,6 +97,7 @@ struct Mechanics {
   std::vector<Classification> classification;  // per constraint
   std::vector<Integral> integrals;
 
+  std::vector<Ref> event;                            // per Model::events entry: changes its sign there
   std::vector<Ref> function_value;                   // per Model::functions entry, as an expression of t
   std::vector<Ref> parameter_value;                  // per parameter, of other parameters or constants
   std::vector<std::optional<Vec3>> place_position;   // per Model::places entry

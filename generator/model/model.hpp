@@ -139,6 +139,16 @@ struct Constraint {
   Span span;
 };
 
+struct Event {  // a change of sign of `when`
+  enum class Direction { any, up, down };
+  std::string name;
+  NodeId when = no_node;
+  Direction direction = Direction::any;
+  bool stop = false;  // action = "stop": the run ends there
+  Span span;
+};
+const char* name(Event::Direction direction);  // "any", "up", "down"
+
 struct Energy {
   NodeId kinetic = no_node, potential = no_node;
 };
@@ -169,6 +179,7 @@ struct Scene {
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
   std::vector<SceneInput> inputs;
   std::vector<Named> outputs;  // checked against the names that exist; "energy", "reaction.NAME", ...
+  std::vector<std::uint32_t> stop;  // events that end this scene, whatever their action
   std::string solver = "auto";
   NodeId rtol = no_node, atol = no_node, step = no_node, every = no_node;
   Span span;
@@ -193,6 +204,7 @@ struct Model {
   Energy energy;
   std::vector<Force> forces;
   std::vector<Constraint> constraints;
+  std::vector<Event> events;
   std::vector<Scene> scenes;  // scenes[0] is "default" (made up if the file has none)
   std::vector<Warning> warnings;
 

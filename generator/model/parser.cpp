@@ -168,6 +168,11 @@ private:
     std::vector<std::string> parts{std::string(first.text)};
     std::size_t primes = 0;
     while (take(".")) {
+      if (now().kind == TokenKind::number && parts.size() == 2 && parts[0] == "reaction") {  // reaction.NAME.1
+        parts.emplace_back(text_.text.substr(now().at, now().length));
+        ++at_;
+        continue;
+      }
       if (now().kind != TokenKind::name)
         fail(now(), "a name is missing after '.'", "write NAME.part, such as P.e_theta");
       parts.emplace_back(tokens_[at_++].text);

@@ -45,8 +45,8 @@ std::vector<const Entry*> Reader::merged(const Entry& scene, std::vector<std::st
   as(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
   check_keys(scene.value, {what,
                            {"from", "t", "initial", "solve", "guess", "parameters", "inputs", "outputs", "solver",
-                            "rtol", "atol", "step", "every"},
-                           {"stop"}});
+                            "rtol", "atol", "step", "every", "stop"},
+                           {}});
   if (std::find(from.begin(), from.end(), scene.key) != from.end()) {
     source_.fail(
         scene.value.find("from")->span,
@@ -123,6 +123,8 @@ void Reader::read_scene(const Entry& entry) {
       read_outputs(scene, value);
     } else if (key == "solver") {
       read_solver(scene, value);
+    } else if (key == "stop") {
+      read_stop(scene, value);
     } else {
       const bool time = key == "step" || key == "every";
       const NodeId node = positive_number(value, fmt::format("'{}'", key), time ? "s" : "1");

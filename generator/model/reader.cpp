@@ -43,8 +43,8 @@ Reader::Reader(const Source& source, const Value& root)
 Model Reader::read() {
   check_keys(root_, {"a model",
                      {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
-                      "energy", "particle", "point", "chain", "force", "constraint", "scene"},
-                     {"body", "frame", "joint", "event"}});
+                      "energy", "particle", "point", "chain", "force", "constraint", "event", "scene"},
+                     {"body", "frame", "joint"}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");
@@ -66,6 +66,7 @@ Model Reader::read() {
   declare_places();
   declare_constraints();
   declare_forces();
+  declare_events();
   declare_coordinates();
 
   for (const SymbolKind kind : {SymbolKind::parameter, SymbolKind::function, SymbolKind::input}) {
@@ -77,6 +78,7 @@ Model Reader::read() {
   read_energy();
   read_forces();
   read_constraints();
+  read_events();
   if (model_.particles.empty() && model_.energy.kinetic == no_node) {
     source_.fail(root_.span, "nothing moves: the model has no particle and no kinetic energy",
                  "add a [[particle]], or kinetic = \"..\" in [energy]");

@@ -124,6 +124,11 @@ private:
   void read_equations(Constraint& constraint, const Value& value);
   void read_energy();
 
+  // read_events.cpp: [[event]], `stop` of a scene
+  void declare_events();
+  void read_events();
+  void read_stop(Scene& scene, const Value& value);
+
   // read_scenes.cpp, scene_values.cpp, scene_outputs.cpp: [scene.NAME]
   void read_scenes();
   std::vector<const Entry*> merged(const Entry& scene, std::vector<std::string>& from) const;

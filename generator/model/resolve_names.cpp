@@ -50,6 +50,7 @@ Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
 Typed Resolver::name(const SyntaxNode& node) {
   if (node.parts.size() == 1 && node.primes == 0) return plain_name(node);
   Symbol* symbol = scope_.find(node.parts[0]);
+  if (symbol == nullptr && node.parts[0] == "reaction" && node.primes == 0) return reaction(node);
   if (symbol == nullptr) unknown_name(node);
   symbol->used = true;
   if (symbol->kind != SymbolKind::place) {
@@ -61,6 +62,31 @@ Typed Resolver::name(const SyntaxNode& node) {
                  "a particle has P.e_q, P.a_q and P.g_q for its coordinates q");
   }
   return basis_vector(node, *symbol);
+}
+
+// reaction.NAME or reaction.NAME.k, as among the outputs.
+Typed Resolver::reaction(const SyntaxNode& node) {
+  const std::string written = joined(node.parts);
+  const Symbol* symbol = node.parts.size() <= 3 ? scope_.find(node.parts[1]) : nullptr;
+  if (symbol == nullptr || symbol->kind != SymbolKind::constraint) {
+    const std::string hint = did_you_mean(node.parts[1], scope_.names(SymbolKind::constraint));
+    source_.fail(node.span, fmt::format("{} is no constraint force", quote(written)),
+                 hint.empty() ? "write reaction.NAME with the name of a constraint" : hint);
+  }
+  allow(on_reaction, node.span, fmt::format("'{}'", written));
+  const std::size_t count = model_.constraints[symbol->index].psi.size();
+  const std::string part = node.parts.size() == 3 ? node.parts[2] : "";
+  const std::size_t k = part.size() == 1 && part[0] > '0' && part[0] <= '9' ? static_cast<std::size_t>(part[0] - '0') : 0;
+  if (count > 1 ? k < 1 || k > count : !part.empty()) {
+    source_.fail(node.span, fmt::format("{} is no constraint force: '{}' has {} equation{}", quote(written), symbol->name, count, count > 1 ? "s" : ""),
+                 count > 1 ? fmt::format("write reaction.{0}.1 to reaction.{0}.{1}", symbol->name, count)
+                           : fmt::format("write reaction.{}", symbol->name));
+  }
+  Typed result = make(Op::reaction, false, {}, node.span);
+  model_.arena.nodes[result.node].index = symbol->index;
+  model_.arena.nodes[result.node].order = static_cast<std::uint8_t>(k > 0 ? k - 1 : 0);
+  result.facts = on_reaction;
+  return result;
 }
 
 Typed Resolver::basis_vector(const SyntaxNode& node, Symbol& symbol) {
@@ -153,7 +179,7 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
 
 Typed Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
   symbol.used = true;
-  if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force) {
+  if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force || symbol.kind == SymbolKind::event) {
     source_.fail(span, fmt::format("'{}' is {}, not a value", symbol.name, kind_name(symbol.kind)),
                  "name a parameter, coordinate, function, input, definition, particle or point");
   }

@@ -30,6 +30,7 @@ std::string facts_text(Facts facts) {
   if (facts & on_coordinate) words.emplace_back("coordinates");
   if (facts & on_velocity) words.emplace_back("velocities");
   if (facts & on_acceleration) words.emplace_back("accelerations");
+  if (facts & on_reaction) words.emplace_back("constraint forces");
   return fmt::format("{}", fmt::join(words, ", "));
 }
 

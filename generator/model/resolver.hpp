@@ -21,7 +21,8 @@ inline constexpr int max_depth = 2000;            // of an expression with all t
 
 /// What an expression may depend on, as a set.
 using Facts = std::uint8_t;
-inline constexpr Facts on_time = 1, on_input = 2, on_coordinate = 4, on_velocity = 8, on_acceleration = 16;
+inline constexpr Facts on_time = 1, on_input = 2, on_coordinate = 4, on_velocity = 8, on_acceleration = 16,
+                       on_reaction = 32;
 inline constexpr Facts on_motion = on_time | on_coordinate;
 inline constexpr Facts on_anything = 31;
 
@@ -98,6 +99,7 @@ private:
 
   Typed name(const SyntaxNode& node);
   Typed plain_name(const SyntaxNode& node);
+  Typed reaction(const SyntaxNode& node);
   Typed basis_vector(const SyntaxNode& node, Symbol& symbol);
   Typed leaf(Symbol& symbol, std::uint8_t order, Span span);
   [[noreturn]] void unknown_name(const SyntaxNode& node);

@@ -23,6 +23,8 @@ const char* kind_name(SymbolKind kind) {
       return "a constraint";
     case SymbolKind::force:
       return "a force";
+    case SymbolKind::event:
+      return "an event";
   }
   return "a name";
 }

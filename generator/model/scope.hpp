@@ -30,7 +30,7 @@ struct Typed {
   std::optional<Rational> constant;    // of numbers and parameters that are numbers
 };
 
-enum class SymbolKind { parameter, function, input, coordinate, definition, place, constraint, force };
+enum class SymbolKind { parameter, function, input, coordinate, definition, place, constraint, force, event };
 const char* kind_name(SymbolKind kind);
 
 struct Symbol {

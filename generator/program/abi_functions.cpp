@@ -41,6 +41,7 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   for (auto& integral : s.integrals) integral.rate = fixed(integral.rate);
   for (auto& reaction : s.reactions) reaction.value = fixed(reaction.value);
   for (auto& output : s.outputs) output.value = fixed(output.value);
+  for (auto& event : s.events) event.value = fixed(event.value);
 }
 
 /// "12" or, from ten rows on, "3_12".
@@ -51,9 +52,11 @@ std::string indices(std::size_t i, std::size_t j, std::size_t n) {
 }  // namespace
 
 AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
-                           Ties ties)
+                           Ties ties, bool hold)
     : system_(std::move(system)), n_(system_.free.size()), m_(system_.active.size()) {
   fix_parameters(system_, fix);
+  live_M_ = system_.M, live_f_ = system_.f, live_A_ = system_.A;
+  if (hold) kinks_ = hold_kinks(system_);
   Dag& dag = *system_.dag;
   std::map<Symbol, Ref> solution;
   ties_ = ties;
@@ -194,9 +197,9 @@ WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
 WantedFunction AbiFunctions::mass() {
   WantedFunction function{"mass", {{"M", {}}, {"h", {}}}, {}, {}};
   for (std::size_t j = 0; j < n_; ++j) {
-    for (std::size_t i = 0; i < n_; ++i) function.results[0].second.push_back(system_.M[i * n_ + j]);
+    for (std::size_t i = 0; i < n_; ++i) function.results[0].second.push_back(live_M_[i * n_ + j]);
   }
-  for (std::size_t i = 0; i < n_; ++i) function.results[1].second.push_back(system_.dag->neg(system_.f[i]));
+  for (std::size_t i = 0; i < n_; ++i) function.results[1].second.push_back(system_.dag->neg(live_f_[i]));
   label_matrices(function);
   return function;
 }
@@ -204,7 +207,7 @@ WantedFunction AbiFunctions::mass() {
 WantedFunction AbiFunctions::constraints() {
   WantedFunction function{"constraints", {{"psi", system_.psi}, {"A", {}}, {"b", system_.b}}, {}, {}};
   for (std::size_t j = 0; j < n_; ++j) {
-    for (std::size_t k = 0; k < m_; ++k) function.results[1].second.push_back(system_.A[k * n_ + j]);
+    for (std::size_t k = 0; k < m_; ++k) function.results[1].second.push_back(live_A_[k * n_ + j]);
   }
   return function;
 }
@@ -240,6 +243,15 @@ WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
     }
     function.results[0].second.push_back(written_out(found->value, solved));
   }
+  if (solved) add_solution(function);
+  return function;
+}
+
+WantedFunction AbiFunctions::events() {
+  WantedFunction function{"events", {{"g", {}}}, {}, {}};
+  bool solved = false;
+  for (const system::Event& event : system_.events) function.results[0].second.push_back(written_out(event.value, solved));
+  for (const Kink& kink : kinks_) function.results[0].second.push_back(kink.value);
   if (solved) add_solution(function);
   return function;
 }

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "program/kinks.hpp"
 #include "program/solve.hpp"
 #include "symbolic/calculus.hpp"
 
@@ -28,9 +29,9 @@ struct WantedFunction {
 /// The equations of motion, solved, with what the functions of the ABI are made of.
 class AbiFunctions {
  public:
-  /// `fix`: parameters that become numbers.
+  /// `fix`: parameters that become numbers; `hold`: `mode` holds the branches of kinks.
   AbiFunctions(system::EquationSystem system, const std::map<std::uint32_t, symbolic::Rational>& fix,
-               Ties ties = Ties::ascending);
+               Ties ties = Ties::ascending, bool hold = false);
 
   WantedFunction rhs();
   WantedFunction jac();
@@ -40,6 +41,10 @@ class AbiFunctions {
   WantedFunction reactions();
   /// Throws Error with the names that exist where one is unknown.
   WantedFunction outputs(const std::vector<std::string>& names);
+  /// The events of the model, then the surfaces of the kinks that are held.
+  WantedFunction events();
+
+  const std::vector<Kink>& kinks() const { return kinks_; }
 
   const system::EquationSystem& system() const { return system_; }
 
@@ -51,6 +56,8 @@ class AbiFunctions {
   Ref written_out(Ref expression, bool& solved);
 
   system::EquationSystem system_;
+  std::vector<Kink> kinks_;
+  std::vector<Ref> live_M_, live_f_, live_A_;  // of functions that have no mode
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
   const LinearSolve& solve();  // made when first needed: a system that is solved already may never ask

@@ -75,13 +75,14 @@ void add_prepared(const Candidate& chosen, Program& program) {
 
 /// Both orders of elimination of every route, as they come out of the derivation.
 std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>& systems, const Request& request) {
+  const bool hold = std::find(request.with.begin(), request.with.end(), "events") != request.with.end();
   std::vector<Candidate> result;
   for (std::size_t i = 0; i < systems.size(); ++i) {
     for (const Ties ties : {Ties::ascending, Ties::descending}) {
       if (ties == Ties::descending && systems[i].free.size() + systems[i].active.size() < 2) continue;
       Candidate candidate;
       candidate.index = i;
-      candidate.functions = std::make_unique<AbiFunctions>(systems[i], request.fix, ties);
+      candidate.functions = std::make_unique<AbiFunctions>(systems[i], request.fix, ties, hold);
       candidate.rhs = candidate.functions->rhs();
       candidate.starts = starts(*candidate.functions, candidate.rhs);
       candidate.best = candidate.starts[0];
@@ -145,10 +146,11 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
   if (name == "mass") return functions.mass();
   if (name == "constraints") return functions.constraints();
   if (name == "reactions") return functions.reactions();
-  const bool later = name == "events" || name == "taylor" || name == "rhs_batch";
+  if (name == "events") return functions.events();
+  const bool later = name == "taylor" || name == "rhs_batch";
   throw Error("program", {},
               later ? fmt::format("function `{}` is not supported yet", name) : fmt::format("there is no function `{}`", name),
-              "functions that can be asked for: jac, jac_p, mass, constraints, reactions, outputs");
+              "functions that can be asked for: jac, jac_p, mass, constraints, reactions, outputs, events");
 }
 
 }  // namespace
@@ -180,6 +182,10 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   for (const std::string& name : request.with) {
     if (name == "outputs" || name == "rhs") continue;  // by the names asked for; always
     add(wanted_function(*chosen.functions, name, request));
+    if (name == "events") {
+      for (const system::Event& event : system.events) program.events.push_back(event.name);
+      for (const Kink& kink : chosen.functions->kinks()) program.kinks.emplace_back(program::name(kink));
+    }
     if (name == "reactions") {
       for (const auto& reaction : system.reactions) program.reactions.push_back(reaction.label);
     }

@@ -84,6 +84,7 @@ class Conversion {
       case SymbolKind::time: return {Slot::time, 0, false};
       case SymbolKind::parameter: return {Slot::parameter, symbol.index, false};
       case SymbolKind::input: return {Slot::input, symbol.index, false};
+      case SymbolKind::side: return {Slot::side, symbol.index, false};
       case SymbolKind::coordinate: {
         const auto found = std::find(free_.begin(), free_.end(), symbol.index);
         if (found == free_.end() || symbol.order > 1) break;

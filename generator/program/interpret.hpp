@@ -17,6 +17,7 @@ struct Arguments {
   Real t{};
   std::vector<Real> x, p, u;
   std::vector<Real> w{};  // what `prepare` made of p
+  std::vector<Real> side = {};  // of the kinks; left out: their branches follow the state
 };
 
 template <class Real>

@@ -20,8 +20,8 @@ struct Operations {
   std::size_t cost() const { return add + mul + 8 * div + 12 * sqrt + 25 * trig + 20 * other; }
 };
 
-/// Where an operand comes from.
-enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, value };
+/// Where an operand comes from; side: of a kink, decoded from `mode`.
+enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, side, value };
 struct Operand {
   Slot slot = Slot::value;
   std::uint32_t index = 0;  // constant: into Function::constants; value: of the instruction that made it
@@ -85,6 +85,8 @@ struct Program {
   std::vector<Tried> tried;
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
+  std::vector<std::string> events;     // of the model; first in the array g of the function events
+  std::vector<std::string> kinks;      // "abs", "if": after them the surfaces whose branches `mode` can hold
   std::size_t active_constraints = 0;
   std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only
 };

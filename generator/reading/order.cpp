@@ -22,7 +22,7 @@ int rank(const Atom& atom) {
     case SymbolKind::function: return order == 0 ? 4 : order == 1 ? rates : accelerations;
     case SymbolKind::integral: return 4;
     case SymbolKind::time: return 5;
-    case SymbolKind::extra: return 5;
+    case SymbolKind::side: case SymbolKind::extra: return 5;
     case SymbolKind::coordinate: return order == 0 ? coordinates : order == 1 ? rates + 1 : accelerations + 1;
   }
   return calls;

@@ -1,10 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/integration.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
 namespace eomgen::run {
+
+namespace {
+
+constexpr double beyond_rounding = 1e-6;
+
+}  // namespace
 
 Integration::Integration(const RunRequest& request, std::string solver)
     : request_(request),
@@ -21,6 +29,8 @@ Integration::Integration(const RunRequest& request, std::string solver)
   // A code of prepare is told by rhs, which is asked then.
   if (code_.prepare != nullptr) w_.resize(code_.prepared);
   if (code_.prepare != nullptr && code_.prepare(request.scene.parameters.data(), w_.data()) != 0) w_.clear();
+  g_.resize(request.events.size() + request.code.kinks.size());
+  g_size_.resize(request.code.kinks.size());
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
 }
 
@@ -40,16 +50,72 @@ const double* Integration::inputs(double t) const {
 
 int Integration::rhs(double t, const double* x, double* dx) {
   const double* u = inputs(t);
+  const int code = motion(t, x, u, mode_, dx);
+  // A branch that is held beyond its surface may have no value there (a root); what the surface separates always has.
+  return code != 0 && mode_ != 0 ? motion(t, x, u, 0, dx) : code;
+}
+
+int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
   const double* p = request_.scene.parameters.data();
-  const int code = w_.empty() ? code_.rhs(t, x, p, u, 0, dx) : code_.rhs_prepared(t, x, p, w_.data(), u, 0, dx);
+  const int code = w_.empty() ? code_.rhs(t, x, p, u, mode, dx) : code_.rhs_prepared(t, x, p, w_.data(), u, mode, dx);
   if (code != 0 || !request_.watch_power) return code;
-  const int watched = code_.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
+  const int watched = code_.outputs(t, x, p, u, mode, y_.data());
   dx[2 * n_ + code_.integrals] = y_[power_];
   return watched;
 }
 
 int Integration::outputs(double t, const double* x, std::span<double> y) const {
-  return code_.outputs(t, x, request_.scene.parameters.data(), inputs(t), 0, y.data());
+  return code_.outputs(t, x, request_.scene.parameters.data(), inputs(t), mode_, y.data());
+}
+
+int Integration::events(double t, const double* x, double* g) const {
+  return code_.events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+}
+
+std::vector<eom::EventFunction> Integration::watched() const {
+  std::vector<eom::EventFunction> functions;
+  for (const WatchedEvent& event : request_.events)
+    functions.push_back({event.direction, event.stop ? eom::Watch::breaking : eom::Watch::passing});
+  functions.resize(functions.size() + code_.kinks.size());
+  return functions;
+}
+
+/// Holds each kink on the side where the state is; where it is on the surface itself its branch follows the state.
+void Integration::hold_sides(double t, const double* x, bool anew) {
+  if (code_.kinks.empty()) return;
+  if (anew) mode_ = 0;
+  bool all = !anew;
+  for (std::size_t k = 0; k < code_.kinks.size(); ++k) all = all && (mode_ >> (code_.first_kink_bit + 2 * k) & 3) != 0;
+  if (all || events(t, x, g_.data()) != 0) return;
+  for (std::size_t k = 0; k < code_.kinks.size(); ++k) {
+    const double g = g_[request_.events.size() + k];
+    const std::size_t bit = code_.first_kink_bit + 2 * k;
+    if (std::isfinite(g)) g_size_[k] = std::max(g_size_[k], std::abs(g));
+    // What is small beside former values may be rounding, and the side another than the locator of events will find.
+    if ((mode_ >> bit & 3) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * g_size_[k]))) continue;
+    mode_ |= 1 << (g > 0 ? bit : bit + 1);
+  }
+}
+
+eom::AtEvent Integration::at_event(const eom::EventPoint& point, const OnEvent& event) {
+  const std::size_t i = point.crossing.function;
+  if (i < request_.events.size()) {
+    if (event) event(i, point.t, point.x);
+    return eom::AtEvent::stop;
+  }
+  const std::size_t k = i - request_.events.size(), bit = code_.first_kink_bit + 2 * k;
+  ++kink_crossings[k];
+  kink_ = k;
+  kink_at_ = point.t;
+  mode_ = (mode_ & ~(3 << bit)) | 1 << (point.crossing.up ? bit : bit + 1);
+  return eom::AtEvent::go_on;
+}
+
+/// Of an accepted step: the work of its projection; others were made on trial.
+void Integration::accept(const eom::StepView& step) {
+  const auto made = std::find_if(projected_.rbegin(), projected_.rend(), [&](const auto& p) { return p.first == step.t1; });
+  if (made != projected_.rend()) work += made->second;
+  projected_.clear();
 }
 
 int Integration::project(double t, double* x) {
@@ -66,12 +132,15 @@ int Integration::project(double t, double* x) {
   outputs(t, x, y_);
   position_correction = std::max(position_correction, moved.position_correction);
   velocity_correction = std::max(velocity_correction, moved.velocity_correction);
-  work += y_[energy_] - before;
+  projected_.emplace_back(t, y_[energy_] - before);
   return 0;
 }
 
-eom::Result Integration::run(const eom::Options& options, const Observer& observer) {
+eom::Result Integration::run(const eom::Options& options, const Observer& observer, const OnEvent& event) {
   position_correction = velocity_correction = work = 0;
+  kink_at_ = std::nan("");
+  kink_crossings.assign(code_.kinks.size(), 0);
+  projected_.clear();
   std::vector<double> restarts;
   for (const Signal& signal : request_.scene.inputs) {
     for (const double t : signal.jumps()) {
@@ -89,11 +158,20 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   total.t = request_.scene.t0;
   rows_.start(total.t, total.x.data(), inputs(total.t));
   const auto f = [this](double t, const double* x, double* dx) { return rhs(t, x, dx); };
-  const auto watch = [&](const eom::StepView& step) { return !observer || observer(step); };
+  const auto watch = [&](const eom::StepView& step) {
+    accept(step);
+    const bool go_on = !observer || observer(step);
+    hold_sides(step.t1, step.x1.data(), false);
+    return go_on;
+  };
+  const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
+  const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
   const auto after = [this](double t, double* x) { return rows_.size() == 0 ? 0 : project(t, x); };
   for (const double end : restarts) {
     side_ = (total.t + end) / 2;
-    const eom::Result part = eom::integrate(solver_, f, total.t, total.x, end, piece, watch, after);
+    hold_sides(total.t, total.x.data(), true);
+    const eom::Result part =
+        eom::integrate_events(solver_, f, total.t, total.x, end, piece, g, watched(), at, watch, after);
     total.outcome = part.outcome;
     total.detail = part.detail;
     total.t = part.t;
@@ -102,6 +180,11 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
     total.statistics.rejected += part.statistics.rejected;
     total.statistics.rhs_evaluations += part.statistics.rhs_evaluations;
     total.statistics.dense_fallbacks += part.statistics.dense_fallbacks;
+    if (part.outcome == eom::Outcome::step_too_small && kink_at_ == part.t) {
+      total.detail = fmt::format(
+          "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "
+          "a constraint with friction, or a smooth law", code_.kinks[kink_], part.t);
+    }
     if (part.outcome != eom::Outcome::done) break;
   }
   return total;

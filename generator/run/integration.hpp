@@ -4,6 +4,7 @@
 #pragma once
 
 #include <eom/constraints/projection.hpp>
+#include <eom/events/integrate.hpp>
 
 #include "run/constraint_rows.hpp"
 
@@ -15,17 +16,26 @@ class Integration {
 
   /// observer(step, u_side): called after each accepted step; may be empty.
   using Observer = std::function<bool(const eom::StepView&)>;
-  eom::Result run(const eom::Options& options, const Observer& observer);
+  /// event(index, t, x): a recorded one before the observer sees the step that it lies in, a stop after it.
+  using OnEvent = std::function<void(std::size_t index, double t, std::span<const double> x)>;
+  eom::Result run(const eom::Options& options, const Observer& observer, const OnEvent& event = {});
 
   std::vector<double> initial_state() const;
   int outputs(double t, const double* x, std::span<double> y) const;
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows_.defect(t, x); }
 
+  std::vector<std::size_t> kink_crossings;  // of the run, per kink
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
 
  private:
   int rhs(double t, const double* x, double* dx);
+  int motion(double t, const double* x, const double* u, int mode, double* dx);
+  int events(double t, const double* x, double* g) const;
+  std::vector<eom::EventFunction> watched() const;
+  void hold_sides(double t, const double* x, bool anew);
+  void accept(const eom::StepView& step);
+  eom::AtEvent at_event(const eom::EventPoint& point, const OnEvent& event);
   int project(double t, double* x);
   const double* inputs(double t) const;
 
@@ -34,6 +44,11 @@ class Integration {
   std::string solver_;
   std::size_t n_;
   std::size_t power_ = 0, energy_ = 0;
+  std::size_t kink_ = 0;  // crossed last, and when
+  double kink_at_ = 0;
+  int mode_ = 0;     // sides of the kinks of the step that is being made
+  std::vector<double> g_, g_size_;  // event functions; largest |g| seen of each kink
+  std::vector<std::pair<double, double>> projected_;  // time, work of projections since the last accepted step
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
   mutable std::vector<double> u_;
   std::vector<double> w_;  // of code_.prepare

@@ -3,11 +3,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
+#include <algorithm>
 #include <cmath>
 #include <eom/error_estimate.hpp>
 #include <eom/watch/drift.hpp>
+#include <limits>
 
 #include "model/names.hpp"
 #include "run/integration.hpp"
@@ -56,6 +57,13 @@ class Watch {
     return true;
   }
 
+  /// An event: told, and a row of its own, put in order when the rest of its step is written.
+  void event(std::size_t index, double t, std::span<const double> x) {
+    const WatchedEvent& event = request_.events[index];
+    events_.push_back({t, event.stop ? "stop" : "custom", event.name});
+    if (request_.every > 0 && !event.stop) pending_.emplace_back(t, std::vector<double>(x.begin(), x.end()));
+  }
+
   /// Where a coordinate left its range, the run ends with the step before; tells what happened.
   void cut(eom::Result& end) const {
     if (chart_detail_.empty()) return;
@@ -71,6 +79,10 @@ class Watch {
   }
 
   void report(RunResult& result) const {
+    result.events = events_;
+    if (!chart_detail_.empty()) {  // what lay in the step that left the chart is no result
+      std::erase_if(result.events, [&](const RunEvent& event) { return event.t > last_t_; });
+    }
     for (const eom::Drift& drift : drifts_) {
       result.invariants.push_back({drift.name(), drift.initial(), drift.max_relative_drift()});
     }
@@ -107,8 +119,11 @@ class Watch {
     // Multiples of the interval, counted, so that the grid does not drift; a last sliver belongs to the end.
     while (true) {
       const double t = request_.scene.t0 + static_cast<double>(next_) * request_.every;
+      rows_of_events(std::min(t, view.t1));
       if (t > view.t1 || t > request_.scene.t1) return;
-      if (t == view.t1) {
+      if (t == last_row_) {
+        // an event's row stands there already
+      } else if (t == view.t1) {
         row(t, view.x1.data());
       } else {
         view.interpolate(t, between_);
@@ -116,6 +131,14 @@ class Watch {
       }
       ++next_;
     }
+  }
+
+  void rows_of_events(double until) {
+    std::size_t written = 0;
+    for (; written < pending_.size() && pending_[written].first <= until; ++written) {
+      if (pending_[written].first != last_row_) row(pending_[written].first, pending_[written].second.data());
+    }
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
   }
 
   void row(double t, const double* x) {
@@ -137,6 +160,8 @@ class Watch {
   std::string left_, chart_detail_;
   double last_t_ = 0;
   std::vector<double> last_x_;
+  std::vector<RunEvent> events_;
+  std::vector<std::pair<double, std::vector<double>>> pending_;  // rows at events of the step that is being made
   std::uint64_t next_ = 1;
   double last_row_ = std::nan("");
 };
@@ -148,17 +173,28 @@ void estimate_error(const RunRequest& request, const eom::Result& first, const e
     if (method.name == result.solver) order = method.order;
   }
   Integration again(request, result.solver);
+  bool same_end = true;
+  double stop = std::numeric_limits<double>::epsilon() * std::abs(first.t);
   const eom::ErrorEstimate estimate =
-      eom::estimate_error(order, request.scene.t0, first, options, [&](const eom::Options& tighter) { return again.run(tighter, {}); });
+      eom::estimate_error(order, request.scene.t0, first, options, [&](const eom::Options& tighter) {
+        eom::Result other = again.run(tighter, {});
+        same_end = same_end && other.outcome == first.outcome;
+        stop = std::max(stop, std::abs(other.t - first.t));
+        return other;
+      });
   double largest = 0;
   for (std::size_t i = 0; i < request.state_names.size(); ++i) {
     result.error_estimate.emplace_back(request.state_names[i], estimate.x[i]);
     largest = std::max(largest, estimate.x[i]);
   }
+  if (first.outcome == eom::Outcome::stopped_by_event) result.error_estimate.emplace_back("t", stop);
   result.error_estimate.emplace_back("max", largest);
   result.estimate_rhs_evaluations = estimate.statistics.rhs_evaluations;
   if (estimate.outcome != eom::Outcome::done) {
     result.estimate_note = fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(estimate.outcome));
+  }
+  if (!same_end && result.estimate_note.empty()) {
+    result.estimate_note = "a tighter run did not stop at the event: the ends that are compared are not of the same time";
   }
   result.seconds_estimate = seconds_since(start);
 }
@@ -210,7 +246,8 @@ RunResult integrate_scene(const RunRequest& request) {
   Integration integration(request, result.solver);
   Watch watch(request, integration);
   const Clock::time_point start = Clock::now();
-  eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); });
+  eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); },
+                                    [&](std::size_t i, double t, std::span<const double> x) { watch.event(i, t, x); });
   result.seconds_integrate = seconds_since(start);
   watch.cut(end);
   watch.finish(end.t, end.x.data());
@@ -219,6 +256,9 @@ RunResult integrate_scene(const RunRequest& request) {
   result.detail = end.detail;
   result.t = end.t;
   result.statistics = end.statistics;
+  for (std::size_t k = 0; k < request.code.kinks.size(); ++k) {
+    result.kinks.push_back({request.code.kinks[k], integration.kink_crossings[k]});
+  }
   result.projection_position = integration.position_correction;
   result.projection_velocity = integration.velocity_correction;
   result.projection_work = integration.work;
@@ -229,7 +269,8 @@ RunResult integrate_scene(const RunRequest& request) {
     const auto& sizes = request.magnitudes;
     if (std::find(sizes.begin(), sizes.end(), name) == sizes.end()) result.final.emplace_back(name, y[i]);
   }
-  if (request.estimate && result.outcome == eom::Outcome::done) estimate_error(request, end, options, result);
+  const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
+  if (request.estimate && ended) estimate_error(request, end, options, result);
   return result;
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <eom/events/locator.hpp>
 #include <eom/ode.hpp>
 #include <functional>
 #include <string>
@@ -22,13 +23,16 @@ struct Code {
   int (*rhs_prepared)(double, const double*, const double*, const double*, const double*, int, double*) = nullptr;
   std::size_t prepared = 0;  // entries of what `prepare` writes
   int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  int (*events)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
   int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
   std::vector<std::string> output_names;  // entries of y: begins with every coordinate and its _dot
   std::vector<std::uint32_t> free;        // coordinates that are state, with their rates
   std::size_t integrals = 0;              // states after them: 0 at the start, never projected
   std::size_t active_constraints = 0;
-  std::vector<bool> holonomic;            // per active constraint: false where it binds velocities only
+  std::vector<bool> holonomic = {};       // per active constraint: false where it binds velocities only
+  std::vector<std::string> kinks = {};    // "abs", "max": their surfaces follow the model's events in g
+  std::size_t first_kink_bit = 0;         // of mode: two for each kink, above and below its surface
 };
 
 struct Invariant {
@@ -38,6 +42,17 @@ struct Invariant {
 struct RunEvent {
   double t;
   std::string kind, name;
+};
+
+/// An [[event]] as this scene takes it.
+struct WatchedEvent {
+  std::string name;
+  eom::Direction direction = eom::Direction::any;
+  bool stop = false;
+};
+struct KinkCrossings {
+  std::string of;
+  std::size_t count = 0;
 };
 
 struct RunResult {
@@ -56,6 +71,7 @@ struct RunResult {
   double constraint_drift = 0;   // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   std::vector<RunEvent> events;
+  std::vector<KinkCrossings> kinks;
 };
 
 /// The outputs that are an integral of constraints on velocities, and its derivatives by the free coordinates and t.
@@ -69,6 +85,7 @@ struct RunRequest {
   const Scene& scene;
   std::vector<std::string> state_names;   // of x
   std::vector<std::string> conserved;     // outputs that are invariants
+  std::vector<WatchedEvent> events = {};  // of the model, all
   bool watch_power = false;               // power is not identically zero: its work is integrated alongside
   bool estimate = true;
   double every = 0;                       // interval of rows; 0: no rows

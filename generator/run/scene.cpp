@@ -285,6 +285,8 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
   result.solved = problem.solved;
+  for (const model::Event& event : m.model->events) result.stops.push_back(event.stop);
+  for (const std::uint32_t i : scene.stop) result.stops[i] = true;
   require_regular(m, system, scene, result);
 
   std::vector<model::Named> wanted = scene.outputs;

@@ -35,6 +35,7 @@ struct Scene {
   double step = 0, every = 0;      // 0: not given
   std::vector<Signal> inputs;      // one per input of the model
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
+  std::vector<bool> stops;           // per event of the model: whether it ends the run
   std::vector<std::string> solved;   // sentences: what followed from the constraints
 };
 

@@ -43,6 +43,7 @@ enum class SymbolKind : std::uint8_t {
   multiplier,  // lambda of Mechanics::constraints[index]
   extra,       // an intermediate that a caller names itself (cut points of the solve, the extension of a spring)
   integral,    // of a function of time, from the start of the run; its rate is told to the Dag
+  side,        // -1, 0, 1: the branch at which a kink is held, or 0 (program/kinks.hpp)
 };
 
 struct Symbol {

@@ -58,6 +58,11 @@ struct IntegralState {
   Ref rate;                // of t, parameters and integrals that are states
 };
 
+struct Event {
+  std::string name;
+  Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
+};
+
 struct EquationSystem {
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
@@ -81,6 +86,7 @@ struct EquationSystem {
 
   std::vector<Reaction> reactions;  // all constraints, in model order
   std::vector<Output> outputs;      // everything that can be asked for, in the order of docs/model-format.md
+  std::vector<Event> events;        // of the model, in its order
   Ref energy, kinetic, potential, power;  // power: what dE/dt must be; may use multipliers and qddot
 };
 

@@ -141,6 +141,7 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::input: return state.inputs.at(symbol.index);
     case SymbolKind::multiplier: return lambda.at(symbol.index);
     case SymbolKind::integral: return state.integrals.at(symbol.index);
+    case SymbolKind::side: return 0;  // every branch follows the state
     case SymbolKind::extra: break;
   }
   throw std::logic_error("verify: a symbol without a value");

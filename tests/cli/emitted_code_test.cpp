@@ -51,10 +51,10 @@ int main(void)
 TEST_CASE("C: every shipped model compiles as strict C11, passes its self test, and describes itself") {
   const Folder folder;
   for (const char* model : {"P2_planar_pendulum", "P7_moving_sphere", "P14_kepler_spherical", "S5_double_pendulum_cartesian",
-                            "S5_spherical_double_pendulum", "cart_pendulum"}) {
+                            "S5_spherical_double_pendulum", "cart_pendulum", "bilinear_oscillator", "leaving_sphere"}) {
     const std::string name = model;
     CAPTURE(name);
-    expect(0, folder, {"emit", name, "-o", ".", "--with", "jac,jac_p,mass,constraints,reactions", "--output", "energy"});
+    expect(0, folder, {"emit", name, "-o", ".", "--with", "jac,jac_p,mass,constraints,reactions,events", "--output", "energy"});
     folder.write("caller.c", c_caller(name));
     compile(folder, {"gcc", "-std=c11", "-o", "caller", "caller.c", name + ".c", "-lm"});
     const Json all = printed(folder, "caller");

@@ -52,10 +52,12 @@ std::string definition(const std::string& name, const program::Function& functio
 }
 
 std::string sizes(const std::string& name, const program::Program& program, const EmissionContext& context) {
-  const std::pair<const char*, std::size_t> entries[] = {
+  std::vector<std::pair<const char*, std::size_t>> entries = {
       {"states", program.state_count()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
       {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
       {"output_count", program.outputs.size()}, {"prepared_size", program.prepared_count()}};
+  const std::size_t events = program.events.size() + program.kinks.size();
+  if (events > 0) entries.emplace_back("event_count", events);
   std::vector<std::string> lines;
   for (const auto& [what, count] : entries) lines.push_back(fmt::format("  {}_{} = {}", name, what, count));
   return fmt::format("{}", fmt::join(lines, ",\n"));

@@ -94,6 +94,7 @@ std::string enums(const ModelNames& names, std::size_t prepared) {
   add("Input", "input_count", names.inputs);
   add("Output", "output_count", names.outputs);
   add("Reaction", "reaction_count", names.reactions);
+  if (!names.events.empty()) add("Event", "event_count", names.events);
   result += fmt::format("inline constexpr std::size_t prepared_size = {};\n", prepared);
   result.pop_back();
   return result;

@@ -45,6 +45,7 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   find(handle_, name + "_constraints", constraints);
   find(handle_, name + "_reactions", reactions);
   find(handle_, name + "_outputs", outputs);
+  find(handle_, name + "_events", events);
   std::string wrong;
   if (abi == nullptr || selftest == nullptr || information == nullptr || defaults == nullptr || rhs == nullptr) {
     wrong = "compiled code lacks functions of the C ABI: " + path;
@@ -73,6 +74,7 @@ LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
   jac_p = other.jac_p;
   reactions = other.reactions;
   outputs = other.outputs;
+  events = other.events;
   jac = other.jac;
   mass = other.mass;
   constraints = other.constraints;

@@ -34,6 +34,7 @@ class LoadedModel {
   PreparedRhsFunction rhs_prepared = nullptr;  // there with `prepare`
   RhsFunction jac_p = nullptr;      // dfdp in place of dx
   RhsFunction reactions = nullptr;  // lambda in place of dx
+  RhsFunction events = nullptr;     // g in place of dx
   RhsFunction outputs = nullptr;    // y in place of dx
   JacobianFunction jac = nullptr;
   MassFunction mass = nullptr;

@@ -93,6 +93,7 @@ class Run {
 
   /// After each accepted step: passing events are told, a breaking one ends the piece.
   bool observe(const StepView& view) {
+    if (values_.empty()) return observer_(view);
     locator_.open(view, g_);
     while (const std::optional<Crossing> crossing = locator_.next(view, g_)) {
       if (locator_.functions()[crossing->function].watch == Watch::breaking) {

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/kinks.hpp"
+
+#include <algorithm>
+#include <unordered_map>
+
+#include "symbolic/calculus.hpp"
+
+namespace eomgen::program {
+namespace {
+
+using symbolic::Dag;
+using symbolic::Node;
+using symbolic::Op;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+class Holding {
+ public:
+  explicit Holding(Dag& dag) : dag_(dag) {}
+
+  /// New kinks are taken up while `collects` is true; later expressions only share those that are known.
+  bool collects = true;
+  std::vector<Kink> kinks;
+
+  static bool is_kink(Op op) {
+    return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
+  }
+
+  Ref operator()(Ref expression) {
+    for (const Ref r : dag_.reachable({expression})) {
+      if (memo_.contains(r.id)) continue;
+      const Node node = dag_[r];
+      std::array<Ref, 4> a{};
+      bool changed = false;
+      for (std::uint8_t i = 0; i < node.arity; ++i) {
+        a[i] = memo_.at(node.args[i].id);
+        changed = changed || a[i] != node.args[i];
+      }
+      Ref result = changed ? symbolic::rebuilt(dag_, node, a) : r;
+      if (is_kink(node.op)) result = held(node.op, a, result);
+      memo_.emplace(r.id, result);
+    }
+    return memo_.at(expression.id);
+  }
+
+ private:
+  Ref held(Op op, const std::array<Ref, 4>& a, Ref live) {
+    const Ref value = op == Op::abs || op == Op::sign ? a[0] : dag_.sub(a[0], a[1]);
+    const auto known = std::find_if(kinks.begin(), kinks.end(), [&](const Kink& k) { return k.value == value; });
+    const auto index = static_cast<std::uint32_t>(known - kinks.begin());
+    if (known == kinks.end()) {
+      if (!collects || kinks.size() == most_kinks || !moves(value)) return live;
+      kinks.push_back({op, value});
+    }
+    const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::side, index, 0});
+    const Ref chosen = dag_.select(side, zero, side, dag_.select(zero, side, side, value));
+    switch (op) {
+      case Op::abs: return dag_.select(chosen, zero, dag_.neg(a[0]), a[0]);
+      case Op::sign: return dag_.call(Op::sign, chosen);
+      case Op::min: return dag_.select(chosen, zero, a[0], a[1]);
+      case Op::max: return dag_.select(chosen, zero, a[1], a[0]);
+      default: return dag_.select(chosen, zero, a[2], a[3]);
+    }
+  }
+
+  bool moves(Ref value) const {
+    const std::vector<Symbol> symbols = dag_.symbols({value});
+    return std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; });
+  }
+
+  Dag& dag_;
+  std::unordered_map<std::uint32_t, Ref> memo_;
+};
+
+}  // namespace
+
+const char* name(const Kink& kink) {
+  switch (kink.op) {
+    case Op::abs: return "abs";
+    case Op::sign: return "sign";
+    case Op::min: return "min";
+    case Op::max: return "max";
+    default: return "if";
+  }
+}
+
+bool has_kinks(const system::EquationSystem& s) {
+  std::vector<Ref> roots;
+  for (const auto* list : {&s.M, &s.f, &s.A, &s.gamma}) roots.insert(roots.end(), list->begin(), list->end());
+  for (const system::IntegralState& integral : s.integrals) roots.push_back(integral.rate);
+  const std::vector<Ref> nodes = s.dag->reachable(roots);
+  return std::any_of(nodes.begin(), nodes.end(), [&](Ref r) { return Holding::is_kink((*s.dag)[r].op); });
+}
+
+std::vector<Kink> hold_kinks(system::EquationSystem& s) {
+  Holding hold(*s.dag);
+  for (auto* list : {&s.M, &s.f, &s.A, &s.gamma}) {
+    for (Ref& r : *list) r = hold(r);
+  }
+  for (system::IntegralState& integral : s.integrals) integral.rate = hold(integral.rate);
+  if (s.quasi) {
+    for (auto* list : {&s.quasi->M, &s.quasi->f}) {
+      for (Ref& r : *list) r = hold(r);
+    }
+  }
+  if (s.solution) {
+    for (Ref& r : s.solution->qddot) r = hold(r);
+    for (auto& pivot : s.solution->pivots) pivot = {hold(pivot.pivot), hold(pivot.scale)};
+  }
+  hold.collects = false;
+  for (system::Reaction& reaction : s.reactions) reaction.value = hold(reaction.value);
+  for (system::Output& output : s.outputs) output.value = hold(output.value);
+  for (system::Event& event : s.events) event.value = hold(event.value);
+  return std::move(hold.kinks);
+}
+
+}  // namespace eomgen::program

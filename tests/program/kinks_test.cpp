@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Kinks: with the sides of the state held the program is what it was, with others the branch goes on beyond its surface.
+#include <doctest/doctest.h>
+
+#include "program/systems.hpp"
+#include "program/values.hpp"
+#include "support/tolerances.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+using symbolic::Op;
+using symbolic::Ref;
+using symbolic::SymbolKind;
+
+namespace {
+
+/// One coordinate of unit mass under the force that `make` gives; x, v, t and a parameter as its arguments.
+template <class Make>
+system::EquationSystem one_mass(Make make) {
+  system::EquationSystem s;
+  s.dag = std::make_shared<symbolic::Dag>();
+  symbolic::Dag& dag = *s.dag;
+  s.route = "test";
+  s.free = {0};
+  s.M = {dag.one()};
+  const Ref x = dag.symbol({SymbolKind::coordinate, 0, 0}), v = dag.symbol({SymbolKind::coordinate, 0, 1});
+  s.f = {make(dag, x, v, dag.symbol({SymbolKind::time, 0, 0}), dag.symbol({SymbolKind::parameter, 0, 0}))};
+  return s;
+}
+
+// min(x, t) + |x^2 - v| + if(v < |x - 1/2|, x v, v^3) + max(p, 0) + sign(x - 1/2)
+system::EquationSystem all_kinds() {
+  return one_mass([](symbolic::Dag& dag, Ref x, Ref v, Ref t, Ref p) {
+    const Ref inner = dag.sub(x, dag.constant(symbolic::Rational(1) / 2));
+    Ref f = dag.add(dag.call(Op::min, x, t), dag.call(Op::abs, dag.sub(dag.power(x, 2), v)));
+    f = dag.add(f, dag.select(v, dag.call(Op::abs, inner), dag.mul(x, v), dag.power(v, 3)));
+    f = dag.add(f, dag.call(Op::max, p, dag.zero()));
+    return dag.add(f, dag.call(Op::sign, inner));
+  });
+}
+
+}  // namespace
+
+TEST_CASE("kinks: four surfaces of five kinks; held on the side where the state is, the right-hand side is the same") {
+  const auto system = all_kinds();
+  const auto plain = build(system), held = build(system, {"events", "jac"});
+  CHECK(plain.kinks.empty());
+  REQUIRE(held.kinks.size() == 4);  // |x - 1/2| and sign(x - 1/2) share theirs; max(p, 0) never switches
+  int negative = 0;
+  for (std::uint64_t point = 1; point <= 20; ++point) {
+    auto arguments = arguments_at<cln::cl_R>(system, point);
+    const auto expected = program::interpret(plain.functions[0], arguments, 60).results[0];
+    CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0], expected) < tolerances::same_value);
+    const auto g = program::interpret(held.functions[1], arguments, 60).results[0];
+    REQUIRE(g.size() == 4);
+    for (const cln::cl_R& value : g) {
+      arguments.side.push_back(cln::minusp(value) ? -1 : 1);
+      negative += cln::minusp(value) ? 1 : 0;
+    }
+    CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0], expected) < tolerances::same_value);
+  }
+  CHECK(negative > 20);
+  CHECK(negative < 60);  // of 80: the points do lie on both sides
+}
+
+TEST_CASE("kinks: a held branch goes on beyond its surface, and so does its Jacobian") {
+  const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref v, Ref, Ref) {
+    return dag.mul(v, dag.call(Op::max, dag.zero(), x));  // g = -x: above its surface x < 0 and the force is 0
+  });
+  const auto held = build(system, {"events", "jac"});
+  auto arguments = arguments_at<cln::cl_R>(system, 1);
+  const cln::cl_R x = arguments.x[0], v = arguments.x[1];
+  for (const int side : {-1, 1}) {
+    arguments.side = {side};
+    for (const int sign : {1, -1}) {
+      arguments.x[0] = sign * x;
+      const auto dx = program::interpret(held.functions[0], arguments, 60).results[0];
+      const auto jac = program::interpret(held.functions[2], arguments, 60).results[0];
+      const cln::cl_R force = side < 0 ? cln::cl_R(sign * x * v) : cln::cl_R(0);
+      CHECK(difference({dx[1]}, {force}) < tolerances::same_value);
+      CHECK(difference({jac[1], jac[3]}, {side < 0 ? v : cln::cl_R(0), side < 0 ? cln::cl_R(sign * x) : cln::cl_R(0)}) <
+            tolerances::same_value);
+    }
+  }
+}
+
+TEST_CASE("kinks: more than mode has bits for follow the state") {
+  const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) {
+    Ref sum = dag.zero();
+    for (long k = 1; k <= 14; ++k) sum = dag.add(sum, dag.call(Op::abs, dag.sub(x, dag.constant(symbolic::Rational(k) / 10))));
+    return sum;
+  });
+  const auto plain = build(system), held = build(system, {"events"});
+  CHECK(held.kinks.size() == program::most_kinks);
+  const auto arguments = arguments_at<cln::cl_R>(system, 3);
+  CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0],
+                   program::interpret(plain.functions[0], arguments, 60).results[0]) < tolerances::same_value);
+}
