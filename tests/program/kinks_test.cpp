@@ -2,6 +2,7 @@
 // Kinks: with the sides of the state held the program is what it was, with others the branch goes on beyond its surface.
 #include <doctest/doctest.h>
 
+#include "program/kinks.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/tolerances.hpp"
