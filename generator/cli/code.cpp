@@ -24,14 +24,14 @@ verify::CompiledForm CompiledCode::form() const {
   const emit::PreparedRhsFunction rhs_prepared = compiled_.model.rhs_prepared;
   const std::size_t size = 2 * free_.size() + integrals_;
   return {"emitted code", [rhs, prepare, rhs_prepared, size, prepared = prepared_](double t, const std::vector<double>& x, const std::vector<double>& p,
-                                      const std::vector<double>& u) -> std::optional<std::vector<double>> {
+                                      const std::vector<double>& u, int mode) -> std::optional<std::vector<double>> {
             std::vector<double> dx(size);
             std::vector<double> w(prepared);
             // What `run` integrates; the self test has compared it with `rhs`.
-            const int code = prepared == 0 ? rhs(t, x.data(), p.data(), u.data(), 0, dx.data())
+            const int code = prepared == 0 ? rhs(t, x.data(), p.data(), u.data(), mode, dx.data())
                              : prepare(p.data(), w.data()) != 0
                                  ? 1
-                                 : rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), 0, dx.data());
+                                 : rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), mode, dx.data());
             if (code != 0) return std::nullopt;
             return dx;
           }};

@@ -74,9 +74,26 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 
 }  // namespace
 
+namespace {
+
+// Modes are emitted and verified, but nothing here switches them yet: a run in one mode would be wrong in silence.
+void refuse_friction(const mechanics::Mechanics& m) {
+  if (m.contacts.empty()) return;
+  for (const model::Constraint& constraint : m.model->constraints) {
+    if (!constraint.friction) continue;
+    throw Error("run", m.model->where(constraint.friction->span), "runs of models with friction are not supported yet",
+                "derive, verify and emit take this model; NAME_rhs has the modes (docs/abi.md)");
+  }
+  throw Error("run", Where{m.model->file, 0, 0, 1, ""}, "runs of models with dry friction are not supported yet",
+              "derive, verify and emit take this model; NAME_rhs has the modes (docs/abi.md)");
+}
+
+}  // namespace
+
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
+  refuse_friction(mechanics);
   const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), request.overrides);

@@ -25,7 +25,7 @@ std::vector<Ref> in_model(Dag& dag, const QuasiCoordinates& coordinates, const s
 }  // namespace
 
 bool articulated_applies(Mechanics& m, system::Approach approach) {
-  if (!m.active.empty() || !tree_applies(m, approach)) return false;
+  if (!m.active.empty() || !m.contacts.empty() || !tree_applies(m, approach)) return false;
   const std::optional<Branches> tree = branches(m, m.free, true);
   return rods_of(*m.dag, *tree).has_value();
 }

@@ -94,6 +94,46 @@ void add_events(Mechanics& m, EquationSystem& s) {
   for (std::size_t i = 0; i < m.event.size(); ++i) s.events.push_back({m.model->events[i].name, reacting(m.event[i])});
 }
 
+void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
+  symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
+  for (const mechanics::Contact& contact : m.contacts) {
+    system::Contact result;
+    result.name = contact.name;
+    result.first = contact.first;
+    result.reactions = contact.constraints;  // reactions stand in the order of the constraints
+    for (const Ref g : contact.gram) result.gram.push_back(finish(g));
+    if (contact.constraints.empty()) result.normal = finish(contact.normal);
+    for (const Ref w : contact.slip) {
+      result.slip.push_back(finish(w));
+      result.slip_rate.push_back(finish(ddt(w)));
+    }
+    for (const Vec3& t : contact.directions) result.directions.push_back({finish(t[0]), finish(t[1]), finish(t[2])});
+    result.static_coefficient = finish(contact.static_coefficient);
+    result.dynamic_coefficient = finish(contact.dynamic_coefficient);
+    s.contacts.push_back(std::move(result));
+  }
+}
+
+/// Friction forces as vectors, and the mode of each contact as a number.
+void add_contact_outputs(Mechanics& m, EquationSystem& s) {
+  Dag& dag = *m.dag;
+  for (const mechanics::Contact& contact : m.contacts) {
+    const auto phi = [&](std::size_t a) {
+      return dag.symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(a), 0});
+    };
+    if (contact.directions.empty()) s.outputs.push_back({"friction." + contact.name, phi(0)});
+    for (std::size_t axis = 0; axis < 3 && !contact.directions.empty(); ++axis) {
+      Ref sum = dag.zero();
+      for (std::size_t a = 0; a < contact.dimensions(); ++a) {
+        sum = dag.add(sum, dag.mul(contact.directions[a][axis], phi(a)));
+      }
+      s.outputs.push_back({"friction." + contact.name + "." + std::to_string(axis + 1), sum});
+    }
+    const auto index = static_cast<std::uint32_t>(&contact - m.contacts.data());
+    s.outputs.push_back({"mode." + contact.name, dag.symbol({SymbolKind::contact, index, 0})});
+  }
+}
+
 }  // namespace
 
 Ref dot(Dag& dag, const Vec3& a, const Vec3& b) {
@@ -106,6 +146,12 @@ std::vector<Ref> generalized_forces(Mechanics& m) {
   std::vector<Ref> Q(m.q.size(), m.dag->zero());
   for (const std::vector<Ref>& force : m.force_components) {
     for (std::size_t i = 0; i < Q.size(); ++i) Q[i] = m.dag->add(Q[i], force[i]);
+  }
+  for (const mechanics::Contact& contact : m.contacts) {
+    for (std::uint32_t a = 0; a < contact.dimensions(); ++a) {
+      const Ref phi = m.dag->symbol({SymbolKind::friction, contact.first + a, 0});
+      for (std::size_t i = 0; i < Q.size(); ++i) Q[i] = m.dag->add(Q[i], m.dag->mul(contact.tangents[a][i], phi));
+    }
   }
   return Q;
 }
@@ -141,6 +187,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   s.power = power(m, s);
   add_outputs(m, s);
   add_events(m, s);
+  add_contact_outputs(m, s);
   Finish finish{impose(m), write_out(m)};
   for (Ref* r : {&s.kinetic, &s.potential, &s.energy, &s.power}) *r = finish(*r);
   for (Ref& r : s.M) r = finish(r);
@@ -149,6 +196,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   for (system::Output& output : s.outputs) output.value = finish(output.value);
   for (system::Event& event : s.events) event.value = finish(event.value);
   add_constraints(m, s, finish);
+  add_contacts(m, s, finish);
   return s;
 }
 

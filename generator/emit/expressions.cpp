@@ -63,6 +63,7 @@ Expression Expressions::size_of(const Operand& operand) const {
     case Slot::input: return {names_.inputs[operand.index], Expression::atom};
     case Slot::prepared: return {fmt::format("{}[{}]", names_.w, operand.index), Expression::atom};
     case Slot::side: return {names_.sides[operand.index], Expression::atom};
+    case Slot::contact: return {names_.contacts[operand.index], Expression::atom};
     case Slot::value: break;
   }
   return value_[operand.index];

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/straight_line.hpp"
 
+#include "system/contact_modes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,12 +53,14 @@ class Printer {
 
  private:
   void declare_names() {
-    for (const auto* list : {&names_.sides, &names_.state, &names_.parameters, &names_.inputs}) {
+    for (const auto* list : {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs}) {
       for (const std::string& name : *list) table_.declare(name);
     }
     for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode}) table_.declare(name);
     if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
-    for (const auto& result : function_.results) text_.results.push_back(table_.declare(result.first));
+    for (const auto& result : function_.results) {
+      if (!program::is_code(result.first)) text_.results.push_back(table_.declare(result.first));
+    }
   }
 
   void use(const Operand& operand, bool repeated) {
@@ -201,6 +205,10 @@ class Printer {
     section_ = "results";
     for (std::size_t r = 0; r < function_.results.size(); ++r) {
       const auto& entries = function_.results[r].second;
+      if (program::is_code(function_.results[r].first)) {
+        end_where_negative(function_.results[r].first, entries);
+        continue;
+      }
       for (std::size_t i = 0; i < entries.size(); ++i) {
         line(fmt::format("{}[{}] = {};", text_.results[r], i, expressions_.signed_value(entries[i]).text) + remark(r, i));
       }
@@ -217,6 +225,12 @@ class Printer {
     const std::string finite = table_.declare("finite");
     line(fmt::format("const {} {} = {};", dialect_.real, finite, sum));
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
+  }
+
+  void end_where_negative(const std::string& code, const std::vector<Operand>& entries) {
+    for (const Operand& entry : entries) {
+      line(fmt::format("if ({} < {}) return {};", expressions_.signed_value(entry).text, dialect_.constant(0), code.substr(1)));
+    }
   }
 
   /// What an entry is, behind its line.
@@ -244,7 +258,7 @@ class Printer {
     for (const Argument& argument : arguments(function_.name, text_, names_)) {
       if (argument.kind != Argument::Kind::result && !is_used(argument.slot)) unused.push_back(argument.name);
     }
-    for (std::size_t r = 0; r < function_.results.size(); ++r) {
+    for (std::size_t r = 0; r < text_.results.size(); ++r) {
       if (function_.results[r].second.empty()) unused.push_back(text_.results[r]);
     }
     std::string result;
@@ -271,6 +285,13 @@ class Printer {
     };
     load(Slot::state, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.x, i); });
     load(Slot::parameter, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.p, i); });
+    load(Slot::contact, [&](std::uint32_t i) {
+      std::string digit = fmt::format("({} & {})", names_.mode, system::contact_bits);
+      for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", system::contact_states);
+      const std::string one = dialect_.constant(1);
+      if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, system::contact_states, system::contact_states / 2, one);
+      return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect_.constant(0));
+    });
     load(Slot::input, [&](std::uint32_t i) {
       if (!takes_inputs()) return dialect_.value(context_.inputs.at(i).value);
       return fmt::format("{0} ? {0}[{1}] : {2}", names_.u, i, dialect_.value(context_.inputs.at(i).value));

@@ -112,6 +112,8 @@ class ForceReader {
     }
   }
 
+  void add(const model::Dry&) {}  // a contact (contacts.cpp)
+
   void load(const Vec3& force, const Vec3& at) {
     m_.loads.push_back({force_->name, force, at, lower_.ddt(at, force_->span)});
   }
@@ -150,7 +152,7 @@ class ForceReader {
     for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
       effect.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(potential_));
     }
-    if (vanishes(dag_, effect)) {
+    if (!std::holds_alternative<model::Dry>(force_->kind) && vanishes(dag_, effect)) {
       fail("'" + force_->name + "' changes no equation of motion: it does no work in any motion of the coordinates",
            "check its direction and the point it acts on, or remove it");
     }

@@ -43,7 +43,8 @@ Lowering::Lowering(Mechanics& mechanics)
       dag_(*mechanics.dag),
       ddt_(sym::total_time(dag_, mechanics.model->coordinates.size(), mechanics.model->functions.size())),
       explicit_rate_(sym::explicit_time(dag_, mechanics.model->functions.size())),
-      extension_(dag_.zero()) {}
+      extension_(dag_.zero()),
+      slip_(dag_.zero()) {}
 
 Ref Lowering::scalar(model::NodeId id) { return id == model::no_node ? dag_.zero() : value(id).scalar; }
 
@@ -58,6 +59,7 @@ Vec3 Lowering::position(std::uint32_t place) {
 }
 
 void Lowering::set_extension(Ref extension) { extension_ = extension; }
+void Lowering::set_slip(Ref speed) { slip_ = speed; }
 
 const Lowering::Value& Lowering::value(model::NodeId id) {
   if (const auto found = memo_.find(id); found != memo_.end()) return found->second;
@@ -75,7 +77,7 @@ Lowering::Value Lowering::lower(const model::Node& node) {
   using model::Op;
   switch (node.op) {
     case Op::number: case Op::pi: case Op::time: case Op::parameter: case Op::function: case Op::input:
-    case Op::coordinate: case Op::definition: case Op::extension: case Op::integral: case Op::reaction:
+    case Op::coordinate: case Op::definition: case Op::extension: case Op::integral: case Op::reaction: case Op::slip:
       return lower_leaf(node);
     case Op::add: case Op::subtract: case Op::negate: case Op::multiply: case Op::divide: case Op::power: case Op::call:
     case Op::conditional: case Op::dot: case Op::norm:
@@ -100,6 +102,7 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
     case Op::definition: return value(m_.model->definitions[node.index].is);
     case Op::integral: return of(dag_.symbol({SymbolKind::integral, node.index, 0}));
     case Op::reaction: return of(multiplier(node));
+    case Op::slip: return of(slip_);
     default: return of(extension_);
   }
 }

@@ -21,6 +21,8 @@ class Lowering {
 
   /// The extension that Op::extension stands for while a spring's energy is read.
   void set_extension(Ref extension);
+  /// The slip speed that Op::slip stands for while coefficients of friction are read.
+  void set_slip(Ref speed);
 
   Ref dot(const Vec3& a, const Vec3& b);
   Vec3 subtract(const Vec3& a, const Vec3& b);
@@ -58,7 +60,7 @@ class Lowering {
   symbolic::Derivation ddt_;
   symbolic::Derivation explicit_rate_;
   std::unordered_map<model::NodeId, Value> memo_;
-  Ref extension_;
+  Ref extension_, slip_;
   int depth_ = 0;
 };
 

@@ -154,8 +154,10 @@ Mechanics build_mechanics(const model::Model& model) {
   add_masses(m, lower);
   add_forces(m, lower);
   add_constraints(m, lower);
+  add_contacts(m, lower);
   eliminate_coordinates(m);
   add_values(m, lower);
+  check_coefficients(m);
   require_equations(m);
   refuse_dependent_constraints(m);
   classify_constraints(m);

@@ -73,6 +73,24 @@ struct Integral {
   Ref psi;
 };
 
+/// Where Coulomb's law acts: a particle on a surface (one constraint) or a curve (two), or one coordinate with a given normal
+/// force. The friction force is sum_a phi_a t_a with the symbols phi_a = {SymbolKind::friction, first + a}.
+struct Contact {
+  std::string name;                         // of the constraint or the force
+  std::vector<std::uint32_t> constraints;   // 1 or 2 indices; none: the normal force is given
+  std::uint32_t place = 0;                  // of the particle; 0 where a coordinate rubs
+  std::uint32_t coordinate = 0;             // that rubs, where place is 0
+  std::uint32_t first = 0;                  // index of the first phi
+  std::vector<Ref> gram;                    // grad psi_k . grad psi_l at the particle, row-major
+  Ref normal;                               // the given normal force
+  std::vector<Vec3> directions;             // t_a, orthonormal; none where a coordinate rubs
+  std::vector<std::vector<Ref>> tangents;   // t_a . dr/dq_i per t_a, all coordinates
+  std::vector<Ref> slip;                    // t_a . (v - v_s)
+  Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed
+
+  std::size_t dimensions() const { return tangents.size(); }
+};
+
 struct Mechanics {
   const model::Model* model = nullptr;
   std::shared_ptr<Dag> dag;  // later stages add nodes to it
@@ -96,6 +114,7 @@ struct Mechanics {
 
   std::vector<Classification> classification;  // per constraint
   std::vector<Integral> integrals;
+  std::vector<Contact> contacts;  // constraints with friction in the order of the model, then dry forces
 
   std::vector<Ref> event;                            // per Model::events entry: changes its sign there
   std::vector<Ref> function_value;                   // per Model::functions entry, as an expression of t

@@ -9,6 +9,8 @@ namespace eomgen::mechanics {
 void add_masses(Mechanics& mechanics, Lowering& lower);        // masses, kinetic energy, eq. (1.31), (3.20)
 void add_forces(Mechanics& mechanics, Lowering& lower);        // potential, loads, generalised forces
 void add_constraints(Mechanics& mechanics, Lowering& lower);   // psi and its gradient, eq. (2.31)
+void add_contacts(Mechanics& mechanics, Lowering& lower);      // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)
+void check_coefficients(const Mechanics& mechanics);           // of friction, where parameters alone tell them
 void eliminate_coordinates(Mechanics& mechanics);              // which constraints read q_c = d(t), eq. (2.96)
 
 }  // namespace eomgen::mechanics

@@ -125,9 +125,20 @@ struct Drag {
 struct Generalized {
   std::vector<std::pair<std::uint32_t, NodeId>> components;
 };  // coordinate, force
+/// Coulomb's law: coefficients are expressions, which may use Op::slip.
+struct Friction {
+  NodeId static_coefficient = no_node, dynamic_coefficient = no_node;
+  NodeId surface_velocity = no_node;  // vector: stated motion of the surface along itself
+  Span span;
+};
+struct Dry {  // Coulomb friction on one coordinate, with a given normal force
+  std::uint32_t coordinate;
+  NodeId normal;
+  Friction law;
+};
 struct Force {
   std::string name;  // given, or "force 2"
-  std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized> kind;
+  std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized, Dry> kind;
   Span span;
 };
 
@@ -136,6 +147,7 @@ struct Constraint {
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
   bool curve = false;       // holonomic = ["psi1", "psi2"]
   bool velocity = false;    // velocity = "..": psi binds velocities
+  std::optional<Friction> friction;
   Span span;
 };
 

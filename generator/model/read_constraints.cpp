@@ -9,8 +9,8 @@ namespace eomgen::model {
 void Reader::declare_constraints() {
   for (const Value* table : sections("constraint")) {
     check_keys(*table, {"[[constraint]]",
-                        {"name", "holonomic", "velocity", "holds"},
-                        {"rolling", "sliding", "friction", "restitution", "shape"}});
+                        {"name", "holonomic", "velocity", "holds", "friction"},
+                        {"rolling", "sliding", "restitution", "shape"}});
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
     Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
@@ -45,6 +45,7 @@ void Reader::read_constraints() {
                        ? *velocity
                        : needed(*table, "holonomic", what,
                                 "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
+    if (const Value* friction = table->find("friction")) read_friction(constraint, *friction);
   }
 }
 

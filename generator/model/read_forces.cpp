@@ -11,7 +11,7 @@ constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
 
 const std::vector<std::string_view>& kinds() {
   static const std::vector<std::string_view> all{"gravity", "central_gravity", "gravitation", "force",      "spring",
-                                                 "damper",  "torsion",         "drag",        "generalized"};
+                                                 "damper",  "torsion",         "drag",        "generalized", "dry"};
   return all;
 }
 
@@ -45,7 +45,7 @@ void Reader::read_forces() {
 }
 
 Force Reader::read_force(const Value& table, const std::string& name) {
-  Keys keys{"[[force]]", kinds(), {"moment", "magnus", "dry"}};
+  Keys keys{"[[force]]", kinds(), {"moment", "magnus"}};
   keys.known.insert(keys.known.end(), {"name", "on"});
   check_keys(table, keys);
   const Entry* kind = nullptr;
@@ -90,6 +90,8 @@ Force Reader::read_force(const Value& table, const std::string& name) {
     force.kind = read_torsion(value, what);
   } else if (kind->key == "drag") {
     force.kind = read_drag(value, what);
+  } else if (kind->key == "dry") {
+    force.kind = read_dry(value, what);
   } else {
     force.kind = read_generalized(value, what);
   }

@@ -122,6 +122,10 @@ private:
   void declare_constraints();
   void read_constraints();
   void read_equations(Constraint& constraint, const Value& value);
+  // read_friction.cpp
+  void read_friction(Constraint& constraint, const Value& value);
+  Friction read_coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed);
+  Dry read_dry(const Value& table, const std::string& what);
   void read_energy();
 
   // read_events.cpp: [[event]], `stop` of a scene
@@ -142,6 +146,7 @@ private:
   void read_solver(Scene& scene, const Value& value);
   void read_outputs(Scene& scene, const Value& value);
   void check_output(const Value& value);
+  bool is_contact_output(const std::vector<std::string>& parts);  // read_friction.cpp
   NodeId positive_number(const Value& value, const std::string& what, std::string_view unit);
   Symbol& coordinate_of_key(const Entry& entry, const std::string& what, std::uint8_t& order);
 

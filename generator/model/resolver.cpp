@@ -229,6 +229,12 @@ Typed Resolver::extension(Span span) {
   return result;
 }
 
+Typed Resolver::slip(Span span) {
+  Typed result = make(Op::slip, false, {}, span);
+  result.facts = on_velocity;
+  return result;
+}
+
 Typed Resolver::sum_of(const Typed& a, const Typed& b, Span span) { return add(SyntaxKind::add, a, b, span); }
 
 Typed Resolver::component(const Typed& vector, std::uint32_t axis, Span span) {

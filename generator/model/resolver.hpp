@@ -67,6 +67,7 @@ public:
   Typed component(const Typed& vector, std::uint32_t axis, Span span);
   Typed place(std::uint32_t index, Span span);
   Typed extension(Span span);
+  Typed slip(Span span);
   /// The value times a unit; a value that has the unit's dimension already keeps it, if the unit has no factor.
   Typed with_unit(const Typed& typed, const MeasuredUnit& unit, Span span);
 

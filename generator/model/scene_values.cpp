@@ -137,7 +137,8 @@ void Reader::check_output(const Value& value) {
   if (parts.size() == 1 &&
       std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end())
     return;
-  if (parts[0] == "friction" || parts[0] == "mode" || (parts.size() == 2 && is_axis(parts[1], "omega"))) {
+  if (is_contact_output(parts)) return;
+  if (parts.size() == 2 && is_axis(parts[1], "omega")) {
     not_yet(value.span, fmt::format("the output {}", quote(value.text)));
   }
   std::vector<std::string> candidates(built_in_outputs.begin(), built_in_outputs.end());

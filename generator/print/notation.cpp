@@ -98,7 +98,8 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
       return named(model_->coordinates[symbol.index].name, model_->coordinates[symbol.index].tex);
     case SymbolKind::multiplier: return multiplier(symbol.index);
     case SymbolKind::integral: return split_name("I_" + std::to_string(symbol.index + 1));
-    case SymbolKind::side: break;
+    case SymbolKind::friction: return split_name("F_f_" + std::to_string(symbol.index + 1));
+    case SymbolKind::side: case SymbolKind::contact: break;
     case SymbolKind::extra:
       if (symbol != reading::momentum_symbol(symbol.index)) break;
       return split_name(momentum_letter_ + "_" + model_->coordinates[symbol.index].name);

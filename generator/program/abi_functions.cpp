@@ -39,6 +39,12 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
     for (Pivot& pivot : s.solution->pivots) pivot = {fixed(pivot.pivot), fixed(pivot.scale)};
   }
   for (auto& integral : s.integrals) integral.rate = fixed(integral.rate);
+  for (system::Contact& contact : s.contacts) {
+    for (auto* list : {&contact.gram, &contact.slip, &contact.slip_rate}) {
+      for (Ref& r : *list) r = fixed(r);
+    }
+    for (Ref* r : {&contact.normal, &contact.static_coefficient, &contact.dynamic_coefficient}) *r = fixed(*r);
+  }
   for (auto& reaction : s.reactions) reaction.value = fixed(reaction.value);
   for (auto& output : s.outputs) output.value = fixed(output.value);
   for (auto& event : s.events) event.value = fixed(event.value);
@@ -61,7 +67,8 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   std::map<Symbol, Ref> solution;
   ties_ = ties;
   if (system_.solution) qddot_ = system_.solution->qddot;
-  else std::tie(qddot_, lambda_) = solve().motion();
+  else if (system_.contacts.empty()) std::tie(qddot_, lambda_) = solve().motion();
+  else close_contacts(solution);
   for (std::size_t i = 0; i < n_; ++i) {
     qdot_.push_back(dag.symbol({SymbolKind::coordinate, system_.free[i], 1}));
     const Symbol qddot{SymbolKind::coordinate, system_.free[i], 2};
@@ -74,6 +81,25 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
     solution[lambda] = lambda_[k];
   }
   solution_ = std::make_unique<Substitution>(dag, std::move(solution));
+}
+
+void AbiFunctions::close_contacts(std::map<Symbol, Ref>& solution) {
+  friction_ = close_friction(system_, solve());
+  qddot_ = friction_.qddot;
+  lambda_ = friction_.lambda;
+  for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
+    solution[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = friction_.phi[b];
+  }
+}
+
+WantedFunction AbiFunctions::contact_events() {
+  WantedFunction function{"contacts", {{"g", {}}}, {}, {}};
+  std::vector<Ref>& values = function.results[0].second;
+  for (const ContactWatch& watch : friction_.watch) {
+    values.insert(values.end(), {watch.slip, watch.above, watch.below, watch.press, watch.margin});
+  }
+  add_solution(function);
+  return function;
 }
 
 const LinearSolve& AbiFunctions::solve() {
@@ -132,6 +158,10 @@ WantedFunction AbiFunctions::rhs() {
   auto& dx = function.results[0].second;
   dx.insert(dx.end(), qddot_.begin(), qddot_.end());
   for (const system::IntegralState& integral : system_.integrals) dx.push_back(integral.rate);
+  if (!friction_.none.empty()) {
+    function.results.emplace_back(no_solution, friction_.none);
+    function.results.emplace_back(many_solutions, friction_.many);
+  }
   add_solution(function);
   return function;
 }
@@ -142,6 +172,10 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
   Dag& dag = *system_.dag;
   symbolic::Derivation d = symbolic::partial(dag, along);
   std::vector<Ref> r, c;
+  if (!system_.contacts.empty()) {  // the law of friction is not linear: its solution is differentiated
+    for (const Ref a : qddot_) r.push_back(d(a));
+    return r;
+  }
   for (std::size_t i = 0; i < n_; ++i) {
     Ref sum = d(system_.f[i]);
     for (std::size_t k = 0; k < m_; ++k) sum = dag.add(sum, dag.mul(d(system_.A[k * n_ + i]), lambda_[k]));
@@ -199,7 +233,12 @@ WantedFunction AbiFunctions::mass() {
   for (std::size_t j = 0; j < n_; ++j) {
     for (std::size_t i = 0; i < n_; ++i) function.results[0].second.push_back(live_M_[i * n_ + j]);
   }
-  for (std::size_t i = 0; i < n_; ++i) function.results[1].second.push_back(system_.dag->neg(live_f_[i]));
+  std::map<Symbol, Ref> none;  // h is without friction, which depends on the mode
+  for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
+    none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = system_.dag->zero();
+  }
+  Substitution frictionless(*system_.dag, none);
+  for (const Ref f : live_f_) function.results[1].second.push_back(system_.dag->neg(frictionless(f)));
   label_matrices(function);
   return function;
 }
@@ -214,7 +253,7 @@ WantedFunction AbiFunctions::constraints() {
 
 Ref AbiFunctions::written_out(Ref expression, bool& solved) {
   for (const Symbol& symbol : system_.dag->symbols({expression})) {
-    solved = solved || symbol.kind == SymbolKind::multiplier ||
+    solved = solved || symbol.kind == SymbolKind::multiplier || symbol.kind == SymbolKind::friction ||
              (symbol.kind == SymbolKind::coordinate && symbol.order == 2);
   }
   return solved ? (*solution_)(expression) : expression;

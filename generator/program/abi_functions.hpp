@@ -8,7 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "program/friction.hpp"
 #include "program/kinks.hpp"
+#include "program/program.hpp"
 #include "program/solve.hpp"
 #include "symbolic/calculus.hpp"
 
@@ -38,6 +40,8 @@ class AbiFunctions {
   WantedFunction jac_p(std::size_t parameters);
   WantedFunction mass();
   WantedFunction constraints();
+  /// Of each contact: slip, above, below, press, margin (friction.hpp).
+  WantedFunction contact_events();
   WantedFunction reactions();
   /// Throws Error with the names that exist where one is unknown.
   WantedFunction outputs(const std::vector<std::string>& names);
@@ -60,12 +64,14 @@ class AbiFunctions {
   std::vector<Ref> live_M_, live_f_, live_A_;  // of functions that have no mode
   std::size_t n_, m_;
   std::vector<Ref> qdot_, qddot_symbol_, lambda_symbol_;
+  void close_contacts(std::map<symbolic::Symbol, Ref>& solution);
   const LinearSolve& solve();  // made when first needed: a system that is solved already may never ask
 
   Ties ties_ = Ties::ascending;
   std::unique_ptr<LinearSolve> solve_;
   std::vector<Ref> qddot_, lambda_;
   std::unique_ptr<symbolic::Substitution> solution_;
+  FrictionSolution friction_;  // where there are contacts
 };
 
 }  // namespace eomgen::program

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/interpret.hpp"
 
+#include "system/contact_modes.hpp"
+
 #include <functional>
 #include <type_traits>
 
@@ -51,6 +53,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
         case Slot::input: return arguments.u.at(operand.index);
         case Slot::prepared: return arguments.w.at(operand.index);
         case Slot::side: return operand.index < arguments.side.size() ? arguments.side[operand.index] : Real(0);
+        case Slot::contact: return Real(system::contact_leaf(arguments.mode, operand.index));
         case Slot::value: break;
       }
       return value[operand.index];
@@ -85,7 +88,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
 Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>& arguments, int digits) {
   const cln::float_format_t format = cln::float_format(static_cast<std::uintptr_t>(digits));
   const auto rounded = [format](const cln::cl_R& x) -> cln::cl_R { return cln::cl_float(x, format); };
-  Arguments<cln::cl_R> floats{rounded(arguments.t), {}, {}, {}, {}, arguments.side};
+  Arguments<cln::cl_R> floats{rounded(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode};
   for (const auto& [from, to] : {std::pair{&arguments.x, &floats.x}, {&arguments.p, &floats.p}, {&arguments.u, &floats.u}, {&arguments.w, &floats.w}}) {
     for (const cln::cl_R& x : *from) to->push_back(rounded(x));
   }

@@ -18,6 +18,7 @@ struct Arguments {
   std::vector<Real> x, p, u;
   std::vector<Real> w{};  // what `prepare` made of p
   std::vector<Real> side = {};  // of the kinks; left out: their branches follow the state
+  int mode = 0;  // of friction contacts
 };
 
 template <class Real>

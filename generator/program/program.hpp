@@ -20,8 +20,8 @@ struct Operations {
   std::size_t cost() const { return add + mul + 8 * div + 12 * sqrt + 25 * trig + 20 * other; }
 };
 
-/// Where an operand comes from; side: of a kink, decoded from `mode`.
-enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, side, value };
+/// Where an operand comes from; side: of a kink, contact: of friction, both decoded from `mode`.
+enum class Slot : std::uint8_t { constant, pi, time, state, parameter, input, prepared, side, contact, value };
 struct Operand {
   Slot slot = Slot::value;
   std::uint32_t index = 0;  // constant: into Function::constants; value: of the instruction that made it
@@ -67,6 +67,18 @@ struct Tried {
   Operations operations;
 };
 
+/// Names of results of rhs that are no arguments: where an entry is negative the function ends with code 3 or 4.
+inline constexpr const char* no_solution = "?3";
+inline constexpr const char* many_solutions = "?4";
+inline bool is_code(const std::string& result) { return result[0] == '?'; }
+
+/// A contact with friction, one digit of the mode (contact_modes.hpp).
+struct ContactInfo {
+  std::string name;
+  std::size_t dimensions = 1;  // tangents
+  bool surface = false;        // its normal force has a sign
+};
+
 struct Program {
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
@@ -88,6 +100,7 @@ struct Program {
   std::vector<std::string> events;     // of the model; first in the array g of the function events
   std::vector<std::string> kinks;      // "abs", "if": after them the surfaces whose branches `mode` can hold
   std::size_t active_constraints = 0;
+  std::vector<ContactInfo> contacts;
   std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only
 };
 

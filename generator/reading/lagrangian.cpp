@@ -38,6 +38,11 @@ Sum generalized_force(const Mechanics& m, Bridge& bridge, std::uint32_t i) {
       if (!direction.is_zero()) result += bridge.sum(load.force[k]) * direction;
     }
   }
+  for (const mechanics::Contact& contact : m.contacts) {
+    for (std::uint32_t a = 0; a < contact.dimensions(); ++a) {
+      result += bridge.sum(contact.tangents[a][i]) * bridge.alphabet()({SymbolKind::friction, contact.first + a, 0});
+    }
+  }
   return simplify(result);
 }
 

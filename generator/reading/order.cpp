@@ -16,7 +16,7 @@ int rank(const Atom& atom) {
   if (atom.op != Op::symbol) return calls;
   const int order = atom.symbol.order;
   switch (atom.symbol.kind) {
-    case SymbolKind::multiplier: return 1;
+    case SymbolKind::multiplier: case SymbolKind::friction: case SymbolKind::contact: return 1;
     case SymbolKind::parameter: return 2;
     case SymbolKind::input: return 3;
     case SymbolKind::function: return order == 0 ? 4 : order == 1 ? rates : accelerations;

@@ -41,6 +41,8 @@ enum class SymbolKind : std::uint8_t {
   parameter,
   input,
   multiplier,  // lambda of Mechanics::constraints[index]
+  friction,    // phi of a tangent of Mechanics::contacts: a component of a friction force
+  contact,     // of the mode: order 0: slides (1, -1 against the tangent, 0 sticks), 1: sign of the normal force
   extra,       // an intermediate that a caller names itself (cut points of the solve, the extension of a spring)
   integral,    // of a function of time, from the start of the run; its rate is told to the Dag
   side,        // -1, 0, 1: the branch at which a kink is held, or 0 (program/kinks.hpp)

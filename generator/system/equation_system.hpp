@@ -5,6 +5,7 @@
 // are written out and eliminated coordinates are replaced by theirs.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -63,6 +64,19 @@ struct Event {
   Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
 };
 
+/// Coulomb's law at one contact (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters f and the reactions
+/// with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends on the mode.
+struct Contact {
+  std::string name;
+  std::uint32_t first = 0;               // index of the first phi
+  std::vector<std::uint32_t> reactions;  // indices into EquationSystem::reactions; none: the normal force is given
+  std::vector<Ref> gram;                 // |normal force|^2 = lambda^T gram lambda
+  Ref normal;                            // the given normal force
+  std::vector<Ref> slip, slip_rate;      // per tangent; the rate may use qddot
+  std::vector<std::array<Ref, 3>> directions;  // t_a; none where a coordinate rubs
+  Ref static_coefficient, dynamic_coefficient;
+};
+
 struct EquationSystem {
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
@@ -83,6 +97,8 @@ struct EquationSystem {
 
   std::optional<QuasiEquations> quasi;  // another way to M and f
   std::optional<Solution> solution;     // equal to what M, f, A, gamma give
+
+  std::vector<Contact> contacts;
 
   std::vector<Reaction> reactions;  // all constraints, in model order
   std::vector<Output> outputs;      // everything that can be asked for, in the order of docs/model-format.md

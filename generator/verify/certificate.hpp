@@ -33,18 +33,19 @@ struct ReadingForm {
   std::vector<symbolic::Ref> residuals;
 };
 
-/// The optimised program read in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u).
+/// The optimised program read in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u) in a mode; nothing
+/// where it says that the law of friction has no solution there, or several.
 struct ProgramForm {
   std::string name;  // "program"
   std::function<std::vector<Real>(const Real& t, const std::vector<Real>& x, const std::vector<Real>& p,
-                                  const std::vector<Real>& u)> rhs;
+                                  const std::vector<Real>& u, int mode)> rhs;
 };
 
 /// Compiled code in binary64; nothing where it reports an error code.
 struct CompiledForm {
   std::string name;  // "emitted code"
   std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
-                                                   const std::vector<double>& u)> rhs;
+                                                   const std::vector<double>& u, int mode)> rhs;
 };
 
 struct Subjects {

@@ -9,6 +9,8 @@
 
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
+#include "system/contact_modes.hpp"
+#include "verify/friction_law.hpp"
 #include "verify/motion.hpp"
 #include "verify/plain_forces.hpp"
 #include "verify/system_values.hpp"
@@ -237,7 +239,8 @@ std::vector<double> rounded(const std::vector<Real>& values) {
 }
 
 /// Code in binary64 against the system at the same binary64 numbers.
-double compiled_difference(const CompiledForm& form, const EquationSystem& s, const SystemValues& v, const Judge& judge) {
+double compiled_difference(const CompiledForm& form, const EquationSystem& s, const SystemValues& v, const Judge& judge,
+                           int mode) {
   const auto exactly = [&](const Real& value) {
     return judge.precision().round(cln::rational(Real(cln::cl_DF(cln::double_approx(value)))));
   };
@@ -245,8 +248,10 @@ double compiled_difference(const CompiledForm& form, const EquationSystem& s, co
   at.t = exactly(at.t);
   for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
     for (Real& value : *part) value = exactly(value);
+  if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at, mode);
   const std::vector<Real> reference = right_hand_side(s, judge, at);
-  const auto dx = form.rhs(cln::double_approx(at.t), rounded(state_vector(s, at)), rounded(at.parameters), rounded(at.inputs));
+  const auto dx = form.rhs(cln::double_approx(at.t), rounded(state_vector(s, at)), rounded(at.parameters), rounded(at.inputs),
+                           mode);
   if (!dx) return 1;
   std::vector<Real> precise;
   for (const double value : *dx) {
@@ -254,6 +259,46 @@ double compiled_difference(const CompiledForm& form, const EquationSystem& s, co
     precise.push_back(exactly(Real(cln::cl_DF(value))));
   }
   return rhs_difference(precise, reference, s, v);
+}
+
+/// Programs and compiled code against the first system, whose friction forces are those of the law in `mode`.
+void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally) {
+  const EquationSystem& first = subjects.systems.front();
+  bool told = false;  // that the law has no solution here, or several
+  for (const ProgramForm& form : subjects.programs) {
+    const std::vector<Real> x = state_vector(first, v.state);
+    const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs, mode);
+    told = told || (dx.empty() && !first.contacts.empty());
+    if (told) continue;
+    tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v));
+  }
+  for (const CompiledForm& form : subjects.compiled) {
+    if (!told) tally.note(form.name, name_of(first), true, compiled_difference(form, first, v, judge, mode), Kind::binary64);
+  }
+}
+
+/// Friction forces of sizes that no law gives: the equations must hold with them all the same.
+State with_any_friction(const mechanics::Mechanics& mechanics, const Judge& judge, const State& at) {
+  State state = at;
+  std::vector<Real> phi;
+  for (const mechanics::Contact& contact : mechanics.contacts) {
+    for (std::size_t a = 0; a < contact.dimensions(); ++a) {
+      phi.push_back(judge.precision().round(cln::cl_RA(static_cast<long>(2 * phi.size() + 3)) / 7));
+    }
+  }
+  if (!phi.empty()) set_friction(mechanics, judge, state, std::move(phi));
+  return state;
+}
+
+std::vector<int> modes_of(const EquationSystem& s) {
+  std::vector<std::size_t> dimensions;
+  std::vector<bool> surface;
+  for (const system::Contact& contact : s.contacts) {
+    dimensions.push_back(contact.slip.size());
+    surface.push_back(contact.reactions.size() == 1);
+  }
+  constexpr std::size_t enough = 40;
+  return system::contact_modes(dimensions, surface, enough);
 }
 
 }  // namespace
@@ -273,9 +318,10 @@ void Tally::note(const std::string& a, const std::string& b, bool shares_code, d
   row->digits_agreed = std::clamp(digits, 0, digits_);
 }
 
-void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Judge& judge, const State& state,
+void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Judge& judge, const State& at,
                 Tally& tally) {
   std::vector<SystemValues> values;
+  const State state = with_any_friction(mechanics, judge, at);
   for (const EquationSystem& s : subjects.systems) values.push_back(values_of(s, mechanics, judge, state));
   for (std::size_t i = 0; i < values.size(); ++i) {
     const EquationSystem& s = subjects.systems[i];
@@ -295,15 +341,13 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();
-  const SystemValues& v = values.front();
-  compare_integrals(mechanics, first, v, judge, tally);
-  for (const ProgramForm& form : subjects.programs) {
-    const std::vector<Real> x = state_vector(first, v.state);
-    const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs);
-    tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v));
+  compare_integrals(mechanics, first, values.front(), judge, tally);
+  if (first.contacts.empty()) return compare_code(subjects, values.front(), judge, 0, tally);
+  for (const int mode : modes_of(first)) {
+    State lawful = state;
+    set_friction(mechanics, judge, lawful, lawful_friction(first, judge, state, mode));
+    compare_code(subjects, values_of(first, mechanics, judge, lawful), judge, mode, tally);
   }
-  for (const CompiledForm& form : subjects.compiled)
-    tally.note(form.name, name_of(first), true, compiled_difference(form, first, v, judge), Kind::binary64);
 }
 
 }  // namespace eomgen::verify

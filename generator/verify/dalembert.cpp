@@ -258,11 +258,26 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   add_inertia(model_, state, now, sums);
   add_energies(model_, now, unaccelerated, sums);
   subtract_forces(model_, precision_, now, sums);
+  subtract_friction(state, now, sums);
   for (std::size_t k = 0; k < psi_.size(); ++k) {
     const std::vector<Real> f = row(k, now, sums.size());
     for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * f[i]);
   }
   return sums;
+}
+
+void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const {
+  Interpreter& by_q = now.by_coordinates(false);
+  for (const FrictionForce& friction : state.friction) {
+    if (friction.place == 0) {
+      sums[friction.coordinate].add(-friction.force[0]);
+      continue;
+    }
+    const Vector r = by_q.place(friction.place);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      for (std::size_t k = 0; k < 3; ++k) sums[i].add(-friction.force[k] * r[k].slope(by_q.level(), i).real());
+    }
+  }
 }
 
 std::vector<Real> Judge::row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const {

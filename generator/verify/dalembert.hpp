@@ -10,6 +10,8 @@
 // mechanics. That is what makes its agreement mean something (docs/verification.md).
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -18,11 +20,20 @@
 
 namespace eomgen::verify {
 
+/// A friction force of any size: the equations must take it up whatever the law says of it.
+struct FrictionForce {
+  std::uint32_t place = 0;       // of the particle; 0 where a coordinate rubs
+  std::uint32_t coordinate = 0;  // that rubs
+  std::array<Real, 3> force{};   // on the particle; force[0] on the coordinate
+};
+
 struct State {
   Real t = 0;
   std::vector<Real> q, qdot, qddot;  // every coordinate of the model
   std::vector<Real> parameters, inputs;
   std::vector<Real> integrals;       // of functions of time, from the start of the run; empty: not computed yet
+  std::vector<Real> phi;  // components of friction along the tangents, and what they amount to
+  std::vector<FrictionForce> friction;
 };
 
 /// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.
@@ -81,6 +92,7 @@ class Judge {
   void add_functions(Environment& environment, const std::vector<Real>& integrals, std::size_t orders) const;
   bool needs_derivatives(model::NodeId expression) const;
   Real integral_value(std::uint32_t integral, const State& state) const;
+  void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;
   std::vector<Real> row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const;
 
   const model::Model& model_;

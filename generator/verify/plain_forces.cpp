@@ -81,6 +81,7 @@ class Forces {
     const Jet factor = now_.scalar(drag.density) * now_.scalar(drag.area) * now_.scalar(drag.coefficient) / -2;
     apply((factor * norm(v, precision_)) * v, by_q_.vector(drag.on));
   }
+  void operator()(const model::Dry&) {}  // with the contacts (State::friction)
   void operator()(const model::Generalized& generalized) {
     for (const auto& [coordinate, force] : generalized.components)
       sums_[coordinate].add(-now_.scalar(force).real());
@@ -172,6 +173,7 @@ struct Potentials {
   void operator()(const model::Damper&) {}
   void operator()(const model::Drag&) {}
   void operator()(const model::Generalized&) {}
+  void operator()(const model::Dry&) {}
 };
 
 }  // namespace

@@ -142,9 +142,17 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::multiplier: return lambda.at(symbol.index);
     case SymbolKind::integral: return state.integrals.at(symbol.index);
     case SymbolKind::side: return 0;  // every branch follows the state
+    case SymbolKind::friction: return state.phi.at(symbol.index);
+    case SymbolKind::contact: return 0;  // outputs tell it; no equation uses it before the law is closed
     case SymbolKind::extra: break;
   }
   throw std::logic_error("verify: a symbol without a value");
+}
+
+void solve_into(const EquationSystem& s, Lookup& lookup, int digits) {
+  const Solved solved = solve_system(s, lookup, digits, false);
+  for (std::size_t i = 0; i < s.free.size(); ++i) lookup.state.qddot[s.free[i]] = solved.qddot[i];
+  for (std::size_t k = 0; k < s.active.size(); ++k) lookup.lambda[s.active[k]] = solved.lambda[k];
 }
 
 SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Judge& judge,

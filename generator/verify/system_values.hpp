@@ -38,6 +38,9 @@ struct SystemValues {
 SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Judge& judge,
                        const State& state);
 
+/// Accelerations of the free coordinates and multipliers of the active constraints, put into `lookup`.
+void solve_into(const system::EquationSystem& system, Lookup& lookup, int digits);
+
 /// d/dt of the integrals that are states.
 std::vector<Real> integral_rates(const system::EquationSystem& system, const Lookup& lookup, int digits);
 

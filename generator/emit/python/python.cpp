@@ -3,12 +3,16 @@
 
 #include "emit/c/c.hpp"
 #include "emit/metadata.hpp"
+#include "error.hpp"
 #include "skeletons/python_model_py.hpp"
 #include "skeletons/python_simulate_c.hpp"
 
 namespace eomgen::emit {
 
 std::vector<EmittedFile> emit_python(const program::Program& program, const EmissionContext& context) {
+  if (!program.contacts.empty()) {
+    throw Error("emit", {}, "the Python target does not know modes of friction yet", "use the target c or cpp");
+  }
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
   files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, {{"name", name}}, {})});

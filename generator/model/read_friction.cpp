@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coulomb friction: friction = { .. } of a constraint, and the force dry = { .. } on one coordinate.
+#include <fmt/format.h>
+
+#include "model/reader.hpp"
+
+namespace eomgen::model {
+namespace {
+
+constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
+
+}  // namespace
+
+Friction Reader::read_coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed) {
+  Friction law;
+  law.span = table.span;
+  const auto coefficient = [&](std::string_view key) {
+    const Value& value = needed(table, key, what, "give both coefficients: static = \"..\" and dynamic = \"..\"");
+    if (const Symbol* other = scope_.find("slip")) {
+      source_.fail(value.span, "'slip' means the slip speed of this contact here, and it is also declared in the model",
+                   fmt::format("rename {} 'slip' of line {}", model::kind_name(other->kind), other->span.line));
+    }
+    Typed slip = resolver_.slip(value.span);
+    if (speed) slip.dimension = *speed;
+    const Context context{fmt::format("the {} coefficient of {}", key, what), on_state, Shape::scalar, dimension_of("1"),
+                          "a coefficient of friction is made of parameters, slip, velocities, coordinates and t"};
+    return resolver_.value_with(value, {{"slip", slip}}, context).node;
+  };
+  law.static_coefficient = coefficient("static");
+  law.dynamic_coefficient = coefficient("dynamic");
+  return law;
+}
+
+void Reader::read_friction(Constraint& constraint, const Value& value) {
+  const std::string what = fmt::format("the friction of '{}'", constraint.name);
+  as(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
+  check_keys(value, {what, {"static", "dynamic", "surface_velocity"}, {}});
+  if (constraint.velocity) {
+    source_.fail(value.span, fmt::format("'{}' is a constraint on velocities, which has no surface to slide on", constraint.name),
+                 "friction belongs to a holonomic constraint of one particle: a surface, or a curve of two equations");
+  }
+  if (constraint.psi.size() > 2) {
+    source_.fail(value.span, fmt::format("'{}' leaves no direction to slide in", constraint.name),
+                 "friction belongs to one equation (a surface) or to two (a curve)");
+  }
+  Friction law = read_coefficients(value, what, dimension_of("m/s"));
+  if (const Value* velocity = value.find("surface_velocity")) {
+    const Context context{fmt::format("the surface velocity of '{}'", constraint.name), on_motion, Shape::vector,
+                          dimension_of("m/s"), "the velocity of a surface is made of coordinates, parameters and t"};
+    law.surface_velocity = resolver_.value(*velocity, context).node;
+  }
+  constraint.friction = law;
+}
+
+Dry Reader::read_dry(const Value& table, const std::string& what) {
+  check_keys(table, {what, {"coordinate", "normal", "static", "dynamic"}, {}});
+  const Value& name = needed(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
+  as(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
+  const Symbol* symbol = scope_.find(name.text);
+  if (symbol == nullptr || symbol->kind != SymbolKind::coordinate) {
+    const std::string hint = did_you_mean(name.text, scope_.names(SymbolKind::coordinate));
+    source_.fail(name.span, fmt::format("{} is not a coordinate", quote(name.text)),
+                 hint.empty() ? "name a coordinate of the model" : hint);
+  }
+  Dry dry{symbol->index, no_node, {}};
+  const Value& normal = needed(table, "normal", what, "add normal = \"m*g\", the force that presses");
+  dry.normal = resolver_.value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
+                                               std::nullopt, "a normal force is made of parameters, the state and t"}).node;
+  dry.law = read_coefficients(table, what, std::nullopt);
+  return dry;
+}
+
+// friction.NAME, friction.NAME.1 .. 3 and mode.NAME of a contact.
+bool Reader::is_contact_output(const std::vector<std::string>& parts) {
+  if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode")) return false;
+  const Symbol* symbol = scope_.find(parts[1]);
+  if (symbol == nullptr) return false;
+  const bool dry = symbol->kind == SymbolKind::force && std::holds_alternative<Dry>(model_.forces[symbol->index].kind);
+  const bool rough = symbol->kind == SymbolKind::constraint && model_.constraints[symbol->index].friction.has_value();
+  if (parts[0] == "mode") return parts.size() == 2 && (dry || rough);
+  if (dry) return parts.size() == 2;
+  return rough && parts.size() == 3 && (parts[2] == "1" || parts[2] == "2" || parts[2] == "3");
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,268 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/friction.hpp"
+
+#include <algorithm>
+
+#include "error.hpp"
+
+namespace eomgen::program {
+namespace {
+
+using symbolic::Derivation;
+using symbolic::Substitution;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+using system::Contact;
+
+/// value + sum_b slope_b phi_b
+struct Affine {
+  Ref value;
+  std::vector<Ref> slope;
+};
+
+class Closure {
+ public:
+  Closure(const system::EquationSystem& system, const LinearSolve& solve) : s_(system), dag_(*system.dag) {
+    for (const Contact& contact : s_.contacts) count_ += contact.slip.size();
+    solve_motion(solve);
+    matrix_.assign(count_ * count_, dag_.zero());
+    right_.assign(count_, dag_.zero());
+  }
+
+  FrictionSolution run() {
+    for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) add_rows(j);
+    result_.phi = solve_rows();
+    for (std::size_t i = 0; i < motion_.size(); ++i) {
+      (i < s_.free.size() ? result_.qddot : result_.lambda).push_back(at(motion_[i]));
+    }
+    for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) add_watch(j);
+    return std::move(result_);
+  }
+
+ private:
+  Symbol phi_symbol(std::size_t b) const { return {SymbolKind::friction, static_cast<std::uint32_t>(b), 0}; }
+
+  // qddot and lambda as affine functions of phi: one solve per tangent.
+  void solve_motion(const LinearSolve& solve) {
+    std::map<Symbol, Ref> none;
+    for (std::size_t b = 0; b < count_; ++b) none[phi_symbol(b)] = dag_.zero();
+    Substitution without(dag_, none);
+    std::vector<Ref> f, c, still(s_.active.size(), dag_.zero());
+    for (const Ref r : s_.f) f.push_back(without(r));
+    for (const Ref gamma : s_.gamma) c.push_back(dag_.neg(gamma));
+    const auto store = [this](const std::pair<std::vector<Ref>, std::vector<Ref>>& solution, auto&& into) {
+      std::size_t i = 0;
+      for (const auto* part : {&solution.first, &solution.second}) {
+        for (const Ref r : *part) into(motion_[i++], r);
+      }
+    };
+    motion_.resize(s_.free.size() + s_.active.size());
+    store(solve(f, c), [](Affine& a, Ref r) { a.value = r; });
+    for (std::size_t b = 0; b < count_; ++b) {
+      Derivation by = symbolic::partial(dag_, phi_symbol(b));
+      std::vector<Ref> column;
+      for (const Ref r : s_.f) column.push_back(by(r));
+      store(solve(column, still), [](Affine& a, Ref r) { a.slope.push_back(r); });
+    }
+    for (std::size_t i = 0; i < s_.free.size(); ++i) unknown_.push_back({SymbolKind::coordinate, s_.free[i], 2});
+    for (const std::uint32_t k : s_.active) unknown_.push_back({SymbolKind::multiplier, k, 0});
+  }
+
+  /// An expression that is linear in qddot, lambda and phi.
+  Affine affine(Ref expression) {
+    std::map<Symbol, Ref> base;
+    for (std::size_t i = 0; i < unknown_.size(); ++i) base[unknown_[i]] = motion_[i].value;
+    for (std::size_t b = 0; b < count_; ++b) base[phi_symbol(b)] = dag_.zero();
+    Affine result{Substitution(dag_, base)(expression), {}};
+    for (std::size_t b = 0; b < count_; ++b) {
+      Ref slope = symbolic::partial(dag_, phi_symbol(b))(expression);
+      for (std::size_t i = 0; i < unknown_.size(); ++i) {
+        slope = dag_.add(slope, dag_.mul(symbolic::partial(dag_, unknown_[i])(expression), motion_[i].slope[b]));
+      }
+      result.slope.push_back(slope);
+    }
+    return result;
+  }
+  Ref at(const Affine& a) const {
+    Ref sum = a.value;
+    for (std::size_t b = 0; b < count_; ++b) sum = dag_.add(sum, dag_.mul(a.slope[b], result_.phi[b]));
+    return sum;
+  }
+
+  Ref slides(std::uint32_t j) const { return dag_.symbol({SymbolKind::contact, j, 0}); }
+  Ref presses(std::uint32_t j) const { return dag_.symbol({SymbolKind::contact, j, 1}); }
+  /// `sliding` where contact j slides, else `sticking`.
+  Ref by_mode(std::uint32_t j, Ref sticking, Ref sliding) const {
+    if (sticking == sliding) return sliding;
+    const Ref half = dag_.constant(symbolic::Rational(1) / 2), s = slides(j);
+    return dag_.select(dag_.mul(s, s), half, sticking, sliding);
+  }
+  Ref root(Ref r) const { return dag_.call(symbolic::Op::sqrt, r); }
+  Ref absolute(Ref r) const { return dag_.call(symbolic::Op::abs, r); }
+  Ref speed(const Contact& c) const {
+    Ref squares = dag_.zero();
+    for (const Ref w : c.slip) squares = dag_.add(squares, dag_.mul(w, w));
+    return root(squares);
+  }
+  /// Component a of the direction of slip.
+  Ref heading(std::uint32_t j, std::size_t a) const {
+    const Contact& c = s_.contacts[j];
+    return c.slip.size() == 1 ? slides(j) : dag_.div(c.slip[a], speed(c));
+  }
+
+  void add_rows(std::uint32_t j) {
+    const Contact& c = s_.contacts[j];
+    for (const std::uint32_t k : c.reactions) normal_[j].push_back(affine(s_.reactions[k].value));
+    if (c.reactions.size() == 2) close_curve(j);
+    for (std::size_t a = 0; a < c.slip.size(); ++a) {
+      const Affine rate = affine(c.slip_rate[a]);
+      const Affine law = sliding_law(j, a);
+      const std::size_t row = c.first + a;
+      for (std::size_t b = 0; b < count_; ++b) matrix_[row * count_ + b] = by_mode(j, rate.slope[b], law.slope[b]);
+      right_[row] = dag_.neg(by_mode(j, rate.value, law.value));
+    }
+    if (c.reactions.size() == 1) watch_surface(j);
+  }
+
+  /// What vanishes while sliding: phi_a + mu |N| w_a/|w|.
+  Affine sliding_law(std::uint32_t j, std::size_t a) {
+    const Contact& c = s_.contacts[j];
+    const Ref drag = dag_.mul(c.dynamic_coefficient, heading(j, a));
+    Affine law{dag_.zero(), std::vector<Ref>(count_, dag_.zero())};
+    law.slope[c.first + a] = dag_.one();
+    if (c.reactions.empty()) {
+      law.value = dag_.mul(drag, absolute(c.normal));
+    } else if (c.reactions.size() == 2) {
+      law.value = dag_.mul(drag, curve_normal_[j]);
+    } else {
+      const Ref factor = dag_.mul(drag, dag_.mul(presses(j), root(c.gram[0])));
+      law.value = dag_.mul(factor, normal_[j][0].value);
+      for (std::size_t b = 0; b < count_; ++b) {
+        law.slope[b] = dag_.add(law.slope[b], dag_.mul(factor, normal_[j][0].slope[b]));
+      }
+    }
+    return law;
+  }
+
+  // nu = |lambda^T G lambda|^(1/2) with lambda = l0 - sigma mu nu L: (1 - mu^2 LGL) nu^2 + 2 sigma mu l0GL nu - l0Gl0 = 0.
+  void close_curve(std::uint32_t j) {
+    const Contact& c = s_.contacts[j];
+    for (const Affine& lambda : normal_[j]) {
+      for (std::size_t b = 0; b < count_; ++b) {
+        if (b == c.first || dag_.is_zero(lambda.slope[b])) continue;
+        throw Error("program", {}, "the normal force on the curve '" + c.name + "' depends on the friction at another contact",
+                    "this is not supported for curves yet: give the contacts surfaces of one equation each");
+      }
+    }
+    const auto form = [&](auto&& x, auto&& y) {
+      Ref sum = dag_.zero();
+      for (std::size_t k = 0; k < 4; ++k) {
+        sum = dag_.add(sum, dag_.mul(c.gram[k], dag_.mul(x(normal_[j][k / 2]), y(normal_[j][k % 2]))));
+      }
+      return sum;
+    };
+    const auto value = [](const Affine& l) { return l.value; };
+    const auto slope = [&c](const Affine& l) { return l.slope[c.first]; };
+    const Ref square = form(value, value), feedback = form(slope, slope), sigma_mu = dag_.mul(slides(j), c.dynamic_coefficient);
+    if (dag_.is_zero(feedback)) {
+      curve_normal_[j] = root(square);
+      return;
+    }
+    const Ref a = dag_.sub(dag_.one(), dag_.mul(dag_.power(c.dynamic_coefficient, 2), feedback));
+    const Ref b = dag_.mul(sigma_mu, form(value, slope));
+    const Ref discriminant = dag_.add(dag_.mul(b, b), dag_.mul(a, square));
+    curve_normal_[j] = dag_.div(dag_.sub(root(discriminant), b), a);
+    margin_[j] = by_mode(j, dag_.one(), a);
+    // a <= 0: two roots where b < 0 and the discriminant allows, none otherwise.
+    const Ref two = dag_.call(symbolic::Op::min, dag_.neg(b), discriminant);
+    add_codes(j, two);
+  }
+
+  // phi = -mu w p sqrt(g) (x0 + L phi) has just one solution with p x >= 0 for one p where |factor L| < 1.
+  void watch_surface(std::uint32_t j) {
+    const Contact& c = s_.contacts[j];
+    Ref feedback = dag_.zero();  // of the friction on its own normal force, while sliding with p = 1
+    const Ref pressed = dag_.mul(c.dynamic_coefficient, root(c.gram[0]));
+    for (std::size_t a = 0; a < c.slip.size(); ++a) {
+      feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, heading(j, a)), normal_[j][0].slope[c.first + a]));
+    }
+    if (dag_.is_zero(feedback)) return;
+    margin_[j] = by_mode(j, dag_.one(), dag_.sub(dag_.one(), absolute(feedback)));
+    const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
+    add_codes(j, dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
+  }
+
+  /// Where the margin is negative: several solutions if `several` is positive, none otherwise.
+  void add_codes(std::uint32_t j, Ref several) {
+    const Ref minus = dag_.integer(-1), one = dag_.one(), zero = dag_.zero();
+    result_.none.push_back(dag_.select(margin_[j], zero, dag_.select(several, zero, minus, one), one));
+    result_.many.push_back(dag_.select(margin_[j], zero, dag_.select(several, zero, one, minus), one));
+  }
+
+  // Gauss, unrolled; zeros cost nothing, and contacts that do not feel one another stay apart.
+  std::vector<Ref> solve_rows() {
+    const std::size_t n = count_;
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t i = k + 1; i < n; ++i) {
+        if (dag_.is_zero(matrix_[i * n + k])) continue;
+        const Ref l = dag_.div(matrix_[i * n + k], matrix_[k * n + k]);
+        for (std::size_t b = k + 1; b < n; ++b) {
+          matrix_[i * n + b] = dag_.sub(matrix_[i * n + b], dag_.mul(l, matrix_[k * n + b]));
+        }
+        right_[i] = dag_.sub(right_[i], dag_.mul(l, right_[k]));
+      }
+    }
+    std::vector<Ref> phi(n);
+    for (std::size_t k = n; k-- > 0;) {
+      Ref sum = right_[k];
+      for (std::size_t b = k + 1; b < n; ++b) sum = dag_.sub(sum, dag_.mul(matrix_[k * n + b], phi[b]));
+      phi[k] = dag_.div(sum, matrix_[k * n + k]);
+    }
+    return phi;
+  }
+
+  void add_watch(std::uint32_t j) {
+    const Contact& c = s_.contacts[j];
+    Ref normal;
+    ContactWatch watch{c.slip.size() == 1 ? c.slip[0] : speed(c), {}, dag_.one(), dag_.one(), dag_.one()};
+    if (c.reactions.empty()) {
+      normal = absolute(c.normal);
+    } else {
+      Ref square = dag_.zero();
+      const std::size_t n = c.reactions.size();
+      for (std::size_t k = 0; k < n * n; ++k) {
+        square = dag_.add(square, dag_.mul(c.gram[k], dag_.mul(at(normal_[j][k / n]), at(normal_[j][k % n]))));
+      }
+      normal = root(square);
+      if (n == 1) watch.press = dag_.mul(presses(j), at(normal_[j][0]));
+    }
+    const Ref limit = dag_.mul(c.static_coefficient, normal), phi = result_.phi[c.first];
+    if (c.slip.size() == 1) {
+      watch.above = dag_.sub(limit, phi);
+      watch.below = dag_.add(limit, phi);
+    } else {
+      const Ref other = result_.phi[c.first + 1];
+      watch.above = dag_.sub(limit, root(dag_.add(dag_.mul(phi, phi), dag_.mul(other, other))));
+    }
+    if (margin_.contains(j)) watch.margin = margin_.at(j);
+    result_.watch.push_back(watch);
+  }
+
+  const system::EquationSystem& s_;
+  Dag& dag_;
+  std::size_t count_ = 0;
+  std::vector<Symbol> unknown_;                     // qddot, then the multipliers
+  std::vector<Affine> motion_;                      // of these
+  std::map<std::uint32_t, std::vector<Affine>> normal_;  // multipliers of each contact
+  std::map<std::uint32_t, Ref> curve_normal_, margin_;
+  std::vector<Ref> matrix_, right_;                 // of phi
+  FrictionSolution result_;
+};
+
+}  // namespace
+
+FrictionSolution close_friction(const system::EquationSystem& system, const LinearSolve& solve) {
+  return Closure(system, solve).run();
+}
+
+}  // namespace eomgen::program

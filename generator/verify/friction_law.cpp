@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/friction_law.hpp"
+
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include <stdexcept>
+
+#include "symbolic/evaluate.hpp"
+#include "system/contact_modes.hpp"
+#include "verify/linear_solve.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+using symbolic::Ref;
+
+class Law {
+ public:
+  Law(const system::EquationSystem& s, const Judge& judge, const State& state, int mode)
+      : s_(s), judge_(judge), state_(state), mode_(mode) {
+    for (const system::Contact& contact : s.contacts) {
+      for (const auto* list : {&contact.gram, &contact.slip, &contact.slip_rate}) {
+        roots_.insert(roots_.end(), list->begin(), list->end());
+      }
+      roots_.push_back(contact.reactions.empty() ? contact.normal : s.dag->zero());
+      roots_.push_back(contact.dynamic_coefficient);
+      for (const std::uint32_t k : contact.reactions) roots_.push_back(s.reactions[k].value);
+    }
+  }
+
+  /// Per tangent: what vanishes where `phi` obeys the law.
+  std::vector<Real> residual(const std::vector<Real>& phi) const {
+    State state = state_;
+    state.phi = phi;
+    Lookup lookup(judge_, state);
+    solve_into(s_, lookup, judge_.digits());
+    const std::vector<Real> value = symbolic::evaluate(*s_.dag, roots_, lookup, judge_.digits());
+    auto next = value.begin();
+    const auto take = [&](std::size_t count) {
+      std::vector<Real> part(next, next + static_cast<std::ptrdiff_t>(count));
+      next += static_cast<std::ptrdiff_t>(count);
+      return part;
+    };
+    std::vector<Real> result;
+    for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
+      const system::Contact& c = s_.contacts[j];
+      const std::vector<Real> gram = take(c.gram.size()), slip = take(c.slip.size()), rate = take(c.slip.size());
+      const Real given = take(1)[0], mu = take(1)[0];
+      const std::vector<Real> lambda = take(c.reactions.size());
+      const Real normal = normal_force(j, gram, given, lambda);
+      for (std::size_t a = 0; a < slip.size(); ++a) {
+        if (slides(j) == 0) result.push_back(rate[a]);
+        else result.push_back(phi[c.first + a] + mu * normal * heading(j, slip, a));
+      }
+    }
+    return result;
+  }
+
+ private:
+  int slides(std::size_t j) const { return system::contact_leaf(mode_, 2 * j); }
+  Real root(const Real& x) const { return cln::realpart(cln::sqrt(judge_.precision().round(x))); }
+
+  Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given, const std::vector<Real>& lambda) const {
+    if (lambda.empty()) return cln::abs(given);
+    if (lambda.size() == 1) return system::contact_leaf(mode_, 2 * j + 1) * root(gram[0]) * lambda[0];
+    Real square = 0;
+    for (std::size_t k = 0; k < 4; ++k) square = square + gram[k] * lambda[k / 2] * lambda[k % 2];
+    return root(square);
+  }
+  Real heading(std::size_t j, const std::vector<Real>& slip, std::size_t a) const {
+    if (slip.size() == 1) return slides(j);
+    Real square = 0;
+    for (const Real& w : slip) square = square + w * w;
+    return slip[a] / root(square);
+  }
+
+  const system::EquationSystem& s_;
+  const Judge& judge_;
+  const State& state_;
+  int mode_;
+  std::vector<Ref> roots_;
+};
+
+}  // namespace
+
+void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& state, std::vector<Real> phi) {
+  state.phi = std::move(phi);
+  state.friction.clear();
+  const Lookup lookup(judge, state);
+  for (const mechanics::Contact& contact : m.contacts) {
+    FrictionForce friction{contact.place, contact.coordinate, {Real(0), Real(0), Real(0)}};
+    if (contact.place == 0) friction.force[0] = state.phi[contact.first];
+    for (std::size_t a = 0; a < contact.directions.size(); ++a) {
+      const mechanics::Vec3& t = contact.directions[a];
+      const std::vector<Real> direction = symbolic::evaluate(*m.dag, {t[0], t[1], t[2]}, lookup, judge.digits());
+      for (std::size_t k = 0; k < 3; ++k) friction.force[k] = friction.force[k] + state.phi[contact.first + a] * direction[k];
+    }
+    state.friction.push_back(friction);
+  }
+}
+
+std::vector<Real> lawful_friction(const system::EquationSystem& s, const Judge& judge, const State& state, int mode) {
+  const Law law(s, judge, state, mode);
+  std::size_t n = 0;
+  for (const system::Contact& contact : s.contacts) n += contact.slip.size();
+  std::vector<Real> phi(n, judge.precision().round(Real(0)));
+  const Real h = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge.digits() / 2));
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge.digits()));
+  // Linear but for the size of a normal force of two components: a few rounds.
+  for (int round = 0; round < 60; ++round) {
+    const std::vector<Real> r = law.residual(phi);
+    std::vector<Real> matrix(n * n), right;
+    for (std::size_t b = 0; b < n; ++b) {
+      std::vector<Real> shifted = phi;
+      shifted[b] = shifted[b] + h;
+      const std::vector<Real> moved = law.residual(shifted);
+      for (std::size_t a = 0; a < n; ++a) matrix[a * n + b] = (moved[a] - r[a]) / h;
+      right.push_back(-r[b]);
+    }
+    const Solution step = solve(std::move(matrix), std::move(right));
+    if (!step.exists()) throw Singular("the friction law has no isolated solution");
+    Real size = 0, change = 0;
+    for (std::size_t b = 0; b < n; ++b) {
+      phi[b] = phi[b] + step.x()[b];
+      size = cln::max(size, cln::abs(phi[b]));
+      change = cln::max(change, cln::abs(step.x()[b]));
+    }
+    if (change <= small * (1 + size)) return phi;
+  }
+  throw std::domain_error("the friction law was not solved");
+}
+
+}  // namespace eomgen::verify

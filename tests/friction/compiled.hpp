@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A model with friction, derived and made into a program that is read in binary64.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "derive/routes.hpp"
+#include "model/model.hpp"
+#include "program/build.hpp"
+#include "program/interpret.hpp"
+
+namespace eomgen::test {
+
+class RoughProgram {
+ public:
+  explicit RoughProgram(const std::string& text, const std::vector<double>& parameters = {})
+      : model_(model::read_model_text(text, "rough")), mechanics_(mechanics::build_mechanics(model_)) {
+    std::vector<system::EquationSystem> systems{derive::routes().front().derive(mechanics_, system::Approach::one)};
+    program::Request request;
+    request.with = {"contacts"};
+    for (const auto& output : systems[0].outputs) {
+      if (output.name.find("friction.") == 0 || output.name.find("reaction.") == 0) request.outputs.push_back(output.name);
+    }
+    outputs_ = request.outputs;
+    program_ = program::build_program(systems, request);
+    p_ = parameters;
+  }
+
+  const program::Program& program() const { return program_; }
+  std::size_t states() const { return 2 * program_.free.size(); }
+  void parameters(std::vector<double> p) { p_ = std::move(p); }
+
+  int rhs(double t, const double* x, int mode, double* dx) const {
+    const auto values = program::interpret(program_.functions[0], arguments(t, x, mode)).results;
+    std::copy(values[0].begin(), values[0].end(), dx);
+    for (std::size_t i = 1; i < values.size(); ++i) {
+      for (const double code : values[i]) {
+        if (code < 0) return program_.functions[0].results[i].first == program::no_solution ? 3 : 4;
+      }
+    }
+    return 0;
+  }
+  int contacts(double t, const double* x, int mode, double* g) const {
+    const auto values = program::interpret(program_.functions[1], arguments(t, x, mode)).results[0];
+    std::copy(values.begin(), values.end(), g);
+    return 0;
+  }
+  double output(const std::string& name, double t, const double* x, int mode) const {
+    const auto values = program::interpret(program_.functions[2], arguments(t, x, mode)).results[0];
+    for (std::size_t i = 0; i < outputs_.size(); ++i) {
+      if (outputs_[i] == name) return values[i];
+    }
+    throw std::logic_error("no output " + name);
+  }
+
+ private:
+  program::Arguments<double> arguments(double t, const double* x, int mode) const {
+    return {t, {x, x + states()}, p_, {}, mode};
+  }
+
+  model::Model model_;
+  mechanics::Mechanics mechanics_;
+  program::Program program_;
+  std::vector<std::string> outputs_;
+  std::vector<double> p_;
+};
+
+}  // namespace eomgen::test

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models with Coulomb friction whose motion is known.
+#pragma once
+
+#include <string>
+
+namespace eomgen::test {
+
+// A block on a belt, held by a spring: sticks for 5 and slips for 2(pi - atan 2.5) with these numbers, again and again.
+inline const std::string belt = R"toml(format = 1
+[parameters]
+m = "1 kg"
+k = "1 N/m"
+v = "0.2 m/s"
+mu_s = 1
+mu_d = 0.5
+g = "1 m/s^2"
+[[particle]]
+name = "block"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+[[force]]
+gravity = "-g*E2"
+[[force]]
+generalized = { x = "-k*x" }
+[[constraint]]
+name = "belt"
+holonomic = "y"
+friction = { static = "mu_s", dynamic = "mu_d", surface_velocity = "v*E1" }
+)toml";
+
+// The same with the law on the coordinate.
+inline const std::string dry = R"toml(format = 1
+[parameters]
+m = 1
+k = 1
+F = 0.25
+mu = 1
+[[particle]]
+name = "block"
+mass = "m"
+position = { cartesian = ["x", 0] }
+[[force]]
+generalized = { x = "-k*x" }
+[[force]]
+name = "floor"
+dry = { coordinate = "x", normal = "F", static = "mu", dynamic = "mu" }
+)toml";
+
+// (3.68): each mass on a rough line of its own.
+inline const std::string rough_line = R"toml(format = 1
+[parameters]
+m1 = 1
+m2 = 1.5
+k1 = 10
+k2 = 8
+mu_s = 0.3
+mu_d = 0.2
+g = 9.81
+[[particle]]
+name = "A"
+mass = "m1"
+position = { cartesian = ["x1", "y1", "z1"] }
+[[particle]]
+name = "B"
+mass = "m2"
+position = { cartesian = ["x2", "y2", "z2"] }
+[[force]]
+gravity = "-g*E3"
+[[force]]
+spring = { between = ["origin", "A"], stiffness = "k1", length = 1 }
+[[force]]
+spring = { between = ["A", "B"], stiffness = "k2", length = 1 }
+[[constraint]]
+name = "lineA"
+holonomic = ["y1", "z1"]
+friction = { static = "mu_s", dynamic = "mu_d" }
+[[constraint]]
+name = "lineB"
+holonomic = ["y2", "z2"]
+friction = { static = "mu_s", dynamic = "mu_d" }
+)toml";
+
+// A particle inside a rough sphere that breathes: two tangents.
+inline const std::string sphere = R"toml(format = 1
+[parameters]
+m = 1
+R0 = 1
+mu_s = 0.4
+mu_d = 0.3
+g = 9.81
+w = 2
+[functions]
+d = "R0 + R0/10*sin(w*t)"
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "sphere"
+holonomic = "R - d"
+friction = { static = "mu_s", dynamic = "mu_d" }
+)toml";
+
+// A particle on a rough helix (2.11): the normal force of a curve, by two multipliers; (2.143).
+inline const std::string helix = R"toml(format = 1
+[parameters]
+m = 1
+r0 = 1.5
+alpha = 0.4
+mu_s = 0.3
+mu_d = 0.2
+g = 9.81
+[[particle]]
+name = "P"
+mass = "m"
+position = { helical = ["theta", "r", "nu"], pitch = "alpha" }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "wire"
+holonomic = ["r - r0", "nu"]
+friction = { static = "mu_s", dynamic = "mu_d" }
+)toml";
+
+// Two equal masses on a massless rod, one of them on a rough floor: above mu = 2 sqrt 2 the law may have no solution, or several.
+inline const std::string dumbbell = R"toml(format = 1
+[parameters]
+m = 1
+L = 1
+mu = 3
+g = 9.81
+[[particle]]
+name = "A"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+[[particle]]
+name = "B"
+mass = "m"
+position = { cylindrical = ["L", "theta"], from = "A" }
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "floor"
+holonomic = "y"
+friction = { static = "mu", dynamic = "mu" }
+)toml";
+
+}  // namespace eomgen::test
