@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/straight_line.hpp"
 
-#include "system/contact_modes.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Coulomb friction: which particle a constraint presses on, the directions in which it can slide there, and how fast it does.
 #include <algorithm>
+#include <functional>
 #include <set>
 
 #include "mechanics/stages.hpp"
@@ -198,10 +199,11 @@ const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
 }  // namespace
 
 void check_coefficients(const Mechanics& m) {
-  std::vector<cln::cl_R> parameters;
-  const auto value = [&parameters](const symbolic::Symbol& symbol) -> cln::cl_R { return parameters.at(symbol.index); };
   constexpr int digits = 30;
-  for (const Ref r : m.parameter_value) parameters.push_back(symbolic::evaluate(*m.dag, {r}, value, digits)[0]);
+  // A parameter may use others, declared before or after it, without cycles.
+  const std::function<cln::cl_R(const symbolic::Symbol&)> value = [&](const symbolic::Symbol& symbol) {
+    return symbolic::evaluate(*m.dag, {m.parameter_value.at(symbol.index)}, value, digits)[0];
+  };
   for (const Contact& contact : m.contacts) {
     const std::vector<Ref> both{contact.static_coefficient, contact.dynamic_coefficient};
     const std::vector<symbolic::Symbol> symbols = m.dag->symbols(both);

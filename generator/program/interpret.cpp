@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/interpret.hpp"
 
-#include "system/contact_modes.hpp"
-
 #include <functional>
 #include <type_traits>
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "symbolic/factorisation.hpp"
+#include "system/contact_modes.hpp"
 
 namespace eomgen::system {
 

@@ -56,7 +56,7 @@ class RoughProgram {
 
  private:
   program::Arguments<double> arguments(double t, const double* x, int mode) const {
-    return {t, {x, x + states()}, p_, {}, mode};
+    return {t, {x, x + states()}, p_, {}, {}, {}, mode};
   }
 
   model::Model model_;

@@ -106,7 +106,7 @@ std::vector<WrongModel> wrong_structure() {
        "a later version brings it; docs/model-format.md lists what works now"},
       {"friction without a coefficient",
        pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - L\"\nfriction = { dynamic = 0.2 }\n"), "15:12",
-       "the friction of 'rod' has no 'static'", "give both coefficients: static = \"..\" and dynamic = \"..\""},
+       "the friction of 'rod' has no static", "give both coefficients: static = \"..\" and dynamic = \"..\""},
       {"friction of a constraint on velocities",
        pendulum({}, "[[constraint]]\nname = \"rod\"\nvelocity = \"R_dot\"\nfriction = { static = 0.3, dynamic = 0.2 }\n"),
        "15:12", "'rod' is a constraint on velocities, which has no surface to slide on",

@@ -171,10 +171,10 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
     return std::vector<Number>{x[2], x[3], x[3] * x[3] * s * c + p[1] / d * s - 2 * ddot / d * x[2],
                                p[2] / (p[0] * s) - 2 * (ddot / d + x[2] * c / s) * x[3] + off};
   };
-  subjects.compiled.push_back({"emitted code", [=](double t, const auto& x, const auto& p, const auto&) {
+  subjects.compiled.push_back({"emitted code", [=](double t, const auto& x, const auto& p, const auto&, int) {
     return std::optional(by_hand(t, x, p, [](double a) { return std::sin(a); }, [](double a) { return std::cos(a); }, error));
   }});
-  subjects.programs.push_back({"program", [=](const Real& t, const auto& x, const auto& p, const auto&) {
+  subjects.programs.push_back({"program", [=](const Real& t, const auto& x, const auto& p, const auto&, int) {
     const Real off = cln::rational(Real(error));  // exact: a binary64 would bring its precision along
     return by_hand(t, x, p, [](const Real& a) { return Real(cln::sin(a)); }, [](const Real& a) { return Real(cln::cos(a)); }, off);
   }});
