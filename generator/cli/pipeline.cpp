@@ -160,13 +160,10 @@ std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice ap
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::RouteEntry& route : derive::routes()) {
-      if (route.applies(derived->mechanics, a)) derived->candidates.push_back(route.derive(derived->mechanics, a));
+      if (auto system = route.derive(derived->mechanics, a)) derived->candidates.push_back(std::move(*system));
     }
   }
-  // All candidates must offer the same outputs, whichever is chosen.
-  for (system::EquationSystem& system : derived->candidates) {
-    derived->conserved = derive::conserved_quantities(derived->mechanics, system);
-  }
+  derived->conserved = derive::conserved_quantities(derived->mechanics, derived->candidates);
   take_forms(*derived, form);
   derived->seconds.derive = watch.lap();
   return derived;

@@ -24,22 +24,21 @@ std::vector<Ref> in_model(Dag& dag, const QuasiCoordinates& coordinates, const s
 
 }  // namespace
 
-bool articulated_applies(Mechanics& m, system::Approach approach) {
-  if (!m.active.empty() || !m.contacts.empty() || !tree_applies(m, approach)) return false;
-  const std::optional<Branches> tree = branches(m, m.free, true);
-  return rods_of(*m.dag, *tree).has_value();
-}
-
-system::EquationSystem articulated(Mechanics& m, system::Approach approach) {
+std::optional<system::EquationSystem> articulated(Mechanics& m, system::Approach approach) {
+  if (!m.active.empty() || !m.contacts.empty()) return std::nullopt;
   Dag& dag = *m.dag;
-  const TreeEquations motion = tree_equations(m, m.free, true);
-  system::EquationSystem s = assemble_tree(m, motion, "articulated", approach);
-  system::Solution solution = accelerations(dag, motion.tree, *rods_of(dag, motion.tree));
-  symbolic::Substitution back = motion.tree.coordinates.back(dag);
+  const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
+  if (!motion) return std::nullopt;
+  const auto rods = rods_of(dag, motion->tree);
+  if (!rods) return std::nullopt;
+  std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "articulated", approach);
+  if (!s) return std::nullopt;
+  system::Solution solution = accelerations(dag, motion->tree, *rods);
+  symbolic::Substitution back = motion->tree.coordinates.back(dag);
   for (Ref& r : solution.qddot) r = back(r);
   for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};
-  solution.qddot = in_model(dag, motion.tree.coordinates, solution.qddot);
-  s.solution = std::move(solution);
+  solution.qddot = in_model(dag, motion->tree.coordinates, solution.qddot);
+  s->solution = std::move(solution);
   return s;
 }
 

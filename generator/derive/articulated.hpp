@@ -6,6 +6,8 @@
 // The cost grows with the number of links, not with its cube. W_k = J_k f_k / J_k . J_k is what the forces on theta_k come to.
 #pragma once
 
+#include <optional>
+
 #include "mechanics/mechanics.hpp"
 #include "system/equation_system.hpp"
 
@@ -13,7 +15,6 @@ namespace eomgen::derive {
 
 /// Trees (branches.hpp) with one particle of constant mass at the end of every link, no multipliers, and links whose
 /// directions of force are known: as many coordinates as dimensions, or one fewer.
-bool articulated_applies(mechanics::Mechanics& mechanics, system::Approach approach);
-system::EquationSystem articulated(mechanics::Mechanics& mechanics, system::Approach approach);
+std::optional<system::EquationSystem> articulated(mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

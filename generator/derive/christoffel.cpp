@@ -84,9 +84,9 @@ class QuadraticEnergy {
   Ref T0_;
 };
 
-FullEquations equations(Mechanics& m, Ref T, Ref U, const std::vector<Ref>& Q, const std::vector<std::uint32_t>& which) {
+FullEquations equations(Mechanics& m, QuadraticEnergy& energy, Ref U, const std::vector<Ref>& Q,
+                        const std::vector<std::uint32_t>& which) {
   Dag& dag = *m.dag;
-  QuadraticEnergy energy(m, T, which);
   FullEquations result{energy.M(), {}};
   for (std::size_t k = 0; k < which.size(); ++k) {
     const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, which[k], 0})(U);
@@ -103,19 +103,17 @@ std::vector<std::uint32_t> all_coordinates(const Mechanics& m) {
 
 }  // namespace
 
-bool christoffel_applies(Mechanics& m, system::Approach) {
-  if (m.q.size() > coordinate_budget) return false;
-  symbolic::Expander expander(*m.dag, term_budget);
-  if (!expander(m.kinetic)) return false;
-  return QuadraticEnergy(m, m.kinetic, all_coordinates(m)).is_quadratic();
-}
-
-system::EquationSystem christoffel(Mechanics& m, system::Approach approach) {
+std::optional<system::EquationSystem> christoffel(Mechanics& m, system::Approach approach) {
+  if (m.q.size() > coordinate_budget || !symbolic::Expander(*m.dag, term_budget)(m.kinetic)) return std::nullopt;
+  QuadraticEnergy energy(m, m.kinetic, all_coordinates(m));
+  if (!energy.is_quadratic()) return std::nullopt;
   const std::vector<Ref> Q = generalized_forces(m);
-  const FullEquations full = equations(m, m.kinetic, m.potential, Q, all_coordinates(m));
+  const FullEquations full = equations(m, energy, m.potential, Q, all_coordinates(m));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "christoffel", approach);
+  // Constraints leave velocities linear in those of the free coordinates, so what is left is quadratic too.
   symbolic::Substitution imposed = impose(m);
-  const FullEquations motion = equations(m, imposed(m.kinetic), imposed(m.potential), Q, m.free);
+  QuadraticEnergy constrained(m, imposed(m.kinetic), m.free);
+  const FullEquations motion = equations(m, constrained, imposed(m.potential), Q, m.free);
   return assemble(m, full, &motion, "christoffel", approach);
 }
 

@@ -3,13 +3,14 @@
 // and with the terms of T1 and T0 and of dM/dt where something moves by prescription.
 #pragma once
 
+#include <optional>
+
 #include "mechanics/mechanics.hpp"
 #include "system/equation_system.hpp"
 
 namespace eomgen::derive {
 
 /// Small systems: few coordinates, a kinetic energy that is quadratic in the velocities and expands within the budget.
-bool christoffel_applies(mechanics::Mechanics& mechanics, system::Approach approach);
-system::EquationSystem christoffel(mechanics::Mechanics& mechanics, system::Approach approach);
+std::optional<system::EquationSystem> christoffel(mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

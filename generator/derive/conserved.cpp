@@ -118,6 +118,17 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   return result;
 }
 
+std::vector<Conserved> conserved_quantities(Mechanics& m, std::vector<system::EquationSystem>& systems) {
+  if (systems.empty()) return {};
+  const std::vector<system::Output>& outputs = systems.front().outputs;
+  const auto own = static_cast<std::ptrdiff_t>(outputs.size());
+  std::vector<Conserved> result = conserved_quantities(m, systems.front());
+  for (std::size_t i = 1; i < systems.size(); ++i) {
+    systems[i].outputs.insert(systems[i].outputs.end(), outputs.begin() + own, outputs.end());
+  }
+  return result;
+}
+
 std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved) {
   std::vector<std::uint32_t> result;
   for (const Conserved& c : conserved) {

@@ -43,6 +43,9 @@ std::string magnitude_output(const Conserved& conserved);  // for runs, not for 
 /// and for magnitudes.
 std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
 
+/// The same of systems of one Mechanics, which all have the same energies and constraints: found once, offered by all.
+std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, std::vector<system::EquationSystem>& systems);
+
 std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved);
 
 }  // namespace eomgen::derive

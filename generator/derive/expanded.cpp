@@ -24,19 +24,16 @@ FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
 
 }  // namespace
 
-bool expanded_applies(Mechanics& m, system::Approach) {
-  if (m.q.size() > coordinate_budget) return false;
+std::optional<system::EquationSystem> expanded(Mechanics& m, system::Approach approach) {
+  if (m.q.size() > coordinate_budget) return std::nullopt;
   symbolic::Expander expander(*m.dag, term_budget);
-  return expander(m.kinetic).has_value();
-}
-
-system::EquationSystem expanded(Mechanics& m, system::Approach approach) {
-  symbolic::Expander expander(*m.dag, term_budget);
+  const std::optional<Ref> kinetic = expander(m.kinetic);
+  if (!kinetic) return std::nullopt;
   std::vector<std::uint32_t> all(m.q.size());
   std::iota(all.begin(), all.end(), 0u);
   std::vector<Ref> Q = generalized_forces(m);
   for (Ref& q : Q) q = expand(expander, q);
-  const Ref T = expand(expander, m.kinetic), U = expand(expander, m.potential);
+  const Ref T = *kinetic, U = expand(expander, m.potential);
   const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
   symbolic::Substitution imposed = impose(m);

@@ -45,11 +45,8 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
 
 }  // namespace
 
-bool jacobian_applies(Mechanics& m, system::Approach) {
-  return !m.masses.empty() && m.dag->is_zero(m.kinetic_given);
-}
-
-system::EquationSystem jacobian(Mechanics& m, system::Approach approach) {
+std::optional<system::EquationSystem> jacobian(Mechanics& m, system::Approach approach) {
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
   std::vector<std::uint32_t> all;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) all.push_back(i);
   const std::vector<Ref> Q = generalized_forces(m);

@@ -5,12 +5,11 @@
 
 namespace eomgen::derive {
 
-bool recursive_applies(Mechanics& m, system::Approach approach) { return tree_applies(m, approach); }
-
-system::EquationSystem recursive(Mechanics& m, system::Approach approach) {
-  const TreeEquations motion = tree_equations(m, m.free, true);
-  system::EquationSystem s = assemble_tree(m, motion, "recursive", approach);
-  if (!motion.tree.coordinates.identity()) s.quasi = motion.quasi;
+std::optional<system::EquationSystem> recursive(Mechanics& m, system::Approach approach) {
+  const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
+  if (!motion) return std::nullopt;
+  std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "recursive", approach);
+  if (s && !motion->tree.coordinates.identity()) s->quasi = motion->quasi;
   return s;
 }
 

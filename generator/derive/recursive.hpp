@@ -2,6 +2,8 @@
 // The recursive route: composite masses and forces collected from the tips of the branches to the ground.
 #pragma once
 
+#include <optional>
+
 #include "mechanics/mechanics.hpp"
 #include "system/equation_system.hpp"
 
@@ -9,7 +11,6 @@ namespace eomgen::derive {
 
 /// Particles that form a tree (branches.hpp), derived with the constraints imposed; by Approach I only where there is nothing
 /// to impose.
-bool recursive_applies(mechanics::Mechanics& mechanics, system::Approach approach);
-system::EquationSystem recursive(mechanics::Mechanics& mechanics, system::Approach approach);
+std::optional<system::EquationSystem> recursive(mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

@@ -11,15 +11,16 @@
 namespace eomgen::derive {
 namespace {
 
-bool always(mechanics::Mechanics&, system::Approach) { return true; }
+// The one route that applies to every model.
+std::optional<system::EquationSystem> by_lagrange(mechanics::Mechanics& m, system::Approach approach) { return lagrange(m, approach); }
 
 constexpr RouteEntry entries[] = {
-    {"lagrange", "T and U differentiated as they stand", always, lagrange},
-    {"jacobian", "velocity Jacobians, M = sum m J^T J", jacobian_applies, jacobian},
-    {"recursive", "a tree of particles: composite masses, forces from the tips inwards", recursive_applies, recursive},
-    {"articulated", "a tree of particles: the tensions of the links first, no mass matrix", articulated_applies, articulated},
-    {"christoffel", "M(q), Christoffel symbols of the first kind, expanded", christoffel_applies, christoffel},
-    {"expanded", "T and U expanded first, sin^2 + cos^2 = 1 used", expanded_applies, expanded},
+    {"lagrange", "T and U differentiated as they stand", by_lagrange},
+    {"jacobian", "velocity Jacobians, M = sum m J^T J", jacobian},
+    {"recursive", "a tree of particles: composite masses, forces from the tips inwards", recursive},
+    {"articulated", "a tree of particles: the tensions of the links first, no mass matrix", articulated},
+    {"christoffel", "M(q), Christoffel symbols of the first kind, expanded", christoffel},
+    {"expanded", "T and U expanded first, sin^2 + cos^2 = 1 used", expanded},
 };
 
 }  // namespace

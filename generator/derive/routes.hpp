@@ -3,6 +3,7 @@
 // else; verify holds them against one another and against the judge.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "mechanics/mechanics.hpp"
@@ -13,8 +14,8 @@ namespace eomgen::derive {
 struct RouteEntry {
   const char* name;
   const char* title;
-  bool (*applies)(mechanics::Mechanics&, system::Approach);
-  system::EquationSystem (*derive)(mechanics::Mechanics&, system::Approach);
+  /// Nothing where the route does not apply to the model in this approach.
+  std::optional<system::EquationSystem> (*derive)(mechanics::Mechanics&, system::Approach);
 };
 
 std::span<const RouteEntry> routes();

@@ -79,22 +79,26 @@ FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const syst
 
 }  // namespace
 
-bool tree_applies(Mechanics& m, system::Approach approach) {
-  if (approach == system::Approach::one && !m.fixed.empty()) return false;
-  return branches(m, m.free, true) && (m.fixed.empty() || branches(m, all_coordinates(m), false));
-}
-
-TreeEquations tree_equations(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
-  TreeEquations result{*branches(m, of, imposed), {}, {}};
+std::optional<TreeEquations> tree_equations(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
+  std::optional<Branches> tree = branches(m, of, imposed);
+  if (!tree) return std::nullopt;
+  TreeEquations result{std::move(*tree), {}, {}};
   result.quasi = in_theta(*m.dag, result.tree);
   result.of_model = in_model(*m.dag, result.tree.coordinates, result.quasi);
   return result;
 }
 
-system::EquationSystem assemble_tree(Mechanics& m, const TreeEquations& motion, const char* route, system::Approach approach) {
+std::optional<TreeEquations> motion_of_tree(Mechanics& m, system::Approach approach) {
+  if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
+  return tree_equations(m, m.free, true);
+}
+
+std::optional<system::EquationSystem> assemble_tree(Mechanics& m, const TreeEquations& motion, const char* route,
+                                                    system::Approach approach) {
   if (m.fixed.empty()) return assemble(m, motion.of_model, nullptr, route, approach);
-  const FullEquations full = tree_equations(m, all_coordinates(m), false).of_model;
-  return assemble(m, full, &motion.of_model, route, approach);
+  const std::optional<TreeEquations> full = tree_equations(m, all_coordinates(m), false);
+  if (!full) return std::nullopt;
+  return assemble(m, full->of_model, &motion.of_model, route, approach);
 }
 
 }  // namespace eomgen::derive

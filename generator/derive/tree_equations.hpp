@@ -13,14 +13,13 @@ struct TreeEquations {
   system::QuasiEquations quasi;    // the same before the transformation
 };
 
-/// True where the coordinates that move form a tree (and all coordinates do, where constraint forces are to be had).
-bool tree_applies(Mechanics& mechanics, system::Approach approach);
-
-TreeEquations tree_equations(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
+/// Of the coordinates that move, with the constraints imposed. Nothing where they form no tree, and by Approach I only where
+/// there is nothing to impose.
+std::optional<TreeEquations> motion_of_tree(Mechanics& mechanics, system::Approach approach);
 
 /// `assemble` with M and f of the motion; the constraint forces of eliminated coordinates come from the tree that all
-/// coordinates form.
-system::EquationSystem assemble_tree(Mechanics& mechanics, const TreeEquations& motion, const char* route,
-                                     system::Approach approach);
+/// coordinates form: nothing where they form none.
+std::optional<system::EquationSystem> assemble_tree(Mechanics& mechanics, const TreeEquations& motion, const char* route,
+                                                    system::Approach approach);
 
 }  // namespace eomgen::derive

@@ -53,7 +53,7 @@ std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics) 
   std::vector<system::EquationSystem> systems;
   for (const derive::RouteEntry& route : derive::routes())
     for (const system::Approach approach : {system::Approach::one, system::Approach::two})
-      if (route.applies(mechanics, approach)) systems.push_back(route.derive(mechanics, approach));
+      if (auto system = route.derive(mechanics, approach)) systems.push_back(std::move(*system));
   return systems;
 }
 

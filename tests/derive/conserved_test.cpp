@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 
 using namespace eomgen;
 
@@ -14,7 +14,7 @@ namespace {
 std::vector<std::string> names(const std::string& text) {
   const model::Model model = model::read_model_text(text, "conserved");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  system::EquationSystem s = derive::routes().front().derive(m, system::Approach::two);
+  system::EquationSystem s = derive::lagrange(m, system::Approach::two);
   std::vector<std::string> result;
   for (const derive::Conserved& c : derive::conserved_quantities(m, s)) result.push_back(c.name);
   return result;

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "derive/conserved.hpp"
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 #include "symbolic/evaluate.hpp"
 
 using namespace eomgen;
@@ -20,7 +20,7 @@ struct Found {
 
   explicit Found(const std::string& text) : model(model::read_model_text(text, "momenta")) {
     m = mechanics::build_mechanics(model);
-    s = derive::routes().front().derive(m, system::Approach::two);
+    s = derive::lagrange(m, system::Approach::two);
     conserved = derive::conserved_quantities(m, s);
   }
   Found(const Found&) = delete;

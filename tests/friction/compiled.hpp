@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 #include "model/model.hpp"
 #include "program/build.hpp"
 #include "program/interpret.hpp"
@@ -16,7 +16,7 @@ class RoughProgram {
  public:
   explicit RoughProgram(const std::string& text, const std::vector<double>& parameters = {})
       : model_(model::read_model_text(text, "rough")), mechanics_(mechanics::build_mechanics(model_)) {
-    std::vector<system::EquationSystem> systems{derive::routes().front().derive(mechanics_, system::Approach::one)};
+    std::vector<system::EquationSystem> systems{derive::lagrange(mechanics_, system::Approach::one)};
     program::Request request;
     request.with = {"contacts"};
     for (const auto& output : systems[0].outputs) {

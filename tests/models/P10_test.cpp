@@ -34,9 +34,10 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
   const Numbers n;
   const double e[] = {std::sin(n.phi0) * std::cos(n.theta0), std::sin(n.phi0) * std::sin(n.theta0), std::cos(n.phi0)};
   for (const derive::RouteEntry& route : derive::routes()) {
-    if (!route.applies(m, system::Approach::one)) continue;
+    std::optional<system::EquationSystem> derived = route.derive(m, system::Approach::one);
+    if (!derived) continue;
     INFO(route.name);
-    system::EquationSystem s = route.derive(m, system::Approach::one);
+    system::EquationSystem& s = *derived;
     const std::vector<std::string> names = derive::add_prescribed_forces(m, s, derive::prescribing_constraints(m));
     // No force turns the rocket: those of theta and phi vanish identically and are left out.
     CHECK(names == std::vector<std::string>{"force.R", "P.force1", "P.force2", "P.force3", "prescribed.power"});

@@ -6,7 +6,7 @@
 #include <eom/ode.hpp>
 
 #include "derive/conserved.hpp"
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 #include "models/reading_of.hpp"
 #include "reading/routh.hpp"
 #include "support/simulation.hpp"
@@ -19,7 +19,7 @@ using namespace eomgen::test;
 namespace {
 
 reading::RouthForm reduced(mechanics::Mechanics& m) {
-  system::EquationSystem s = derive::routes().front().derive(m, system::Approach::two);
+  system::EquationSystem s = derive::lagrange(m, system::Approach::two);
   return reading::routh_form(m, derive::cyclic_coordinates(derive::conserved_quantities(m, s)));
 }
 

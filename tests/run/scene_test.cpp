@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 
 using namespace eomgen;
 
@@ -31,7 +31,7 @@ holonomic = "x^2 + y^2 - L^2"
 run::Scene resolve(const std::string& text, const run::Overrides& overrides = {}) {
   const model::Model model = model::read_model_text(text, "scene.toml");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  const system::EquationSystem system = derive::routes().front().derive(m, system::Approach::two);
+  const system::EquationSystem system = derive::lagrange(m, system::Approach::two);
   return run::resolve_scene(m, system, model.scene("default"), overrides);
 }
 

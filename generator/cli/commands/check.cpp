@@ -9,7 +9,7 @@
 #include "cli/output.hpp"
 #include "derive/conservative.hpp"
 #include "derive/conserved.hpp"
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 #include "print/render.hpp"
 #include "reading/reading.hpp"
 
@@ -75,7 +75,7 @@ std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
 
 json examine(const model::Model& model) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  system::EquationSystem system = derive::routes().front().derive(m, system::Approach::two);
+  system::EquationSystem system = derive::lagrange(m, system::Approach::two);
   json coordinates = json::array(), parameters = json::array(), conserved = json::array(), warnings = json::array();
   bool every_unit = true;
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i) {

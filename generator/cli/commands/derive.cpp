@@ -9,7 +9,7 @@
 #include "cli/output.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 #include "model/names.hpp"
 #include "print/render.hpp"
 
@@ -97,7 +97,7 @@ std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, co
 void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
   const bool wanted = std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
-  system::EquationSystem system = derive::routes().front().derive(mechanics, system::Approach::two);
+  system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
   for (const derive::Conserved& c : derive::conserved_quantities(mechanics, system)) {
     const auto named = in_named_functions(mechanics, form, c.name);
@@ -111,7 +111,7 @@ void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::strin
 // Only on request: it is another form of the equations that `all` shows already.
 void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
-  system::EquationSystem system = derive::routes().front().derive(mechanics, system::Approach::two);
+  system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(derive::conserved_quantities(mechanics, system));
   const reading::RouthForm form = reading::routh_form(mechanics, cyclic);
   if (cyclic.empty()) fmt::print(stderr, "no coordinate is cyclic: there is nothing to reduce\n");

@@ -19,7 +19,7 @@
 #include "cli/usage.hpp"
 #include "derive/conserved.hpp"
 #include "derive/prescribed_forces.hpp"
-#include "derive/routes.hpp"
+#include "derive/lagrange.hpp"
 #include "model/names.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -132,7 +132,7 @@ class Prescribed {
     const verify::Certificate certificate = verify::certify(m_, subjects, {50, emission_points, seed, {}});
     require_pass(certificate, model_);
     result.certificate = certificate.summary();
-    system_ = derive::routes().front().derive(m_, system::Approach::one);
+    system_ = derive::lagrange(m_, system::Approach::one);
     result.forces = force_columns(m_, system_, chosen_constraints(m_, options.constraints));
     scene_ = run::resolve_scene(m_, system_, model_.scene(options.scene), overrides);
     result.table.emplace(result.file, columns_of(model_, result.forces, scene_));
