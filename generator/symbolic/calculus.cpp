@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "symbolic/calculus.hpp"
 
+#include <algorithm>
+#include <unordered_set>
+
 namespace eomgen::symbolic {
 
 Ref Derivation::operator()(Ref expression) {
@@ -132,9 +135,23 @@ Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& a) {
   }
 }
 
+// Those that are not known yet, operands before users; what is known has known operands.
+std::vector<Ref> Substitution::missing(Ref expression) const {
+  std::vector<Ref> stack{expression}, result;
+  std::unordered_set<std::uint32_t> seen;
+  while (!stack.empty()) {
+    const Ref r = stack.back();
+    stack.pop_back();
+    if (memo_.contains(r.id) || !seen.insert(r.id).second) continue;
+    result.push_back(r);
+    for (std::uint8_t i = 0; i < dag_[r].arity; ++i) stack.push_back(dag_[r].args[i]);
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
 Ref Substitution::operator()(Ref expression) {
-  for (const Ref r : dag_.reachable({expression})) {
-    if (memo_.contains(r.id)) continue;
+  for (const Ref r : missing(expression)) {
     const Node node = dag_[r];
     std::array<Ref, 4> a{};
     bool changed = false;

@@ -42,6 +42,7 @@ class Substitution {
   Ref operator()(Ref expression);
 
  private:
+  std::vector<Ref> missing(Ref expression) const;
   Dag& dag_;
   std::map<Symbol, Ref> values_;
   std::unordered_map<std::uint32_t, Ref> memo_;

@@ -86,19 +86,16 @@ bool Dag::is_positive(Ref r) const {
 
 std::vector<Ref> Dag::reachable(const std::vector<Ref>& roots) const {
   std::vector<bool> seen(nodes_.size(), false);
-  std::vector<std::uint32_t> stack;
-  for (const Ref root : roots) stack.push_back(root.id);
+  std::vector<Ref> stack = roots, result;
   while (!stack.empty()) {
-    const std::uint32_t id = stack.back();
+    const Ref r = stack.back();
     stack.pop_back();
-    if (seen[id]) continue;
-    seen[id] = true;
-    for (std::uint8_t i = 0; i < nodes_[id].arity; ++i) stack.push_back(nodes_[id].args[i].id);
+    if (seen[r.id]) continue;
+    seen[r.id] = true;
+    result.push_back(r);
+    for (std::uint8_t i = 0; i < nodes_[r.id].arity; ++i) stack.push_back(nodes_[r.id].args[i]);
   }
-  std::vector<Ref> result;
-  for (std::uint32_t id = 0; id < seen.size(); ++id) {
-    if (seen[id]) result.push_back(Ref{id});
-  }
+  std::sort(result.begin(), result.end());
   return result;
 }
 
