@@ -25,18 +25,14 @@ class Spelled {
   symbolic::Substitution impose_, write_;
 };
 
-bool is_zero(const Dag& dag, const Vec3& v) {
-  return std::all_of(v.begin(), v.end(), [&dag](Ref r) { return dag.is_zero(r); });
-}
-
 /// Uniform gravity acts on every particle alike and is carried as an acceleration; the other forces as forces of theta.
 Vec3 take_gravity(Mechanics& m, Spelled& spelled, Ref& other_potential) {
   Dag& dag = *m.dag;
-  Vec3 sum{dag.zero(), dag.zero(), dag.zero()};
+  Vec3 sum = symbolic::zero_vector(dag);
   other_potential = spelled(mechanics::lower_scalar(m, m.model->energy.potential));
   for (std::size_t i = 0; i < m.model->forces.size(); ++i) {
     const auto* gravity = std::get_if<model::Gravity>(&m.model->forces[i].kind);
-    Vec3 g{dag.zero(), dag.zero(), dag.zero()};
+    Vec3 g = symbolic::zero_vector(dag);
     if (gravity != nullptr) g = spelled(mechanics::lower_vector(m, gravity->acceleration));
     const std::vector<Symbol> symbols = dag.symbols({g[0], g[1], g[2]});
     const bool uniform = gravity != nullptr && std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
@@ -58,15 +54,7 @@ std::vector<Ref> other_forces(Mechanics& m, const QuasiCoordinates& theta, const
     by_coordinate.push_back(dag.sub(spelled(Q[i]), slope));
   }
   if (theta.identity()) return by_coordinate;
-  std::vector<Ref> result;
-  for (std::size_t a = 0; a < of.size(); ++a) {
-    Ref sum = dag.zero();
-    for (std::size_t i = 0; i < of.size(); ++i) {
-      sum = dag.add(sum, dag.mul(dag.constant(theta.S_inverse[i * of.size() + a]), by_coordinate[i]));
-    }
-    result.push_back(sum);
-  }
-  return result;
+  return symbolic::transposed_applied(dag, theta.S_inverse, by_coordinate);
 }
 
 /// J of each theta and the particles that it moves; false where it moves two of them differently, or none.

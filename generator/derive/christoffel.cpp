@@ -2,7 +2,6 @@
 #include "derive/christoffel.hpp"
 
 #include <algorithm>
-#include <numeric>
 
 #include "derive/equations.hpp"
 #include "symbolic/polynomial.hpp"
@@ -68,7 +67,7 @@ class QuadraticEnergy {
   }
 
  private:
-  Ref tidy(Ref r) { return expand_(r).value_or(r); }
+  Ref tidy(Ref r) { return expand_.tidy(r); }
   /// [ij,k], eq. (2.184)
   Ref first_kind(std::size_t i, std::size_t j, std::size_t k) {
     const Ref twice = dag_.sub(dag_.add(by_[i](M_[k * n_ + j]), by_[j](M_[k * n_ + i])), by_[k](M_[i * n_ + j]));
@@ -93,12 +92,6 @@ FullEquations equations(Mechanics& m, QuadraticEnergy& energy, Ref U, const std:
     result.f.push_back(dag.add(energy.inertia(k), dag.sub(Q[which[k]], slope)));
   }
   return result;
-}
-
-std::vector<std::uint32_t> all_coordinates(const Mechanics& m) {
-  std::vector<std::uint32_t> all(m.q.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
 }
 
 }  // namespace

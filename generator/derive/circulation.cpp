@@ -6,10 +6,11 @@
 
 #include "derive/conserved.hpp"
 #include "derive/potential.hpp"
-#include "derive/sample.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/antiderivative.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
 
 namespace eomgen::derive {
 namespace {
@@ -68,7 +69,7 @@ class Paths {
       const std::vector<double> Q = symbolic::evaluate(dag_, {Q_[i], Q_[k]}, [&](const Symbol& symbol) {
         if (symbol == coordinate(i)) return circle[0] + circle[2] * c;
         if (symbol == coordinate(k)) return circle[1] + circle[2] * s;
-        return sample_value(symbol, 1);
+        return symbolic::sample_double(symbol, 1);
       });
       const double along = (-Q[0] * s + Q[1] * c) * circle[2] * 2 * std::numbers::pi / points;
       work += along;
@@ -115,7 +116,7 @@ Circulation circulation(mechanics::Mechanics& m, const std::vector<Ref>& Q, cons
     symbolic::Substitution turned = paths.turn(i);
     const Ref work = dag.sub(potential->U, turned(potential->U));
     if (mechanics::vanishes(dag, {work})) continue;
-    return {Circulation::Answer::some, "one turn of " + name, shorter(dag, work)};
+    return {Circulation::Answer::some, "one turn of " + name, symbolic::tidy(dag, work)};
   }
   if (domain_of(m, Q).empty() || (potential && !has_branches(dag, potential->U))) return result;
   if (others.size() < 2 && result.answer == Circulation::Answer::none) return result;  // a line has no closed paths

@@ -12,15 +12,6 @@ using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-bool has_kinks(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
-  using symbolic::Op;
-  const std::vector<Ref> nodes = dag.reachable(expressions);
-  return std::any_of(nodes.begin(), nodes.end(), [&](Ref r) {
-    const Op op = dag[r].op;
-    return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
-  });
-}
-
 class Classifier {
  public:
   Classifier(mechanics::Mechanics& m, std::size_t force) : m_(m), dag_(*m.dag), force_(force), Q_(m.force_components[force]) {}
@@ -64,7 +55,7 @@ class Classifier {
       }
     }
     if (mechanics::vanishes(dag_, curl)) return true;
-    const bool kinks = has_kinks(dag_, curl);
+    const bool kinks = dag_.has_kinks(curl);
     result_.conservative = kinks ? Verdict::unknown : Verdict::no;
     say(kinks ? "its components have kinks (abs, sign, min, max, if)" : "its curl does not vanish");
     return false;

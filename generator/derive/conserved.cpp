@@ -27,14 +27,9 @@ const char* name(Certainty certainty) {
   return "proven";
 }
 
-Ref shorter(Dag& dag, Ref expression) {
-  symbolic::Expander expand(dag);
-  return expand(expression).value_or(expression);
-}
-
 Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
   if (!mechanics::vanishes(dag, expressions)) return Certainty::no;
-  const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(shorter(dag, r)); };
+  const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(symbolic::tidy(dag, r)); };
   return std::all_of(expressions.begin(), expressions.end(), is_empty) ? Certainty::proven : Certainty::numerical;
 }
 

@@ -20,9 +20,6 @@ const char* name(Certainty certainty);  // "no", "numerical", "proven"
 /// `proven`: multiplied out, nothing is left; `numerical`: zero in 40 digits at random points.
 Certainty vanishing(symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
 
-/// Multiplied out with sin^2 + cos^2 = 1 used, where that is not too long; else as it is.
-symbolic::Ref shorter(symbolic::Dag& dag, symbolic::Ref expression);
-
 struct Conserved {
   std::string name;   // "energy", "momentum.theta", "jacobi", "linear_momentum.E1"; also the name of the output
   std::string title;  // for reading

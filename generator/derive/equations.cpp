@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/equations.hpp"
 
-#include <algorithm>
+#include <numeric>
 
 namespace eomgen::derive {
 namespace {
@@ -136,10 +136,10 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
 
 }  // namespace
 
-Ref dot(Dag& dag, const Vec3& a, const Vec3& b) {
-  Ref sum = dag.mul(a[0], b[0]);
-  for (std::size_t k = 1; k < 3; ++k) sum = dag.add(sum, dag.mul(a[k], b[k]));
-  return sum;
+std::vector<std::uint32_t> all_coordinates(const Mechanics& m) {
+  std::vector<std::uint32_t> all(m.q.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return all;
 }
 
 std::vector<Ref> generalized_forces(Mechanics& m) {

@@ -26,6 +26,7 @@ std::vector<Ref> generalized_forces(Mechanics& mechanics);
 /// What the energy's rate must be, with the reactions of `system`: docs/theory.md, "Power". May use qddot.
 Ref power(Mechanics& mechanics, const system::EquationSystem& system);
 
-Ref dot(Dag& dag, const Vec3& a, const Vec3& b);
+/// 0, 1, ... of all coordinates of the model.
+std::vector<std::uint32_t> all_coordinates(const Mechanics& mechanics);
 
 }  // namespace eomgen::derive

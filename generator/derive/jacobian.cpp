@@ -47,10 +47,8 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
 
 std::optional<system::EquationSystem> jacobian(Mechanics& m, system::Approach approach) {
   if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
-  std::vector<std::uint32_t> all;
-  for (std::uint32_t i = 0; i < m.q.size(); ++i) all.push_back(i);
   const std::vector<Ref> Q = generalized_forces(m);
-  const FullEquations full = equations(m, nullptr, Q, all);
+  const FullEquations full = equations(m, nullptr, Q, all_coordinates(m));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "jacobian", approach);
   symbolic::Substitution imposed = impose(m);
   const FullEquations motion = equations(m, &imposed, Q, m.free);

@@ -6,9 +6,10 @@
 #include <cmath>
 
 #include "derive/equations.hpp"
-#include "derive/sample.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
 #include "symbolic/factorisation.hpp"
 
 namespace eomgen::derive {
@@ -112,7 +113,7 @@ class Search {
     std::vector<Ref> both = J_;
     both.insert(both.end(), d.begin(), d.end());
     for (std::uint64_t point = 1; point <= 4; ++point) {
-      std::vector<double> value = symbolic::evaluate(dag_, both, [=](const Symbol& s) { return sample_value(s, point); });
+      std::vector<double> value = symbolic::evaluate(dag_, both, [=](const Symbol& s) { return symbolic::sample_double(s, point); });
       if (!std::all_of(value.begin(), value.end(), [](double x) { return std::isfinite(x); })) continue;
       const auto end = value.begin() + static_cast<std::ptrdiff_t>(J_.size());
       return is_in_range({value.begin(), end}, {end, value.end()}, n_);
@@ -129,7 +130,7 @@ class Search {
         for (std::size_t k = 0; k < n_; ++k) N[i * n_ + k] = dag_.add(N[i * n_ + k], dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
       }
     }
-    for (Ref& entry : N) entry = shorter(dag_, entry);  // orthogonal coordinates leave a diagonal
+    for (Ref& entry : N) entry = symbolic::tidy(dag_, entry);  // orthogonal coordinates leave a diagonal
     const symbolic::Factorisation factors(dag_, N, n_, symbolic::Ties::ascending);
     const std::vector<Ref> xi = factors.backward(factors.forward(y));
     std::vector<Ref> result;

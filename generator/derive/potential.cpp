@@ -5,10 +5,11 @@
 #include <cmath>
 
 #include "derive/conserved.hpp"
-#include "derive/sample.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/antiderivative.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
 #include "symbolic/zero_proof.hpp"
 
 namespace eomgen::derive {
@@ -61,7 +62,7 @@ class Search {
   std::optional<Ref> along_coordinates(const std::vector<std::size_t>& order) {
     Ref U = dag_.zero();
     for (std::size_t step = 0; step < order.size(); ++step) {
-      std::optional<Ref> rest = shorter(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
+      std::optional<Ref> rest = symbolic::tidy(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
       if (mechanics::vanishes(dag_, {*rest})) continue;
       for (std::size_t before = 0; before < step && rest; ++before) rest = symbolic::without(dag_, *rest, coordinate(order[before]));
       if (rest) rest = integral(*rest, order[step]);
@@ -95,13 +96,13 @@ class Search {
       moment = dag_.add(moment, dag_.mul(m_.q[i], Q_[i]));
     }
     for (const std::size_t j : active_) scaled = dag_.add(scaled, dag_.mul(m_.q[j], slope(sum, j)));
-    const std::vector<double> value = symbolic::evaluate(dag_, {scaled, sum}, [](const Symbol& s) { return sample_value(s, 1); });
+    const std::vector<double> value = symbolic::evaluate(dag_, {scaled, sum}, [](const Symbol& s) { return symbolic::sample_double(s, 1); });
     const double doubled = std::round(2 * value[0] / value[1]);
     if (!std::isfinite(doubled) || std::abs(doubled) > 40 || doubled == -2) return std::nullopt;
     const Ref k_plus_1 = dag_.constant(symbolic::Rational(static_cast<long>(doubled) + 2) / 2);
     const Ref U = dag_.neg(dag_.div(moment, k_plus_1));
     if (!is_potential(U)) return std::nullopt;
-    return shorter(dag_, U);
+    return symbolic::tidy(dag_, U);
   }
 
   mechanics::Mechanics& m_;

@@ -74,7 +74,7 @@ class Forces {
     }
     const symbolic::Factorisation factors(dag_, N, n, symbolic::Ties::ascending);
     const std::vector<Ref> components = factors.backward(factors.forward(Q));  // along the a_i
-    Vec3 force{dag_.zero(), dag_.zero(), dag_.zero()};
+    Vec3 force = symbolic::zero_vector(dag_);
     for (std::size_t k = 0; k < 3; ++k) {
       for (std::size_t i = 0; i < n; ++i) force[k] = dag_.add(force[k], dag_.mul(J[k * n + i], components[i]));
     }

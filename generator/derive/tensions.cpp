@@ -16,8 +16,8 @@ constexpr std::size_t small = 40;  // terms: what lies within one link is a hand
 class Tidy {
  public:
   explicit Tidy(Dag& dag) : dag_(dag), expand_(dag, small) {}
-  Ref operator()(Ref r) { return expand_(r).value_or(r); }
-  Ref dot(const Vec3& a, const Vec3& b) { return (*this)(derive::dot(dag_, a, b)); }
+  Ref operator()(Ref r) { return expand_.tidy(r); }
+  Ref dot(const Vec3& a, const Vec3& b) { return (*this)(symbolic::dot(dag_, a, b)); }
 
  private:
   Dag& dag_;
@@ -69,21 +69,8 @@ std::optional<std::size_t> still_axis(const Dag& dag, const Branches& tree) {
   return std::nullopt;
 }
 
-Vec3 cross(Dag& dag, const Vec3& a, const Vec3& b) {
-  Vec3 result;
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-    result[k] = dag.sub(dag.mul(a[i], b[j]), dag.mul(a[j], b[i]));
-  }
-  return result;
-}
-
-bool is_zero(const Dag& dag, const Vec3& v) {
-  return std::all_of(v.begin(), v.end(), [&dag](Ref r) { return dag.is_zero(r); });
-}
-
 Vec3 unit(Dag& dag, std::size_t axis) {
-  Vec3 e{dag.zero(), dag.zero(), dag.zero()};
+  Vec3 e = symbolic::zero_vector(dag);
   e[axis] = dag.one();
   return e;
 }
@@ -141,7 +128,7 @@ class Tensions {
  private:
   /// W_k / m_first: the force along the J that does on theta_k what f_k does.
   Vec3 free_force(const Rod& rod) {
-    const Vec3 none{dag_.zero(), dag_.zero(), dag_.zero()};
+    const Vec3 none = symbolic::zero_vector(dag_);
     std::vector<Ref> f;
     for (const std::size_t a : rod.joints) f.push_back(dag_.div(tree_.f[a], rods_.first_mass));
     if (std::all_of(f.begin(), f.end(), [this](Ref r) { return dag_.is_zero(r); })) return none;

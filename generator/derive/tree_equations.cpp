@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/tree_equations.hpp"
 
-#include <numeric>
 
 namespace eomgen::derive {
 namespace {
 
-std::vector<std::uint32_t> all_coordinates(const Mechanics& m) {
-  std::vector<std::uint32_t> all(m.q.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return all;
-}
-
 /// Per link: what the particles beyond it exert by their inertia and weight, d(m v)/dt - m g without second rates.
 std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
-  const Vec3 none{dag.zero(), dag.zero(), dag.zero()};
+  const Vec3 none = symbolic::zero_vector(dag);
   std::vector<Vec3> force(b.links.size(), none);
   symbolic::Derivation bias = b.coordinates.bias(dag);
   for (std::size_t l = b.links.size(); l-- > 0;) {
@@ -56,23 +49,18 @@ FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const syst
   if (coordinates.identity()) return {e.M, e.f};
   const std::size_t n = e.f.size();
   const std::vector<Rational>& S = coordinates.S;
-  const auto combined = [&](const auto& entry, std::size_t i) {  // sum_a S_ai entry(a)
-    Ref sum = dag.zero();
-    for (std::size_t a = n; a-- > 0;) {
-      if (!cln::zerop(S[a * n + i])) sum = dag.add(sum, dag.mul(dag.constant(S[a * n + i]), entry(a)));
-    }
-    return sum;
-  };
   std::vector<Ref> half(n * n);  // M_theta S
   for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t j = 0; j < n; ++j) half[a * n + j] = combined([&](std::size_t c) { return e.M[a * n + c]; }, j);
+    const auto row = e.M.begin() + static_cast<std::ptrdiff_t>(a * n);
+    const std::vector<Ref> product = symbolic::transposed_applied(dag, S, {row, row + static_cast<std::ptrdiff_t>(n)});
+    std::copy(product.begin(), product.end(), half.begin() + static_cast<std::ptrdiff_t>(a * n));
   }
-  FullEquations result{std::vector<Ref>(n * n), {}};
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i; j < n; ++j) {
-      result.M[i * n + j] = result.M[j * n + i] = combined([&](std::size_t a) { return half[a * n + j]; }, i);
-    }
-    result.f.push_back(combined([&](std::size_t a) { return e.f[a]; }, i));
+  FullEquations result{std::vector<Ref>(n * n), symbolic::transposed_applied(dag, S, e.f)};
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<Ref> column(n);
+    for (std::size_t a = 0; a < n; ++a) column[a] = half[a * n + j];
+    const std::vector<Ref> product = symbolic::transposed_applied(dag, S, column);
+    for (std::size_t i = 0; i <= j; ++i) result.M[i * n + j] = result.M[j * n + i] = product[i];
   }
   return result;
 }

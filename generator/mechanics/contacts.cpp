@@ -50,7 +50,7 @@ class ContactReader {
   }
 
  private:
-  Ref tidy(Ref r) { return expand_(r).value_or(r); }
+  Ref tidy(Ref r) { return expand_.tidy(r); }
   Vec3 tidy(const Vec3& v) { return {tidy(v[0]), tidy(v[1]), tidy(v[2])}; }
   Vec3 gradient(std::uint32_t i) { return lower_.gradient(lower_.position(contact_.place), i); }
   const std::vector<Ref>& slope(std::size_t k) const { return m_.constraints[contact_.constraints[k]].gradient; }
@@ -109,7 +109,7 @@ class ContactReader {
       for (const Vec3& y : normals) contact_.gram.push_back(tidy(lower_.dot(x, y)));
     }
     if (equations == 2) {
-      contact_.directions.push_back(unit(cross(normals[0], normals[1])));
+      contact_.directions.push_back(unit(symbolic::cross(dag_, normals[0], normals[1])));
       return;
     }
     std::size_t c = own_.size();
@@ -121,7 +121,7 @@ class ContactReader {
       const Ref share = dag_.div(slope(0)[own_[i]], slope(0)[own_[c]]);
       contact_.directions.push_back(unit(lower_.subtract(a[i], lower_.scale(share, a[c]))));
     }
-    if (own_.size() == 3) contact_.directions.push_back(tidy(cross(unit(normals[0]), contact_.directions[0])));
+    if (own_.size() == 3) contact_.directions.push_back(tidy(symbolic::cross(dag_, unit(normals[0]), contact_.directions[0])));
   }
 
   /// grad psi_k = sum psi_i a^ij a_j over the coordinates of the particle, (1.22).
@@ -138,7 +138,7 @@ class ContactReader {
       std::vector<Ref> lower_components;
       for (const std::uint32_t i : own_) lower_components.push_back(slope(k)[i]);
       const std::vector<Ref> upper = factors.backward(factors.forward(lower_components));
-      Vec3 sum{dag_.zero(), dag_.zero(), dag_.zero()};
+      Vec3 sum = symbolic::zero_vector(dag_);
       for (std::size_t i = 0; i < n; ++i) {
         for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = dag_.add(sum[axis], dag_.mul(upper[i], a[i][axis]));
       }
@@ -147,14 +147,6 @@ class ContactReader {
     return result;
   }
 
-  Vec3 cross(const Vec3& x, const Vec3& y) {
-    Vec3 result;
-    for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-      result[k] = dag_.sub(dag_.mul(x[i], y[j]), dag_.mul(x[j], y[i]));
-    }
-    return result;
-  }
   Vec3 unit(const Vec3& v) {
     const Ref length = dag_.call(symbolic::Op::sqrt, tidy(lower_.dot(v, v)));
     return tidy(lower_.scale(dag_.div(dag_.one(), length), v));

@@ -160,7 +160,7 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
 
 Lowering::Value Lowering::lower_vector(const model::Node& node) {
   using model::Op;
-  Vec3 result{dag_.zero(), dag_.zero(), dag_.zero()};
+  Vec3 result = symbolic::zero_vector(dag_);
   switch (node.op) {
     case Op::fixed_basis: result[node.index] = dag_.one(); break;
     case Op::array:
@@ -170,14 +170,7 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::place_velocity: result = ddt(position(node.index), node.span); break;
     case Op::place_acceleration: result = ddt(ddt(position(node.index), node.span), node.span); break;
     case Op::unit_basis: case Op::covariant_basis: case Op::contravariant_basis: return basis(node);
-    case Op::cross: {
-      const Vec3 a = vector(node.args[0]), b = vector(node.args[1]);
-      for (std::size_t k = 0; k < 3; ++k) {
-        const std::size_t i = (k + 1) % 3, j = (k + 2) % 3;
-        result[k] = dag_.sub(dag_.mul(a[i], b[j]), dag_.mul(a[j], b[i]));
-      }
-      break;
-    }
+    case Op::cross: result = symbolic::cross(dag_, vector(node.args[0]), vector(node.args[1])); break;
     case Op::unit: {
       const Vec3 a = vector(node.args[0]);
       result = scale(dag_.div(dag_.one(), norm(a)), a);
@@ -259,7 +252,7 @@ Vec3 Lowering::contravariant(std::uint32_t place, std::uint32_t coordinate, cons
                     dag_.mul(gram(rows[0], columns[1]), gram(rows[1], columns[0])));
   };
   Ref determinant = dag_.zero();
-  Vec3 sum{dag_.zero(), dag_.zero(), dag_.zero()};
+  Vec3 sum = symbolic::zero_vector(dag_);
   for (std::size_t k = 0; k < n; ++k) {
     const Ref cofactor = (wanted + k) % 2 == 0 ? minor(wanted, k) : dag_.neg(minor(wanted, k));
     determinant = dag_.add(determinant, dag_.mul(gram(wanted, k), cofactor));
@@ -267,20 +260,6 @@ Vec3 Lowering::contravariant(std::uint32_t place, std::uint32_t coordinate, cons
     for (std::size_t c = 0; c < 3; ++c) sum[c] = dag_.add(sum[c], term[c]);
   }
   return scale(dag_.div(dag_.one(), determinant), sum);
-}
-
-Ref Lowering::dot(const Vec3& a, const Vec3& b) {
-  Ref sum = dag_.mul(a[0], b[0]);
-  for (std::size_t k = 1; k < 3; ++k) sum = dag_.add(sum, dag_.mul(a[k], b[k]));
-  return sum;
-}
-
-Vec3 Lowering::subtract(const Vec3& a, const Vec3& b) {
-  return {dag_.sub(a[0], b[0]), dag_.sub(a[1], b[1]), dag_.sub(a[2], b[2])};
-}
-
-Vec3 Lowering::scale(Ref factor, const Vec3& a) {
-  return {dag_.mul(factor, a[0]), dag_.mul(factor, a[1]), dag_.mul(factor, a[2])};
 }
 
 // In curvilinear coordinates the squares often add up to one square, such as R^2: then there is no root to take.

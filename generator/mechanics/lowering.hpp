@@ -24,9 +24,9 @@ class Lowering {
   /// The slip speed that Op::slip stands for while coefficients of friction are read.
   void set_slip(Ref speed);
 
-  Ref dot(const Vec3& a, const Vec3& b);
-  Vec3 subtract(const Vec3& a, const Vec3& b);
-  Vec3 scale(Ref factor, const Vec3& a);
+  Ref dot(const Vec3& a, const Vec3& b) { return symbolic::dot(dag_, a, b); }
+  Vec3 subtract(const Vec3& a, const Vec3& b) { return symbolic::subtract(dag_, a, b); }
+  Vec3 scale(Ref factor, const Vec3& a) { return symbolic::scale(dag_, factor, a); }
   Ref norm(const Vec3& a);
   Vec3 gradient(const Vec3& a, std::uint32_t coordinate);  // d a/d q
 

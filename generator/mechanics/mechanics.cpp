@@ -7,6 +7,7 @@
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/sample.hpp"
 
 namespace eomgen::mechanics {
 namespace {
@@ -86,25 +87,11 @@ void require_equations(const Mechanics& m) {
 bool vanishes(const Dag& dag, const std::vector<Ref>& expressions) {
   if (std::all_of(expressions.begin(), expressions.end(), [&](Ref r) { return dag.is_zero(r); })) return true;
   // Beyond a kink an expression may be something else: sampling one side proves nothing.
-  for (const Ref r : dag.reachable(expressions)) {
-    switch (dag[r].op) {
-      case symbolic::Op::abs: case symbolic::Op::sign: case symbolic::Op::min: case symbolic::Op::max:
-      case symbolic::Op::select:
-        return false;
-      default: break;
-    }
-  }
+  if (dag.has_kinks(expressions)) return false;
   const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
   int evaluated = 0;
   for (std::uint64_t point = 1; point <= 4; ++point) {
-    // Values in (0.2, 1.2), by symbol; a fixed sequence, so that every process says the same.
-    const auto value = [point](const Symbol& symbol) -> cln::cl_R {
-      std::uint64_t x = point * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(symbol.kind) * 0xbf58476d1ce4e5b9ull +
-                        symbol.index * 0x94d049bb133111ebull + symbol.order * 0xd6e8feb86659fd93ull;
-      x = (x ^ (x >> 31)) * 0x9e3779b97f4a7c15ull;
-      x ^= x >> 29;
-      return cln::cl_R(symbolic::Rational(static_cast<long>(x % 1000003)) / 1000003 + symbolic::Rational(1) / 5);
-    };
+    const auto value = [point](const Symbol& symbol) -> cln::cl_R { return symbolic::sample(symbol, point); };
     try {
       for (const cln::cl_R& r : symbolic::evaluate(dag, expressions, value, 40)) {
         if (cln::abs(r) > small) return false;

@@ -3,7 +3,6 @@
 // constraints fix a coordinate. Theory: docs/theory.md, eqs. (1.31), (2.20), (2.31), (3.20).
 #pragma once
 
-#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -11,13 +10,13 @@
 
 #include "model/model.hpp"
 #include "symbolic/calculus.hpp"
-#include "symbolic/dag.hpp"
+#include "symbolic/vectors.hpp"
 
 namespace eomgen::mechanics {
 
 using symbolic::Dag;
 using symbolic::Ref;
-using Vec3 = std::array<Ref, 3>;  // components along E1, E2, E3
+using symbolic::Vec3;
 
 struct PointMass {
   std::string name;

@@ -9,6 +9,7 @@
 #include "mechanics/imposition.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
 #include "symbolic/zero_proof.hpp"
 
 namespace eomgen::mechanics {
@@ -23,14 +24,9 @@ constexpr std::size_t term_budget = 300;
 
 cln::cl_R small(int exponent) { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
-/// A value in (0.2, 1.2) by symbol and point; a fixed sequence, so that every process says the same.
-cln::cl_R sample(const Symbol& s, std::uint64_t point) {
-  std::uint64_t x = (point + 1) * 0x9e3779b97f4a7c15ull + static_cast<std::uint64_t>(s.kind) * 0xbf58476d1ce4e5b9ull +
-                    s.index * 0x94d049bb133111ebull + s.order * 0xd6e8feb86659fd93ull;
-  x = (x ^ (x >> 31)) * 0xbf58476d1ce4e5b9ull;
-  x ^= x >> 29;
-  const symbolic::Rational value = symbolic::Rational(static_cast<long>(x % 1000003)) / 1000003 + symbolic::Rational(1) / 5;
-  return cln::cl_float(cln::cl_R(value), cln::float_format(digits));
+/// Of all digits, so that sums of values are too.
+cln::cl_R value_at(const Symbol& symbol, std::uint64_t point) {
+  return cln::cl_float(cln::cl_R(symbolic::sample(symbol, point)), cln::float_format(digits));
 }
 
 /// Parameters that are expressions of others -> those expressions; as many rounds as chains may be long.
@@ -86,8 +82,8 @@ FormSpace::FormSpace(Mechanics& m, Where where)
   }
   for (std::uint64_t point = 0; point < tried_points && points_.size() < wanted_points; ++point) {
     std::map<Symbol, cln::cl_R> values;
-    for (const Symbol& variable : variables_) values[variable] = sample(variable, point);
-    for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i) values[{SymbolKind::parameter, i, 0}] = sample({SymbolKind::parameter, i, 0}, point);
+    for (const Symbol& variable : variables_) values[variable] = value_at(variable, point);
+    for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i) values[{SymbolKind::parameter, i, 0}] = value_at({SymbolKind::parameter, i, 0}, point);
     if (where == Where::anywhere || move_onto_constraints(values)) points_.push_back(std::move(values));
   }
 }
@@ -119,7 +115,7 @@ Ref FormSpace::derivative(Ref f, std::size_t variable) {
 std::vector<cln::cl_R> FormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
   const auto lookup = [&](const Symbol& symbol) -> cln::cl_R {
     const auto found = points_[point].find(symbol);
-    return found == points_[point].end() ? sample(symbol, point) : found->second;
+    return found == points_[point].end() ? value_at(symbol, point) : found->second;
   };
   return symbolic::evaluate(dag_, expressions, lookup, digits);
 }
@@ -169,12 +165,7 @@ Vanishing FormSpace::vanishing(Ref expression) {
   return symbolic::is_proven_zero(dag_, expression) ? Vanishing::proven : Vanishing::at_points;
 }
 
-Ref FormSpace::simpler(Ref expression) {
-  symbolic::Expander expander(dag_, term_budget);
-  const std::optional<Ref> expanded = expander(expression);
-  if (!expanded) return expression;
-  return dag_.reachable({*expanded}).size() <= dag_.reachable({expression}).size() ? *expanded : expression;
-}
+Ref FormSpace::simpler(Ref expression) { return symbolic::simpler(dag_, expression, term_budget); }
 
 // A constant pivot if there is one, else the one with the smallest expression: what follows stays readable.
 bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bool>& used, std::size_t columns,

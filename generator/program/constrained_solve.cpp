@@ -178,11 +178,7 @@ void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divide
   adjugate_.push_back(std::move(adjugate));
 }
 
-Ref ConstrainedSolve::simpler(Ref r) const {
-  symbolic::Expander expander(*dag_, term_budget);
-  const std::optional<Ref> expanded = expander(r);
-  return expanded && dag_->reachable({*expanded}).size() < dag_->reachable({r}).size() ? *expanded : r;
-}
+Ref ConstrainedSolve::simpler(Ref r) const { return symbolic::simpler(*dag_, r, term_budget); }
 
 /// p with A p = c: the dependent part alone, or the shortest, which exists wherever the rows are independent.
 std::vector<Ref> ConstrainedSolve::particular(const std::vector<Ref>& c) const {

@@ -24,10 +24,6 @@ class Holding {
   bool collects = true;
   std::vector<Kink> kinks;
 
-  static bool is_kink(Op op) {
-    return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
-  }
-
   Ref operator()(Ref expression) {
     for (const Ref r : dag_.reachable({expression})) {
       if (memo_.contains(r.id)) continue;
@@ -90,8 +86,7 @@ bool has_kinks(const system::EquationSystem& s) {
   std::vector<Ref> roots;
   for (const auto* list : {&s.M, &s.f, &s.A, &s.gamma}) roots.insert(roots.end(), list->begin(), list->end());
   for (const system::IntegralState& integral : s.integrals) roots.push_back(integral.rate);
-  const std::vector<Ref> nodes = s.dag->reachable(roots);
-  return std::any_of(nodes.begin(), nodes.end(), [&](Ref r) { return Holding::is_kink((*s.dag)[r].op); });
+  return s.dag->has_kinks(roots);
 }
 
 std::vector<Kink> hold_kinks(system::EquationSystem& s) {

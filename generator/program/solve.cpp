@@ -10,6 +10,8 @@
 #include "program/constrained_solve.hpp"
 #include "program/polynomials.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/sample.hpp"
+#include "symbolic/vectors.hpp"
 
 namespace eomgen::program {
 
@@ -49,36 +51,13 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
 }
 
-namespace {
-
-// sum_i C[i * n + a] r_i, the transposed matrix applied.
-std::vector<Ref> transposed(Dag& dag, const std::vector<symbolic::Rational>& C, const std::vector<Ref>& r) {
-  const std::size_t n = r.size();
-  std::vector<Ref> result(n, dag.zero());
-  for (std::size_t a = 0; a < n; ++a) {
-    for (std::size_t i = 0; i < n; ++i) result[a] = dag.add(result[a], dag.mul(dag.constant(C[i * n + a]), r[i]));
-  }
-  return result;
-}
-
-std::vector<Ref> applied(Dag& dag, const std::vector<symbolic::Rational>& C, const std::vector<Ref>& x) {
-  const std::size_t n = x.size();
-  std::vector<Ref> result(n, dag.zero());
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t a = 0; a < n; ++a) result[i] = dag.add(result[i], dag.mul(dag.constant(C[i * n + a]), x[a]));
-  }
-  return result;
-}
-
-}  // namespace
-
 std::vector<Ref> Solve::forward(const std::vector<Ref>& r) const {
-  return mass_->forward(quasi_ ? transposed(*dag_, quasi_->S_inverse, r) : r);
+  return mass_->forward(quasi_ ? symbolic::transposed_applied(*dag_, quasi_->S_inverse, r) : r);
 }
 
 std::vector<Ref> Solve::backward(const std::vector<Ref>& z) const {
   const std::vector<Ref> x = mass_->backward(z);
-  return quasi_ ? applied(*dag_, quasi_->S_inverse, x) : x;
+  return quasi_ ? symbolic::applied(*dag_, quasi_->S_inverse, x) : x;
 }
 
 std::pair<std::vector<Ref>, std::vector<Ref>> Solve::motion() const {
@@ -155,14 +134,11 @@ bool is_singular_everywhere(const Dag& dag, const std::vector<Ref>& M, std::size
   for (std::size_t i = 0; i < n; ++i) {
     if (dag.is_zero(M[i * n + i])) return true;
   }
-  // Values in (0.3, 1.3): inside the charts and the domains of most functions; points without a value say nothing.
+  // Points without a value say nothing.
   constexpr std::uint64_t points = 8;
   bool judged = false;
   for (std::uint64_t point = 0; point < points; ++point) {
-    const auto value = [point](const Symbol& s) -> cln::cl_R {
-      const std::uint64_t key = (static_cast<std::uint64_t>(s.kind) << 40) + (std::uint64_t{s.order} << 32) + s.index;
-      return Rational(static_cast<long>(scramble(key, point) % 1000003) + 300000) / 1000003;
-    };
+    const auto value = [point](const Symbol& s) -> cln::cl_R { return symbolic::sample(s, point); };
     try {
       if (!is_singular(symbolic::evaluate(dag, M, value, 40), n)) return false;
       judged = true;

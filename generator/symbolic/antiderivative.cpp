@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "symbolic/antiderivative.hpp"
 
-#include <cln/rational.h>
-#include <cln/real.h>
-
 #include <algorithm>
 #include <cmath>
 
 #include "symbolic/calculus.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
 #include "symbolic/zero_proof.hpp"
 
 namespace eomgen::symbolic {
@@ -18,19 +16,6 @@ namespace {
 constexpr std::size_t term_budget = 200, most_parts = 40;
 constexpr int deepest = 8;  // of integrations by parts and of halved angles
 
-Ref simplified(Dag& dag, Ref e) {
-  Expander expander(dag, term_budget);
-  return expander(e).value_or(e);
-}
-
-/// One value in (0.2, 1.2) by symbol: enough to guess an exponent, which is then proven.
-double sample(const Symbol& s) {
-  std::uint64_t x = (static_cast<std::uint64_t>(s.kind) << 40) + (std::uint64_t{s.order} << 32) + s.index + 1;
-  x *= 0x9e3779b97f4a7c15ull;
-  x = (x ^ (x >> 31)) * 0xbf58476d1ce4e5b9ull;
-  return 0.2 + static_cast<double>((x ^ (x >> 29)) % 1000003) / 1000003;
-}
-
 class Integrator {
  public:
   Integrator(Dag& dag, Symbol x) : dag_(dag), x_(x), d_(partial(dag, x)) {}
@@ -38,7 +23,7 @@ class Integrator {
   std::optional<Ref> sum(Ref e, int depth) {
     if (depth > deepest) return std::nullopt;
     Ref result = dag_.zero();
-    for (const Ref part : terms_of(dag_, simplified(dag_, e))) {
+    for (const Ref part : terms_of(dag_, tidy(dag_, e, term_budget))) {
       const std::optional<Ref> integral = term(part, depth);
       if (!integral) return std::nullopt;
       result = dag_.add(result, *integral);
@@ -95,7 +80,7 @@ class Integrator {
       if (dag_.is_zero(du)) continue;
       const Ref h = dag_.div(g, du);
       const Ref dh = d_(h);
-      const std::vector<double> value = evaluate(dag_, {h, dh, u, du}, sample);
+      const std::vector<double> value = evaluate(dag_, {h, dh, u, du}, [](const Symbol& s) { return sample_double(s, 0); });
       const double guess = value[1] * value[2] / (value[0] * value[3]);
       const double doubled = std::round(2 * guess);
       if (!std::isfinite(guess) || std::abs(doubled - 2 * guess) > 1e-9 || std::abs(doubled) > 24) continue;
@@ -194,13 +179,13 @@ bool depends_on(const Dag& dag, Ref expression, Symbol x) {
 
 std::optional<Ref> without(Dag& dag, Ref expression, Symbol x) {
   if (!depends_on(dag, expression, x)) return expression;
-  const Ref shorter = simplified(dag, expression);
+  const Ref shorter = tidy(dag, expression, term_budget);
   if (!depends_on(dag, shorter, x)) return shorter;
   for (const long at : {0, 1, 2}) {
     const Ref value = Substitution(dag, {{x, dag.integer(at)}})(shorter);
     try {
-      evaluate(dag, {value}, [](const Symbol& s) -> cln::cl_R { return cln::rational(cln::cl_R(sample(s))); }, 30);
-      return simplified(dag, value);
+      evaluate(dag, {value}, [](const Symbol& s) -> cln::cl_R { return sample(s, 0); }, 30);
+      return tidy(dag, value, term_budget);
     } catch (const std::exception&) {
       continue;  // a removable singularity, say
     }

@@ -99,6 +99,11 @@ std::vector<Ref> Dag::reachable(const std::vector<Ref>& roots) const {
   return result;
 }
 
+bool Dag::has_kinks(const std::vector<Ref>& roots) const {
+  const std::vector<Ref> nodes = reachable(roots);
+  return std::any_of(nodes.begin(), nodes.end(), [this](Ref r) { return is_kink(nodes_[r.id].op); });
+}
+
 std::vector<Symbol> Dag::symbols(const std::vector<Ref>& roots) const {
   std::vector<Symbol> result;
   for (const Ref r : reachable(roots)) {

@@ -34,6 +34,11 @@ enum class Op : std::uint8_t {
   select,    // args[0] < args[1] ? args[2] : args[3]
 };
 
+/// The value or the slope jumps where the operands say so: another expression on either side of that surface.
+constexpr bool is_kink(Op op) {
+  return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
+}
+
 enum class SymbolKind : std::uint8_t {
   time,
   coordinate,  // order 0: q, 1: qdot, 2: qddot
@@ -109,6 +114,7 @@ class Dag {
 
   /// The nodes that `roots` need, each once, operands before users (ascending id).
   std::vector<Ref> reachable(const std::vector<Ref>& roots) const;
+  bool has_kinks(const std::vector<Ref>& roots) const;
   /// The symbols in `roots`, sorted.
   std::vector<Symbol> symbols(const std::vector<Ref>& roots) const;
 

@@ -242,4 +242,12 @@ Ref Expander::rebuild(const Polynomial& p) {
   return dag_.mul(result, sum);
 }
 
+Ref tidy(Dag& dag, Ref expression, std::size_t term_budget) { return Expander(dag, term_budget).tidy(expression); }
+
+Ref simpler(Dag& dag, Ref expression, std::size_t term_budget) {
+  const std::optional<Ref> expanded = Expander(dag, term_budget)(expression);
+  if (!expanded) return expression;
+  return dag.reachable({*expanded}).size() <= dag.reachable({expression}).size() ? *expanded : expression;
+}
+
 }  // namespace eomgen::symbolic

@@ -25,6 +25,8 @@ class Expander {
 
   /// The expanded and reduced form; nothing where the budget does not suffice.
   std::optional<Ref> operator()(Ref expression);
+  /// The same, and the expression as it is where the budget does not suffice: of equal value either way.
+  Ref tidy(Ref expression) { return (*this)(expression).value_or(expression); }
 
  private:
   using Maybe = std::optional<Polynomial>;
@@ -43,5 +45,10 @@ class Expander {
   std::size_t budget_;
   std::unordered_map<std::uint32_t, Maybe> memo_;
 };
+
+/// Expander::tidy for one expression.
+Ref tidy(Dag& dag, Ref expression, std::size_t term_budget = 400);
+/// The expanded form where it has no more nodes, else the expression as it is.
+Ref simpler(Dag& dag, Ref expression, std::size_t term_budget);
 
 }  // namespace eomgen::symbolic

@@ -20,8 +20,7 @@ bool TimeTerms::is_free(Ref expression) const {
 
 // Also of 2 w - (w + w): a frequency that is divided by must not be such a zero.
 bool TimeTerms::vanishes(Ref constant) {
-  const std::optional<Ref> expanded = Expander(dag_)(constant);
-  return dag_.is_zero(expanded.value_or(constant));
+  return dag_.is_zero(tidy(dag_, constant));
 }
 
 TimeTerm TimeTerms::constant(Ref factor) const {
