@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "error.hpp"
+#include "system/expressions.hpp"
 
 namespace eomgen::program {
 
@@ -26,28 +27,7 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   std::map<Symbol, Ref> values;
   for (const auto& [index, value] : fix) values[{SymbolKind::parameter, index, 0}] = s.dag->constant(value);
   Substitution fixed(*s.dag, std::move(values));
-  for (auto* list : {&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma}) {
-    for (Ref& r : *list) r = fixed(r);
-  }
-  if (s.quasi) {
-    for (auto* list : {&s.quasi->M, &s.quasi->f}) {
-      for (Ref& r : *list) r = fixed(r);
-    }
-  }
-  if (s.solution) {
-    for (Ref& r : s.solution->qddot) r = fixed(r);
-    for (Pivot& pivot : s.solution->pivots) pivot = {fixed(pivot.pivot), fixed(pivot.scale)};
-  }
-  for (auto& integral : s.integrals) integral.rate = fixed(integral.rate);
-  for (system::Contact& contact : s.contacts) {
-    for (auto* list : {&contact.gram, &contact.slip, &contact.slip_rate}) {
-      for (Ref& r : *list) r = fixed(r);
-    }
-    for (Ref* r : {&contact.normal, &contact.static_coefficient, &contact.dynamic_coefficient}) *r = fixed(*r);
-  }
-  for (auto& reaction : s.reactions) reaction.value = fixed(reaction.value);
-  for (auto& output : s.outputs) output.value = fixed(output.value);
-  for (auto& event : s.events) event.value = fixed(event.value);
+  system::for_each_expression(s, [&fixed](Ref& r, system::Part) { r = fixed(r); });
 }
 
 /// "12" or, from ten rows on, "3_12".

@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
+#include "system/expressions.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -128,10 +129,9 @@ std::vector<Tried> tried(const std::vector<Candidate>& candidates, const std::ve
 std::size_t parameter_count(const system::EquationSystem& system) {
   std::size_t count = 0;
   std::vector<symbolic::Ref> roots;
-  for (const auto* list : {&system.M, &system.f, &system.A, &system.gamma}) {
-    roots.insert(roots.end(), list->begin(), list->end());
-  }
-  for (const system::IntegralState& integral : system.integrals) roots.push_back(integral.rate);
+  system::for_each_expression(system, [&roots](symbolic::Ref r, system::Part part) {
+    if (part != system::Part::shown) roots.push_back(r);
+  });
   for (const symbolic::Symbol& symbol : system.dag->symbols(roots)) {
     if (symbol.kind == symbolic::SymbolKind::parameter) count = std::max<std::size_t>(count, symbol.index + 1);
   }

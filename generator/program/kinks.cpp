@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "symbolic/calculus.hpp"
+#include "system/expressions.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -23,6 +24,9 @@ class Holding {
   /// New kinks are taken up while `collects` is true; later expressions only share those that are known.
   bool collects = true;
   std::vector<Kink> kinks;
+
+  /// |value| and the like are no kinks of their own: its sign is watched already.
+  void leave(Ref value) { left_.insert(left_.end(), {value, dag_.neg(value)}); }
 
   Ref operator()(Ref expression) {
     for (const Ref r : dag_.reachable({expression})) {
@@ -47,7 +51,8 @@ class Holding {
     const auto known = std::find_if(kinks.begin(), kinks.end(), [&](const Kink& k) { return k.value == value; });
     const auto index = static_cast<std::uint32_t>(known - kinks.begin());
     if (known == kinks.end()) {
-      if (!collects || kinks.size() == most_kinks || !moves(value)) return live;
+      const bool left = std::find(left_.begin(), left_.end(), value) != left_.end();
+      if (!collects || left || kinks.size() == most_kinks || !moves(value)) return live;
       kinks.push_back({op, value});
     }
     const Ref zero = dag_.zero(), side = dag_.symbol({SymbolKind::side, index, 0});
@@ -67,6 +72,7 @@ class Holding {
   }
 
   Dag& dag_;
+  std::vector<Ref> left_;
   std::unordered_map<std::uint32_t, Ref> memo_;
 };
 
@@ -82,32 +88,17 @@ const char* name(const Kink& kink) {
   }
 }
 
-bool has_kinks(const system::EquationSystem& s) {
-  std::vector<Ref> roots;
-  for (const auto* list : {&s.M, &s.f, &s.A, &s.gamma}) roots.insert(roots.end(), list->begin(), list->end());
-  for (const system::IntegralState& integral : s.integrals) roots.push_back(integral.rate);
-  return s.dag->has_kinks(roots);
-}
+bool has_kinks(system::EquationSystem system) { return !hold_kinks(system).empty(); }
 
 std::vector<Kink> hold_kinks(system::EquationSystem& s) {
   Holding hold(*s.dag);
-  for (auto* list : {&s.M, &s.f, &s.A, &s.gamma}) {
-    for (Ref& r : *list) r = hold(r);
-  }
-  for (system::IntegralState& integral : s.integrals) integral.rate = hold(integral.rate);
-  if (s.quasi) {
-    for (auto* list : {&s.quasi->M, &s.quasi->f}) {
-      for (Ref& r : *list) r = hold(r);
-    }
-  }
-  if (s.solution) {
-    for (Ref& r : s.solution->qddot) r = hold(r);
-    for (auto& pivot : s.solution->pivots) pivot = {hold(pivot.pivot), hold(pivot.scale)};
-  }
-  hold.collects = false;
-  for (system::Reaction& reaction : s.reactions) reaction.value = hold(reaction.value);
-  for (system::Output& output : s.outputs) output.value = hold(output.value);
-  for (system::Event& event : s.events) event.value = hold(event.value);
+  using system::Part;
+  system::for_each_expression(s, [&hold](Ref& r, Part part) {
+    if (part == Part::constraints) return;  // a start and a projection have the state that they have
+    hold.collects = part != Part::shown;
+    r = hold(r);
+    if (part == Part::slip) hold.leave(r);
+  });
   return std::move(hold.kinks);
 }
 

@@ -24,11 +24,12 @@ const char* name(const Kink& kink);
 /// Bits of `mode` that hold sides: two for each kink, from first_kink_bit on; more kinks than that cannot be held.
 inline constexpr std::size_t first_kink_bit = 8, most_kinks = 11;
 
-/// Whether the equations of motion have any.
-bool has_kinks(const system::EquationSystem& system);
+/// Whether the equations of motion have any that can be held.
+bool has_kinks(system::EquationSystem system);
 
-/// Makes branches of M, f, A, gamma (and of a solution) depend on sides, and in reactions, outputs and events those that
-/// are the same. Surfaces of parameters alone are left as they are, and so is what exceeds most_kinks.
+/// Makes branches of the equations of motion and of the laws of contacts depend on sides, and in reactions, outputs and
+/// events those that are the same. Surfaces of parameters alone and those where a contact changes its mode are left as they
+/// are, and so is what exceeds most_kinks.
 std::vector<Kink> hold_kinks(system::EquationSystem& system);
 
 }  // namespace eomgen::program

@@ -2,10 +2,14 @@
 // Kinks: with the sides of the state held the program is what it was, with others the branch goes on beyond its surface.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <set>
+
 #include "program/kinks.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/tolerances.hpp"
+#include "system/expressions.hpp"
 
 using namespace eomgen;
 using namespace test_systems;
@@ -96,4 +100,54 @@ TEST_CASE("kinks: more than mode has bits for follow the state") {
   const auto arguments = arguments_at<cln::cl_R>(system, 3);
   CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0],
                    program::interpret(plain.functions[0], arguments, 60).results[0]) < tolerances::same_value);
+}
+
+TEST_CASE("kinks: those of a contact's law are held, but not the speed whose sign the contact watches itself") {
+  auto s = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) { return dag.sub(dag.symbol({SymbolKind::friction, 0, 0}), x); });
+  symbolic::Dag& dag = *s.dag;
+  const Ref x = dag.symbol({SymbolKind::coordinate, 0, 0}), v = dag.symbol({SymbolKind::coordinate, 0, 1});
+  const Ref speed = dag.call(Op::abs, v), rough = dag.call(Op::abs, dag.sub(x, dag.one()));
+  system::Contact contact;
+  contact.name = "floor";
+  contact.normal = dag.one();
+  contact.slip = {v};
+  contact.slip_rate = {dag.symbol({SymbolKind::coordinate, 0, 2})};
+  contact.static_coefficient = dag.add(dag.one(), rough);
+  contact.dynamic_coefficient = dag.add(speed, rough);
+  s.contacts = {contact};
+  CHECK(program::has_kinks(s));
+  const std::vector<program::Kink> kinks = program::hold_kinks(s);
+  REQUIRE(kinks.size() == 1);
+  CHECK(dag.call(Op::abs, kinks[0].value) == rough);
+  const auto uses_side = [&](Ref r) {
+    const auto symbols = dag.symbols({r});
+    return std::find(symbols.begin(), symbols.end(), symbolic::Symbol{SymbolKind::side, 0, 0}) != symbols.end();
+  };
+  CHECK(uses_side(s.contacts[0].static_coefficient));
+  CHECK(uses_side(s.contacts[0].dynamic_coefficient));
+  s.contacts[0].static_coefficient = s.contacts[0].dynamic_coefficient = speed;
+  CHECK_FALSE(program::has_kinks(s));
+}
+
+TEST_CASE("system: for_each_expression comes to every expression once") {
+  system::EquationSystem s;
+  s.dag = std::make_shared<symbolic::Dag>();
+  std::uint32_t count = 0;
+  const auto next = [&] { return s.dag->symbol({SymbolKind::parameter, count++, 0}); };
+  const auto some = [&] { return std::vector<Ref>{next(), next()}; };
+  s.M = some(), s.f = some(), s.psi = some(), s.A = some(), s.b = some(), s.gamma = some();
+  s.integrals = {{0, next()}};
+  s.quasi = system::QuasiEquations{{}, some(), some()};
+  s.solution = system::Solution{some(), {{next(), next()}}};
+  system::Contact contact;
+  contact.gram = some(), contact.slip = some(), contact.slip_rate = some();
+  contact.normal = next(), contact.static_coefficient = next(), contact.dynamic_coefficient = next();
+  contact.directions = {{next(), next(), next()}};
+  s.contacts = {contact};
+  s.reactions = {{0, "r", next()}}, s.outputs = {{"o", next()}}, s.events = {{"e", next()}};
+  s.energy = next(), s.kinetic = next(), s.potential = next(), s.power = next();
+  std::set<Ref> seen;
+  const system::EquationSystem& constant = s;
+  system::for_each_expression(constant, [&](Ref r, system::Part) { CHECK(seen.insert(r).second); });
+  CHECK(seen.size() == count);
 }

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Every expression of an EquationSystem, once: what rewrites or searches all of them cannot forget one.
+#pragma once
+
+#include "system/equation_system.hpp"
+
+namespace eomgen::system {
+
+/// What an expression is there for.
+enum class Part {
+  motion,       // M, f, A, gamma, the rates of integrals, another way to M and f, a solution
+  slip,         // of a contact: changes its sign where the contact changes its mode
+  contact,      // the rest of a contact's law
+  constraints,  // psi and b, which a start and a projection need
+  shown         // reactions, outputs, events, energies
+};
+
+/// Calls visit(expression, part) with references; `system` may be const.
+template <class System, class Visit>
+void for_each_expression(System& system, Visit&& visit) {
+  const auto all = [&visit](auto& list, Part part) {
+    for (auto& r : list) visit(r, part);
+  };
+  for (auto* list : {&system.M, &system.f, &system.A, &system.gamma}) all(*list, Part::motion);
+  for (auto& integral : system.integrals) visit(integral.rate, Part::motion);
+  if (system.quasi) {
+    all(system.quasi->M, Part::motion);
+    all(system.quasi->f, Part::motion);
+  }
+  if (system.solution) {
+    all(system.solution->qddot, Part::motion);
+    for (auto& pivot : system.solution->pivots) {
+      visit(pivot.pivot, Part::motion);
+      visit(pivot.scale, Part::motion);
+    }
+  }
+  for (auto& contact : system.contacts) {
+    all(contact.slip, Part::slip);
+    all(contact.slip_rate, Part::contact);
+    all(contact.gram, Part::contact);
+    for (auto& direction : contact.directions) all(direction, Part::contact);
+    for (auto* r : {&contact.normal, &contact.static_coefficient, &contact.dynamic_coefficient}) visit(*r, Part::contact);
+  }
+  for (auto* list : {&system.psi, &system.b}) all(*list, Part::constraints);
+  for (auto& reaction : system.reactions) visit(reaction.value, Part::shown);
+  for (auto& output : system.outputs) visit(output.value, Part::shown);
+  for (auto& event : system.events) visit(event.value, Part::shown);
+  for (auto* r : {&system.kinetic, &system.potential, &system.energy, &system.power}) visit(*r, Part::shown);
+}
+
+}  // namespace eomgen::system
