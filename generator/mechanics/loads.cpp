@@ -48,6 +48,18 @@ class ForceReader {
       const Ref distance = lower_.norm(lower_.subtract(mass.position, center));
       potential_ = dag_.sub(potential_, dag_.div(dag_.mul(GM, mass.mass), distance));
     }
+    for (std::size_t b = 0; b < m_.spins.size() && gravity.order == 2; ++b) {  // (7.71)
+      const Spin& spin = m_.spins[b];
+      const Vec3 d = lower_.subtract(lower_.position(m_.model->bodies[b].place), center);
+      const std::array<Ref, 3> along{lower_.dot(d, spin.axes[0]), lower_.dot(d, spin.axes[1]), lower_.dot(d, spin.axes[2])};
+      const std::array<Ref, 3> J = times(dag_, spin, along);
+      Ref dJd = dag_.zero();
+      for (std::size_t k = 0; k < 3; ++k) dJd = dag_.add(dJd, dag_.mul(along[k], J[k]));
+      const Ref R = lower_.norm(d);
+      const Ref trace = dag_.add(spin.J[0][0], dag_.add(spin.J[1][1], spin.J[2][2]));
+      const Ref bracket = dag_.sub(dag_.div(dag_.mul(dag_.integer(3), dJd), dag_.power(R, 2)), trace);
+      potential_ = dag_.add(potential_, dag_.div(dag_.mul(GM, bracket), dag_.mul(dag_.integer(2), dag_.power(R, 3))));
+    }
   }
   void add(const model::Gravitation& gravity) {
     require_masses();
@@ -112,6 +124,19 @@ class ForceReader {
     }
   }
 
+  void add(const model::Moment& applied) {  // Q_i = M . dw/dqdot_i, eq. (9.2)
+    const Vec3 moment = lower_.vector(applied.moment), w = lower_.angular_velocity(applied.frame);
+    for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
+      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, i, 1});
+      generalized_[i] = dag_.add(generalized_[i], lower_.dot(moment, Vec3{by(w[0]), by(w[1]), by(w[2])}));
+    }
+  }
+  void add(const model::Magnus& magnus) {  // m c w x v, eq. (8.52)
+    const model::Body& body = m_.model->bodies[magnus.body];
+    const Vec3 at = lower_.position(body.place);
+    const Vec3 lift = lower_.cross(lower_.angular_velocity(body.frame), lower_.ddt(at, force_->span));
+    load(lower_.scale(dag_.mul(lower_.scalar(body.mass), lower_.scalar(magnus.coefficient)), lift), at);
+  }
   void add(const model::Dry&) {}  // a contact (contacts.cpp)
 
   void load(const Vec3& force, const Vec3& at) {
@@ -119,7 +144,7 @@ class ForceReader {
   }
   void require_masses() const {
     if (m_.masses.empty()) {
-      fail("this force acts on masses, and the model has none", "add a [[particle]], or put the potential into [energy]");
+      fail("this force acts on masses, and the model has none", "add a [[particle]] or [[body]], or put the potential into [energy]");
     }
   }
   void require_potential() const {

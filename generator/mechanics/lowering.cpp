@@ -170,7 +170,9 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::place_velocity: result = ddt(position(node.index), node.span); break;
     case Op::place_acceleration: result = ddt(ddt(position(node.index), node.span), node.span); break;
     case Op::unit_basis: case Op::covariant_basis: case Op::contravariant_basis: return basis(node);
-    case Op::cross: result = symbolic::cross(dag_, vector(node.args[0]), vector(node.args[1])); break;
+    case Op::axis: result = axis(node.index, node.order / 3u, node.order % 3u); break;
+    case Op::angular_velocity: result = angular_velocity(node.index); break;
+    case Op::cross: result = cross(vector(node.args[0]), vector(node.args[1])); break;
     case Op::unit: {
       const Vec3 a = vector(node.args[0]);
       result = scale(dag_.div(dag_.one(), norm(a)), a);

@@ -18,6 +18,13 @@ class Lowering {
   Ref scalar(model::NodeId id);
   Vec3 vector(model::NodeId id);
   Vec3 position(std::uint32_t place);
+  Vec3 axis(std::uint32_t frame, std::size_t stage, std::size_t k);
+  /// The angular velocity of the axes after a stage: its components along them, and along those before (frame's parent at first)
+  /// of the axes before.
+  std::array<Ref, 3> rates(std::uint32_t frame, std::size_t stage);
+  std::array<Ref, 3> rates_before(std::uint32_t frame, std::size_t stage);
+  std::array<Ref, 3> own_rates(std::uint32_t frame);
+  Vec3 angular_velocity(std::uint32_t frame);  // w = n1dot g1 + n2dot g2 + n3dot g3, eq. (5.59)
 
   /// The extension that Op::extension stands for while a spring's energy is read.
   void set_extension(Ref extension);
@@ -27,6 +34,8 @@ class Lowering {
   Ref dot(const Vec3& a, const Vec3& b) { return symbolic::dot(dag_, a, b); }
   Vec3 subtract(const Vec3& a, const Vec3& b) { return symbolic::subtract(dag_, a, b); }
   Vec3 scale(Ref factor, const Vec3& a) { return symbolic::scale(dag_, factor, a); }
+  Vec3 add(const Vec3& a, const Vec3& b) { return symbolic::add(dag_, a, b); }
+  Vec3 cross(const Vec3& a, const Vec3& b) { return symbolic::cross(dag_, a, b); }
   Ref norm(const Vec3& a);
   Vec3 gradient(const Vec3& a, std::uint32_t coordinate);  // d a/d q
 

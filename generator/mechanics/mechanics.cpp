@@ -68,6 +68,9 @@ void require_equations(const Mechanics& m) {
     for (const PointMass& mass : m.masses) {
       for (const Ref v : mass.velocity) presence.push_back(by_rate(v));
     }
+    for (const Spin& spin : m.spins) {
+      for (const Ref h : momentum(dag, spin)) presence.push_back(by_rate(h));
+    }
     presence.push_back(by_rate(m.kinetic_given));
     for (const std::uint32_t k : m.active) presence.push_back(m.constraints[k].gradient[i]);
     if (!vanishes(dag, presence)) continue;
@@ -118,16 +121,19 @@ void add_masses(Mechanics& m, Lowering& lower) {
   Dag& dag = *m.dag;
   m.kinetic_given = lower.scalar(m.model->energy.kinetic);
   m.kinetic = m.kinetic_given;
-  for (const model::Particle& particle : m.model->particles) {
+  const auto add = [&](std::uint32_t place, model::NodeId heavy, const model::Span& span) {
     PointMass mass;
-    mass.name = m.model->places[particle.place].name;
-    mass.mass = lower.scalar(particle.mass);
-    mass.position = lower.position(particle.place);
-    mass.velocity = lower.ddt(mass.position, particle.span);
+    mass.name = m.model->places[place].name;
+    mass.place = place;
+    mass.mass = lower.scalar(heavy);
+    mass.position = lower.position(place);
+    mass.velocity = lower.ddt(mass.position, span);
     const Ref twice = dag.mul(mass.mass, lower.dot(mass.velocity, mass.velocity));
     m.kinetic = dag.add(m.kinetic, dag.div(twice, dag.integer(2)));
     m.masses.push_back(std::move(mass));
-  }
+  };
+  for (const model::Particle& particle : m.model->particles) add(particle.place, particle.mass, particle.span);
+  for (const model::Body& body : m.model->bodies) add(body.place, body.mass, body.span);
 }
 
 Mechanics build_mechanics(const model::Model& model) {
@@ -139,6 +145,7 @@ Mechanics build_mechanics(const model::Model& model) {
   Lowering lower(m);
   add_assumptions(m, lower);
   add_masses(m, lower);
+  add_bodies(m, lower);
   add_forces(m, lower);
   add_constraints(m, lower);
   add_contacts(m, lower);

@@ -23,6 +23,18 @@ struct PointMass {
   Ref mass;
   Vec3 position;
   Vec3 velocity;  // total time derivative of the position
+  std::uint32_t place = 0;
+};
+
+/// How a body turns: T = w.Jw/2, eq. (6.65), with constant components J along `axes`. These are the body's own; where J does not
+/// change as the body turns about one of them they are those before its last rotation, which have simpler components.
+struct Spin {
+  std::string name;
+  std::uint32_t frame = 0;
+  std::array<Vec3, 3> axes;
+  std::array<std::array<Ref, 3>, 3> J;
+  std::array<Ref, 3> w;        // along `axes`
+  std::array<Ref, 3> carrier;  // angular velocity of `axes` themselves
 };
 
 /// A force that is not derived from the potential, at a moving point.
@@ -97,7 +109,8 @@ struct Mechanics {
   std::vector<Ref> q, qdot, qddot;  // all coordinates of the model
   Ref t;
 
-  std::vector<PointMass> masses;
+  std::vector<PointMass> masses;  // particles, then bodies with all their mass at the centre
+  std::vector<Spin> spins;        // per Model::bodies entry
   Ref kinetic_given;  // of [energy], 0 if none
   Ref kinetic;        // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
   Ref potential;      // everything that has a potential, and [energy]
@@ -120,6 +133,7 @@ struct Mechanics {
   std::vector<Ref> parameter_value;                  // per parameter, of other parameters or constants
   std::vector<std::optional<Vec3>> place_position;   // per Model::places entry
   std::vector<Ref> scalar_definition;                // per definition; 0 for vectors
+  std::vector<std::array<Ref, 3>> angular_velocity;  // per Model::frames entry, along its own axes
 
   bool is_eliminated(std::uint32_t coordinate) const;
   /// f . qdot + b of a constraint.
@@ -129,6 +143,10 @@ struct Mechanics {
 /// Spells the model out on a Dag and classifies its constraints. Throws Error{stage "mechanics"}: a constraint or force
 /// that changes no equation, a coordinate without inertia that nothing determines.
 Mechanics build_mechanics(const model::Model& model);
+
+/// J v, and H = J w, along the axes of the spin.
+std::array<Ref, 3> times(Dag& dag, const Spin& spin, const std::array<Ref, 3>& v);
+std::array<Ref, 3> momentum(Dag& dag, const Spin& spin);
 
 /// Any expression of the model on the Dag of `mechanics` (scalars only).
 Ref lower_scalar(Mechanics& mechanics, model::NodeId expression);

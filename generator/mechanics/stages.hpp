@@ -7,6 +7,7 @@
 namespace eomgen::mechanics {
 
 void add_masses(Mechanics& mechanics, Lowering& lower);        // masses, kinetic energy, eq. (1.31), (3.20)
+void add_bodies(Mechanics& mechanics, Lowering& lower);        // rotations, eq. (6.65)
 void add_forces(Mechanics& mechanics, Lowering& lower);        // potential, loads, generalised forces
 void add_constraints(Mechanics& mechanics, Lowering& lower);   // psi and its gradient, eq. (2.31)
 void add_contacts(Mechanics& mechanics, Lowering& lower);      // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)

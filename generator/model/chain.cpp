@@ -41,7 +41,7 @@ void Reader::declare_chain(const Value& table) {
     chain.coordinates.push_back(known->index);
     if (measured_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
     chain.places.push_back(declare_place(fmt::format("{}{}", chain.name, k), table.find("name")->span,
-                                         PlaceSource{&table, true, index, k}));
+                                         PlaceSource{&table, true, false, index, k}));
   }
   chains_.push_back(std::move(chain));
 }

@@ -56,6 +56,8 @@ enum class Op : std::uint8_t {
   place,                // position of Model::places[index]
   place_velocity,       // velocity(P)
   place_acceleration,   // acceleration(P)
+  axis,                 // B.e1, B.e1', ..: index into Model::frames, order = 3 * stage + axis
+  angular_velocity,     // omega(B): index into Model::frames
   unit_basis,           // P.e_q: index = place, order unused, args[0] = the coordinate leaf
   covariant_basis,      // P.a_q
   contravariant_basis,  // P.g_q

@@ -76,7 +76,30 @@ struct Chart {
   std::array<NodeId, 3> unit_basis{no_node, no_node, no_node};  // vector expressions e_1, e_2, e_3; no_node: normalise
   bool planar = false;
 };
-/// A particle, a point, or the origin (always places[0]).
+/// Axes e1 e2 e3 on the way of a rotation, and the same thing as numbers: e_k = sum_j R[k][j] p_j of the axes before (those of
+/// the parent at first), and the components along e1 e2 e3 of the angular velocity against those before.
+struct Stage {
+  std::array<NodeId, 3> e{no_node, no_node, no_node};  // vectors
+  std::array<std::array<NodeId, 3>, 3> R{};            // no_node: 0
+  std::array<NodeId, 3> w{no_node, no_node, no_node};  // no_node: 0
+};
+/// Axes that turn, of a body or of a [[frame]]; frames[0] are E1 E2 E3, without stages.
+struct Frame {
+  std::string name;
+  std::string rotation;        // name in rotations::registry()
+  std::uint32_t parent = 0;    // whose axes it turns against
+  std::vector<NodeId> entries; // angles, parameters
+  std::vector<Stage> stages;   // the last is its own axes
+  Span span;
+};
+/// A rigid body; its centre of mass is a place.
+struct Body {
+  std::uint32_t place = 0, frame = 0;
+  NodeId mass = no_node;
+  std::array<std::array<NodeId, 3>, 3> inertia{};  // about the centre of mass, along its own axes
+  Span span;
+};
+/// A particle, a body's centre of mass, a point, or the origin (always places[0]).
 struct Place {
   std::string name;
   NodeId position = no_node;  // absolute
@@ -95,8 +118,9 @@ struct Gravity {
 };
 struct CentralGravity {
   NodeId GM;
-  NodeId center;
-};  // order 0; center is a vector
+  NodeId center;  // a vector
+  int order = 0;  // 2: with what a body's inertia adds, eq. (7.71)
+};
 struct Gravitation {
   NodeId G;
 };  // mutual, all masses
@@ -122,6 +146,14 @@ struct Drag {
   NodeId on;
   NodeId density, area, coefficient;
 };
+struct Moment {  // on a body or frame
+  NodeId moment;  // vector
+  std::uint32_t frame;
+};
+struct Magnus {  // m c w x v at the centre of mass, eq. (8.52)
+  std::uint32_t body;  // index into Model::bodies
+  NodeId coefficient;
+};
 struct Generalized {
   std::vector<std::pair<std::uint32_t, NodeId>> components;
 };  // coordinate, force
@@ -138,7 +170,8 @@ struct Dry {  // Coulomb friction on one coordinate, with a given normal force
 };
 struct Force {
   std::string name;  // given, or "force 2"
-  std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized, Dry> kind;
+  std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized, Dry,
+               Moment, Magnus> kind;
   Span span;
 };
 
@@ -213,6 +246,8 @@ struct Model {
   std::vector<Definition> definitions;
   std::vector<Place> places;  // [0] is the origin
   std::vector<Particle> particles;
+  std::vector<Frame> frames;  // [0] are the fixed axes
+  std::vector<Body> bodies;
   Energy energy;
   std::vector<Force> forces;
   std::vector<Constraint> constraints;

@@ -11,7 +11,8 @@ constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
 
 const std::vector<std::string_view>& kinds() {
   static const std::vector<std::string_view> all{"gravity", "central_gravity", "gravitation", "force",      "spring",
-                                                 "damper",  "torsion",         "drag",        "generalized", "dry"};
+                                                 "damper",  "torsion",         "drag",        "generalized", "dry",
+                                                 "moment",  "magnus"};
   return all;
 }
 
@@ -45,7 +46,7 @@ void Reader::read_forces() {
 }
 
 Force Reader::read_force(const Value& table, const std::string& name) {
-  Keys keys{"[[force]]", kinds(), {"moment", "magnus"}};
+  Keys keys{"[[force]]", kinds(), {}};
   keys.known.insert(keys.known.end(), {"name", "on"});
   check_keys(table, keys);
   const Entry* kind = nullptr;
@@ -61,7 +62,7 @@ Force Reader::read_force(const Value& table, const std::string& name) {
     source_.fail(table.span, "this [[force]] says no kind of force",
                  fmt::format("add one of {}", fmt::join(kinds(), ", ")));
   }
-  if (kind->key != "force" && table.find("on") != nullptr) {
+  if (kind->key != "force" && kind->key != "moment" && table.find("on") != nullptr) {
     source_.fail(key_span(table, "on"), fmt::format("'on' does not belong to '{}'", kind->key),
                  "'on' says where a force vector acts: force = \"<vector>\", on = P");
   }
@@ -76,6 +77,8 @@ Force Reader::read_force(const Value& table, const std::string& name) {
     force.kind = Gravity{resolver_.value(value, context).node};
   } else if (kind->key == "force") {
     force.kind = read_applied(table, what);
+  } else if (kind->key == "moment") {
+    force.kind = read_moment(table, what);
   } else if (as(Value::Kind::table, value, what, fmt::format("write {} = {{ ... }}", kind->key));
              kind->key == "central_gravity") {
     force.kind = read_central_gravity(value, what);
@@ -90,6 +93,8 @@ Force Reader::read_force(const Value& table, const std::string& name) {
     force.kind = read_torsion(value, what);
   } else if (kind->key == "drag") {
     force.kind = read_drag(value, what);
+  } else if (kind->key == "magnus") {
+    force.kind = read_magnus(value, what);
   } else if (kind->key == "dry") {
     force.kind = read_dry(value, what);
   } else {
@@ -128,12 +133,15 @@ AppliedForce Reader::read_applied(const Value& table, const std::string& what) {
 CentralGravity Reader::read_central_gravity(const Value& table, const std::string& what) {
   check_keys(table, {what, {"GM", "order", "center"}, {}});
   if (const Value* order = table.find("order")) {
-    if (order->is(Value::Kind::integer) && order->text == "2") not_yet(order->span, "central_gravity of order 2");
-    if (!order->is(Value::Kind::integer) || order->text != "0") {
-      source_.fail(order->span, fmt::format("central_gravity has no order {}", quote(order->text)), "write order = 0");
+    if (!order->is(Value::Kind::integer) || (order->text != "0" && order->text != "2")) {
+      source_.fail(order->span, fmt::format("central_gravity has no order {}", quote(order->text)), "write order = 0 or order = 2");
+    }
+    if (order->text == "2" && model_.bodies.empty()) {
+      source_.fail(order->span, "central_gravity of order 2 acts on what a [[body]] has of inertia, and the model has none", "write order = 0");
     }
   }
   CentralGravity result{};
+  if (const Value* order = table.find("order")) result.order = order->text == "2" ? 2 : 0;
   result.GM = read_scalar(table, "GM", what, "m^3/s^2", on_time);
   const Value* center = table.find("center");
   result.center = center != nullptr ? read_point(*center, fmt::format("the center of {}", what))
@@ -219,6 +227,32 @@ Drag Reader::read_drag(const Value& table, const std::string& what) {
   result.on = resolver_.place(place_named(on, fmt::format("'on' of {}", what)), on.span).node;
   result.density = read_scalar(table, "density", what, "kg/m^3", on_state);
   result.area = read_scalar(table, "area", what, "m^2", on_state);
+  result.coefficient = read_scalar(table, "coefficient", what, "1", on_state);
+  return result;
+}
+
+Moment Reader::read_moment(const Value& table, const std::string& what) {
+  const Value& on = needed(table, "on", what, "add on = \"B\", the body or frame on which the moment acts");
+  Moment result{};
+  result.frame = frame_named(on, fmt::format("'on' of {}", what));
+  if (result.frame == 0) source_.fail(on.span, "a moment on the ground changes nothing", "name a body or frame");
+  const Context context{what == "this moment" ? what : fmt::format("the moment {}", what), on_state, Shape::vector, dimension_of("N*m"), ""};
+  result.moment = resolver_.value(*table.find("moment"), context).node;
+  return result;
+}
+
+Magnus Reader::read_magnus(const Value& table, const std::string& what) {
+  check_keys(table, {what, {"on", "coefficient"}, {}});
+  const Value& on = needed(table, "on", what, "add on = \"B\", the spinning body");
+  const std::uint32_t frame = frame_named(on, fmt::format("'on' of {}", what));
+  Magnus result{};
+  bool found = false;
+  for (std::uint32_t k = 0; k < model_.bodies.size(); ++k) {
+    if (model_.bodies[k].frame != frame) continue;
+    result.body = k;
+    found = true;
+  }
+  if (!found) source_.fail(on.span, fmt::format("{} acts on a body, and '{}' has no mass", what, on.text), "name a [[body]]");
   result.coefficient = read_scalar(table, "coefficient", what, "1", on_state);
   return result;
 }

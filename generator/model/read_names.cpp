@@ -111,6 +111,8 @@ Typed Reader::define(Symbol& symbol) {
       return define_definition(symbol);
     case SymbolKind::place:
       return define_place(symbol);
+    case SymbolKind::frame:
+      return define_axes(symbol);
     default:
       return Typed{};
   }

@@ -25,11 +25,11 @@ std::uint32_t Reader::declare_place(const std::string& name, Span span, PlaceSou
 void Reader::declare_places() {
   struct Item {
     const Value* table;
-    int kind;  // 0 particle, 1 point, 2 chain
+    int kind;  // 0 particle, 1 point, 2 chain, 3 body, 4 frame
   };
   std::vector<Item> items;
   int kind = 0;
-  for (const char* name : {"particle", "point", "chain"}) {
+  for (const char* name : {"particle", "point", "chain", "body", "frame"}) {
     for (const Value* table : sections(name)) items.push_back({table, kind});
     ++kind;
   }
@@ -41,18 +41,35 @@ void Reader::declare_places() {
       continue;
     }
     if (which == 0) check_keys(*table, {"[[particle]]", {"name", "mass", "position"}, {}});
-    if (which == 1) check_keys(*table, {"[[point]]", {"name", "position"}, {"on", "at"}});
-    const std::string name = text_of_key(*table, "name", which == 0 ? "this [[particle]]" : "this [[point]]");
-    declare_place(name, table->find("name")->span, PlaceSource{table, which == 0, 0, 0});
+    if (which == 1) check_keys(*table, {"[[point]]", {"name", "position", "on", "at"}, {}});
+    if (which == 3) check_keys(*table, {"[[body]]", {"name", "mass", "inertia", "position", "rotation", "relative_to"}, {}});
+    if (which == 4) check_keys(*table, {"[[frame]]", {"name", "rotation", "relative_to"}, {}});
+    constexpr std::array<const char*, 5> kinds{"particle", "point", "chain", "body", "frame"};
+    const std::string name = text_of_key(*table, "name", fmt::format("this [[{}]]", kinds[static_cast<std::size_t>(which)]));
+    const Span span = table->find("name")->span;
+    if (which == 4) {
+      declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
+      continue;
+    }
+    const std::uint32_t place = declare_place(name, span, PlaceSource{table, which == 0, which == 3, 0, 0});
+    if (which == 3) declare_frame(*table, place, *scope_.find(name));
   }
 }
 
 // A bare unknown name in a position is a new coordinate. All other names are declared by now.
 void Reader::declare_coordinates() {
-  for (std::size_t k = 1; k < place_sources_.size(); ++k) {
-    if (place_sources_[k].chain > 0) continue;
-    const Value* position = place_sources_[k].table->find("position");
-    if (position != nullptr && position->is(Value::Kind::table)) declare_entries(*position);
+  const auto position = [&](const Value& table) {
+    const Value* found = table.find("position");
+    if (found != nullptr && found->is(Value::Kind::table)) declare_entries(*found);
+  };
+  std::size_t place = 1;
+  // Those of a body's rotation follow those of its position; frames come where they stand among the bodies.
+  for (std::size_t frame = 1; frame <= frame_sources_.size(); ++frame) {
+    const std::size_t begin = frame < frame_sources_.size() ? frame_sources_[frame].table->begin : source_.text().size();
+    for (; place < place_sources_.size() && (place_sources_[place].chain > 0 || place_sources_[place].table->begin <= begin); ++place) {
+      if (place_sources_[place].chain == 0) position(*place_sources_[place].table);
+    }
+    if (frame < frame_sources_.size()) declare_angles(*frame_sources_[frame].table);
   }
 }
 
@@ -61,6 +78,10 @@ Typed Reader::define_place(Symbol& symbol) {
   Typed position;
   if (where.chain > 0) {
     position = chain_position(where);
+  } else if (where.body && where.table->find("position") == nullptr) {
+    position = resolver_.meet(resolver_.number(0, symbol.span), symbol.span, Context{"a position", 0, Shape::vector, std::nullopt, ""});
+  } else if (!where.particle && !where.body && (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
+    position = point_on_body(*where.table, fmt::format("'{}'", symbol.name));
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);
     const Value& value = needed(*where.table, "position", what,

@@ -45,7 +45,7 @@ void Reader::declare_entry(const Value& entry, std::string_view unit) {
 
 // The one entry of the table that names a coordinate system; keys that belong to another one are refused.
 const Entry& Reader::system_entry(const Value& table) const {
-  Keys keys{"a position", {"from", "custom", "x", "q"}, {"axes"}};
+  Keys keys{"a position", {"from", "axes", "custom", "x", "q"}, {}};
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     keys.known.push_back(system->name);
     if (!system->constant.name.empty()) keys.known.push_back(system->constant.name);
@@ -64,7 +64,7 @@ const Entry& Reader::system_entry(const Value& table) const {
   const coordinates::CoordinateSystem* system = coordinates::find(found->key);
   for (const Entry& entry : table.entries) {
     const bool of_custom = entry.key == "x" || entry.key == "q";
-    const bool fits = &entry == found || entry.key == "from" ||
+    const bool fits = &entry == found || entry.key == "from" || entry.key == "axes" ||
                       (system == nullptr ? of_custom : entry.key == system->constant.name);
     if (fits) continue;
     source_.fail(entry.span, fmt::format("'{}' does not belong to a position in {} coordinates", entry.key, found->key),
@@ -173,6 +173,26 @@ Typed Reader::chart_position(std::uint32_t place, const Value& table) {
     check_independent(spelt, entry, table.find(system->constant.name)->span);
   }
   Typed position = resolver_.array_of(spelt.x, span);
+  if (const Value* axes = table.find("axes")) {
+    const std::uint32_t frame = frame_named(*axes, "'axes'");
+    const auto along = [&](const std::array<Typed, 3>& x) {
+      Typed sum = resolver_.product_of(x[0], resolver_.own_axis(frame, 0, axes->span), span);
+      for (std::size_t k = 1; k < 3; ++k) {
+        sum = resolver_.sum_of(sum, resolver_.product_of(x[k], resolver_.own_axis(frame, k, axes->span), span), span);
+      }
+      return sum;
+    };
+    position = along(spelt.x);
+    for (NodeId& e : spelt.chart.unit_basis) {
+      if (e == no_node) continue;
+      std::array<Typed, 3> components;
+      for (std::size_t k = 0; k < 3; ++k) {
+        components[k].node = model_.arena[e].args[k];
+        components[k].literal = components[k].pure = true;
+      }
+      e = along(components).node;
+    }
+  }
   if (const Value* from = table.find("from")) {
     const std::uint32_t base = place_named(*from, "'from'");
     model_.places[place].from = base;

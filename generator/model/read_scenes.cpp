@@ -29,6 +29,7 @@ void Reader::read_scenes() {
     scene.name = "default";
     scene.t0 = resolver_.number(0, Span{}).node;
     scene.t1 = resolver_.number(10, Span{}).node;
+    complete_parameters(scene);
     model_.scenes.push_back(std::move(scene));
   } else {
     read_scene(*table->entry("default"));
@@ -135,6 +136,7 @@ void Reader::read_scene(const Entry& entry) {
   read_scene_inputs(scene, merged_table(entries, "inputs"));
   read_initial(scene, merged_table(entries, "initial"), false);
   read_initial(scene, merged_table(entries, "guess"), true);
+  complete_parameters(scene);
   model_.scenes.push_back(std::move(scene));
 }
 

@@ -43,8 +43,8 @@ Reader::Reader(const Source& source, const Value& root)
 Model Reader::read() {
   check_keys(root_, {"a model",
                      {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
-                      "energy", "particle", "point", "chain", "force", "constraint", "event", "scene"},
-                     {"body", "frame", "joint"}});
+                      "energy", "particle", "body", "frame", "point", "chain", "force", "constraint", "event", "scene"},
+                     {"joint"}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");
@@ -61,10 +61,14 @@ Model Reader::read() {
           .node;
   model_.places.push_back(std::move(origin));
   place_sources_.emplace_back();
+  model_.frames.emplace_back();
+  model_.frames.back().name = "ground";
+  frame_sources_.emplace_back();
 
   declare_names();
   declare_places();
   declare_constraints();
+  declare_units();
   declare_forces();
   declare_events();
   declare_coordinates();
@@ -74,14 +78,16 @@ Model Reader::read() {
   }
   read_ranges();
   read_particles();
+  read_bodies();
   for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
   read_energy();
   read_forces();
   read_constraints();
+  read_units();
   read_events();
-  if (model_.particles.empty() && model_.energy.kinetic == no_node) {
-    source_.fail(root_.span, "nothing moves: the model has no particle and no kinetic energy",
-                 "add a [[particle]], or kinetic = \"..\" in [energy]");
+  if (model_.particles.empty() && model_.bodies.empty() && model_.energy.kinetic == no_node) {
+    source_.fail(root_.span, "nothing moves: the model has no particle, no body and no kinetic energy",
+                 "add a [[particle]] or [[body]], or kinetic = \"..\" in [energy]");
   }
   if (model_.coordinates.empty()) {
     source_.fail(root_.span, "nothing moves: the model has no coordinate",

@@ -13,6 +13,7 @@
 
 #include "coordinates/coordinate_system.hpp"
 #include "model/resolver.hpp"
+#include "rotations/rotation.hpp"
 
 namespace eomgen::model {
 
@@ -68,6 +69,7 @@ private:
   struct PlaceSource {
     const Value* table = nullptr;
     bool particle = false;
+    bool body = false;
     std::uint32_t chain = 0;  // index + 1 into chains_, for links
     long link = 0;            // from 1
   };
@@ -84,6 +86,29 @@ private:
     std::array<Typed, 3> x;
   };
   void declare_places();
+  // read_bodies.cpp: [[body]] [[frame]]; read_inertia.cpp
+  struct FrameSource {
+    const Value* table = nullptr;
+    std::uint32_t place = 0;  // of a body
+    std::optional<std::size_t> principal = {};  // the fixed direction about which it turns, if that is one of its axes
+  };
+  void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
+  void declare_angles(const Value& table);
+  Typed define_axes(Symbol& symbol);
+  const Entry& rotation_entry(const Value& rotation) const;
+  void read_rotation(Frame& frame, std::uint32_t index, const Value& rotation);
+  std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry, const Value& rotation);
+  void turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local);
+  void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local, Span span);
+  std::uint32_t frame_named(const Value& value, const std::string& what);
+  void declare_units();
+  void read_units();
+  void complete_parameters(Scene& scene);
+  void read_bodies();
+  void read_inertia(Body& body, const Value& table);
+  void read_scalar_inertia(Body& body, const Value& value);
+  std::array<NodeId, 3> shape_moments(const Body& body, const Entry& shape);
+  Typed point_on_body(const Value& table, const std::string& what);
   std::uint32_t declare_place(const std::string& name, Span span, PlaceSource where);
   void declare_chain(const Value& table);
   void declare_entries(const Value& position);
@@ -111,6 +136,8 @@ private:
   Spring read_spring(const Value& table, const std::string& what);
   Damper read_damper(const Value& table, const std::string& what);
   Torsion read_torsion(const Value& table, const std::string& what);
+  Moment read_moment(const Value& table, const std::string& what);
+  Magnus read_magnus(const Value& table, const std::string& what);
   Drag read_drag(const Value& table, const std::string& what);
   Generalized read_generalized(const Value& table, const std::string& what);
   std::array<NodeId, 2> read_between(const Value& table, const std::string& what);
@@ -156,6 +183,7 @@ private:
   Scope scope_;
   Resolver resolver_;
   std::vector<PlaceSource> place_sources_;  // per Model::places
+  std::vector<FrameSource> frame_sources_;  // per Model::frames
   std::vector<Chain> chains_;
   std::set<std::uint32_t> ranged_, measured_;  // coordinates whose range or unit [coordinates] states
 };

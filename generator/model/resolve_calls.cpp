@@ -26,10 +26,10 @@ Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
   if (name == "dot" || name == "cross" || name == "norm" || name == "unit") return vector_call(syntax, node);
   if (name == "position" || name == "velocity" || name == "acceleration") return place_call(syntax, node);
   if (name == "integral") return integral(syntax, node);
-  if (name == "initial" || name == "omega") {
-    source_.fail(node.span, fmt::format("{}() is not supported yet", name),
-                 name == "omega" ? "rigid bodies come with a later version; models of particles work now"
-                                 : "give the start value a name in [parameters] and use that in the scene too");
+  if (name == "omega") return omega_call(syntax, node);
+  if (name == "initial") {
+    source_.fail(node.span, "initial() is not supported yet",
+                 "give the start value a name in [parameters] and use that in the scene too");
   }
   const std::string hint = did_you_mean(name, function_names());
   const bool value = scope_.find(name) != nullptr;
@@ -187,6 +187,10 @@ bool Resolver::holds_integral(NodeId root) const {
     if (id == no_node || !seen.insert(id).second) continue;
     const Node& node = model_.arena[id];
     if (node.op == Op::integral) return true;
+    if (node.op == Op::axis) stack.push_back(model_.frames[node.index].stages[node.order / 3].e[node.order % 3]);
+    if (node.op == Op::angular_velocity) {
+      for (const NodeId e : model_.frames[node.index].stages.back().e) stack.push_back(e);
+    }
     if (node.op == Op::definition) stack.push_back(model_.definitions[node.index].is);
     stack.insert(stack.end(), node.args.begin(), node.args.end());
   }
@@ -217,6 +221,22 @@ Typed Resolver::vector_call(const Syntax& syntax, const SyntaxNode& node) {
   const Typed& b = arguments[1];
   Typed result = make(name == "dot" ? Op::dot : Op::cross, name == "cross", {a, b}, node.span);
   combine(result, a, b, false);
+  return result;
+}
+
+Typed Resolver::omega_call(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 1, 1);
+  const SyntaxNode& argument = syntax.nodes[node.children[0]];
+  Symbol* symbol = argument.kind == SyntaxKind::name && argument.parts.size() == 1 && argument.primes == 0
+                       ? scope_.find(argument.parts[0])
+                       : nullptr;
+  if (argument.kind == SyntaxKind::name && symbol == nullptr) unknown_name(argument);
+  if (symbol == nullptr || symbol->frame == 0) {
+    source_.fail(argument.span, "omega() takes the name of a body or frame", "write omega(B) with a [[body]] or [[frame]]");
+  }
+  symbol->used = true;
+  const Typed result = angular_velocity(symbol->frame, node.span);
+  allow(result.facts, node.span, "omega()");
   return result;
 }
 

@@ -53,6 +53,11 @@ Typed Resolver::name(const SyntaxNode& node) {
   if (symbol == nullptr && node.parts[0] == "reaction" && node.primes == 0) return reaction(node);
   if (symbol == nullptr) unknown_name(node);
   symbol->used = true;
+  if (symbol->frame > 0 && node.parts.size() == 2) {
+    const std::string& part = node.parts[1];
+    const bool axis = part.size() == 2 && part[0] == 'e' && part[1] >= '1' && part[1] <= '3';
+    if (axis || part == "omega" || symbol->kind == SymbolKind::frame) return frame_part(node, *symbol);
+  }
   if (symbol->kind != SymbolKind::place) {
     source_.fail(node.span, fmt::format("'{}' is {} and has no parts", symbol->name, kind_name(symbol->kind)),
                  "NAME.part reaches into particles and points: P.e_theta, P.a_r, P.g_r");
@@ -62,6 +67,31 @@ Typed Resolver::name(const SyntaxNode& node) {
                  "a particle has P.e_q, P.a_q and P.g_q for its coordinates q");
   }
   return basis_vector(node, *symbol);
+}
+
+// B.e1 of a body or frame, with one or two primes after so many of its Euler angles; B.omega.
+Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
+  const std::string& part = node.parts[1];
+  const std::string written = joined(node.parts) + std::string(node.primes, '\'');
+  const bool axis = part.size() == 2 && part[0] == 'e' && part[1] >= '1' && part[1] <= '3';
+  Typed result;
+  if (part == "omega" && node.primes == 0) {
+    result = angular_velocity(symbol.frame, node.span);
+  } else if (axis) {
+    const std::size_t k = static_cast<std::size_t>(part[1] - '1');
+    result = own_axis(symbol.frame, k, node.span);
+    const std::size_t stages = model_.frames[symbol.frame].stages.size();
+    if (node.primes >= stages) {
+      source_.fail(node.span, fmt::format("'{}' has no axis '{}'", symbol.name, written),
+                   stages > 1 ? "one prime stands for the axes after the first of its angles, two for those after the second"
+                              : "primes are for the axes on the way of Euler angles");
+    }
+    if (node.primes > 0) result = this->axis(symbol.frame, node.primes - 1, k, node.span);
+  } else {
+    source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)), "its parts are e1, e2, e3 and omega");
+  }
+  allow(result.facts, node.span, fmt::format("'{}'", written));
+  return result;
 }
 
 // reaction.NAME or reaction.NAME.k, as among the outputs.
@@ -179,7 +209,8 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
 
 Typed Resolver::leaf(Symbol& symbol, std::uint8_t order, Span span) {
   symbol.used = true;
-  if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force || symbol.kind == SymbolKind::event) {
+  if (symbol.kind == SymbolKind::constraint || symbol.kind == SymbolKind::force || symbol.kind == SymbolKind::event ||
+      symbol.kind == SymbolKind::frame) {
     source_.fail(span, fmt::format("'{}' is {}, not a value", symbol.name, kind_name(symbol.kind)),
                  "name a parameter, coordinate, function, input, definition, particle or point");
   }

@@ -301,6 +301,14 @@ CoordinateSet Resolver::coordinates_in(NodeId root) {
       case Op::definition:
         reference = model_.definitions[node.index].is;
         break;
+      case Op::angular_velocity:
+        for (const NodeId e : model_.frames[node.index].stages.back().e) {
+          for (const auto& coordinate : coordinates_of(e)) insert(coordinate, static_cast<std::uint8_t>(shift + 1));
+        }
+        break;
+      case Op::axis:
+        reference = model_.frames[node.index].stages[node.order / 3].e[node.order % 3];
+        break;
       case Op::place_velocity:
       case Op::place_acceleration:
         inner = node.op == Op::place_velocity ? 1 : 2;

@@ -66,6 +66,15 @@ public:
   Typed sum_of(const Typed& a, const Typed& b, Span span);
   Typed component(const Typed& vector, std::uint32_t axis, Span span);
   Typed place(std::uint32_t index, Span span);
+  /// e_(axis+1) of a frame after a stage of its rotation; of frame 0: E_(axis+1).
+  Typed axis(std::uint32_t frame, std::size_t stage, std::size_t axis, Span span);
+  Typed own_axis(std::uint32_t frame, std::size_t axis, Span span);  // after the last stage
+  Typed angular_velocity(std::uint32_t frame, Span span);
+  /// A vector of one frame's own axes with constant components, as the same sum of E1, E2, E3; no_node if it is none.
+  Typed in_axes(const Typed& vector, std::uint32_t frame);
+  Typed unit_of_vector(const Typed& vector, Span span);
+  Typed rate(const Typed& scalar, Span span);  // ddt
+  Typed product_of(const Typed& a, const Typed& b, Span span) { return multiply(a, b, span); }
   Typed extension(Span span);
   Typed slip(Span span);
   /// The value times a unit; a value that has the unit's dimension already keeps it, if the unit has no factor.
@@ -101,6 +110,8 @@ private:
   Typed name(const SyntaxNode& node);
   Typed plain_name(const SyntaxNode& node);
   Typed reaction(const SyntaxNode& node);
+  Typed omega_call(const Syntax& syntax, const SyntaxNode& node);
+  Typed frame_part(const SyntaxNode& node, const Symbol& symbol);
   Typed basis_vector(const SyntaxNode& node, Symbol& symbol);
   Typed leaf(Symbol& symbol, std::uint8_t order, Span span);
   [[noreturn]] void unknown_name(const SyntaxNode& node);

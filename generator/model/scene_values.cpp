@@ -139,7 +139,8 @@ void Reader::check_output(const Value& value) {
     return;
   if (is_contact_output(parts)) return;
   if (parts.size() == 2 && is_axis(parts[1], "omega")) {
-    not_yet(value.span, fmt::format("the output {}", quote(value.text)));
+    const Symbol* turning = scope_.find(parts[0]);
+    if (turning != nullptr && turning->frame > 0) return;
   }
   std::vector<std::string> candidates(built_in_outputs.begin(), built_in_outputs.end());
   const Symbol* symbol = scope_.find(parts.size() == 1 ? std::string(split_derivative(value.text).base) : parts[0]);

@@ -19,6 +19,8 @@ const char* kind_name(SymbolKind kind) {
       return "a definition";
     case SymbolKind::place:
       return "a particle or point";
+    case SymbolKind::frame:
+      return "a frame";
     case SymbolKind::constraint:
       return "a constraint";
     case SymbolKind::force:
@@ -49,6 +51,15 @@ Symbol& Scope::declare(SymbolKind kind, const std::string& name, Span span, cons
   symbol.entry = entry;
   order_.push_back(name);
   return symbols_.emplace(name, std::move(symbol)).first->second;
+}
+
+void Scope::declare_axes(const std::string& name, Span span) {
+  Symbol symbol;
+  symbol.kind = SymbolKind::frame;
+  symbol.name = "the axes of " + name;
+  symbol.span = span;
+  symbol.index = static_cast<std::uint32_t>(axes_.size());
+  axes_.push_back(std::move(symbol));
 }
 
 Symbol* Scope::find(std::string_view name) {

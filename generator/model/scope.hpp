@@ -2,6 +2,7 @@
 // The one scope of a model: every declared name, what it is, and what is known of it so far.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <optional>
 #include <string>
@@ -30,7 +31,7 @@ struct Typed {
   std::optional<Rational> constant;    // of numbers and parameters that are numbers
 };
 
-enum class SymbolKind { parameter, function, input, coordinate, definition, place, constraint, force, event };
+enum class SymbolKind { parameter, function, input, coordinate, definition, place, frame, constraint, force, event };
 const char* kind_name(SymbolKind kind);
 
 struct Symbol {
@@ -38,6 +39,7 @@ struct Symbol {
   SymbolKind kind = SymbolKind::parameter;
   std::string name;
   Span span;
+  std::uint32_t frame = 0;  // of a place that is a body: its axes
   std::uint32_t index = 0;  // in the list of the model; parameters, functions and definitions get theirs when done
   State state = State::fresh;
   bool used = false;
@@ -53,6 +55,9 @@ public:
   Symbol* find(std::string_view name);
   std::vector<std::string> names() const;
   std::vector<std::string> names(SymbolKind kind) const;
+  /// The axes of a body or frame, index into Model::frames: known by the name of that, and resolved on their own.
+  void declare_axes(const std::string& name, Span span);
+  Symbol& axes(std::uint32_t frame) { return axes_[frame]; }
   /// All symbols of one kind in the order of declaration.
   std::vector<Symbol*> all(SymbolKind kind);
 
@@ -60,6 +65,7 @@ private:
   const Source& source_;
   std::map<std::string, Symbol, std::less<>> symbols_;
   std::vector<std::string> order_;
+  std::deque<Symbol> axes_{1};  // [0]: E1 E2 E3
 };
 
 }  // namespace eomgen::model

@@ -126,6 +126,11 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge
       expect(m.places[i].name + ".velocity" + axis, r[k].slope(later.level(), 0).real(), speed);
     }
   }
+  for (std::uint32_t f = 1; f < m.frames.size(); ++f) {
+    const Vector w = now.angular_velocity(f);
+    const Real size = cln::abs(w[0].real()) + cln::abs(w[1].real()) + cln::abs(w[2].real());
+    for (std::size_t k = 0; k < 3; ++k) expect(m.frames[f].name + ".omega" + std::to_string(k + 1), dot(w, now.axis(f, k)).real(), size);
+  }
   for (const model::Definition& definition : m.definitions)
     if (!definition.vector) {
       const Real value = now.scalar(definition.is).real();

@@ -198,11 +198,11 @@ void add_inertia(const model::Model& model, const State& state, Interpreter& now
   Interpreter& later = now.along_time();
   Interpreter& twice = later.along_time();
   const std::size_t n = sums.size();
-  for (const model::Particle& particle : model.particles) {
-    const Vector v = slope(twice.place(particle.place), twice.level(), 0);  // v + a eps
-    const Jet mass = later.scalar(particle.mass);
+  for (const Mass& point : masses(model)) {
+    const Vector v = slope(twice.place(point.place), twice.level(), 0);  // v + a eps
+    const Jet mass = later.scalar(point.mass);
     const Vector rate = slope(mass * v, later.level(), 0);
-    const Vector r = by_q.place(particle.place);
+    const Vector r = by_q.place(point.place);
     Vector rest = rate;
     Real size = 0;
     std::vector<Vector> tangent;
@@ -214,6 +214,27 @@ void add_inertia(const model::Model& model, const State& state, Interpreter& now
     }
     size = size + length(rest);
     for (std::size_t i = 0; i < n; ++i) sums[i].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
+  }
+}
+
+/// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as of particles.
+void add_rotations(const model::Model& model, const State& state, Interpreter& now, std::vector<Residual>& sums) {
+  Interpreter& later = now.along_time();
+  const std::size_t n = sums.size();
+  for (const model::Body& body : model.bodies) {
+    const Vector H = inertia_times(body, later, later.angular_velocity(body.frame));
+    const Vector rate = slope(H, later.level(), 0);
+    Vector rest = rate;
+    Real size = 0;
+    std::vector<Vector> turn;
+    for (std::size_t i = 0; i < n; ++i) {
+      turn.push_back(now.virtual_rotation(body.frame, i));
+      const Vector part = Jet(state.qddot[i]) * inertia_times(body, now, turn.back());
+      rest = rest - part;
+      size = size + length(part);
+    }
+    size = size + length(rest);
+    for (std::size_t i = 0; i < n; ++i) sums[i].add(dot(rate, turn[i]).real(), size * length(turn[i]));
   }
 }
 
@@ -256,6 +277,7 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   coasting.qddot.assign(state.q.size(), Real(0));
   Interpreter unaccelerated = interpreter(coasting);
   add_inertia(model_, state, now, sums);
+  add_rotations(model_, state, now, sums);
   add_energies(model_, now, unaccelerated, sums);
   subtract_forces(model_, precision_, now, sums);
   subtract_friction(state, now, sums);
@@ -326,10 +348,14 @@ EnergyValues Judge::energy_values(const State& state) const {
     sum.rate_scale = sum.rate_scale + cln::abs(slope);
   };
   Interpreter& twice = later.along_time();
-  for (const model::Particle& particle : model_.particles) {
-    const Vector v = slope(twice.place(particle.place), twice.level(), 0);
-    const Jet half_mass = later.scalar(particle.mass) / 2;
+  for (const Mass& mass : masses(model_)) {
+    const Vector v = slope(twice.place(mass.place), twice.level(), 0);
+    const Jet half_mass = later.scalar(mass.mass) / 2;
     for (const Jet& component : v) add(half_mass * component * component, sum.kinetic, sum.kinetic_rate);
+  }
+  for (const model::Body& body : model_.bodies) {
+    const Vector w = later.angular_velocity(body.frame), H = inertia_times(body, later, w);
+    for (std::size_t k = 0; k < 3; ++k) add(w[k] * H[k] / 2, sum.kinetic, sum.kinetic_rate);
   }
   if (model_.energy.kinetic != model::no_node) {
     const Jet T = later.scalar(model_.energy.kinetic);

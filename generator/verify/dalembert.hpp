@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The independent judge. In: a Model and a state with accelerations and multipliers. Out: by how much d'Alembert's
 // principle fails there, per coordinate,
-//   sum_particles (d(m v)/dt - F) . dr/dq_i - Q_i - sum_k lambda_k f_ki      ((2.74), (2.163), (2.31), (2.50), (3.20)),
+//   sum_masses (d(m v)/dt - F) . dr/dq_i + sum_bodies (dH/dt - M) . dw/dqdot_i - Q_i - sum_k lambda_k f_ki      ((2.74), (2.163), (2.31), (2.50), (3.20)),
 // f_ki = dpsi_k/dq_i, or de_k/dqdot_i of a constraint e_k = 0 on velocities,
 // with the Euler-Lagrange residual d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of energies that are given as such; the
 // constraints and their rates; and the energies with theirs.

@@ -51,6 +51,10 @@ class Interpreter {
   Jet scalar(model::NodeId id);
   Vector vector(model::NodeId id);
   Vector place(std::uint32_t index);  // position of Model::places[index]
+  Vector axis(std::uint32_t frame, std::size_t k);  // e_(k+1) of Model::frames[frame]
+  /// Axial vector of dQ Q^T, eq. (5.26): how the axes of a frame turn along the path, or with a coordinate (by_coordinates(false)).
+  Vector angular_velocity(std::uint32_t frame);
+  Vector virtual_rotation(std::uint32_t frame, std::size_t coordinate);
   /// |b - a| - length of the spring that Op::extension means here.
   Jet extension(const model::Spring& spring);
 
@@ -74,6 +78,7 @@ class Interpreter {
   Jet call(const model::Node& node);
   Jet conditional(const model::Node& node);
   Vector read_vector(const model::Node& node);
+  Vector turning(std::uint32_t frame, Interpreter& varied, std::size_t direction);
   Vector read_basis(const model::Node& node);
   bool names(std::uint32_t place, const model::Node& coordinate) const;
   Vector tangent(std::uint32_t place, const model::Node& coordinate, bool relative);  // dr/dq

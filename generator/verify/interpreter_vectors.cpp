@@ -26,6 +26,31 @@ Vector Interpreter::vector(NodeId id) {
 
 Vector Interpreter::place(std::uint32_t index) { return vector(model_.places[index].position); }
 
+Vector Interpreter::axis(std::uint32_t frame, std::size_t k) {
+  if (frame > 0) return vector(model_.frames[frame].stages.back().e[k]);
+  Vector e;
+  e[k] = Jet(1);
+  return e;
+}
+
+// e_k x de_k, summed over the three axes, is twice the axial vector; it is the skew part of dQ Q^T that counts.
+Vector Interpreter::turning(std::uint32_t frame, Interpreter& varied, std::size_t direction) {
+  Vector sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vector e = axis(frame, k), moved = varied.axis(frame, k);
+    Vector change;
+    for (std::size_t c = 0; c < 3; ++c) change[c] = moved[c].slope(varied.level(), direction);
+    sum = sum + cross(e, change);
+  }
+  return (Jet(1) / Jet(2)) * sum;
+}
+
+Vector Interpreter::angular_velocity(std::uint32_t frame) { return turning(frame, along_time(), 0); }
+
+Vector Interpreter::virtual_rotation(std::uint32_t frame, std::size_t coordinate) {
+  return turning(frame, by_coordinates(false), coordinate);
+}
+
 Vector Interpreter::read_vector(const Node& node) {
   const auto arg = [&](std::size_t i) { return vector(node.args[i]); };
   const auto is_vector = [&](std::size_t i) { return model_.arena[node.args[i]].vector; };
@@ -51,6 +76,8 @@ Vector Interpreter::read_vector(const Node& node) {
       Interpreter& near = by_leaf(model_.arena[node.args[1]]);
       return map_slope(near.vector(node.args[0]), near.level());
     }
+    case Op::axis: return vector(model_.frames[node.index].stages[node.order / 3].e[node.order % 3]);
+    case Op::angular_velocity: return angular_velocity(node.index);
     case Op::place: return place(node.index);
     case Op::place_velocity: return map_slope(along_time().place(node.index), along_time().level());
     case Op::place_acceleration: {

@@ -15,6 +15,10 @@ Vector slope(const Vector& v, unsigned level, std::size_t i) {
   return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
 }
 
+Jet trace(const model::Body& body, Interpreter& at) {
+  return at.scalar(body.inertia[0][0]) + at.scalar(body.inertia[1][1]) + at.scalar(body.inertia[2][2]);
+}
+
 /// Adds the generalised force of each kind, (2.74): Q_i = F . dr/dq_i.
 class Forces {
  public:
@@ -23,17 +27,20 @@ class Forces {
 
   void operator()(const model::Gravity& gravity) {
     const Vector g = now_.vector(gravity.acceleration);
-    for (const model::Particle& p : model_.particles) apply(now_.scalar(p.mass) * g, by_q_.place(p.place));
+    for (const Mass& p : masses(model_)) apply(now_.scalar(p.mass) * g, by_q_.place(p.place));
   }
   void operator()(const model::CentralGravity& gravity) {
-    for (const model::Particle& p : model_.particles) {
+    for (const model::Body& body : model_.bodies) {
+      if (gravity.order == 2) attract_extended(gravity, body);
+    }
+    for (const Mass& p : masses(model_)) {
       const Jet strength = now_.scalar(gravity.GM) * now_.scalar(p.mass);
       attract(strength, now_.place(p.place) - now_.vector(gravity.center),
               by_q_.place(p.place) - by_q_.vector(gravity.center));
     }
   }
   void operator()(const model::Gravitation& gravity) {
-    const auto& all = model_.particles;
+    const std::vector<Mass> all = masses(model_);
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = i + 1; k < all.size(); ++k) {
         const Jet strength = now_.scalar(gravity.G) * now_.scalar(all[i].mass) * now_.scalar(all[k].mass);
@@ -81,6 +88,14 @@ class Forces {
     const Jet factor = now_.scalar(drag.density) * now_.scalar(drag.area) * now_.scalar(drag.coefficient) / -2;
     apply((factor * norm(v, precision_)) * v, by_q_.vector(drag.on));
   }
+  void operator()(const model::Moment& moment) { turn(now_.vector(moment.moment), moment.frame); }
+  void operator()(const model::Magnus& magnus) {  // (8.52)
+    const model::Body& body = model_.bodies[magnus.body];
+    Interpreter& later = now_.along_time();
+    const Vector v = slope(later.place(body.place), later.level(), 0);
+    const Jet factor = now_.scalar(body.mass) * now_.scalar(magnus.coefficient);
+    apply(factor * cross(now_.angular_velocity(body.frame), v), by_q_.place(body.place));
+  }
   void operator()(const model::Dry&) {}  // with the contacts (State::friction)
   void operator()(const model::Generalized& generalized) {
     for (const auto& [coordinate, force] : generalized.components)
@@ -98,6 +113,24 @@ class Forces {
       for (const Jet& component : tangent) length = length + cln::abs(component.real());
       sums_[i].add(-dot(force, tangent).real(), size * length);
     }
+  }
+  /// M . dw/dqdot_i
+  void turn(const Vector& moment, std::uint32_t frame) {
+    const auto size = [](const Vector& v) { return Real(cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real())); };
+    for (std::size_t i = 0; i < sums_.size(); ++i) {
+      const Vector rotation = now_.virtual_rotation(frame, i);
+      sums_[i].add(-dot(moment, rotation).real(), size(moment) * size(rotation));
+    }
+  }
+  /// What the inertia of a body adds to Newton's attraction, and the moment, eq. (7.72).
+  void attract_extended(const model::CentralGravity& gravity, const model::Body& body) {
+    const Vector d = now_.place(body.place) - now_.vector(gravity.center);
+    const Jet R = norm(d, precision_), GM = now_.scalar(gravity.GM);
+    const Vector c = (Jet(1) / R) * d, Jc = inertia_times(body, now_, c);
+    const Jet along = trace(body, now_) - Jet(5) * dot(c, Jc);
+    const Vector force = (Jet(-3) * GM / (Jet(2) * R * R * R * R)) * (Jet(2) * Jc + along * c);
+    apply(force, by_q_.place(body.place) - by_q_.vector(gravity.center));
+    turn((Jet(3) * GM / (R * R * R)) * cross(c, Jc), body.frame);
   }
   /// F dx/dq_i of one component
   void work(const Jet& force, const Jet& x) {
@@ -136,17 +169,25 @@ struct Potentials {
     };
     if (uses(model, gravity.acceleration, moves)) return;  // not a uniform field
     const Vector g = at.vector(gravity.acceleration);
-    for (const model::Particle& p : model.particles)
+    for (const Mass& p : masses(model))
       terms.push_back(-(at.scalar(p.mass) * dot(g, at.place(p.place))));
   }
   void operator()(const model::CentralGravity& gravity) {
-    for (const model::Particle& p : model.particles) {
+    for (const Mass& p : masses(model)) {
       const Jet R = norm(at.place(p.place) - at.vector(gravity.center), precision);
       terms.push_back(-(at.scalar(gravity.GM) * at.scalar(p.mass)) / R);
     }
+    for (const model::Body& body : model.bodies) {  // (7.71)
+      if (gravity.order != 2) continue;
+      const Vector d = at.place(body.place) - at.vector(gravity.center);
+      const Jet R = norm(d, precision);
+      const Jet half = at.scalar(gravity.GM) / (Jet(2) * R * R * R);
+      terms.push_back(-(half * trace(body, at)));
+      terms.push_back(Jet(3) * half * dot(d, inertia_times(body, at, d)) / (R * R));
+    }
   }
   void operator()(const model::Gravitation& gravity) {
-    const auto& all = model.particles;
+    const std::vector<Mass> all = masses(model);
     for (std::size_t i = 0; i < all.size(); ++i)
       for (std::size_t k = i + 1; k < all.size(); ++k) {
         const Jet R = norm(at.place(all[i].place) - at.place(all[k].place), precision);
@@ -174,9 +215,28 @@ struct Potentials {
   void operator()(const model::Drag&) {}
   void operator()(const model::Generalized&) {}
   void operator()(const model::Dry&) {}
+  void operator()(const model::Moment&) {}
+  void operator()(const model::Magnus&) {}
 };
 
 }  // namespace
+
+std::vector<Mass> masses(const model::Model& model) {
+  std::vector<Mass> result;
+  for (const model::Particle& particle : model.particles) result.push_back({particle.place, particle.mass});
+  for (const model::Body& body : model.bodies) result.push_back({body.place, body.mass});
+  return result;
+}
+
+Vector inertia_times(const model::Body& body, Interpreter& at, const Vector& v) {
+  Vector sum;
+  for (std::size_t i = 0; i < 3; ++i) {
+    Jet component;
+    for (std::size_t k = 0; k < 3; ++k) component = component + at.scalar(body.inertia[i][k]) * dot(at.axis(body.frame, k), v);
+    sum = sum + component * at.axis(body.frame, i);
+  }
+  return sum;
+}
 
 void subtract_forces(const model::Model& model, const Precision& precision, Interpreter& now,
                      std::vector<Residual>& sums) {

@@ -15,6 +15,16 @@ void subtract_forces(const model::Model& model, const Precision& precision, Inte
 /// U of every force that has one (gravity that is uniform, attraction, springs), term by term, and that of [energy].
 std::vector<Jet> potentials(const model::Model& model, const Precision& precision, Interpreter& at);
 
+/// Particles, and bodies at their centres of mass.
+struct Mass {
+  std::uint32_t place;
+  model::NodeId mass;
+};
+std::vector<Mass> masses(const model::Model& model);
+
+/// J v with the inertia of a body along its axes at this moment.
+Vector inertia_times(const model::Body& body, Interpreter& at, const Vector& v);
+
 /// |difference| / scale as a binary64; 0 where both vanish, 1 where only the scale does.
 double relative(const Real& difference, const Real& scale);
 

@@ -22,6 +22,10 @@ bool uses(const model::Model& model, model::NodeId expression, const std::functi
       case Op::unit_basis: case Op::covariant_basis: case Op::contravariant_basis:
         open.push_back(model.places[node.index].position);
         break;
+      case Op::axis: open.push_back(model.frames[node.index].stages[node.order / 3].e[node.order % 3]); break;
+      case Op::angular_velocity:
+        if (node.index > 0) open.insert(open.end(), model.frames[node.index].stages.back().e.begin(), model.frames[node.index].stages.back().e.end());
+        break;
       default: break;
     }
   }

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// [[body]], [[frame]]: axes that turn, spelled out through the registry of rotations; points on bodies.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/reader.hpp"
+
+namespace eomgen::model {
+namespace {
+
+constexpr const char* form =
+    "write rotation = { euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }, { axis = \"E3\", angle = \"phi\" }, "
+    "{ euler_parameters = [..] }, { rodrigues = [..] } or { fixed = true }";
+
+}  // namespace
+
+void Reader::declare_frame(const Value& table, std::uint32_t place, Symbol& symbol) {
+  Frame frame;
+  frame.name = symbol.name;
+  frame.span = symbol.span;
+  symbol.frame = static_cast<std::uint32_t>(model_.frames.size());
+  symbol.state = symbol.kind == SymbolKind::frame ? Symbol::State::done : symbol.state;
+  scope_.declare_axes(symbol.name, symbol.span);
+  model_.frames.push_back(std::move(frame));
+  frame_sources_.push_back({&table, place, std::nullopt});
+}
+
+// The names in angles = [..], euler_parameters = [..], rodrigues = [..] and angle = "..": new ones are coordinates.
+void Reader::declare_angles(const Value& table) {
+  const Value* rotation = table.find("rotation");
+  if (rotation == nullptr || !rotation->is(Value::Kind::table)) return;
+  for (const Entry& entry : rotation->entries) {
+    const bool angles = entry.key == "angles" || entry.key == "angle";
+    if (!angles && entry.key != "euler_parameters" && entry.key != "rodrigues") continue;
+    const char* unit = angles ? "rad" : "1";
+    if (entry.key == "angle") declare_entry(entry.value, unit);
+    for (const Value& item : entry.value.items) declare_entry(item, unit);
+  }
+}
+
+std::uint32_t Reader::frame_named(const Value& value, const std::string& what) {
+  as(Value::Kind::text, value, what, "write the name of a body or frame");
+  if (value.text == "ground") return 0;
+  Symbol* symbol = scope_.find(value.text);
+  if (symbol == nullptr || symbol->frame == 0) {
+    std::vector<std::string> names;
+    for (std::size_t k = 1; k < model_.frames.size(); ++k) names.push_back(model_.frames[k].name);
+    const std::string hint = did_you_mean(value.text, names);
+    source_.fail(value.span,
+                 symbol == nullptr ? fmt::format("there is no body or frame {}", quote(value.text))
+                                   : fmt::format("{} is {}, which has no axes", quote(value.text), model::kind_name(symbol->kind)),
+                 !hint.empty() ? hint : names.empty() ? "add a [[body]] or a [[frame]]" : fmt::format("the bodies and frames are {}", fmt::join(names, ", ")));
+  }
+  symbol->used = true;
+  return symbol->frame;
+}
+
+const Entry& Reader::rotation_entry(const Value& rotation) const {
+  as(Value::Kind::table, rotation, "a rotation", form);
+  check_keys(rotation, {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}, {}});
+  const Entry* found = nullptr;
+  for (const Entry& entry : rotation.entries) {
+    if (entry.key == "angles" || entry.key == "angle") continue;
+    if (found != nullptr) source_.fail(entry.span, fmt::format("a rotation is both '{}' and '{}'", found->key, entry.key), "keep one of them");
+    found = &entry;
+  }
+  if (found == nullptr) source_.fail(rotation.span, "the rotation says no kind", form);
+  for (const Entry& entry : rotation.entries) {
+    const bool fits = &entry == found || (entry.key == "angles" && found->key == "euler") || (entry.key == "angle" && found->key == "axis");
+    if (!fits) source_.fail(entry.span, fmt::format("'{}' does not belong to a rotation by '{}'", entry.key, found->key), form);
+  }
+  return *found;
+}
+
+// The values of the entries, and the name of the representation.
+std::vector<const Value*> Reader::rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry, const Value& rotation) {
+  frame.rotation = found.name;
+  if (found.family == "fixed") {
+    if (!as(Value::Kind::boolean, entry.value, "'fixed'", "write fixed = true").truth)
+      source_.fail(entry.value.span, "a rotation cannot be fixed = false", form);
+    return {};
+  }
+  if (found.family == "axis") return {&needed(rotation, "angle", "a rotation about an axis", "add angle = \"phi\"")};
+  const bool euler = found.family == "euler";
+  const Value& list = euler ? needed(rotation, "angles", "a rotation by Euler angles", "add angles = [\"phi\", \"theta\", \"psi\"]") : entry.value;
+  const std::string what = euler ? "'angles'" : fmt::format("'{}'", entry.key);
+  as(Value::Kind::array, list, what, form);
+  if (list.items.size() != found.entries.size()) {
+    source_.fail(list.span, fmt::format("{} has {} entries", what, list.items.size()), fmt::format("give {} of them", found.entries.size()));
+  }
+  std::vector<const Value*> result;
+  for (const Value& item : list.items) result.push_back(&item);
+  return result;
+}
+
+Typed Reader::define_axes(Symbol& symbol) {
+  const std::uint32_t index = symbol.index;
+  const Value& table = *frame_sources_[index].table;
+  const std::string what = fmt::format("'{}'", model_.frames[index].name);
+  const Value& rotation = needed(table, "rotation", what, form);
+  Frame frame = model_.frames[index];
+  if (const Value* parent = table.find("relative_to")) frame.parent = frame_named(*parent, "'relative_to'");
+  if (frame.parent > 0) symbol.typed = resolver_.symbol(scope_.axes(frame.parent), table.find("relative_to")->span);
+  model_.frames[index] = frame;
+  read_rotation(frame, index, rotation);
+  return symbol.typed;
+}
+
+void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotation) {
+  const Entry& entry = rotation_entry(rotation);
+  std::string name = entry.key;
+  if (entry.key == "euler") {
+    name = as(Value::Kind::text, entry.value, "'euler'", "write euler = \"313\"").text;
+    const rotations::Rotation* set = rotations::find(name);
+    if (set == nullptr || set->family != "euler") {
+      std::string sets;
+      for (const rotations::Rotation& r : rotations::registry()) {
+        if (r.family == "euler") sets += (sets.empty() ? "" : ", ") + r.name;
+      }
+      source_.fail(entry.value.span, fmt::format("there are no Euler angles {}", quote(name)), "the twelve sets are " + sets);
+    }
+  }
+  const rotations::Rotation& found = *rotations::find(name);
+  const std::vector<const Value*> values = rotation_entries(frame, found, entry, rotation);
+  std::map<std::string, Typed> local;
+  Typed& all = scope_.axes(index).typed;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    const Context context{fmt::format("an entry of the rotation of '{}'", frame.name), on_motion, Shape::scalar,
+                          dimension_of(found.entries[k].unit), "angles are made of coordinates, functions of time, parameters and t"};
+    const Typed typed = resolver_.value(*values[k], context);
+    if (!found.unit.empty() && model_.arena[typed.node].op != Op::coordinate) {
+      source_.fail(values[k]->span, "an Euler parameter is a coordinate of its own", "give it a name, such as \"e0\"");
+    }
+    frame.entries.push_back(typed.node);
+    local[found.entries[k].name] = typed;
+    local[found.entries[k].name + "_dot"] = resolver_.rate(typed, values[k]->span);
+    all.facts |= typed.facts;
+    all.depth = std::max(all.depth, typed.depth + 2);
+  }
+  model_.frames[index].rotation = frame.rotation;
+  model_.frames[index].entries = frame.entries;
+  if (found.family == "axis") {
+    turn_about(frame, index, rotation, local);
+  } else {
+    for (const rotations::Step& step : found.steps) add_stage(index, step, local, rotation.span);
+    if (found.family == "fixed") frame_sources_[index].principal = frame_sources_[frame.parent].principal;
+  }
+}
+
+// About an axis that is fixed in the parent: one of its axes, or any sum of them with constant components.
+void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local) {
+  const Value& written = *rotation.find("axis");
+  const std::string of = frame.parent == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", model_.frames[frame.parent].name);
+  const Context context{fmt::format("the axis of the rotation of '{}'", frame.name), frame.parent == 0 ? Facts{0} : on_motion, Shape::vector, std::nullopt,
+                        "the axis is fixed in the parent: make it of " + of + "; relative_to = \"B\" names another parent"};
+  const Typed axis = resolver_.value(written, context);
+  const Typed along = frame.parent == 0 ? axis : resolver_.in_axes(axis, frame.parent);
+  if (along.node == no_node) {
+    source_.fail(written.span, "this axis is not fixed in the parent", "make it of " + of + " with constant components");
+  }
+  const Node& node = model_.arena[along.node];
+  if (node.op == Op::fixed_basis) {
+    const std::size_t k = node.index;
+    const FrameSource& parent = frame_sources_[frame.parent];
+    if (frame.parent == 0 || parent.principal == k) frame_sources_[index].principal = k;
+    add_stage(index, rotations::about_axis(k, "angle"), local, rotation.span);
+    return;
+  }
+  const Typed unit = resolver_.unit_of_vector(along, written.span);
+  for (std::uint32_t k = 0; k < 3; ++k) local["r" + std::to_string(k + 1)] = resolver_.component(unit, k, written.span);
+  add_stage(index, rotations::find("axis")->steps[0], local, rotation.span);
+}
+
+void Reader::add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local, Span span) {
+  const Context context{"a rotation", on_anything, Shape::scalar, std::nullopt, ""};
+  const std::size_t before = model_.frames[index].stages.size();
+  const std::uint32_t parent = model_.frames[index].parent;
+  Stage stage;
+  for (std::size_t k = 0; k < 3; ++k) {
+    stage.R[k] = {no_node, no_node, no_node};
+    std::optional<Typed> sum;
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (step.R[k][j] == "0") continue;
+      const Typed factor = resolver_.text(step.R[k][j], local, span, context);
+      const Typed axis = before == 0 ? resolver_.own_axis(parent, j, span) : resolver_.axis(index, before - 1, j, span);
+      const Typed term = step.R[k][j] == "1" ? axis : resolver_.product_of(factor, axis, span);
+      stage.R[k][j] = factor.node;
+      sum = sum ? resolver_.sum_of(*sum, term, span) : term;
+    }
+    stage.e[k] = sum->node;
+    if (step.w[k] != "0") stage.w[k] = resolver_.text(step.w[k], local, span, context).node;
+  }
+  model_.frames[index].stages.push_back(stage);
+}
+
+Typed Reader::point_on_body(const Value& table, const std::string& what) {
+  if (const Value* position = table.find("position")) {
+    source_.fail(position->span, fmt::format("{} is on a body and has a position too", what), "keep one of them");
+  }
+  const Value& on = needed(table, "on", what, "add on = \"B\", the body that carries the point");
+  const Value& at = needed(table, "at", what, "add at = [x, y, z] along the body's axes, from its centre of mass");
+  const std::uint32_t frame = frame_named(on, "'on'");
+  if (frame == 0 || frame_sources_[frame].place == 0) {
+    source_.fail(on.span, "a point is on a body, and this has no centre of mass", "name a [[body]], or give position = \"<vector>\"");
+  }
+  as(Value::Kind::array, at, "'at'", "write at = [x, y, z] along the body's axes");
+  if (at.items.size() != 3) source_.fail(at.span, fmt::format("'at' has {} entries", at.items.size()), "write at = [x, y, z]");
+  Typed sum = resolver_.place(frame_sources_[frame].place, on.span);
+  const Context context{"a component of 'at'", on_motion, Shape::scalar, dimension_of("m"), ""};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Typed component = resolver_.value(at.items[k], context);
+    if (component.constant && cln::zerop(*component.constant)) continue;
+    sum = resolver_.sum_of(sum, resolver_.product_of(component, resolver_.own_axis(frame, k, on.span), at.span), at.span);
+  }
+  return sum;
+}
+
+void Reader::read_bodies() {
+  for (std::uint32_t k = 1; k < model_.frames.size(); ++k) resolver_.symbol(scope_.axes(k), model_.frames[k].span);
+  for (std::uint32_t k = 1; k < model_.frames.size(); ++k) {
+    const FrameSource source = frame_sources_[k];
+    if (source.place == 0) continue;
+    Body body;
+    body.place = source.place;
+    body.frame = k;
+    body.span = model_.frames[k].span;
+    const std::string what = fmt::format("'{}'", model_.frames[k].name);
+    const Value& value = needed(*source.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
+    const Typed mass = resolver_.value(value, {fmt::format("the mass of {}", what), 0, Shape::scalar, dimension_of("kg"),
+                                               "the mass of a body is made of numbers and parameters; that of a [[particle]] may depend on time"});
+    if (mass.constant && !cln::plusp(*mass.constant)) {
+      source_.fail(value.span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
+    }
+    body.mass = mass.node;
+    read_inertia(body, *source.table);
+    model_.bodies.push_back(body);
+  }
+}
+
+namespace {
+
+bool by_parameters(const Value& table) {
+  const Value* rotation = table.find("rotation");
+  return rotation != nullptr && rotation->is(Value::Kind::table) && rotation->find("euler_parameters") != nullptr;
+}
+
+}  // namespace
+
+// Euler parameters have unit length: a constraint NAME_unit for each body or frame that uses them.
+void Reader::declare_units() {
+  for (std::uint32_t k = 1; k < model_.frames.size(); ++k) {
+    if (!by_parameters(*frame_sources_[k].table)) continue;
+    Constraint constraint;
+    constraint.name = model_.frames[k].name + "_unit";
+    constraint.span = frame_sources_[k].table->find("rotation")->span;
+    Symbol& symbol = scope_.declare(SymbolKind::constraint, constraint.name, constraint.span);
+    symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
+    model_.constraints.push_back(std::move(constraint));
+  }
+}
+
+void Reader::read_units() {
+  for (const Frame& frame : model_.frames) {
+    const rotations::Rotation* rotation = rotations::find(frame.rotation);
+    if (rotation == nullptr || rotation->unit.empty()) continue;
+    std::map<std::string, Typed> local;
+    for (std::size_t k = 0; k < frame.entries.size(); ++k) {
+      local[rotation->entries[k].name] = resolver_.coordinate(model_.arena[frame.entries[k]].index, 0, frame.span);
+    }
+    Constraint& constraint = model_.constraints[scope_.find(frame.name + "_unit")->index];
+    const Context context{"the length of Euler parameters", on_motion, Shape::scalar, std::nullopt, ""};
+    constraint.psi = {resolver_.text(rotation->unit, local, constraint.span, context).node};
+  }
+}
+
+// Of Euler parameters that a scene leaves out e1, e2, e3 are 0, and e0 is what is left of the length.
+void Reader::complete_parameters(Scene& scene) {
+  for (const Frame& frame : model_.frames) {
+    const rotations::Rotation* rotation = rotations::find(frame.rotation);
+    if (rotation == nullptr || rotation->unit.empty()) continue;
+    const auto given = [&](std::size_t k) {
+      const std::uint32_t coordinate = model_.arena[frame.entries[k]].index;
+      const auto same = [&](const InitialValue& v) { return v.coordinate == coordinate && v.order == 0; };
+      return std::any_of(scene.initial.begin(), scene.initial.end(), same) || std::any_of(scene.guess.begin(), scene.guess.end(), same);
+    };
+    if (given(0)) continue;
+    const auto add = [&](std::vector<InitialValue>& values, std::size_t k, const Rational& value) {
+      values.push_back({model_.arena[frame.entries[k]].index, 0, resolver_.number(value, scene.span).node, scene.span});
+    };
+    const bool none = !given(1) && !given(2) && !given(3);
+    for (std::size_t k = 1; k < 4; ++k) {
+      if (!given(k)) add(scene.initial, k, 0);
+    }
+    add(none ? scene.initial : scene.guess, 0, 1);
+  }
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Axes of bodies and frames, and how they turn: nodes for B.e1, B.e1', omega(B).
+#include "model/resolver.hpp"
+
+namespace eomgen::model {
+
+Typed Resolver::axis(std::uint32_t frame, std::size_t stage, std::size_t axis, Span span) {
+  Typed result = make(frame == 0 ? Op::fixed_basis : Op::axis, true, {}, span);
+  Node& node = model_.arena.nodes[result.node];
+  node.index = frame == 0 ? static_cast<std::uint32_t>(axis) : frame;
+  node.order = frame == 0 ? std::uint8_t{0} : static_cast<std::uint8_t>(3 * stage + axis);
+  result.literal = result.pure = true;
+  if (frame == 0) return result;
+  const Symbol& axes = scope_.axes(frame);  // its own stages may be asked for while it is being read
+  result.facts = axes.typed.facts;
+  result.depth = axes.typed.depth + 1;
+  return result;
+}
+
+Typed Resolver::own_axis(std::uint32_t frame, std::size_t axis, Span span) {
+  if (frame > 0) symbol(scope_.axes(frame), span);
+  return this->axis(frame, frame == 0 ? 0 : model_.frames[frame].stages.size() - 1, axis, span);
+}
+
+Typed Resolver::angular_velocity(std::uint32_t frame, Span span) {
+  const Typed axes = frame > 0 ? symbol(scope_.axes(frame), span) : Typed{};
+  Typed result = make(Op::angular_velocity, true, {}, span);
+  model_.arena.nodes[result.node].index = frame;
+  result.facts = axes.facts;
+  if (axes.facts & on_coordinate) result.facts |= on_velocity;
+  result.depth = axes.depth + 2;
+  result.dimension = dimension_of("rad/s");
+  return result;
+}
+
+Typed Resolver::in_axes(const Typed& vector, std::uint32_t frame) {
+  Typed none;
+  const Node node = model_.arena[vector.node];
+  const auto part = [&](std::size_t k) {
+    Typed typed;
+    typed.node = node.args[k];
+    typed.vector = model_.arena[typed.node].vector;
+    return typed;
+  };
+  switch (node.op) {
+    case Op::axis:
+      if (node.index != frame || node.order / 3u + 1 != model_.frames[frame].stages.size()) return none;
+      return axis(0, 0, node.order % 3, node.span);
+    case Op::add: case Op::subtract: case Op::cross: {
+      const Typed a = in_axes(part(0), frame), b = in_axes(part(1), frame);
+      return a.node == no_node || b.node == no_node ? none : make(node.op, true, {a, b}, node.span);
+    }
+    case Op::negate: case Op::unit: {
+      const Typed a = in_axes(part(0), frame);
+      return a.node == no_node ? none : make(node.op, true, {a}, node.span);
+    }
+    case Op::multiply: case Op::divide: {
+      const std::size_t v = part(0).vector ? 0 : 1;
+      const Typed factor = part(1 - v), a = in_axes(part(v), frame);
+      if (a.node == no_node || !coordinates_in(factor.node).empty()) return none;
+      return v == 0 ? make(node.op, true, {a, factor}, node.span) : make(node.op, true, {factor, a}, node.span);
+    }
+    default: return none;
+  }
+}
+
+Typed Resolver::unit_of_vector(const Typed& vector, Span span) {
+  Typed result = make(Op::unit, true, {vector}, span);
+  result.literal = result.pure = true;
+  return result;
+}
+
+Typed Resolver::rate(const Typed& scalar, Span span) {
+  const Node& node = model_.arena.nodes[scalar.node];
+  if (node.op == Op::coordinate && node.order == 0) return coordinate(node.index, 1, span);
+  Typed result = make(Op::total_derivative, false, {scalar}, span);
+  if (scalar.facts & on_coordinate) result.facts |= on_velocity;
+  if (scalar.dimension) result.dimension = quotient(*scalar.dimension, dimension_of("s"));
+  return result;
+}
+
+}  // namespace eomgen::model
