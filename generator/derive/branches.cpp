@@ -127,7 +127,7 @@ bool Branches::beyond(std::size_t outer, std::size_t inner) const {
 
 std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
   Dag& dag = *m.dag;
-  if (m.masses.empty() || !dag.is_zero(m.kinetic_given)) return std::nullopt;
+  if (m.masses.empty() || !m.spins.empty() || !dag.is_zero(m.kinetic_given)) return std::nullopt;
   Spelled spelled(m, imposed);
   std::vector<Vec3> positions;
   for (const mechanics::PointMass& mass : m.masses) positions.push_back(spelled(mass.position));

@@ -79,6 +79,9 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
     for (std::size_t k = 0; k < 3; ++k) add(name + ".position" + std::to_string(k + 1), position[k]);
     for (std::size_t k = 0; k < 3; ++k) add(name + ".velocity" + std::to_string(k + 1), ddt(position[k]));
   }
+  for (std::size_t f = 1; f < m.angular_velocity.size(); ++f) {
+    for (std::size_t k = 0; k < 3; ++k) add(m.model->frames[f].name + ".omega" + std::to_string(k + 1), m.angular_velocity[f][k]);
+  }
   for (const system::Reaction& reaction : s.reactions) add("reaction." + reaction.label, reaction.value);
   for (std::size_t i = 0; i < m.model->definitions.size(); ++i) {
     const model::Definition& definition = m.model->definitions[i];

@@ -10,6 +10,36 @@ namespace {
 
 using symbolic::SymbolKind;
 
+/// Euler's equations along the axes of the spin, (dH/dt + carrier x H) . dw/dqdot_i, eqs. (8.41), (9.39).
+void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed, const std::vector<std::uint32_t>& which,
+              symbolic::Derivation& bias, FullEquations& result) {
+  Dag& dag = *m.dag;
+  mechanics::Spin spin = given;
+  for (Vec3* v : {&spin.w, &spin.carrier}) {
+    for (Ref& r : *v) r = imposed == nullptr ? r : (*imposed)(r);
+  }
+  const std::size_t n = which.size();
+  std::vector<Vec3> W, JW;  // dw/dqdot_i and J times it
+  for (const std::uint32_t i : which) {
+    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, i, 1});
+    W.push_back({by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
+    JW.push_back(times(dag, spin, W.back()));
+  }
+  const Vec3 H = momentum(dag, spin);
+  Vec3 rate = times(dag, spin, {bias(spin.w[0]), bias(spin.w[1]), bias(spin.w[2])});
+  for (std::size_t k = 0; k < 3; ++k) {
+    const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
+    rate[k] = dag.add(rate[k], dag.sub(dag.mul(spin.carrier[a], H[b]), dag.mul(spin.carrier[b], H[a])));
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = i; k < n; ++k) {
+      result.M[i * n + k] = dag.add(result.M[i * n + k], dot(dag, W[i], JW[k]));
+      result.M[k * n + i] = result.M[i * n + k];
+    }
+    result.f[i] = dag.sub(result.f[i], dot(dag, W[i], rate));
+  }
+}
+
 FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std::vector<Ref>& Q,
                         const std::vector<std::uint32_t>& which) {
   Dag& dag = *m.dag;
@@ -40,6 +70,7 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
       result.f[i] = dag.sub(result.f[i], inertial);
     }
   }
+  for (const mechanics::Spin& spin : m.spins) add_spin(m, spin, imposed, which, bias, result);
   return result;
 }
 

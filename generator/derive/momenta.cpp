@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all masses:
-// with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt.
+// with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. Of bodies, dH/dt . (dw/dqdot_i xi_i) is added: the body turns
+// about E_k, or not at all.
 #include "derive/momenta.hpp"
 
 #include <cmath>
@@ -66,6 +67,17 @@ class Search {
         for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(x));
       }
     }
+    for (const mechanics::Spin& spin : m.spins) {
+      w_.push_back(all(spin.w));
+      for (const Ref w : w_.back()) {
+        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
+      }
+      H_.push_back(times(dag_, spin, w_.back()));
+      axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
+    }
+    // Displacements that the constraints allow: where coordinates are dependent (Euler parameters) they decide among those
+    // that move everything alike.
+    J_.insert(J_.end(), s.A.begin(), s.A.end());
     const std::vector<Ref> Q = generalized_forces(m);
     for (const std::uint32_t i : s.free) {
       const Ref slope = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(s.potential);
@@ -91,6 +103,11 @@ class Search {
       if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
       magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
     }
+    for (std::size_t b = 0; b < H_.size(); ++b) {
+      const std::size_t row = 3 * (r_.size() + b);
+      expression = dag_.add(expression, dot(dag_, Vec3{d[row], d[row + 1], d[row + 2]}, H_[b]));
+      if (angular) magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
+    }
     result.expression = expression;
     result.magnitude = magnitude;
     return result;
@@ -98,6 +115,15 @@ class Search {
 
  private:
   std::vector<Ref> displacement(bool angular, std::size_t k) const {
+    std::vector<Ref> d = moved(angular, k);
+    for (const std::array<Vec3, 3>& axes : axes_) {
+      for (const Vec3& e : axes) d.push_back(angular ? e[k] : dag_.zero());
+    }
+    d.resize(d.size() + s_.active.size(), dag_.zero());
+    return d;
+  }
+
+  std::vector<Ref> moved(bool angular, std::size_t k) const {
     std::vector<Ref> d;
     for (const Vec3& r : r_) {
       for (std::size_t c = 0; c < 3; ++c) {
@@ -136,7 +162,6 @@ class Search {
     std::vector<Ref> result;
     for (std::size_t r = 0; r < d.size(); ++r) result.push_back(dag_.sub(along(xi, J_, r), d[r]));
     result.push_back(along(xi, force_, 0));
-    for (std::size_t k = 0; k < s_.active.size(); ++k) result.push_back(along(xi, s_.A, k));
     return result;
   }
 
@@ -151,7 +176,8 @@ class Search {
   Dag& dag_;
   std::size_t n_;
   std::vector<Ref> mass_, J_, force_;
-  std::vector<Vec3> r_, v_;
+  std::vector<Vec3> r_, v_, w_, H_;
+  std::vector<std::array<Vec3, 3>> axes_;  // of the spins
 };
 
 bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression, Dag& work) {

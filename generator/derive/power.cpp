@@ -16,9 +16,16 @@ struct Prescribed {
   Ref moving;   // T1 + 2 T0
 };
 
+symbolic::Substitution rates_at_rest(Mechanics& m) {
+  std::map<Symbol, Ref> zero;
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) zero[rate_symbol(i)] = m.dag->zero();
+  return {*m.dag, std::move(zero)};
+}
+
 Prescribed of_masses(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
   Dag& dag = *m.dag;
   Prescribed sum{dag.zero(), dag.zero()};
+  symbolic::Substitution at_rest = rates_at_rest(m);
   for (const mechanics::PointMass& mass : m.masses) {
     Vec3 drift, acceleration;  // of the position and of the velocity, at fixed q and qdot
     for (std::size_t k = 0; k < 3; ++k) drift[k] = at_fixed_motion(mass.position[k]);
@@ -28,6 +35,16 @@ Prescribed of_masses(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
     sum.inertia = dag.add(sum.inertia, dag.mul(mass.mass, dot(dag, mass.velocity, acceleration)));
     sum.moving = dag.add(sum.moving, dag.mul(mass.mass, dot(dag, mass.velocity, drift)));
   }
+  for (const mechanics::Spin& spin : m.spins) {
+    const Vec3 H = momentum(dag, spin);
+    Vec3 drift, acceleration;
+    for (std::size_t k = 0; k < 3; ++k) {
+      drift[k] = at_rest(spin.w[k]);
+      acceleration[k] = at_fixed_motion(spin.w[k]);
+    }
+    sum.inertia = dag.add(sum.inertia, dot(dag, H, acceleration));
+    sum.moving = dag.add(sum.moving, dot(dag, H, drift));
+  }
   return sum;
 }
 
@@ -35,9 +52,7 @@ Prescribed of_masses(Mechanics& m, symbolic::Derivation& at_fixed_motion) {
 // accelerations out of the power.
 bool is_quadratic_form(Mechanics& m, Ref T) {
   Dag& dag = *m.dag;
-  std::map<Symbol, Ref> zero;
-  for (std::uint32_t i = 0; i < m.q.size(); ++i) zero[rate_symbol(i)] = dag.zero();
-  symbolic::Substitution at_rest(dag, zero);
+  symbolic::Substitution at_rest = rates_at_rest(m);
   if (!dag.is_zero(at_rest(T))) return false;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
     const Ref p = symbolic::partial(dag, rate_symbol(i))(T);

@@ -171,15 +171,16 @@ Formula by_parts(const Mechanics& m, const Equation& equation) {
   std::vector<Formula> left, right;
   const Formula q = coordinate(equation.coordinate, 0);
   for (const mechanics::PointMass& mass : m.masses) {
-    std::uint32_t place = 0;
-    for (std::uint32_t i = 0; i < m.model->places.size(); ++i) {
-      if (m.model->places[i].name == mass.name) place = i;
-    }
+    const std::uint32_t place = mass.place;
     const Formula r = mark("r", {reading::number(static_cast<long>(place))});
     Formula acceleration = reading::wrap(Form::dot, {r});
     acceleration.order = 2;
     left.push_back(reading::product({mark("m", {reading::number(static_cast<long>(place))}),
                                      reading::wrap(Form::dot_product, {acceleration, reading::wrap(Form::partial, {r, q})})}));
+  }
+  for (const mechanics::Spin& spin : m.spins) {  // dH/dt . dw/dqdot_i, eq. (9.39)
+    const Formula body = reading::number(static_cast<long>(spin.frame));
+    left.push_back(reading::wrap(Form::dot_product, {dotted(mark("H", {body})), reading::wrap(Form::partial, {mark("omega", {body}), coordinate(equation.coordinate, 1)})}));
   }
   right.push_back(reading::negative(reading::wrap(Form::partial, {mark("U"), q})));
   right.push_back(mark("Q", {q}));

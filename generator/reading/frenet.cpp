@@ -83,7 +83,7 @@ std::vector<Sum> direction(const Mechanics& m, Bridge& bridge) {
 
 // The chart's e_q as they are on the curve; nothing where they are not three orthonormal ones.
 std::vector<Components> unit_vectors(Mechanics& m, Bridge& bridge, Frenet& f) {
-  const auto& chart = m.model->places[m.model->particles[0].place].chart;
+  const auto& chart = m.model->places[m.masses[0].place].chart;
   std::vector<Components> result;
   if (!chart) return result;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -107,6 +107,7 @@ std::vector<Components> unit_vectors(Mechanics& m, Bridge& bridge, Frenet& f) {
 }  // namespace
 
 std::string why_no_curve(const Mechanics& m) {
+  if (!m.spins.empty()) return "the model has bodies, and a curve is of one particle";
   if (m.masses.size() != 1) return fmt::format("the model has {} particles, and a curve is of one", m.masses.size());
   for (const std::uint32_t k : m.active) {
     if (!m.constraints[k].holonomic()) return fmt::format("'{}' is a constraint on velocities, which leaves no curve", m.constraints[k].label);

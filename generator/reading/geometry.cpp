@@ -146,7 +146,7 @@ std::vector<Geometry> geometry(const Mechanics& mechanics) {
   Bridge bridge(m);
   std::vector<Geometry> result;
   for (std::size_t k = 0; k < m.masses.size(); ++k) {
-    const std::uint32_t place = m.model->particles[k].place;
+    const std::uint32_t place = m.masses[k].place;
     if (!m.model->places[place].chart) continue;
     try {
       Geometry g = of_place(bridge, m, place, m.masses[k]);

@@ -27,6 +27,19 @@ Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
     result += bridge.sum(mass.mass) * (Rational(1) / 2 * simplify(square));
     if (result.size() > readable_terms) throw TermBudget();
   }
+  for (const mechanics::Spin& spin : m.spins) {
+    std::array<Sum, 3> w;
+    for (std::size_t k = 0; k < 3; ++k) w[k] = simplify(bridge.sum(spin.w[k]));
+    Sum twice;
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Sum J = bridge.sum(spin.J[i][k]);
+        if (!J.is_zero()) twice += J * simplify(w[i] * w[k]);
+      }
+    }
+    result += Rational(1) / 2 * simplify(twice);
+    if (result.size() > readable_terms) throw TermBudget();
+  }
   return simplify(result);
 }
 

@@ -81,7 +81,15 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
 
 // Masses, which the reader saw at the default values only.
 void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
-  for (const model::Particle& particle : m.model->particles) {
+  struct Heavy {
+    std::uint32_t place;
+    model::NodeId mass;
+    model::Span span;
+  };
+  std::vector<Heavy> all;
+  for (const model::Particle& particle : m.model->particles) all.push_back({particle.place, particle.mass, particle.span});
+  for (const model::Body& body : m.model->bodies) all.push_back({body.place, body.mass, body.span});
+  for (const Heavy& particle : all) {
     const Ref mass = mechanics::lower_scalar(m, particle.mass);
     const std::vector<Symbol> symbols = m.dag->symbols({mass});
     const bool of_parameters = std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });

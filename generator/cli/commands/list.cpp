@@ -9,6 +9,7 @@
 #include "derive/routes.hpp"
 #include "emit/targets.hpp"
 #include "eom/ode.hpp"
+#include "rotations/rotation.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -33,7 +34,13 @@ json registries() {
   // A document comes from the reading form, not from a program, so it is no entry of that registry.
   targets.push_back({{"name", "latex"}, {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;
-  result["rotations"] = json::array();
+  json rotations = json::array();
+  for (const rotations::Rotation& rotation : rotations::registry()) {
+    json entries = json::array();
+    for (const rotations::Entry& entry : rotation.entries) entries.push_back(entry.name);
+    rotations.push_back({{"name", rotation.name}, {"title", rotation.title}, {"family", rotation.family}, {"entries", entries}, {"singular", rotation.singular}});
+  }
+  result["rotations"] = rotations;
   result["joints"] = json::array();
   result["solvers"] = solvers;
   result["targets"] = targets;
