@@ -30,5 +30,6 @@ std::vector<WrongModel> wrong_units();
 std::vector<WrongModel> wrong_expressions();
 std::vector<WrongModel> wrong_scenes();
 std::vector<WrongModel> wrong_hostile();
+std::vector<WrongModel> wrong_bodies();
 
 }  // namespace eomgen::model

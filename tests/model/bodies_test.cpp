@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model_support.hpp"
+
+using namespace eomgen::model;
+
+namespace {
+
+Model with_inertia(const std::string& inertia, const std::string& rotation = "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") {
+  return read("format = 1\n[parameters]\nm = 12\nR = 5\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = " + inertia + "\nrotation = " + rotation + "\n");
+}
+
+std::array<Rational, 3> moments(const Model& model) {
+  const auto& J = model.bodies.at(0).inertia;
+  return {exact(model, J[0][0]), exact(model, J[1][1]), exact(model, J[2][2])};
+}
+
+}  // namespace
+
+TEST_CASE("shapes have the moments of homogeneous bodies") {
+  using Moments = std::array<Rational, 3>;
+  CHECK(moments(with_inertia("{ sphere = \"R\" }")) == Moments{120, 120, 120});
+  CHECK(moments(with_inertia("{ disk = \"R\" }")) == Moments{75, 75, 150});
+  CHECK(moments(with_inertia("{ cylinder = [\"R\", 2] }")) == Moments{79, 79, 150});
+  CHECK(moments(with_inertia("{ rod = 3 }")) == Moments{9, 9, 0});
+  CHECK(moments(with_inertia("{ box = [1, 2, 3] }")) == Moments{13, 10, 5});
+}
+
+TEST_CASE("an inertia is principal, a symmetric matrix, or one moment about a fixed axis") {
+  const Model matrix = with_inertia("[[2, \"R/10\", 0], [\"R/10\", 3, 0], [0, 0, 4]]");
+  CHECK(exact(matrix, matrix.bodies[0].inertia[0][1]) == ratio(1, 2));
+  CHECK(exact(matrix, matrix.bodies[0].inertia[1][0]) == ratio(1, 2));
+  CHECK(moments(with_inertia("7", "{ axis = \"E2\", angle = \"a\" }")) == std::array<Rational, 3>{0, 7, 0});
+}
+
+TEST_CASE("one moment is enough for a body relative to one that turns about the same axis") {
+  const Model model = read("format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = 2\nrotation = { axis = \"E3\", angle = \"a\" }\n"
+                           "[[body]]\nname = \"B\"\nmass = 1\ninertia = 3\nrotation = { axis = \"A.e3\", angle = \"b\" }\nrelative_to = \"A\"\n");
+  CHECK(exact(model, model.bodies[1].inertia[2][2]) == 3);
+  CHECK(model.frames[2].parent == 1);
+}
+
+TEST_CASE("coordinates come in the order of the file: position, then rotation, of one body after the other") {
+  const Model model = read("format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { euler = \"123\", angles = [\"a\", \"b\", \"c\"] }\n"
+                           "position = { cartesian = [\"x\", \"y\", \"z\"] }\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"s\"  , \"0\"] }\n"
+                           "[[frame]]\nname = \"F\"\nrotation = { axis = \"E3\", angle = \"f\" }\n");
+  std::string names;
+  for (const Coordinate& q : model.coordinates) names += q.name + " ";
+  CHECK(names == "x y z a b c s f ");
+}
+
+TEST_CASE("Euler parameters bring a constraint of unit length, and a start without them has e0 = 1") {
+  const Model model = with_inertia("{ sphere = \"R\" }", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }");
+  REQUIRE(model.constraints.size() == 1);
+  CHECK(model.constraints[0].name == "B_unit");
+  REQUIRE(model.scenes[0].initial.size() == 4);
+  for (const InitialValue& start : model.scenes[0].initial) {
+    CHECK(exact(model, start.value) == (model.coordinates[start.coordinate].name == "e0" ? 1 : 0));
+  }
+}
+
+TEST_CASE("a point on a body is its centre of mass and components along its axes") {
+  const Model model = read("format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { axis = \"E3\", angle = \"a\" }\n"
+                           "[[point]]\nname = \"P\"\non = \"A\"\nat = [2, 0, 0]\n");
+  const Node& sum = model.arena[model.places[2].position];
+  CHECK(sum.op == Op::add);
+  CHECK(model.arena[model.arena[sum.args[1]].args[1]].op == Op::axis);
+}

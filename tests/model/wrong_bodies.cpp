@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Bodies, frames, rotations and inertias that are refused.
+#include "wrong_models.hpp"
+
+namespace eomgen::model {
+namespace {
+
+// Line 6 is [[body]], 7 name, 8 mass, 9 inertia, 10 rotation.
+std::string top(const std::vector<std::pair<std::string, std::string>>& edits, const std::string& more = "") {
+  std::string text = R"(format = 1
+[parameters]
+m = "1 kg"
+J = "2 kg*m^2"
+g = "9.81 m/s^2"
+[[body]]
+name = "B"
+mass = "m"
+inertia = { principal = ["J", "J", "J"] }
+rotation = { euler = "313", angles = ["phi", "theta", "psi"] }
+[[force]]
+moment = "2[N*m]*E3"
+on = "B"
+)";
+  for (const auto& [from, to] : edits) text.replace(text.find(from), from.size(), to);
+  return text + more;
+}
+
+constexpr const char* rotations_are =
+    "write rotation = { euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }, { axis = \"E3\", angle = \"phi\" }, "
+    "{ euler_parameters = [..] }, { rodrigues = [..] } or { fixed = true }";
+constexpr const char* inertias_are =
+    "write inertia = { principal = [\"A\", \"B\", \"C\"] }, a symmetric [[..], [..], [..]], or a shape such as { sphere = \"R\" }";
+const std::string angles = "{ euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }";
+const std::string moments = "{ principal = [\"J\", \"J\", \"J\"] }";
+
+}  // namespace
+
+std::vector<WrongModel> wrong_bodies() {
+  return {
+      {"a body without a rotation", top({{"rotation = " + angles + "\n", ""}}), "6:1", "'B' has no rotation", rotations_are},
+      {"a body without inertia", top({{"inertia = " + moments + "\n", ""}}), "6:1", "'B' has no inertia", inertias_are},
+      {"a body without mass", top({{"mass = \"m\"\n", ""}}), "6:1", "'B' has no mass", "add mass = \"m\" or a value such as \"2 kg\""},
+      {"a body whose mass changes", top({{"mass = \"m\"", "mass = \"m*t/1[s]\""}}), "8:11", "'t' depends on time, which the mass of 'B' cannot",
+       "the mass of a body is made of numbers and parameters; that of a [[particle]] may depend on time"},
+      {"an unknown set of angles", top({{"313", "311"}}), "10:22", "there are no Euler angles '311'",
+       "the twelve sets are 121, 131, 212, 232, 313, 323, 123, 132, 213, 231, 312, 321"},
+      {"two angles", top({{", \"psi\"]", "]"}}), "10:38", "'angles' has 2 entries", "give 3 of them"},
+      {"angles of no set", top({{"euler = \"313\", ", ""}}), "10:12", "the rotation says no kind", rotations_are},
+      {"two kinds of rotation", top({{"euler = \"313\"", "euler = \"313\", fixed = true"}}), "10:29", "a rotation is both 'euler' and 'fixed'", "keep one of them"},
+      {"an axis with angles", top({{"euler = \"313\"", "axis = \"E3\""}}), "10:27", "'angles' does not belong to a rotation by 'axis'", rotations_are},
+      {"an axis without an angle", top({{angles, "{ axis = \"E3\" }"}}), "10:12", "a rotation about an axis has no angle", "add angle = \"phi\""},
+      {"an axis that moves", top({{angles, "{ axis = \"a*E3 + b*E1\", angle = \"c\" }"}}, "[coordinates]\na = {}\nb = {}\n"), "10:22",
+       "'a' depends on coordinates, which the axis of the rotation of 'B' cannot",
+       "the axis is fixed in the parent: make it of E1, E2, E3; relative_to = \"B\" names another parent"},
+      {"an axis of space in a body that turns",
+       top({}, "[[frame]]\nname = \"F\"\nrotation = { axis = \"E3\", angle = \"chi\" }\nrelative_to = \"B\"\n"), "16:21",
+       "this axis is not fixed in the parent", "make it of B.e1, B.e2, B.e3 with constant components"},
+      {"three Euler parameters", top({{angles, "{ euler_parameters = [\"a\", \"b\", \"c\"] }"}}), "10:33", "'euler_parameters' has 3 entries", "give 4 of them"},
+      {"an Euler parameter that is no coordinate", top({{angles, "{ euler_parameters = [\"a\", \"b\", \"c\", \"0\"] }"}}), "10:49",
+       "an Euler parameter is a coordinate of its own", "give it a name, such as \"e0\""},
+      {"a rotation that is not fixed", top({{angles, "{ fixed = false }"}}), "10:22", "a rotation cannot be fixed = false", rotations_are},
+      {"relative to a particle", top({{"rotation =", "relative_to = \"C\"\nrotation ="}}), "10:15", "there is no body or frame 'C'", "the bodies and frames are B"},
+      {"relative to itself", top({{"rotation =", "relative_to = \"B\"\nrotation ="}}), "10:15",
+       "'the axes of B' is defined by itself: the axes of B -> the axes of B", "break the circle: one of these names has to be given without the others"},
+      {"an angle that is made of its own axes", top({{"\"psi\"]", "\"dot(B.e1, E1)\"]"}}), "10:60",
+       "'the axes of B' is defined by itself: the axes of B -> the axes of B", "break the circle: one of these names has to be given without the others"},
+      {"two moments of inertia", top({{"[\"J\", \"J\", \"J\"]", "[\"J\", \"J\"]"}}), "9:25", "'principal' has 2 entries", inertias_are},
+      {"moments that no body has", top({{"[\"J\", \"J\", \"J\"]", "[1, 5, 2]"}}), "9:29",
+       "no body has these moments of inertia: this one is larger than the other two together", "check the values and their units"},
+      {"a negative moment", top({{"[\"J\", \"J\", \"J\"]", "[1, -1, 2]"}}), "9:29", "a moment of inertia is negative", "it is a sum of masses times squares"},
+      {"a matrix that is not symmetric", top({{moments, "[[1, 0, 0.1], [0, 1, 0], [0.2, 0, 1]]"}}), "9:37", "the inertia of 'B' is not symmetric",
+       "write the same expression on both sides of the diagonal"},
+      {"a matrix of two rows", top({{moments, "[[1, 0, 0], [0, 1, 0]]"}}), "9:11", "the inertia of 'B' is not an array of three rows of three", inertias_are},
+      {"an unknown shape", top({{moments, "{ spher = \"1 m\" }"}}), "9:13", "the inertia of 'B' has no key 'spher'", "did you mean 'sphere'?"},
+      {"a cylinder without its length", top({{moments, "{ cylinder = [\"1 m\"] }"}}), "9:24", "'cylinder' has 1 entries", "write cylinder = [\"R\", \"L\"]"},
+      {"one moment of a body that turns about many axes", top({{moments, "\"J\""}}), "9:11",
+       "one moment of inertia does not do: 'B' does not turn about one fixed axis", inertias_are},
+      {"a mass for an inertia", top({{"[\"J\", \"J\", \"J\"]", "[\"m\", \"J\", \"J\"]"}}), "9:27",
+       "the units clash: a principal moment is asked in kg*m^2, and this is in kg", "check the formula and the units of the names in it"},
+      {"a moment on a particle", top({{"on = \"B\"", "on = \"P\""}}, "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"g*1[s^2]*E1\"\n"), "13:6",
+       "'P' is a particle or point, which has no axes", "the bodies and frames are B"},
+      {"a moment on the ground", top({{"on = \"B\"", "on = \"ground\""}}), "13:6", "a moment on the ground changes nothing", "name a body or frame"},
+      {"a force for a moment", top({{"2[N*m]", "2[N]"}}), "12:11", "the units clash: this moment is asked in J, and this is in N",
+       "check the formula and the units of the names in it"},
+      {"a lift on a frame", top({}, "[[frame]]\nname = \"F\"\nrotation = { fixed = true }\n[[force]]\nmagnus = { on = \"F\", coefficient = 1 }\n"), "18:17",
+       "this magnus acts on a body, and 'F' has no mass", "name a [[body]]"},
+      {"gravity of order 1", top({}, "[[force]]\ncentral_gravity = { GM = 1, order = 1 }\n"), "15:37", "central_gravity has no order '1'", "write order = 0 or order = 2"},
+      {"a fourth axis", top({}, "[definitions]\na = \"B.e4\"\n"), "15:6", "'B' has no part 'e4'", "the position of 'B' depends on no coordinate"},
+      {"an axis after three angles", top({}, "[definitions]\na = \"B.e1'''\"\n"), "15:6", "'B' has no axis 'B.e1''''",
+       "one prime stands for the axes after the first of its angles, two for those after the second"},
+      {"an axis on the way of one angle", top({{angles, "{ axis = \"E3\", angle = \"phi\" }"}}, "[definitions]\na = \"B.e1'\"\n"), "15:6", "'B' has no axis 'B.e1''",
+       "primes are for the axes on the way of Euler angles"},
+      {"a part of a frame", top({}, "[[frame]]\nname = \"F\"\nrotation = { fixed = true }\n[definitions]\na = \"F.position\"\n"), "18:6",
+       "'F' has no part 'position'", "its parts are e1, e2, e3 and omega"},
+      {"a frame as a vector", top({}, "[[frame]]\nname = \"F\"\nrotation = { fixed = true }\n[definitions]\na = \"F\"\n"), "18:6", "'F' is a frame, not a value",
+       "name a parameter, coordinate, function, input, definition, particle or point"},
+      {"the angular velocity of a particle", pendulum({}, "[definitions]\nw = \"omega(P)\"\n"), "13:12", "omega() takes the name of a body or frame",
+       "write omega(B) with a [[body]] or [[frame]]"},
+      {"a point on a frame", top({}, "[[frame]]\nname = \"F\"\nrotation = { fixed = true }\n[[point]]\nname = \"A\"\non = \"F\"\nat = [1, 0, 0]\n"), "19:6",
+       "a point is on a body, and this has no centre of mass", "name a [[body]], or give position = \"<vector>\""},
+      {"a point on a body and elsewhere", top({}, "[[point]]\nname = \"A\"\non = \"B\"\nat = [1, 0, 0]\nposition = \"1[m]*E1\"\n"), "18:12",
+       "'A' is on a body and has a position too", "keep one of them"},
+      {"a point somewhere on a body", top({}, "[[point]]\nname = \"A\"\non = \"B\"\n"), "14:1", "'A' has no at",
+       "add at = [x, y, z] along the body's axes, from its centre of mass"},
+      {"a name that Euler parameters need", top({{angles, "{ euler_parameters = [\"a\", \"b\", \"c\", \"d\"] }"}, {"[parameters]\n", "[parameters]\nB_unit = 1\n"}}),
+       "11:12", "'B_unit' is declared twice", "it is a parameter on line 3; all names share one scope: choose another"},
+  };
+}
+
+}  // namespace eomgen::model

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Facts of the exercises on rotations: compositions, conversions, an axis found from angles.
+#include "rotations/turning.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+namespace {
+
+Real half_pi() { return cln::pi(cln::float_format(static_cast<std::uintptr_t>(digits))) / 2; }
+
+std::string three(const std::string& body_name, const std::string& prefix) {
+  return prefix + "1 = \"" + body_name + ".e1\"\n" + prefix + "2 = \"" + body_name + ".e2\"\n" + prefix + "3 = \"" + body_name + ".e3\"\n";
+}
+
+void same_axes(Turning& model) {
+  for (const char* k : {"1", "2", "3"}) CHECK(distance(model.vector(std::string("a") + k), model.vector(std::string("b") + k)) < exact);
+}
+
+}  // namespace
+
+// Ex 5.9: about E1 by a quarter, then about E3 by a quarter, is about (1, 1, 1) by a third of a turn. In the axes that the body
+// carries the same two steps come in the other order.
+TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not the other way round") {
+  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") + body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
+                body("C", "{ axis = \"E1 + E2 + E3\", angle = \"p\" }") + "[definitions]\n" + three("B", "a") + three("C", "b"));
+  model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
+  model.at[{"p", 0}] = half_pi() * 4 / 3;
+  same_axes(model);
+  model.at[{"p", 0}] = -half_pi() * 4 / 3;
+  CHECK(distance(model.vector("a1"), model.vector("b1")) > 0.1);
+}
+
+// (5.100): of C = B A the Euler parameters are g0 = e0 f0 - e.f, g = e0 f + f0 e + f x e, with e of A and f of B; carried by the
+// body, A comes second.
+TEST_CASE("Euler parameters of a composition are the product of the parameters") {
+  Turning model(body("F", "{ euler_parameters = [\"f0\", \"f1\", \"f2\", \"f3\"] }") +
+                body("E", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", "relative_to = \"F\"\n") +
+                body("G", "{ euler_parameters = [\"g0\", \"g1\", \"g2\", \"g3\"] }") + "[definitions]\n" + three("E", "a") + three("G", "b"));
+  const std::array<Real, 4> e{ratio(1, 11), ratio(2, 11), ratio(4, 11), ratio(10, 11)}, f{ratio(4, 5), ratio(-2, 5), ratio(1, 5), ratio(2, 5)};
+  const Numbers ev{e[1], e[2], e[3]}, fv{f[1], f[2], f[3]}, fxe = cross(fv, ev);
+  std::array<Real, 4> g{e[0] * f[0] - dot(ev, fv), 0, 0, 0};
+  for (std::size_t k = 0; k < 3; ++k) g[k + 1] = e[0] * fv[k] + f[0] * ev[k] + fxe[k];
+  for (std::size_t k = 0; k < 4; ++k) {
+    const std::string index = std::to_string(k);
+    model.at[{"e" + index, 0}] = e[k];
+    model.at[{"f" + index, 0}] = f[k];
+    model.at[{"g" + index, 0}] = g[k];
+  }
+  same_axes(model);
+}
+
+// (5.53), (5.47): one rotation about r by p, as parameters, as a Rodrigues vector, and as an angle about an axis.
+TEST_CASE("axis and angle, Euler parameters and the Rodrigues vector are the same rotation") {
+  const Real p = ratio(7, 5), tangent = cln::sin(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2) /
+                                        cln::cos(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2);
+  for (const bool parameters : {true, false}) {
+    Turning model(body("A", "{ axis = \"E1 + 2*E2 - 2*E3\", angle = \"p\" }") +
+                  body("B", parameters ? "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }" : "{ rodrigues = [\"e1\", \"e2\", \"e3\"] }") +
+                  "[definitions]\n" + three("A", "a") + three("B", "b"));
+    model.at[{"p", 0}] = p;
+    const Real length = parameters ? Real(1 / cln::sqrt(1 + tangent * tangent)) : Real(1);
+    model.at[{"e0", 0}] = length;
+    const std::array<long, 3> r{1, 2, -2};
+    for (std::size_t k = 0; k < 3; ++k) model.at[{"e" + std::to_string(k + 1), 0}] = length * tangent * ratio(r[k], 3);
+    same_axes(model);
+  }
+}
+
+// Ex 5.1: the 3-2-3 angles have g1 = -sin(theta) cos(psi) e1 + sin(theta) sin(psi) e2 + cos(theta) e3 and, in (5.87), the dual
+// basis with its first row -cosec(theta) cos(psi), cosec(theta) sin(psi), 0.
+TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
+  const rotations::Rotation& r = *rotations::find("323");
+  std::string text = body("B", written(r)) + "[definitions]\n";
+  const std::array<rotations::Components, 3> g{{{"-sin(n2)*cos(n3)", "sin(n2)*sin(n3)", "cos(n2)"}, {"sin(n3)", "cos(n3)", "0"}, {"0", "0", "1"}}};
+  const std::array<rotations::Components, 3> dual{
+      {{"-cos(n3)/sin(n2)", "sin(n3)/sin(n2)", "0"}, {"sin(n3)", "cos(n3)", "0"}, {"cos(n3)*cos(n2)/sin(n2)", "-sin(n3)*cos(n2)/sin(n2)", "1"}}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string ik = std::to_string(i) + std::to_string(k);
+      text += "g" + ik + " = \"" + g[i][k] + " - (" + r.basis[i][k] + ")\"\nd" + ik + " = \"" + dual[i][k] + " - (" + r.dual[i][k] + ")\"\n";
+    }
+  }
+  Turning model(text);
+  model.at[{"n1", 0}] = ratio(1, 3);
+  model.at[{"n2", 0}] = ratio(5, 4);
+  model.at[{"n3", 0}] = ratio(-7, 8);
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::string ik = std::to_string(i) + std::to_string(k);
+      CHECK(size(model.scalar("g" + ik)) < exact);
+      CHECK(size(model.scalar("d" + ik)) < exact);
+    }
+  }
+}
+
+TEST_CASE("axes on the way of Euler angles: e' after the first, e'' after the second") {
+  Turning model(body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+                "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + n3_dot*B.e3'' - B.omega\"\n");
+  for (const char* name : {"n1", "n2", "n3"}) {
+    model.at[{name, 0}] = ratio(name[1] - '0', 4);
+    model.at[{name, 1}] = ratio(name[1] - '0', 7);
+  }
+  CHECK(distance(model.vector("a3"), {0, 0, 1}) < exact);
+  CHECK(size(dot(model.vector("a1"), model.vector("a2"))) < exact);
+  CHECK(distance(model.vector("w"), {0, 0, 0}) < exact);  // (5.59)
+}
