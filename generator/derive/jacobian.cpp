@@ -26,11 +26,8 @@ void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution
     JW.push_back(times(dag, spin, W.back()));
   }
   const Vec3 H = momentum(dag, spin);
-  Vec3 rate = times(dag, spin, {bias(spin.w[0]), bias(spin.w[1]), bias(spin.w[2])});
-  for (std::size_t k = 0; k < 3; ++k) {
-    const std::size_t a = (k + 1) % 3, b = (k + 2) % 3;
-    rate[k] = dag.add(rate[k], dag.sub(dag.mul(spin.carrier[a], H[b]), dag.mul(spin.carrier[b], H[a])));
-  }
+  const Vec3 rate = symbolic::add(dag, times(dag, spin, {bias(spin.w[0]), bias(spin.w[1]), bias(spin.w[2])}),
+                                  symbolic::cross(dag, spin.carrier, H));
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t k = i; k < n; ++k) {
       result.M[i * n + k] = dag.add(result.M[i * n + k], dot(dag, W[i], JW[k]));

@@ -26,10 +26,11 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   if (augmented_) {
     quasi_.reset();
     M = system.M;
+    for (std::size_t c = 0; c < m_; ++c) S_.push_back(size_of_row(M, c));
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = 0; j < n_; ++j) {
         for (std::size_t c = 0; c < m_; ++c) {
-          M[i * n_ + j] = dag.add(M[i * n_ + j], dag.mul(A_[c * n_ + i], A_[c * n_ + j]));
+          M[i * n_ + j] = dag.add(M[i * n_ + j], dag.mul(S_[c], dag.mul(A_[c * n_ + i], A_[c * n_ + j])));
         }
       }
     }
@@ -49,6 +50,16 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
     for (std::size_t j = 0; j <= i; ++j) S[i * m_ + j] = S[j * m_ + i] = mass_->inner(Y_[i], Y_[j]);
   }
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
+}
+
+// The sum of the inertias of the coordinates that a constraint binds; 1 where none of them has any.
+Ref Solve::size_of_row(const std::vector<Ref>& M, std::size_t c) const {
+  Dag& dag = *dag_;
+  Ref sum = dag.zero();
+  for (std::size_t i = 0; i < n_; ++i) {
+    if (!dag.is_zero(A_[c * n_ + i])) sum = dag.add(sum, M[i * n_ + i]);
+  }
+  return dag.is_zero(sum) ? dag.one() : sum;
 }
 
 std::vector<Ref> Solve::forward(const std::vector<Ref>& r) const {
@@ -71,7 +82,7 @@ std::pair<std::vector<Ref>, std::vector<Ref>> Solve::operator()(std::vector<Ref>
   Dag& dag = *dag_;
   if (augmented_) {
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t k = 0; k < m_; ++k) r[i] = dag.add(r[i], dag.mul(A_[k * n_ + i], c[k]));
+      for (std::size_t k = 0; k < m_; ++k) r[i] = dag.add(r[i], dag.mul(A_[k * n_ + i], dag.mul(S_[k], c[k])));
     }
   }
   return from(forward(r), c);

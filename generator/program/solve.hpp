@@ -5,7 +5,8 @@
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
 // Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix is
 // factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without
-// mass) M + A^T A takes its place, with f - A^T gamma for f: on the constraints nothing changes.
+// mass, Euler parameters) M + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. S is diagonal,
+// of the size of M, so that nothing small is lost in the sum.
 #pragma once
 
 #include <memory>
@@ -52,6 +53,7 @@ class Solve : public LinearSolve {
   bool augmented() const { return augmented_; }
 
  private:
+  Ref size_of_row(const std::vector<Ref>& M, std::size_t c) const;
   std::vector<Ref> forward(const std::vector<Ref>& r) const;
   std::vector<Ref> backward(const std::vector<Ref>& z) const;
   std::pair<std::vector<Ref>, std::vector<Ref>> from(std::vector<Ref> z, const std::vector<Ref>& c) const;
@@ -61,6 +63,7 @@ class Solve : public LinearSolve {
   std::vector<Ref> A_, f_, gamma_;
   std::optional<system::QuasiEquations> quasi_;
   bool augmented_ = false;
+  std::vector<Ref> S_;  // per constraint, where augmented
   std::unique_ptr<Factorisation> mass_, schur_;
   std::vector<std::vector<Ref>> Y_;
 };
