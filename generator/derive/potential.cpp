@@ -53,8 +53,7 @@ class Search {
 
   bool is_potential(Ref U) {
     for (const std::size_t i : active_) {
-      const Ref rest = dag_.add(slope(U, i), Q_[i]);
-      if (!symbolic::is_proven_zero(dag_, rest) && !mechanics::vanishes(dag_, {rest})) return false;
+      if (!symbolic::is_proven_zero(dag_, dag_.add(slope(U, i), Q_[i]))) return false;
     }
     return true;
   }
@@ -65,27 +64,12 @@ class Search {
       std::optional<Ref> rest = symbolic::tidy(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
       if (mechanics::vanishes(dag_, {*rest})) continue;
       for (std::size_t before = 0; before < step && rest; ++before) rest = symbolic::without(dag_, *rest, coordinate(order[before]));
-      if (rest) rest = integral(*rest, order[step]);
+      if (rest) rest = symbolic::antiderivative(dag_, *rest, coordinate(order[step]));
       if (!rest) return std::nullopt;
       U = dag_.add(U, *rest);
     }
     if (!is_potential(U)) return std::nullopt;
     return U;
-  }
-
-  std::optional<Ref> integral(Ref f, std::size_t i) {
-    if (const std::optional<Ref> F = symbolic::antiderivative(dag_, f, coordinate(i))) return F;
-    for (const Ref r : dag_.reachable({f})) {  // c u'/u with u in a denominator: c log u
-      const symbolic::Node node = dag_[r];
-      if (node.op != Op::div) continue;
-      const Ref u = node.args[1], du = slope(u, i);
-      if (dag_.is_zero(du)) continue;
-      const Ref c = dag_.div(dag_.mul(f, u), du);
-      if (!mechanics::vanishes(dag_, {slope(c, i)})) continue;
-      const std::optional<Ref> factor = symbolic::without(dag_, c, coordinate(i));
-      if (factor) return dag_.mul(*factor, dag_.call(Op::log, u));
-    }
-    return std::nullopt;
   }
 
   // Q(s q) = s^k Q(q) with k != -1: U = -q . Q/(k + 1).

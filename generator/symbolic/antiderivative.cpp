@@ -18,14 +18,14 @@ constexpr int deepest = 8;  // of integrations by parts and of halved angles
 
 class Integrator {
  public:
-  Integrator(Dag& dag, Symbol x) : dag_(dag), x_(x), d_(partial(dag, x)) {}
+  Integrator(Dag& dag, Symbol x, Logarithms logarithms) : dag_(dag), x_(x), d_(partial(dag, x)), logarithms_(logarithms) {}
 
   std::optional<Ref> sum(Ref e, int depth) {
     if (depth > deepest) return std::nullopt;
     Ref result = dag_.zero();
     for (const Ref part : terms_of(dag_, tidy(dag_, e, term_budget))) {
       const std::optional<Ref> integral = term(part, depth);
-      if (!integral) return std::nullopt;
+      if (!integral) return by_substitution(e);  // u'/u of a u' with several terms, say
       result = dag_.add(result, *integral);
     }
     return result;
@@ -89,11 +89,16 @@ class Integrator {
       if (!is_proven_zero(dag_, d_(c))) continue;
       const std::optional<Ref> factor = without(dag_, c, x_);
       if (!factor) continue;
-      if (halves == -2) return dag_.mul(*factor, dag_.call(Op::log, u));
+      if (halves == -2) return dag_.mul(*factor, logarithm(u));
       const Ref n_plus_1 = dag_.constant(Rational(halves + 2) / 2);
       return dag_.mul(*factor, dag_.div(half_power(u, halves + 2), n_plus_1));
     }
     return std::nullopt;
+  }
+
+  Ref logarithm(Ref u) {
+    if (logarithms_ == Logarithms::positive || dag_.is_positive(u)) return dag_.call(Op::log, u);
+    return dag_.div(dag_.call(Op::log, dag_.power(u, 2)), dag_.integer(2));
   }
 
   Ref half_power(Ref u, long halves) {
@@ -168,6 +173,7 @@ class Integrator {
   Dag& dag_;
   Symbol x_;
   Derivation d_;
+  Logarithms logarithms_;
 };
 
 }  // namespace
@@ -177,10 +183,25 @@ bool depends_on(const Dag& dag, Ref expression, Symbol x) {
   return std::find(symbols.begin(), symbols.end(), x) != symbols.end();
 }
 
+namespace {
+
+/// A multiple of 1/24 that the expression is proven to be.
+std::optional<Ref> plain_number(Dag& dag, Ref expression) {
+  constexpr double parts = 24, most = 1000;
+  const double scaled = parts * evaluate(dag, {expression}, [](const Symbol& s) { return sample_double(s, 0); })[0];
+  if (!(std::abs(scaled) < most) || std::abs(scaled - std::round(scaled)) > 1e-9) return std::nullopt;
+  const Ref number = dag.constant(Rational(std::lround(scaled)) / Rational(static_cast<long>(parts)));
+  if (!is_proven_zero(dag, dag.sub(expression, number))) return std::nullopt;
+  return number;
+}
+
+}  // namespace
+
 std::optional<Ref> without(Dag& dag, Ref expression, Symbol x) {
   if (!depends_on(dag, expression, x)) return expression;
   const Ref shorter = tidy(dag, expression, term_budget);
   if (!depends_on(dag, shorter, x)) return shorter;
+  if (const std::optional<Ref> number = plain_number(dag, expression)) return number;
   for (const long at : {0, 1, 2}) {
     const Ref value = Substitution(dag, {{x, dag.integer(at)}})(shorter);
     try {
@@ -252,8 +273,8 @@ std::vector<Ref> terms_of(Dag& dag, Ref sum) {
   return result;
 }
 
-std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x) {
-  const std::optional<Ref> found = Integrator(dag, x).sum(e, 0);
+std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, Logarithms logarithms) {
+  const std::optional<Ref> found = Integrator(dag, x, logarithms).sum(e, 0);
   if (!found || !is_proven_zero(dag, dag.sub(partial(dag, x)(*found), e))) return std::nullopt;
   return found;
 }

@@ -9,8 +9,11 @@
 
 namespace eomgen::symbolic {
 
+/// Of c u'/u: c log u, or c log(u^2)/2, which has a value where u is negative too.
+enum class Logarithms { positive, any_sign };
+
 /// F with dF/dx = e, proven; nothing where none was found.
-std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x);
+std::optional<Ref> antiderivative(Dag& dag, Ref e, Symbol x, Logarithms logarithms = Logarithms::positive);
 
 /// An expression of which it is proven that it does not depend on `x`, written without it: simplified, or its value at
 /// some x. Nothing where neither works.

@@ -107,7 +107,7 @@ Ref Dag::div(Ref a, Ref b) {
   if (is_one(b)) return a;
   if (is_constant(b) && !is_zero(b)) return mul(constant(cln::recip(value(b))), a);
   if (is_zero(a) && !is_zero(b)) return zero_;
-  if (a == b) return one_;
+  if (a == b && !is_zero(a)) return one_;  // 0/0 has no value
   if (nodes_[a.id].op == Op::neg) return neg(div(nodes_[a.id].args[0], b));
   if (nodes_[b.id].op == Op::neg) return neg(div(a, nodes_[b.id].args[0]));
   if (is_negative_constant(*this, a)) return neg(div(neg(a), b));

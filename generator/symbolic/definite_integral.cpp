@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "symbolic/definite_integral.hpp"
 
-#include <cln/rational.h>
+#include <algorithm>
 
+#include "symbolic/antiderivative.hpp"
 #include "symbolic/calculus.hpp"
 #include "symbolic/time_terms.hpp"
 
@@ -105,9 +106,25 @@ class Rules {
   Ref t_, from_;
 };
 
-}  // namespace
+/// F(t) - F(from) of a proven antiderivative. Only where F is continuous and has a value wherever the integrand has one.
+std::optional<Ref> by_antiderivative(Dag& dag, Ref integrand, Symbol time, Ref from) {
+  const std::vector<Ref> given = dag.reachable({integrand});
+  const auto may_jump = [&](Ref r) { return is_kink(dag[r].op) || dag[r].op == Op::atan2; };
+  if (std::any_of(given.begin(), given.end(), may_jump)) return std::nullopt;
+  const std::optional<Ref> F = antiderivative(dag, integrand, time, Logarithms::any_sign);
+  if (!F) return std::nullopt;
+  for (const Ref r : dag.reachable({*F})) {
+    if (std::binary_search(given.begin(), given.end(), r)) continue;
+    const Node node = dag[r];
+    const bool square = dag[node.args[0]].op == Op::power && dag[node.args[0]].payload % 2 == 0;
+    const bool anywhere = dag.is_positive(node.args[0]) || (square && node.op == Op::log);  // u^2 of a u below the line
+    if ((node.op == Op::sqrt || node.op == Op::log || node.op == Op::pow) && !anywhere) return std::nullopt;
+    if (node.op == Op::asin || node.op == Op::acos) return std::nullopt;
+  }
+  return dag.sub(*F, Substitution(dag, {{time, from}})(*F));
+}
 
-std::optional<Ref> definite_integral(Dag& dag, Ref integrand, Symbol time, Ref from) {
+std::optional<Ref> by_rules(Dag& dag, Ref integrand, Symbol time, Ref from) {
   const auto terms = TimeTerms(dag, time)(integrand);
   if (!terms) return std::nullopt;
   Rules rules(dag, time, from);
@@ -118,6 +135,13 @@ std::optional<Ref> definite_integral(Dag& dag, Ref integrand, Symbol time, Ref f
     sum = dag.add(sum, dag.mul(term.factor, *part));
   }
   return sum;
+}
+
+}  // namespace
+
+std::optional<Ref> definite_integral(Dag& dag, Ref integrand, Symbol time, Ref from) {
+  const std::optional<Ref> found = by_rules(dag, integrand, time, from);
+  return found ? found : by_antiderivative(dag, integrand, time, from);
 }
 
 }  // namespace eomgen::symbolic

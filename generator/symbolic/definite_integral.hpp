@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The integral of a function of time over [from, t] in closed form, where one of these rules gives it: polynomials,
 // powers of linear functions, exponentials, sines and cosines of linear functions, their products with polynomials,
-// products of exponentials and sines, and sums of all these.
+// products of exponentials and sines, and sums of all these. Else by an antiderivative (antiderivative.hpp) that is
+// continuous and has a value wherever the integrand has one.
 #pragma once
 
 #include <optional>

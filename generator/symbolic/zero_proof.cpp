@@ -135,16 +135,46 @@ class RationalForm {
   std::uint32_t next_ = 0;
 };
 
+/// sqrt(s)^n with s^(n/2) taken out, which an expansion leaves as one atom.
+Ref roots_split(Dag& dag, Ref expression) {
+  std::unordered_map<std::uint32_t, Ref> memo;
+  for (const Ref r : dag.reachable({expression})) {
+    const Node node = dag[r];
+    std::array<Ref, 4> args{};
+    bool changed = false;
+    for (std::uint8_t i = 0; i < node.arity; ++i) {
+      args[i] = memo.at(node.args[i].id);
+      changed = changed || args[i] != node.args[i];
+    }
+    Ref result = changed ? rebuilt(dag, node, args) : r;
+    const Node power = dag[result];
+    if (power.op == Op::power && dag[power.args[0]].op == Op::sqrt) {
+      const Ref root = power.args[0], whole = dag.power(dag[root].args[0], power.payload / 2);
+      result = power.payload % 2 == 0 ? whole : dag.mul(whole, root);
+    }
+    memo.emplace(r.id, result);
+  }
+  return memo.at(expression.id);
+}
+
 }  // namespace
 
 bool is_proven_zero(Dag& dag, Ref expression) {
-  if (dag.is_zero(expression)) return true;
+  constexpr int most_rounds = 4;  // of roots inside of roots
   RationalForm form(dag);
-  const Ref numerator = form(expression).num;
-  if (dag.is_zero(numerator)) return true;
   Expander expander(dag, term_budget);
-  const std::optional<Ref> expanded = expander(numerator);
-  return expanded && dag.is_zero(*expanded);
+  for (int round = 0; round < most_rounds; ++round) {
+    if (dag.is_zero(expression)) return true;
+    const Ref numerator = form(expression).num;
+    if (dag.is_zero(numerator)) return true;
+    const std::optional<Ref> expanded = expander(numerator);
+    if (!expanded) return false;
+    if (dag.is_zero(*expanded)) return true;
+    const Ref next = roots_split(dag, *expanded);
+    if (next == expression) return false;
+    expression = next;
+  }
+  return false;
 }
 
 }  // namespace eomgen::symbolic

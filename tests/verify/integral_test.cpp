@@ -65,7 +65,8 @@ TEST_CASE("integrals: what the rules know is written in closed form, and agrees 
         "integral(t^2/(a*t + b))", "integral(sqrt(a*t + b))", "integral(t*(a*t + b)^(2/3))", "integral((a*t + b)^20)",
         "integral(1/sqrt(a*t + 1))", "integral(sinh(w*t)*cosh(b*t))", "integral(2^t)", "integral((t + exp(-t))*(t - exp(-t)))",
         "integral(f)", "integral(s)", "integral(f_dot)", "integral(f*f_dot)", "integral(integral(f))", "integral(t*integral(exp(-t)))",
-        "integral(exp(b*t)/exp(w*t))", "integral(ddt(s*t))", "integral(1/(t*(t*t)))"}) {
+        "integral(t/(t^2 + b^2))", "integral(1/(t^2 + 3))", "integral(t*exp(-b*t^2))", "integral(t/(t^2 - 40))", "integral(t/sqrt(t^2 + a))",
+        "integral(f_dot/(2 + f))", "integral((2*t + 1)/(t^2 + t - 90))", "integral(exp(b*t)/exp(w*t))", "integral(ddt(s*t))", "integral(1/(t*(t*t)))"}) {
     CAPTURE(integral);
     active = !active;
     const Checked found = check(integral, active);
@@ -79,7 +80,7 @@ TEST_CASE("integrals: every other one is a state, alone or inside of another, an
   const std::pair<std::string, std::size_t> all[] = {{"integral(exp(-t^2))", 1},       {"integral(sin(w*t^2))", 1},
                                                      {"integral(sqrt(1 + s^2))", 1},   {"integral(sin(t)/t)", 1},
                                                      {"integral(integral(exp(-s)))", 2}, {"integral(t) + integral(tanh(f))", 1},
-                                                     {"integral(log(a*t + b))", 1},    {"integral(sqrt(t)*exp(-t))", 1}};
+                                                     {"integral(log(a*t + b))", 1},    {"integral(1/(t^2 + b))", 1},     {"integral(abs(t - 1)*sign(t - 1))", 1},    {"integral(sqrt(t)*exp(-t))", 1}};
   for (const auto& [integral, states] : all) {
     CAPTURE(integral);
     for (const bool active : {false, true}) {
