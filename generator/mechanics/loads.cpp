@@ -21,7 +21,6 @@ class ForceReader {
     refuse_if_idle(first_load);
     m_.potential_by_force.push_back(potential_);
     m_.potential = dag_.add(m_.potential, potential_);
-    for (std::size_t i = 0; i < m_.q.size(); ++i) m_.generalized[i] = dag_.add(m_.generalized[i], generalized_[i]);
     m_.force_components.push_back(components(first_load));
   }
 
@@ -198,7 +197,6 @@ class ForceReader {
 
 void add_forces(Mechanics& mechanics, Lowering& lower) {
   mechanics.potential = lower.scalar(mechanics.model->energy.potential);
-  mechanics.generalized.assign(mechanics.q.size(), mechanics.dag->zero());
   ForceReader reader(mechanics, lower);
   for (std::size_t i = 0; i < mechanics.model->forces.size(); ++i) reader.read(i);
 }

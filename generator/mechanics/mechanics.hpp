@@ -116,7 +116,6 @@ struct Mechanics {
   Ref potential;      // everything that has a potential, and [energy]
   std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
-  std::vector<Ref> generalized;  // per coordinate: forces given as such (generalized, torsional dampers)
   std::vector<std::vector<Ref>> force_components;  // per Model::forces entry: its Q_i beyond the potential, loads included
 
   std::vector<Constraint> constraints;

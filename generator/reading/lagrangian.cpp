@@ -44,13 +44,8 @@ Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
 }
 
 Sum generalized_force(const Mechanics& m, Bridge& bridge, std::uint32_t i) {
-  Sum result = bridge.sum(m.generalized[i]);
-  for (const mechanics::Load& load : m.loads) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Sum direction = bridge.derivative(bridge.sum(load.at[k]), coordinate_symbol(i, 0));
-      if (!direction.is_zero()) result += bridge.sum(load.force[k]) * direction;
-    }
-  }
+  Sum result;
+  for (const std::vector<symbolic::Ref>& Q : m.force_components) result += bridge.sum(Q[i]);
   for (const mechanics::Contact& contact : m.contacts) {
     for (std::uint32_t a = 0; a < contact.dimensions(); ++a) {
       result += bridge.sum(contact.tangents[a][i]) * bridge.alphabet()({SymbolKind::friction, contact.first + a, 0});

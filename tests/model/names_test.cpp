@@ -79,3 +79,30 @@ TEST_CASE("the content hash is SHA-256") {
   CHECK(content_hash("abc") == "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   CHECK(content_hash(std::string(1000, 'a')) == "41edece42d63e8d9bf515a9ba6932e1c20cbc9f5a5d134645adb5db1b9737ea3");
 }
+
+TEST_CASE("names that the reader makes up give way to those of the model, events too") {
+  const Model model = read_model_text(R"toml(format = 1
+[parameters]
+m = 1
+[functions]
+f = "exp(-t^2)"
+[coordinates]
+x = {}
+[energy]
+kinetic = "m*x_dot^2/2"
+[[force]]
+name = "integral_2"
+generalized = { x = "integral(f) + integral(t*integral(f))" }
+[[event]]
+name = "t_start"
+when = "x"
+[[event]]
+name = "integral_1"
+when = "x_dot"
+)toml", "names");
+  REQUIRE(model.integrals.size() == 2);
+  CHECK(model.integrals[0].name == "integral_1_");
+  CHECK(model.integrals[1].name == "integral_2_");
+  REQUIRE(model.start_time);
+  CHECK(model.parameters[*model.start_time].name == "t_start_");
+}
