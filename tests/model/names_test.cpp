@@ -92,7 +92,7 @@ x = {}
 kinetic = "m*x_dot^2/2"
 [[force]]
 name = "integral_2"
-generalized = { x = "integral(f) + integral(t*integral(f))" }
+generalized = { x = "integral(f) + integral(t*f)" }
 [[event]]
 name = "t_start"
 when = "x"
