@@ -16,7 +16,9 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
       integrals_(program.integrals.size()),
       prepared_(program.prepared_count()),
       active_(program.active_constraints),
-      holonomic_(program.holonomic) {}
+      holonomic_(program.holonomic) {
+  for (const program::ContactInfo& contact : program.contacts) contacts_.push_back({contact, contact.name, 0});
+}
 
 verify::CompiledForm CompiledCode::form() const {
   const emit::RhsFunction rhs = compiled_.model.rhs;
@@ -41,6 +43,7 @@ run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
   run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
   code.kinks = kinks_;
+  code.contacts = contacts_;
   code.first_kink_bit = program::first_kink_bit;
   return code;
 }

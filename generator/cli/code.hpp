@@ -24,6 +24,7 @@ class CompiledCode {
   std::size_t prepared_ = 0;
   std::size_t active_;
   std::vector<bool> holonomic_;
+  std::vector<eom::Contact> contacts_;
 };
 
 /// Emits C with `context` and compiles it (cached by content).

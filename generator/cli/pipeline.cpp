@@ -62,7 +62,7 @@ void take_forms(Derived& derived, FormChoice choice) {
   if (choice && others.empty()) {
     const bool any = !derived.mechanics.active.empty();
     throw Error("derive", Where{derived.model.file, 0, 0, 1, ""},
-                any ? fmt::format("the constraints of this model hang together in blocks that are too large for form '{}'", system::name(*choice))
+                any ? fmt::format("the constraints of this model can be left, or hang together in blocks that are too large for form '{}'", system::name(*choice))
                     : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none", system::name(*choice)),
                 any ? "leave --form out, or choose multipliers" : "leave --form out");
   }
@@ -104,30 +104,49 @@ verify::ProgramForm program_form(const program::Program& program, int digits) {
 }
 
 // States for the self test: the start, and two beside it, so that a vanishing term cannot hide.
-std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context) {
-  std::vector<emit::TestVector> result;
+/// A point k steps beside the start, with what the right-hand side is there; nothing where it has no value.
+std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context, int k, int mode) {
   constexpr int digits = 40;
-  for (const int k : {0, 1, 2}) {
-    emit::TestVector vector;
-    vector.t = context.start_time + 0.125 * k;
-    for (std::size_t i = 0; i < context.start.size(); ++i) {
-      // Dyadic offsets: exact in binary64, different for every component.
-      vector.x.push_back(context.start[i] + k * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
+  emit::TestVector vector;
+  vector.t = context.start_time + 0.125 * k;
+  vector.mode = mode;
+  for (std::size_t i = 0; i < context.start.size(); ++i) {
+    // Dyadic offsets: exact in binary64, different for every component.
+    vector.x.push_back(context.start[i] + k * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
+  }
+  for (const emit::Quantity& parameter : context.parameters) vector.p.push_back(parameter.value);
+  for (const emit::Quantity& input : context.inputs) vector.u.push_back(input.value + k * 0.25);
+  program::Arguments<cln::cl_R> arguments;
+  arguments.t = cln::cl_R(vector.t);
+  arguments.mode = mode;
+  for (const double x : vector.x) arguments.x.push_back(cln::cl_R(x));
+  for (const double p : vector.p) arguments.p.push_back(cln::cl_R(p));
+  for (const double u : vector.u) arguments.u.push_back(cln::cl_R(u));
+  try {
+    const auto values = program::interpret(program.functions.front(), arguments, digits);
+    for (std::size_t r = 1; r < values.results.size(); ++r) {  // a law of friction without a solution, or with several
+      for (const cln::cl_R& code : values.results[r]) {
+        if (cln::minusp(code)) return std::nullopt;
+      }
     }
-    for (const emit::Quantity& parameter : context.parameters) vector.p.push_back(parameter.value);
-    for (const emit::Quantity& input : context.inputs) vector.u.push_back(input.value + k * 0.25);
-    program::Arguments<cln::cl_R> arguments;
-    arguments.t = cln::cl_R(vector.t);
-    for (const double x : vector.x) arguments.x.push_back(cln::cl_R(x));
-    for (const double p : vector.p) arguments.p.push_back(cln::cl_R(p));
-    for (const double u : vector.u) arguments.u.push_back(cln::cl_R(u));
-    try {
-      const auto values = program::interpret(program.functions.front(), arguments, digits);
-      for (const cln::cl_R& dx : values.results.front()) vector.dx.push_back(cln::double_approx(dx));
-    } catch (const std::domain_error&) {
-      continue;  // a state beside the start may lie outside the chart; the others remain
-    }
-    result.push_back(std::move(vector));
+    for (const cln::cl_R& dx : values.results.front()) vector.dx.push_back(cln::double_approx(dx));
+  } catch (const std::domain_error&) {
+    return std::nullopt;  // a state beside the start may lie outside the chart
+  }
+  return vector;
+}
+
+/// Three points in mode 0; of contacts one in every other mode, the first ones.
+std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context) {
+  constexpr std::size_t most_modes = 12;
+  std::vector<emit::TestVector> result;
+  const auto add = [&](int k, int mode) {
+    if (auto vector = test_vector(program, context, k, mode)) result.push_back(std::move(*vector));
+  };
+  for (const int k : {0, 1, 2}) add(k, 0);
+  const std::vector<eom::ContactShape> shapes(program.contacts.begin(), program.contacts.end());
+  for (const int mode : eom::contact_modes(shapes, most_modes)) {
+    if (mode != 0) add(1, mode);
   }
   return result;
 }

@@ -56,6 +56,7 @@ std::string watched(const Simulation& simulation) {
     out += line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, i.initial, i.max_relative_drift));
   }
   out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
+  if (result.contact_work != 0) out += line("impacts", fmt::format("did the work {:.6g}", result.contact_work));
   if (simulation.derived->mechanics.active.empty()) return out;
   const std::vector<bool>& holonomic = simulation.program.holonomic;
   const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();
@@ -102,6 +103,7 @@ nlohmann::ordered_json RunReport::json() const {
       {"power_balance", number(result.power_balance)},
       {"constraint_drift", derived.mechanics.active.empty() ? Json(nullptr) : number(result.constraint_drift)},
       {"projection", {{"position", result.projection_position}, {"velocity", result.projection_velocity}, {"work", result.projection_work}}},
+      {"contact_work", result.contact_work},
       {"events", events},
       {"kinks", kinks},
       {"solved", scene.solved},

@@ -8,6 +8,28 @@
 namespace eomgen::cli {
 namespace {
 
+std::vector<run::ContactOutputs> contact_outputs(const Derived& derived) {
+  std::vector<run::ContactOutputs> result;
+  for (const system::Contact& contact : derived.candidates.front().contacts) {
+    run::ContactOutputs outputs;
+    for (std::size_t a = 0; a < contact.slip.size(); ++a) {
+      const std::string name = contact.name + (contact.slip.size() > 1 ? "." + std::to_string(a + 1) : "");
+      outputs.slip.push_back("slip." + name);
+      outputs.phi.push_back(system::phi_output(name));
+      outputs.slopes.emplace_back();
+      for (const std::uint32_t q : derived.mechanics.free) {
+        outputs.slopes.back().push_back(system::slip_slope_output(name, derived.model.coordinates[q].name));
+      }
+    }
+    if (contact.unilateral) {
+      outputs.constraint = *contact.unilateral;
+      outputs.restitution = system::restitution_output(contact.name);
+    }
+    result.push_back(std::move(outputs));
+  }
+  return result;
+}
+
 /// All that the compiled code gives: coordinates, energies, what is watched, reactions, what is asked for.
 std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& scene, bool watch_power) {
   std::vector<std::string> names;
@@ -29,6 +51,11 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
     add(derive::differential_output(i, "t"));
   }
   for (const system::Reaction& r : derived.candidates.front().reactions) add("reaction." + r.label);
+  for (const run::ContactOutputs& contact : contact_outputs(derived)) {
+    for (const auto* list : {&contact.slip, &contact.phi}) std::for_each(list->begin(), list->end(), add);
+    for (const std::vector<std::string>& slopes : contact.slopes) std::for_each(slopes.begin(), slopes.end(), add);
+    if (!contact.restitution.empty()) add(contact.restitution);
+  }
   for (const std::string& name : scene.outputs) add(name);
   return names;
 }
@@ -63,6 +90,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     names.slopes.push_back(derive::differential_output(i, "t"));
     run.integrals.push_back(std::move(names));
   }
+  run.contacts = contact_outputs(derived);
   for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
     const model::Event& event = derived.model.events[i];
     run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});
@@ -74,26 +102,9 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 
 }  // namespace
 
-namespace {
-
-// Modes are emitted and verified, but nothing here switches them yet: a run in one mode would be wrong in silence.
-void refuse_friction(const mechanics::Mechanics& m) {
-  if (m.contacts.empty()) return;
-  for (const model::Constraint& constraint : m.model->constraints) {
-    if (!constraint.friction) continue;
-    throw Error("run", m.model->where(constraint.friction->span), "runs of models with friction are not supported yet",
-                "derive, verify and emit take this model; NAME_rhs has the modes (docs/abi.md)");
-  }
-  throw Error("run", Where{m.model->file, 0, 0, 1, ""}, "runs of models with dry friction are not supported yet",
-              "derive, verify and emit take this model; NAME_rhs has the modes (docs/abi.md)");
-}
-
-}  // namespace
-
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
-  refuse_friction(mechanics);
   const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), request.overrides);
@@ -105,8 +116,8 @@ Simulation simulate(const SimulationRequest& request) {
   for (const std::string& name : prepared) {
     if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end()) wanted.outputs.push_back(name);
   }
-  if (!system.active.empty()) wanted.with = {"mass", "constraints"};
-  if (!derived->model.events.empty() || program::has_kinks(system)) wanted.with.push_back("events");
+  if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
+  if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);

@@ -59,7 +59,8 @@ Applied applied_potentials(Mechanics& m) {
 std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Conserved> result;
-  if (const Certainty c = vanishing(dag, {s.power}); c != Certainty::no) result.push_back({"energy", "total energy T + U", s.energy, c});
+  const bool hit = std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
+  if (const Certainty c = hit ? Certainty::no : vanishing(dag, {s.power}); c != Certainty::no) result.push_back({"energy", "total energy T + U", s.energy, c});
   // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = impose(m), written = write_out(m);
@@ -87,7 +88,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
   must_vanish.push_back(symbolic::explicit_time(dag, m.model->functions.size())(dag.sub(L, V)));
   must_vanish.push_back(input_power);
-  if (const Certainty c = energy_conserved ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
+  if (const Certainty c = energy_conserved || hit ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
     const bool plain = dag.is_zero(V);
     result.push_back({plain ? "jacobi" : "energy.applied",
                       plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces", jacobi, c});

@@ -111,20 +111,41 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
       result.slip_rate.push_back(finish(ddt(w)));
     }
     for (const Vec3& t : contact.directions) result.directions.push_back({finish(t[0]), finish(t[1]), finish(t[2])});
-    result.static_coefficient = finish(contact.static_coefficient);
-    result.dynamic_coefficient = finish(contact.dynamic_coefficient);
+    if (contact.width) result.width = finish(*contact.width);
+    else if (contact.dimensions() > 0) result.static_coefficient = finish(contact.static_coefficient);
+    if (contact.dimensions() > 0) result.dynamic_coefficient = finish(contact.dynamic_coefficient);
+    if (contact.unilateral) {
+      const auto k = std::find(s.active.begin(), s.active.end(), contact.constraints[0]);
+      result.unilateral = static_cast<std::uint32_t>(k - s.active.begin());
+      result.restitution = finish(contact.restitution);
+    }
     s.contacts.push_back(std::move(result));
   }
 }
 
-/// Friction forces as vectors, and the mode of each contact as a number.
+/// The slip velocity along each tangent, and its slopes by the rates of the free coordinates, in which it is linear.
+void add_slip_outputs(Mechanics& m, const mechanics::Contact& contact, EquationSystem& s) {
+  for (std::size_t a = 0; a < contact.dimensions(); ++a) {
+    const std::string name = contact.name + (contact.dimensions() > 1 ? "." + std::to_string(a + 1) : "");
+    s.outputs.push_back({"slip." + name, contact.slip[a]});
+    for (const std::uint32_t i : s.free) {
+      const Ref slope = symbolic::partial(*m.dag, coordinate(i, 1))(contact.slip[a]);
+      s.outputs.push_back({system::slip_slope_output(name, m.model->coordinates[i].name), slope});
+    }
+    const Ref phi = m.dag->symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(a), 0});
+    s.outputs.push_back({system::phi_output(name), phi});
+  }
+}
+
+/// Friction forces as vectors, slip, and the mode of each contact as a number: 0 sticks, 1 and -1 slides, 2 apart.
 void add_contact_outputs(Mechanics& m, EquationSystem& s) {
   Dag& dag = *m.dag;
-  for (const mechanics::Contact& contact : m.contacts) {
+  for (std::uint32_t j = 0; j < m.contacts.size(); ++j) {
+    const mechanics::Contact& contact = m.contacts[j];
     const auto phi = [&](std::size_t a) {
       return dag.symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(a), 0});
     };
-    if (contact.directions.empty()) s.outputs.push_back({"friction." + contact.name, phi(0)});
+    if (contact.directions.empty() && contact.dimensions() > 0) s.outputs.push_back({"friction." + contact.name, phi(0)});
     for (std::size_t axis = 0; axis < 3 && !contact.directions.empty(); ++axis) {
       Ref sum = dag.zero();
       for (std::size_t a = 0; a < contact.dimensions(); ++a) {
@@ -132,8 +153,11 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
       }
       s.outputs.push_back({"friction." + contact.name + "." + std::to_string(axis + 1), sum});
     }
-    const auto index = static_cast<std::uint32_t>(&contact - m.contacts.data());
-    s.outputs.push_back({"mode." + contact.name, dag.symbol({SymbolKind::contact, index, 0})});
+    add_slip_outputs(m, contact, s);
+    const Ref slides = contact.width ? dag.one() : dag.symbol(system::slides_symbol(j));
+    const Ref apart = dag.select(dag.symbol(system::presses_symbol(j)), dag.zero(), dag.integer(2), slides);
+    s.outputs.push_back({"mode." + contact.name, contact.unilateral ? apart : slides});
+    if (contact.unilateral) s.outputs.push_back({system::restitution_output(contact.name), contact.restitution});
   }
 }
 

@@ -19,6 +19,7 @@ struct Quantity {
 /// A right-hand side in full precision, for the self test.
 struct TestVector {
   double t = 0;
+  int mode = 0;
   std::vector<double> x, p, u, dx;
 };
 

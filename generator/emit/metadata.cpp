@@ -19,6 +19,8 @@ using json = nlohmann::ordered_json;
 // matrix; of code that is wrong, or built with unsafe flags, by far more.
 constexpr double selftest_tolerance = 1e-9;
 
+constexpr std::size_t contact_values = 5;  // of each contact in the array g
+
 std::string rate_unit(const std::string& unit) {
   if (unit.empty()) return "";
   return unit.find('/') == std::string::npos ? unit + "/s" : "(" + unit + ")/s";
@@ -125,6 +127,43 @@ std::string banner(const program::Program& program, const EmissionContext& conte
   return result + last;
 }
 
+namespace {
+
+const char* state_name(const program::ContactInfo& contact, int digit) {
+  if (contact.unilateral && digit >= 3) return "is apart";
+  if (contact.dimensions == 0) return "touches";
+  if (!contact.sticks || (contact.dimensions == 2 && digit % 3 == 1)) return "slides";
+  return digit % 3 == 0 ? "sticks" : digit % 3 == 1 ? "slides along" : "slides against";
+}
+
+/// The contacts, and the modes that they can be in: names, and the numbers that stand for them.
+void add_modes(const program::Program& program, json& info) {
+  info["modes"] = {"smooth"};
+  if (program.contacts.empty()) return;
+  std::vector<eom::ContactShape> shapes;
+  const std::size_t watched = program.events.size() + program.kinks.size();
+  for (const program::ContactInfo& contact : program.contacts) {
+    json entry = {{"name", contact.name}, {"directions", contact.dimensions}, {"surface", contact.surface},
+                  {"unilateral", contact.unilateral}, {"sticks", contact.sticks}};
+    if (program.event_count() > 0) entry["first_event"] = watched + contact_values * shapes.size();
+    info["contacts"].push_back(entry);
+    shapes.push_back(contact);
+  }
+  info["modes"] = json::array();
+  for (const int mode : eom::contact_modes(shapes)) {
+    std::string name;
+    for (std::size_t j = 0; j < shapes.size(); ++j) {
+      const int digit = eom::contact_digit(mode, j);
+      name += fmt::format("{}{} {}", j == 0 ? "" : ", ", program.contacts[j].name, state_name(program.contacts[j], digit));
+      if (shapes[j].surface) name += digit < 3 ? ", pressed" : ", pulled";
+    }
+    info["modes"].push_back(name);
+    info["mode_numbers"].push_back(mode);
+  }
+}
+
+}  // namespace
+
 std::string info_json(const program::Program& program, const EmissionContext& context) {
   json info;
   info["model"] = context.id;
@@ -162,7 +201,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic) info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
   info["prepared"] = program.prepared_count();
-  info["modes"] = {"smooth"};
+  add_modes(program, info);
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};
   json dependent = json::object();
@@ -219,6 +258,12 @@ std::string selftest_body(const program::Program& program, const EmissionContext
   const std::size_t at_p = 1 + n, at_u = at_p + parameters, at_dx = at_u + inputs;
   std::string text = fmt::format("{}t, x, p, u, dx: computed in high precision, rounded once{}\n", open, close);
   text += fmt::format("  static const double values[{}][{}] = {{\n{}}};\n", context.tests.size(), at_dx + n, rows);
+  const bool modes = std::any_of(context.tests.begin(), context.tests.end(), [](const TestVector& test) { return test.mode != 0; });
+  if (modes) {
+    std::string list;
+    for (const TestVector& test : context.tests) list += (list.empty() ? "" : ", ") + std::to_string(test.mode);
+    text += wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context.tests.size(), list), "      ") + "\n";
+  }
   text += fmt::format("  for (int k = 0; k < {}; ++k) {{\n", context.tests.size());
   text += "    const double* const point = values[k];\n";
   text += fmt::format("    const double* const expected = point + {};\n", at_dx);
@@ -226,8 +271,8 @@ std::string selftest_body(const program::Program& program, const EmissionContext
   const std::string absolute = dialect.line_comments ? "std::fabs" : "fabs";
   text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n      if ({}(expected[i]) > largest) largest = {}(expected[i]);\n    }}\n", n, absolute, absolute);
   const auto compare = [&](const std::string& function, const std::string& more) {
-    text += fmt::format("    if ({}(point[0], point + 1, point + {}, {}{}, 0, dx) != 0) return k + 1;\n", called(function), at_p, more,
-                        inputs > 0 ? fmt::format("point + {}", at_u) : null);
+    text += fmt::format("    if ({}(point[0], point + 1, point + {}, {}{}, {}, dx) != 0) return k + 1;\n", called(function), at_p, more,
+                        inputs > 0 ? fmt::format("point + {}", at_u) : null, modes ? "modes[k]" : "0");
     text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n", n);
     text += fmt::format("      if (!({}(dx[i] - expected[i]) <= {}*largest)) return k + 1;\n    }}\n", absolute, decimal(selftest_tolerance));
   };
@@ -248,7 +293,7 @@ std::string purpose(const std::string& function) {
   if (function == "mass") return "M qddot + h = A^T lambda: M by columns, h.";
   if (function == "constraints") return "psi = 0, A qdot + b = 0 of the constraints with multipliers: A by columns.";
   if (function == "reactions") return "The multipliers of all constraints, in the order of the model.";
-  if (function == "events") return "Event functions: each event is where its entry changes its sign; kinks come last.";
+  if (function == "events") return "Event functions: each event is where its entry changes its sign; then kinks, then contacts.";
   if (function == "outputs") return "The outputs asked for.";
   return function;
 }

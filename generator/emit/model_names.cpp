@@ -34,6 +34,12 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   for (const std::string& name : program.reactions) names.reactions.push_back(reactions.declare(name));
   for (const std::string& name : program.events) names.events.push_back(events.declare(name));
   for (std::size_t k = 0; k < program.kinks.size(); ++k) names.events.push_back(events.declare("kink_" + std::to_string(k + 1)));
+  for (const program::ContactInfo& contact : program.contacts) {
+    if (program.event_count() == 0) break;
+    for (const char* what : {"slip_", "above_", "below_", "hold_", "margin_"}) {
+      names.events.push_back(events.declare(identifier(what + contact.name)));
+    }
+  }
   return names;
 }
 

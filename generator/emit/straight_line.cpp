@@ -254,7 +254,8 @@ class Printer {
   std::string unused_arguments() const {
     std::vector<std::string> unused;
     for (const Argument& argument : arguments(function_.name, text_, names_)) {
-      if (argument.kind != Argument::Kind::result && !is_used(argument.slot)) unused.push_back(argument.name);
+      const bool used = is_used(argument.slot) || (argument.kind == Argument::Kind::mode && is_used(Slot::contact));
+      if (argument.kind != Argument::Kind::result && !used) unused.push_back(argument.name);
     }
     for (std::size_t r = 0; r < text_.results.size(); ++r) {
       if (function_.results[r].second.empty()) unused.push_back(text_.results[r]);
@@ -284,10 +285,10 @@ class Printer {
     load(Slot::state, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.x, i); });
     load(Slot::parameter, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.p, i); });
     load(Slot::contact, [&](std::uint32_t i) {
-      std::string digit = fmt::format("({} & {})", names_.mode, system::contact_bits);
-      for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", system::contact_states);
+      std::string digit = fmt::format("({} & {})", names_.mode, eom::contact_bits);
+      for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
       const std::string one = dialect_.constant(1);
-      if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, system::contact_states, system::contact_states / 2, one);
+      if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
       return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect_.constant(0));
     });
     load(Slot::input, [&](std::uint32_t i) {

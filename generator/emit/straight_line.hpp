@@ -30,7 +30,7 @@ struct ModelNames {
   std::vector<std::string> state;       // of x: coordinates, then velocities
   std::vector<std::string> parameters, inputs, outputs, reactions, events;
   std::vector<std::string> sides;       // of the kinks whose branches `mode` holds
-  std::vector<std::string> contacts;    // per contact: slides_NAME, presses_NAME (contact_modes.hpp)
+  std::vector<std::string> contacts;    // per contact: slides_NAME, presses_NAME (eom/modes/contact_state.hpp)
   std::vector<std::string> acceleration;     // "theta_ddot", of the free coordinates
   std::vector<std::string> all_coordinates;  // of the model, also eliminated ones (for names that a Program suggests)
   std::string arguments_t = "t", x, p, w, u, mode;  // names of the arguments that are left

@@ -104,6 +104,7 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       result.name = constraint.name;
       result.label = constraint.psi.size() > 1 ? constraint.name + "." + std::to_string(k + 1) : constraint.name;
       result.written = constraint.psi[k];
+      result.unilateral = constraint.unilateral;
       if (constraint.velocity) {
         add_velocity_form(m, lower, result);
       } else {
@@ -126,7 +127,7 @@ void eliminate_coordinates(Mechanics& m) {
   for (bool changed = true; changed;) {
     changed = false;
     for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-      if (used[k] || !m.constraints[k].holonomic()) continue;
+      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral) continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
       if (coordinates_in(*m.dag, reduced).empty()) refuse_repeated(m, m.constraints[k], reduced);
       FixedCoordinate fixed{};

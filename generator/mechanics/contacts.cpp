@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coulomb friction: which particle a constraint presses on, the directions in which it can slide there, and how fast it does.
+// Contacts: which particle a constraint with friction presses on, the directions in which it can slide there, and how fast it does.
 #include <algorithm>
+#include <eom/modes/contact_state.hpp>
 #include <functional>
 #include <set>
 
@@ -26,6 +27,9 @@ class ContactReader {
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
       if (m_.constraints[k].name == constraint.name) contact_.constraints.push_back(k);
     }
+    contact_.unilateral = constraint.unilateral;
+    contact_.restitution = constraint.restitution == model::no_node ? dag_.zero() : lower_.scalar(constraint.restitution);
+    if (!constraint.friction) return add();
     find_particle();
     find_tangents();
     const Vec3 v = lower_.ddt(lower_.position(contact_.place), constraint.friction->span);
@@ -153,14 +157,19 @@ class ContactReader {
   }
 
   void finish(const model::Friction& law) {
-    contact_.first = 0;
-    for (const Contact& before : m_.contacts) contact_.first += static_cast<std::uint32_t>(before.dimensions());
     Ref squares = dag_.zero();
     for (const Ref w : contact_.slip) squares = dag_.add(squares, dag_.mul(w, w));
     lower_.set_slip(contact_.slip.size() == 1 ? dag_.call(symbolic::Op::abs, contact_.slip[0])
                                               : dag_.call(symbolic::Op::sqrt, squares));
-    contact_.static_coefficient = lower_.scalar(law.static_coefficient);
     contact_.dynamic_coefficient = lower_.scalar(law.dynamic_coefficient);
+    if (law.width != model::no_node) contact_.width = lower_.scalar(law.width);
+    else contact_.static_coefficient = lower_.scalar(law.static_coefficient);
+    add();
+  }
+
+  void add() {
+    contact_.first = 0;
+    for (const Contact& before : m_.contacts) contact_.first += static_cast<std::uint32_t>(before.dimensions());
     m_.contacts.push_back(std::move(contact_));
   }
 
@@ -173,10 +182,8 @@ class ContactReader {
   Contact contact_;
 };
 
-constexpr std::size_t most_contacts = 3;  // the mode of an emitted function has room for no more (docs/abi.md)
-
 [[noreturn]] void refuse_more(const Mechanics& m, const model::Span& span) {
-  throw Error("mechanics", m.model->where(span), "this is the fourth contact with friction",
+  throw Error("mechanics", m.model->where(span), "this is the fourth contact with friction or that can be left",
               "a model may have three: the number of modes grows with every one");
 }
 
@@ -190,38 +197,69 @@ const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
 
 }  // namespace
 
-void check_coefficients(const Mechanics& m) {
+namespace {
+
+/// Values of expressions of parameters alone; none of others.
+std::vector<cln::cl_R> known_values(const Mechanics& m, const std::vector<Ref>& expressions) {
   constexpr int digits = 30;
   // A parameter may use others, declared before or after it, without cycles.
   const std::function<cln::cl_R(const symbolic::Symbol&)> value = [&](const symbolic::Symbol& symbol) {
     return symbolic::evaluate(*m.dag, {m.parameter_value.at(symbol.index)}, value, digits)[0];
   };
-  for (const Contact& contact : m.contacts) {
-    const std::vector<Ref> both{contact.static_coefficient, contact.dynamic_coefficient};
-    const std::vector<symbolic::Symbol> symbols = m.dag->symbols(both);
-    if (std::any_of(symbols.begin(), symbols.end(), [](const auto& s) { return s.kind != SymbolKind::parameter; })) continue;
-    const std::vector<cln::cl_R> mu = symbolic::evaluate(*m.dag, both, value, digits);
-    if (!cln::minusp(mu[0]) && !cln::minusp(mu[1]) && mu[0] >= mu[1]) continue;
-    const bool negative = cln::minusp(mu[0]) || cln::minusp(mu[1]);
+  for (const symbolic::Symbol& s : m.dag->symbols(expressions)) {
+    if (s.kind != SymbolKind::parameter) return {};
+  }
+  return symbolic::evaluate(*m.dag, expressions, value, digits);
+}
+
+void check_law(const Mechanics& m, const Contact& contact) {
+  const Ref mu_d = contact.dynamic_coefficient;
+  const std::vector<cln::cl_R> mu = known_values(m, {contact.width ? mu_d : contact.static_coefficient, mu_d});
+  const bool negative = !mu.empty() && (cln::minusp(mu[0]) || cln::minusp(mu[1]));
+  if (!mu.empty() && (negative || mu[0] < mu[1])) {
     throw Error("mechanics", m.model->where(law_of(m, contact).span),
                 negative ? "a coefficient of friction of '" + contact.name + "' is negative"
                          : "the static coefficient of friction of '" + contact.name + "' is less than the dynamic one",
                 negative ? "friction opposes slip: give coefficients of 0 or more"
                          : "what sticks at a force must not be dragged loose by less: give static >= dynamic");
   }
+  if (!contact.width) return;
+  const std::vector<cln::cl_R> width = known_values(m, {*contact.width});
+  if (width.empty() || cln::plusp(width[0])) return;
+  throw Error("mechanics", m.model->where(law_of(m, contact).span), "the width of the friction of '" + contact.name + "' is not positive",
+              "give a slip speed above 0, small beside those of the motion; or Coulomb's law, which has no width");
+}
+
+void check_restitution(const Mechanics& m, const Contact& contact) {
+  const std::vector<cln::cl_R> e = known_values(m, {contact.restitution});
+  if (e.empty() || (!cln::minusp(e[0]) && e[0] <= 1)) return;
+  const auto named = [&](const model::Constraint& constraint) { return constraint.name == contact.name; };
+  const auto& constraint = *std::find_if(m.model->constraints.begin(), m.model->constraints.end(), named);
+  throw Error("mechanics", m.model->where(m.model->arena[constraint.restitution].span),
+              "the coefficient of restitution of '" + contact.name + "' is not between 0 and 1",
+              "0 stays after an impact, 1 bounces without loss");
+}
+
+}  // namespace
+
+void check_coefficients(const Mechanics& m) {
+  for (const Contact& contact : m.contacts) {
+    if (contact.dimensions() > 0) check_law(m, contact);
+    if (contact.unilateral) check_restitution(m, contact);
+  }
 }
 
 void add_contacts(Mechanics& m, Lowering& lower) {
   ContactReader reader(m, lower);
   for (const model::Constraint& constraint : m.model->constraints) {
-    if (!constraint.friction) continue;
-    if (m.contacts.size() == most_contacts) refuse_more(m, constraint.friction->span);
+    if (!constraint.friction && !constraint.unilateral) continue;
+    if (m.contacts.size() == eom::max_contacts) refuse_more(m, constraint.friction ? constraint.friction->span : constraint.span);
     reader.read(constraint);
   }
   for (const model::Force& force : m.model->forces) {
     const auto* dry = std::get_if<model::Dry>(&force.kind);
     if (dry == nullptr) continue;
-    if (m.contacts.size() == most_contacts) refuse_more(m, dry->law.span);
+    if (m.contacts.size() == eom::max_contacts) refuse_more(m, dry->law.span);
     reader.read(force, *dry);
   }
 }

@@ -57,6 +57,7 @@ struct Constraint {
   std::vector<Ref> gradient;  // f_i, all coordinates
   Ref rate;                   // b: d psi/d t at fixed q
   model::NodeId written = model::no_node;  // psi, or what is 0 of a velocity constraint, in the model
+  bool unilateral = false;                 // psi >= 0: never eliminated
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
 };
@@ -84,8 +85,9 @@ struct Integral {
   Ref psi;
 };
 
-/// Where Coulomb's law acts: a particle on a surface (one constraint) or a curve (two), or one coordinate with a given normal
-/// force. The friction force is sum_a phi_a t_a with the symbols phi_a = {SymbolKind::friction, first + a}.
+/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), or one coordinate with a given normal
+/// force. The friction force is sum_a phi_a t_a with the symbols phi_a = {SymbolKind::friction, first + a}. A unilateral constraint
+/// is a contact with or without friction.
 struct Contact {
   std::string name;                         // of the constraint or the force
   std::vector<std::uint32_t> constraints;   // 1 or 2 indices; none: the normal force is given
@@ -97,7 +99,10 @@ struct Contact {
   std::vector<Vec3> directions;             // t_a, orthonormal; none where a coordinate rubs
   std::vector<std::vector<Ref>> tangents;   // t_a . dr/dq_i per t_a, all coordinates
   std::vector<Ref> slip;                    // t_a . (v - v_s)
-  Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed
+  Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first none where there is a width
+  std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
+  bool unilateral = false;                      // its one constraint can be left
+  Ref restitution;                              // of impacts then
 
   std::size_t dimensions() const { return tangents.size(); }
 };
@@ -125,7 +130,7 @@ struct Mechanics {
 
   std::vector<Classification> classification;  // per constraint
   std::vector<Integral> integrals;
-  std::vector<Contact> contacts;  // constraints with friction in the order of the model, then dry forces
+  std::vector<Contact> contacts;  // constraints with friction or unilateral in the order of the model, then dry forces
 
   std::vector<Ref> event;                            // per Model::events entry: changes its sign there
   std::vector<Ref> function_value;                   // per Model::functions entry, as an expression of t

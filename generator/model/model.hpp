@@ -157,9 +157,11 @@ struct Magnus {  // m c w x v at the centre of mass, eq. (8.52)
 struct Generalized {
   std::vector<std::pair<std::uint32_t, NodeId>> components;
 };  // coordinate, force
-/// Coulomb's law: coefficients are expressions, which may use Op::slip.
+/// Coulomb's law: coefficients are expressions, which may use Op::slip. With a width w0 the smooth law in its place,
+/// -mu |N| w / sqrt(w^2 + w0^2), which never sticks and has no static coefficient.
 struct Friction {
   NodeId static_coefficient = no_node, dynamic_coefficient = no_node;
+  NodeId width = no_node;
   NodeId surface_velocity = no_node;  // vector: stated motion of the surface along itself
   Span span;
 };
@@ -180,6 +182,8 @@ struct Constraint {
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
   bool curve = false;       // holonomic = ["psi1", "psi2"]
   bool velocity = false;    // velocity = "..": psi binds velocities
+  bool unilateral = false;  // psi >= 0: it pushes and does not pull
+  NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
   Span span;
 };

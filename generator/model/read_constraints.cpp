@@ -9,8 +9,8 @@ namespace eomgen::model {
 void Reader::declare_constraints() {
   for (const Value* table : sections("constraint")) {
     check_keys(*table, {"[[constraint]]",
-                        {"name", "holonomic", "velocity", "holds", "friction"},
-                        {"rolling", "sliding", "restitution", "shape"}});
+                        {"name", "holonomic", "velocity", "holds", "restitution", "friction"},
+                        {"rolling", "sliding", "shape"}});
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
     Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
@@ -26,14 +26,6 @@ void Reader::read_constraints() {
   for (const Value* table : sections("constraint")) {
     Constraint& constraint = model_.constraints[index++];
     const std::string what = fmt::format("the constraint '{}'", constraint.name);
-    if (const Value* holds = table->find("holds")) {
-      as(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\"");
-      if (holds->text == "unilateral") not_yet(holds->span, "holds = \"unilateral\"");
-      if (holds->text != "bilateral") {
-        source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)),
-                     "write holds = \"bilateral\"");
-      }
-    }
     const Value* velocity = table->find("velocity");
     if (velocity != nullptr && table->find("holonomic") != nullptr) {
       source_.fail(velocity->span, fmt::format("{} is both 'holonomic' and 'velocity'", what),
@@ -45,8 +37,38 @@ void Reader::read_constraints() {
                        ? *velocity
                        : needed(*table, "holonomic", what,
                                 "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
+    read_holds(constraint, *table);
     if (const Value* friction = table->find("friction")) read_friction(constraint, *friction);
   }
+}
+
+// holds = "unilateral": psi >= 0, with a coefficient of restitution.
+void Reader::read_holds(Constraint& constraint, const Value& table) {
+  const std::string what = fmt::format("the constraint '{}'", constraint.name);
+  const Value* holds = table.find("holds");
+  const Value* restitution = table.find("restitution");
+  if (holds != nullptr) {
+    as(Value::Kind::text, *holds, fmt::format("'holds' of {}", what), "write holds = \"bilateral\" or \"unilateral\"");
+    if (holds->text != "bilateral" && holds->text != "unilateral") {
+      source_.fail(holds->span, fmt::format("a constraint cannot hold {}", quote(holds->text)),
+                   "write holds = \"bilateral\", or \"unilateral\" for one that can be left");
+    }
+    constraint.unilateral = holds->text == "unilateral";
+  }
+  if (constraint.unilateral && (constraint.velocity || constraint.psi.size() > 1)) {
+    source_.fail(holds->span,
+                 constraint.velocity ? fmt::format("{} binds velocities, and has no side to be left to", what)
+                                     : fmt::format("{} has {} equations; a contact that can be left has one", what, constraint.psi.size()),
+                 "write one [[constraint]] with one holonomic = \"psi\" for each contact; it holds psi >= 0");
+  }
+  if (restitution == nullptr) return;
+  if (!constraint.unilateral) {
+    source_.fail(restitution->span, fmt::format("'restitution' of {} has no effect: a bilateral constraint is never hit", what),
+                 "add holds = \"unilateral\", or remove restitution");
+  }
+  constraint.restitution =
+      resolver_.value(*restitution, Context{fmt::format("the restitution of {}", what), 0, Shape::scalar, dimension_of("1"),
+                                            "a coefficient of restitution is a number or made of parameters"}).node;
 }
 
 void Reader::read_equations(Constraint& constraint, const Value& value) {

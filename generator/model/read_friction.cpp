@@ -26,15 +26,36 @@ Friction Reader::read_coefficients(const Value& table, const std::string& what, 
                           "a coefficient of friction is made of parameters, slip, velocities, coordinates and t"};
     return resolver_.value_with(value, {{"slip", slip}}, context).node;
   };
-  law.static_coefficient = coefficient("static");
   law.dynamic_coefficient = coefficient("dynamic");
+  const Value* name = table.find("law");
+  const Value* width = table.find("width");
+  if (name != nullptr) as(Value::Kind::text, *name, fmt::format("'law' of {}", what), "write law = \"coulomb\" or law = \"smooth\"");
+  if (name != nullptr && name->text != "coulomb" && name->text != "smooth") {
+    source_.fail(name->span, fmt::format("there is no law of friction {}", quote(name->text)),
+                 "write law = \"coulomb\" (the default), which sticks and slides, or law = \"smooth\"");
+  }
+  if (name == nullptr || name->text == "coulomb") {
+    if (width != nullptr) {
+      source_.fail(width->span, fmt::format("'width' of {} belongs to the smooth law", what),
+                   "add law = \"smooth\", or remove width: Coulomb's law has none");
+    }
+    law.static_coefficient = coefficient("static");
+    return law;
+  }
+  if (const Value* value = table.find("static")) {
+    source_.fail(value->span, fmt::format("the smooth law of {} has no static coefficient: under it nothing sticks", what),
+                 "remove static, or law = \"smooth\"");
+  }
+  const Value& given = needed(table, "width", what, "add width = \"1 mm/s\", the slip speed at which friction is mu |N|/sqrt(2)");
+  law.width = resolver_.value(given, Context{fmt::format("the width of {}", what), on_time, Shape::scalar, speed,
+                                             "a width is a slip speed made of parameters"}).node;
   return law;
 }
 
 void Reader::read_friction(Constraint& constraint, const Value& value) {
   const std::string what = fmt::format("the friction of '{}'", constraint.name);
   as(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
-  check_keys(value, {what, {"static", "dynamic", "surface_velocity"}, {}});
+  check_keys(value, {what, {"static", "dynamic", "surface_velocity", "law", "width"}, {}});
   if (constraint.velocity) {
     source_.fail(value.span, fmt::format("'{}' is a constraint on velocities, which has no surface to slide on", constraint.name),
                  "friction belongs to a holonomic constraint of one particle: a surface, or a curve of two equations");
@@ -53,7 +74,7 @@ void Reader::read_friction(Constraint& constraint, const Value& value) {
 }
 
 Dry Reader::read_dry(const Value& table, const std::string& what) {
-  check_keys(table, {what, {"coordinate", "normal", "static", "dynamic"}, {}});
+  check_keys(table, {what, {"coordinate", "normal", "static", "dynamic", "law", "width"}, {}});
   const Value& name = needed(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
   as(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
   const Symbol* symbol = scope_.find(name.text);
@@ -70,16 +91,20 @@ Dry Reader::read_dry(const Value& table, const std::string& what) {
   return dry;
 }
 
-// friction.NAME, friction.NAME.1 .. 3 and mode.NAME of a contact.
+// friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2 and mode.NAME of a contact.
 bool Reader::is_contact_output(const std::vector<std::string>& parts) {
-  if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode")) return false;
+  if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode" && parts[0] != "slip")) return false;
   const Symbol* symbol = scope_.find(parts[1]);
   if (symbol == nullptr) return false;
   const bool dry = symbol->kind == SymbolKind::force && std::holds_alternative<Dry>(model_.forces[symbol->index].kind);
-  const bool rough = symbol->kind == SymbolKind::constraint && model_.constraints[symbol->index].friction.has_value();
-  if (parts[0] == "mode") return parts.size() == 2 && (dry || rough);
+  const bool constraint = symbol->kind == SymbolKind::constraint;
+  const bool rough = constraint && model_.constraints[symbol->index].friction.has_value();
+  const bool left = constraint && model_.constraints[symbol->index].unilateral;
+  if (parts[0] == "mode") return parts.size() == 2 && (dry || rough || left);
+  if (parts[0] == "slip") return (dry || rough) && (parts.size() == 2 || (rough && (parts[2] == "1" || parts[2] == "2")));
   if (dry) return parts.size() == 2;
-  return rough && parts.size() == 3 && (parts[2] == "1" || parts[2] == "2" || parts[2] == "3");
+  if (rough && parts.size() == 2) return true;  // all three components
+  return rough && (parts[2] == "1" || parts[2] == "2" || parts[2] == "3");
 }
 
 }  // namespace eomgen::model

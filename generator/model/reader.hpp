@@ -151,6 +151,7 @@ private:
   void read_equations(Constraint& constraint, const Value& value);
   // read_friction.cpp
   void read_friction(Constraint& constraint, const Value& value);
+  void read_holds(Constraint& constraint, const Value& table);  // read_constraints.cpp
   Friction read_coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed);
   Dry read_dry(const Value& table, const std::string& what);
   void read_energy();

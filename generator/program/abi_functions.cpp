@@ -30,6 +30,22 @@ void fix_parameters(system::EquationSystem& s, const std::map<std::uint32_t, sym
   system::for_each_expression(s, [&fixed](Ref& r, system::Part) { r = fixed(r); });
 }
 
+/// Rows of A and gamma of contacts that are apart become 0.
+void leave_open_contacts(system::EquationSystem& s) {
+  Dag& dag = *s.dag;
+  const std::size_t n = s.free.size();
+  for (std::uint32_t j = 0; j < s.contacts.size(); ++j) {
+    if (!s.contacts[j].unilateral) continue;
+    const std::uint32_t k = *s.contacts[j].unilateral;
+    const Ref side = dag.symbol(system::presses_symbol(j)), zero = dag.zero();
+    const auto touching = [&](Ref r) { return dag.is_zero(r) ? r : dag.select(side, zero, zero, r); };
+    for (std::size_t i = 0; i < n; ++i) s.A[k * n + i] = touching(s.A[k * n + i]);
+    s.gamma[k] = touching(s.gamma[k]);
+    s.apart.resize(s.active.size(), zero);
+    s.apart[k] = dag.select(side, zero, dag.one(), zero);
+  }
+}
+
 /// "12" or, from ten rows on, "3_12".
 std::string indices(std::size_t i, std::size_t j, std::size_t n) {
   return n < 10 ? fmt::format("{}{}", i + 1, j + 1) : fmt::format("{}_{}", i + 1, j + 1);
@@ -43,6 +59,7 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   fix_parameters(system_, fix);
   live_M_ = system_.M, live_f_ = system_.f, live_A_ = system_.A;
   if (hold) kinks_ = hold_kinks(system_);
+  leave_open_contacts(system_);
   Dag& dag = *system_.dag;
   std::map<Symbol, Ref> solution;
   ties_ = ties;
@@ -70,16 +87,6 @@ void AbiFunctions::close_contacts(std::map<Symbol, Ref>& solution) {
   for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
     solution[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = friction_.phi[b];
   }
-}
-
-WantedFunction AbiFunctions::contact_events() {
-  WantedFunction function{"contacts", {{"g", {}}}, {}, {}};
-  std::vector<Ref>& values = function.results[0].second;
-  for (const ContactWatch& watch : friction_.watch) {
-    values.insert(values.end(), {watch.slip, watch.above, watch.below, watch.press, watch.margin});
-  }
-  add_solution(function);
-  return function;
 }
 
 const LinearSolve& AbiFunctions::solve() {
@@ -271,6 +278,10 @@ WantedFunction AbiFunctions::events() {
   bool solved = false;
   for (const system::Event& event : system_.events) function.results[0].second.push_back(written_out(event.value, solved));
   for (const Kink& kink : kinks_) function.results[0].second.push_back(kink.value);
+  for (const ContactWatch& watch : friction_.watch) {
+    solved = true;
+    for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin}) function.results[0].second.push_back(value);
+  }
   if (solved) add_solution(function);
   return function;
 }

@@ -40,12 +40,11 @@ class AbiFunctions {
   WantedFunction jac_p(std::size_t parameters);
   WantedFunction mass();
   WantedFunction constraints();
-  /// Of each contact: slip, above, below, press, margin (friction.hpp).
-  WantedFunction contact_events();
   WantedFunction reactions();
   /// Throws Error with the names that exist where one is unknown.
   WantedFunction outputs(const std::vector<std::string>& names);
-  /// The events of the model, then the surfaces of the kinks that are held.
+  /// The events of the model, then the surfaces of the kinks that are held, then slip, above, below, hold, margin of each contact
+  /// (friction.hpp).
   WantedFunction events();
 
   const std::vector<Kink>& kinks() const { return kinks_; }

@@ -140,7 +140,6 @@ std::size_t parameter_count(const system::EquationSystem& system) {
 
 WantedFunction wanted_function(AbiFunctions& functions, const std::string& name, const Request& request) {
   if (name == "jac") return functions.jac();
-  if (name == "contacts") return functions.contact_events();
   if (name == "jac_p") {
     return functions.jac_p(request.parameters > 0 ? request.parameters : parameter_count(functions.system()));
   }
@@ -175,7 +174,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.tried = tried(candidates, systems);
   program.active_constraints = system.active.size();
   for (const system::Contact& contact : system.contacts) {
-    program.contacts.push_back({contact.name, contact.slip.size(), contact.reactions.size() == 1});
+    program.contacts.push_back({contact.shape(), contact.name});
   }
   program.holonomic = system.holonomic;
   program.functions.push_back(finished(chosen.best, chosen.rhs));

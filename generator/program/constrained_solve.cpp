@@ -98,6 +98,8 @@ std::optional<std::vector<DependentBlock>> dependent_blocks(const system::Equati
 bool form_applies(const system::EquationSystem& s, system::Form form, bool everywhere) {
   if (form == system::Form::multipliers) return true;
   if (s.active.empty() || s.active.size() >= s.free.size()) return false;
+  const auto can_be_left = [](const system::Contact& contact) { return contact.unilateral.has_value(); };
+  if (std::any_of(s.contacts.begin(), s.contacts.end(), can_be_left)) return false;  // the dependent velocities change with the mode
   const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
   if (!blocks || !everywhere) return blocks.has_value();
   return std::all_of(blocks->begin(), blocks->end(), [&](const DependentBlock& block) {

@@ -89,24 +89,34 @@ class Closure {
     return sum;
   }
 
-  Ref slides(std::uint32_t j) const { return dag_.symbol({SymbolKind::contact, j, 0}); }
-  Ref presses(std::uint32_t j) const { return dag_.symbol({SymbolKind::contact, j, 1}); }
+  Ref slides(std::uint32_t j) const { return dag_.symbol(system::slides_symbol(j)); }
+  /// The sign of the normal force; a contact that can be left does not pull.
+  Ref presses(std::uint32_t j) const {
+    return s_.contacts[j].unilateral ? dag_.one() : dag_.symbol(system::presses_symbol(j));
+  }
+  /// `apart` where contact j is left, else `touching`.
+  Ref by_touch(std::uint32_t j, Ref apart, Ref touching) const {
+    if (!s_.contacts[j].unilateral || apart == touching) return touching;
+    return dag_.select(dag_.symbol(system::presses_symbol(j)), dag_.zero(), apart, touching);
+  }
   /// `sliding` where contact j slides, else `sticking`.
   Ref by_mode(std::uint32_t j, Ref sticking, Ref sliding) const {
-    if (sticking == sliding) return sliding;
+    if (sticking == sliding || s_.contacts[j].width) return sliding;
     const Ref half = dag_.constant(symbolic::Rational(1) / 2), s = slides(j);
     return dag_.select(dag_.mul(s, s), half, sticking, sliding);
   }
   Ref root(Ref r) const { return dag_.call(symbolic::Op::sqrt, r); }
   Ref absolute(Ref r) const { return dag_.call(symbolic::Op::abs, r); }
-  Ref speed(const Contact& c) const {
-    Ref squares = dag_.zero();
-    for (const Ref w : c.slip) squares = dag_.add(squares, dag_.mul(w, w));
-    return root(squares);
+  Ref squares(const Contact& c) const {
+    Ref sum = dag_.zero();
+    for (const Ref w : c.slip) sum = dag_.add(sum, dag_.mul(w, w));
+    return sum;
   }
+  Ref speed(const Contact& c) const { return root(squares(c)); }
   /// Component a of the direction of slip.
   Ref heading(std::uint32_t j, std::size_t a) const {
     const Contact& c = s_.contacts[j];
+    if (c.width) return dag_.div(c.slip[a], root(dag_.add(squares(c), dag_.mul(*c.width, *c.width))));
     return c.slip.size() == 1 ? slides(j) : dag_.div(c.slip[a], speed(c));
   }
 
@@ -118,10 +128,13 @@ class Closure {
       const Affine rate = affine(c.slip_rate[a]);
       const Affine law = sliding_law(j, a);
       const std::size_t row = c.first + a;
-      for (std::size_t b = 0; b < count_; ++b) matrix_[row * count_ + b] = by_mode(j, rate.slope[b], law.slope[b]);
-      right_[row] = dag_.neg(by_mode(j, rate.value, law.value));
+      for (std::size_t b = 0; b < count_; ++b) {
+        const Ref none = b == row ? dag_.one() : dag_.zero();  // apart: phi = 0
+        matrix_[row * count_ + b] = by_touch(j, none, by_mode(j, rate.slope[b], law.slope[b]));
+      }
+      right_[row] = by_touch(j, dag_.zero(), dag_.neg(by_mode(j, rate.value, law.value)));
     }
-    if (c.reactions.size() == 1) watch_surface(j);
+    if (c.reactions.size() == 1 && !c.slip.empty()) watch_surface(j);
   }
 
   /// What vanishes while sliding: phi_a + mu |N| w_a/|w|.
@@ -163,12 +176,13 @@ class Closure {
     };
     const auto value = [](const Affine& l) { return l.value; };
     const auto slope = [&c](const Affine& l) { return l.slope[c.first]; };
-    const Ref square = form(value, value), feedback = form(slope, slope), sigma_mu = dag_.mul(slides(j), c.dynamic_coefficient);
+    const Ref square = form(value, value), feedback = form(slope, slope), sigma_mu = dag_.mul(heading(j, 0), c.dynamic_coefficient);
     if (dag_.is_zero(feedback)) {
       curve_normal_[j] = root(square);
       return;
     }
-    const Ref a = dag_.sub(dag_.one(), dag_.mul(dag_.power(c.dynamic_coefficient, 2), feedback));
+    const Ref strength = c.width ? sigma_mu : c.dynamic_coefficient;  // the sign of sliding drops out of the square
+    const Ref a = dag_.sub(dag_.one(), dag_.mul(dag_.power(strength, 2), feedback));
     const Ref b = dag_.mul(sigma_mu, form(value, slope));
     const Ref discriminant = dag_.add(dag_.mul(b, b), dag_.mul(a, square));
     curve_normal_[j] = dag_.div(dag_.sub(root(discriminant), b), a);
@@ -187,7 +201,7 @@ class Closure {
       feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, heading(j, a)), normal_[j][0].slope[c.first + a]));
     }
     if (dag_.is_zero(feedback)) return;
-    margin_[j] = by_mode(j, dag_.one(), dag_.sub(dag_.one(), absolute(feedback)));
+    margin_[j] = by_touch(j, dag_.one(), by_mode(j, dag_.one(), dag_.sub(dag_.one(), absolute(feedback))));
     const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
     add_codes(j, dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
   }
@@ -221,28 +235,32 @@ class Closure {
     return phi;
   }
 
+  /// |N| of contact j; the multiplier of one surface into `press`.
+  Ref normal_force(std::uint32_t j, Ref& press) {
+    const Contact& c = s_.contacts[j];
+    const std::size_t n = c.reactions.size();
+    if (n == 0) return absolute(c.normal);
+    if (n == 1) press = dag_.mul(presses(j), at(normal_[j][0]));
+    Ref square = dag_.zero();
+    for (std::size_t k = 0; k < n * n && !c.gram.empty(); ++k) {
+      square = dag_.add(square, dag_.mul(c.gram[k], dag_.mul(at(normal_[j][k / n]), at(normal_[j][k % n]))));
+    }
+    return root(square);
+  }
+
   void add_watch(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
-    Ref normal;
-    ContactWatch watch{c.slip.size() == 1 ? c.slip[0] : speed(c), {}, dag_.one(), dag_.one(), dag_.one()};
-    if (c.reactions.empty()) {
-      normal = absolute(c.normal);
-    } else {
-      Ref square = dag_.zero();
-      const std::size_t n = c.reactions.size();
-      for (std::size_t k = 0; k < n * n; ++k) {
-        square = dag_.add(square, dag_.mul(c.gram[k], dag_.mul(at(normal_[j][k / n]), at(normal_[j][k % n]))));
-      }
-      normal = root(square);
-      if (n == 1) watch.press = dag_.mul(presses(j), at(normal_[j][0]));
-    }
-    const Ref limit = dag_.mul(c.static_coefficient, normal), phi = result_.phi[c.first];
-    if (c.slip.size() == 1) {
+    const Ref one = dag_.one();
+    ContactWatch watch{one, one, one, one, one};
+    const Ref normal = normal_force(j, watch.hold);
+    if (c.unilateral) watch.hold = by_touch(j, s_.psi[*c.unilateral], watch.hold);
+    if (!c.slip.empty()) watch.slip = c.slip[0];
+    if (c.slip.size() == 2) watch.below = c.slip[1];
+    if (c.sticks()) {
+      const Ref limit = dag_.mul(c.static_coefficient, normal), phi = result_.phi[c.first];
       watch.above = dag_.sub(limit, phi);
-      watch.below = dag_.add(limit, phi);
-    } else {
-      const Ref other = result_.phi[c.first + 1];
-      watch.above = dag_.sub(limit, root(dag_.add(dag_.mul(phi, phi), dag_.mul(other, other))));
+      if (c.slip.size() == 1) watch.below = dag_.add(limit, phi);
+      if (c.slip.size() == 2) watch.above = dag_.sub(limit, root(dag_.add(dag_.mul(phi, phi), dag_.power(result_.phi[c.first + 1], 2))));
     }
     if (margin_.contains(j)) watch.margin = margin_.at(j);
     result_.watch.push_back(watch);

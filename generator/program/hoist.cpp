@@ -53,8 +53,10 @@ class Splitting {
     return term.is_constant() || (term.is_node() && rest_[term.factors[0].node].kind == Node::Kind::leaf);
   }
 
-  Term prepared(const Term& value) {
-    if (is_plain(value)) return value;
+  Term prepared(const Term& value) { return is_plain(value) ? value : entry(value); }
+
+  /// An entry of w; the nodes of `value` are those of prepare_.
+  Term entry(const Term& value) {
     const bool negative = cln::minusp(value.coefficient);
     const Term size{cln::abs(value.coefficient), value.factors};
     const auto found = std::find(prepare_.results.begin(), prepare_.results.end(), size);
@@ -77,7 +79,7 @@ class Splitting {
     const bool sum = rest_[id].kind == Node::Kind::sum;
     if (sum && constant.size() > 1) {
       for (Term& term : terms) term = split(term);
-      terms.push_back(prepared({1, {{prepare_.sum(std::move(constant)), 1}}}));
+      terms.push_back(entry({1, {{prepare_.sum(std::move(constant)), 1}}}));
     } else {
       terms = rest_[id].terms;
       for (Term& term : terms) term = split(term);

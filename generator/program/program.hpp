@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "symbolic/dag.hpp"
@@ -72,23 +73,23 @@ inline constexpr const char* no_solution = "?3";
 inline constexpr const char* many_solutions = "?4";
 inline bool is_code(const std::string& result) { return result[0] == '?'; }
 
-/// A contact with friction, one digit of the mode (contact_modes.hpp).
-struct ContactInfo {
+/// A contact with friction or that can be left: one digit of the mode.
+struct ContactInfo : eom::ContactShape {
   std::string name;
-  std::size_t dimensions = 1;  // tangents
-  bool surface = false;        // its normal force has a sign
 };
 
 struct Program {
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
-  /// Entries of the array w; 0: there is no `prepare`.
-  std::size_t prepared_count() const {
+  /// Entries of the first result of a function; 0: there is no such function.
+  std::size_t entries(std::string_view function_name) const {
     for (const Function& function : functions) {
-      if (function.name == "prepare") return function.results[0].second.size();
+      if (function.name == function_name) return function.results[0].second.size();
     }
     return 0;
   }
+  std::size_t prepared_count() const { return entries("prepare"); }  // of the array w
+  std::size_t event_count() const { return entries("events"); }      // of the array g
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
   system::Approach approach = system::Approach::two;
@@ -98,7 +99,7 @@ struct Program {
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
   std::vector<std::string> events;     // of the model; first in the array g of the function events
-  std::vector<std::string> kinks;      // "abs", "if": after them the surfaces whose branches `mode` can hold
+  std::vector<std::string> kinks;      // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
   std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only

@@ -49,6 +49,7 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   for (std::size_t i = 0; i < m_; ++i) {
     for (std::size_t j = 0; j <= i; ++j) S[i * m_ + j] = S[j * m_ + i] = mass_->inner(Y_[i], Y_[j]);
   }
+  for (std::size_t k = 0; k < system.apart.size(); ++k) S[k * m_ + k] = dag.add(S[k * m_ + k], system.apart[k]);
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
 }
 

@@ -6,7 +6,8 @@
 // Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix is
 // factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without
 // mass, Euler parameters) M + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. S is diagonal,
-// of the size of M, so that nothing small is lost in the sum.
+// of the size of M, so that nothing small is lost in the sum. A constraint that is left has a row of zeros in A and 1 on the diagonal of the
+// Schur complement, so that its lambda is 0.
 #pragma once
 
 #include <memory>

@@ -32,6 +32,13 @@ ConstraintRows::ConstraintRows(const RunRequest& request) : request_(request), n
     for (const std::string& slope : names.slopes) integral.slopes.push_back(index_of(code.output_names, slope));
     integrals_.push_back(std::move(integral));
   }
+  for (std::size_t j = 0; j < request.contacts.size(); ++j) {
+    for (std::size_t a = 0; a < request.contacts[j].slip.size() && code.contacts[j].sticks; ++a) {
+      slips_.push_back({j, index_of(code.output_names, request.contacts[j].slip[a]), {}});
+      for (const std::string& slope : request.contacts[j].slopes[a]) slips_.back().slopes.push_back(index_of(code.output_names, slope));
+    }
+  }
+  clear_targets();
   y_.resize(code.output_names.size());
   psi_.resize(order_.size());
   A_.resize(order_.size() * n_);
@@ -44,18 +51,47 @@ void ConstraintRows::start(double t, const double* x, const double* u) {
   for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
 }
 
+bool ConstraintRows::is_apart(std::size_t k) const {
+  for (std::size_t j = 0; j < request_.contacts.size(); ++j) {
+    if (request_.code.contacts[j].unilateral && request_.contacts[j].constraint == k) return eom::contact_leaf(mode_, 2 * j + 1) < 0;
+  }
+  return false;
+}
+
+std::size_t ConstraintRows::row_of(std::size_t contact) const {
+  const auto found = std::find(order_.begin(), order_.end(), request_.contacts[contact].constraint);
+  return static_cast<std::size_t>(found - order_.begin());  // on positions: before the integrals
+}
+
+std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
+  const auto found = std::find_if(slips_.begin(), slips_.end(), [=](const Slip& slip) { return slip.contact == contact; });
+  return order_.size() + integrals_.size() + static_cast<std::size_t>(found - slips_.begin());
+}
+
 int ConstraintRows::operator()(double t, const double* x, const double* u, double* psi, double* A, double* b) {
   const double* p = request_.scene.parameters.data();
   const std::size_t m = order_.size(), rows = size();
-  if (const int code = request_.code.constraints(t, x, p, psi_.data(), A_.data(), b_.data()); code != 0) return code;
+  if (m > 0) {
+    if (const int code = request_.code.constraints(t, x, p, psi_.data(), A_.data(), b_.data()); code != 0) return code;
+  }
   for (std::size_t k = 0; k < m; ++k) {
     const std::size_t row = k < holonomic_ ? k : k + integrals_.size();
-    psi[row] = psi_[order_[k]];
-    b[row] = b_[order_[k]];
-    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = A_[order_[k] + m * i];
+    const bool apart = is_apart(order_[k]);
+    psi[row] = apart ? 0 : psi_[order_[k]];
+    b[row] = apart ? 0 : b_[order_[k]];
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = apart ? 0 : A_[order_[k] + m * i];
   }
-  if (integrals_.empty()) return 0;
-  if (const int code = request_.code.outputs(t, x, p, u, 0, y_.data()); code != 0) return code;
+  if (!integrals_.empty() || !slips_.empty()) {
+    if (const int code = request_.code.outputs(t, x, p, u, mode_, y_.data()); code != 0) return code;
+    fill_integrals(x, psi, A, b);
+    fill_slips(x, psi, A, b);
+  }
+  for (std::size_t row = 0; row < rows; ++row) b[row] -= targets_[row];
+  return 0;
+}
+
+void ConstraintRows::fill_integrals(const double* x, double* psi, double* A, double* b) const {
+  const std::size_t rows = size();
   for (std::size_t k = 0; k < integrals_.size(); ++k) {
     const Integral& integral = integrals_[k];
     const std::size_t row = holonomic_ + k;
@@ -74,7 +110,36 @@ int ConstraintRows::operator()(double t, const double* x, const double* u, doubl
     psi[row] = b[row] = 0;
     for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = 0;
   }
-  return 0;
+}
+
+// The slip is linear in the rates: w = A qdot + b.
+void ConstraintRows::fill_slips(const double* x, double* psi, double* A, double* b) const {
+  const std::size_t rows = size(), first = order_.size() + integrals_.size();
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    const Slip& slip = slips_[k];
+    const int digit = eom::contact_digit(mode_, slip.contact);
+    const bool held = !all_slide_ && digit % 3 == 0 && !(request_.code.contacts[slip.contact].unilateral && digit >= 3);
+    const std::size_t row = first + k;
+    psi[row] = 0;
+    b[row] = held ? y_[slip.slip] : 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      A[row + rows * i] = held ? y_[slip.slopes[i]] : 0;
+      b[row] -= A[row + rows * i] * x[n_ + i];
+    }
+  }
+}
+
+double ConstraintRows::rate(double t, const double* x, const double* u, std::size_t row) {
+  const std::size_t rows = size();
+  row_psi_.resize(rows), row_b_.resize(rows), row_A_.resize(rows * n_);
+  const int mode = mode_;
+  mode_ = 0;  // everything touches
+  const int code = (*this)(t, x, u, row_psi_.data(), row_A_.data(), row_b_.data());
+  mode_ = mode;
+  if (code != 0) return std::nan("");
+  double sum = row_b_[row] + targets_[row];
+  for (std::size_t i = 0; i < n_; ++i) sum += row_A_[row + rows * i] * x[n_ + i];
+  return sum;
 }
 
 double ConstraintRows::defect(double t, const double* x) {
@@ -84,6 +149,7 @@ double ConstraintRows::defect(double t, const double* x) {
   if (code.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data()) != 0) return HUGE_VAL;
   double largest = 0;
   for (std::size_t k = 0; k < psi_.size(); ++k) {
+    if (is_apart(k)) continue;
     double defect = psi_[k];
     if (!code.holonomic[k]) {
       defect = b_[k];

@@ -29,9 +29,36 @@ Integration::Integration(const RunRequest& request, std::string solver)
   // A code of prepare is told by rhs, which is asked then.
   if (code_.prepare != nullptr) w_.resize(code_.prepared);
   if (code_.prepare != nullptr && code_.prepare(request.scene.parameters.data(), w_.data()) != 0) w_.clear();
-  g_.resize(request.events.size() + request.code.kinks.size());
+  g_.resize(first_contact() + eom::contact_values * code_.contacts.size());
   g_size_.resize(request.code.kinks.size());
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
+  if (code_.contacts.empty()) return;
+  const auto in_mode = [this](int contacts) { return (mode_ & ~eom::contact_bits) | contacts; };
+  contacts_ = std::make_unique<ContactModes>(
+      request, rows_, initial_state().size(), [this](double t) { return inputs(t); },
+      [this, in_mode](double t, const double* x, int contacts, double* dx) { return motion(t, x, inputs(t), in_mode(contacts), dx); },
+      [this, in_mode](double t, const double* x, int contacts, double* g) {
+        const int code = code_.events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
+        std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()), g_.end(), g);
+        return code;
+      },
+      [this](double t, std::span<const double> before, std::span<const double> after) {
+        outputs(t, before.data(), y_);
+        const double energy = y_[energy_];
+        outputs(t, after.data(), y_);
+        contact_work += y_[energy_] - energy;
+      });
+  std::vector<double> x = initial_state();
+  start_contacts(request.scene.t0, x);  // who looks at the start sees its mode
+}
+
+std::vector<eom::ModeEvent> Integration::start_contacts(double t, std::span<double> x) {
+  if (!contacts_) return {};
+  contact_work = 0;
+  mode_ = 0;
+  std::vector<eom::ModeEvent> told = contacts_->start(t, x);
+  mode_ = contacts_->mode();
+  return told;
 }
 
 std::vector<double> Integration::initial_state() const {
@@ -52,7 +79,8 @@ int Integration::rhs(double t, const double* x, double* dx) {
   const double* u = inputs(t);
   const int code = motion(t, x, u, mode_, dx);
   // A branch that is held beyond its surface may have no value there (a root); what the surface separates always has.
-  return code != 0 && mode_ != 0 ? motion(t, x, u, 0, dx) : code;
+  const int live = mode_ & eom::contact_bits;
+  return code != 0 && mode_ != live ? motion(t, x, u, live, dx) : code;
 }
 
 int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
@@ -68,22 +96,25 @@ int Integration::outputs(double t, const double* x, std::span<double> y) const {
   return code_.outputs(t, x, request_.scene.parameters.data(), inputs(t), mode_, y.data());
 }
 
-int Integration::events(double t, const double* x, double* g) const {
-  return code_.events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+int Integration::events(double t, const double* x, double* g) {
+  const int code = code_.events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+  if (code == 0 && contacts_) contacts_->adjust(g + first_contact());
+  return code;
 }
 
 std::vector<eom::EventFunction> Integration::watched() const {
   std::vector<eom::EventFunction> functions;
   for (const WatchedEvent& event : request_.events)
     functions.push_back({event.direction, event.stop ? eom::Watch::breaking : eom::Watch::passing});
-  functions.resize(functions.size() + code_.kinks.size());
+  functions.resize(g_.size());
+  if (contacts_) contacts_->watch(std::span(functions).subspan(first_contact()));
   return functions;
 }
 
 /// Holds each kink on the side where the state is; where it is on the surface itself its branch follows the state.
 void Integration::hold_sides(double t, const double* x, bool anew) {
   if (code_.kinks.empty()) return;
-  if (anew) mode_ = 0;
+  if (anew) mode_ &= eom::contact_bits;
   bool all = !anew;
   for (std::size_t k = 0; k < code_.kinks.size(); ++k) all = all && (mode_ >> (code_.first_kink_bit + 2 * k) & 3) != 0;
   if (all || events(t, x, g_.data()) != 0) return;
@@ -99,16 +130,32 @@ void Integration::hold_sides(double t, const double* x, bool anew) {
 
 eom::AtEvent Integration::at_event(const eom::EventPoint& point, const OnEvent& event) {
   const std::size_t i = point.crossing.function;
+  if (i >= first_contact()) return change_contact(point, event);
   if (i < request_.events.size()) {
-    if (event) event(i, point.t, point.x);
+    const WatchedEvent& watched = request_.events[i];
+    if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
     return eom::AtEvent::stop;
   }
-  const std::size_t k = i - request_.events.size(), bit = code_.first_kink_bit + 2 * k;
+  cross_kink(point, i - request_.events.size());
+  return eom::AtEvent::go_on;
+}
+
+void Integration::cross_kink(const eom::EventPoint& point, std::size_t k) {
+  const std::size_t bit = code_.first_kink_bit + 2 * k;
   ++kink_crossings[k];
   kink_ = k;
   kink_at_ = point.t;
   mode_ = (mode_ & ~(3 << bit)) | 1 << (point.crossing.up ? bit : bit + 1);
-  return eom::AtEvent::go_on;
+}
+
+eom::AtEvent Integration::change_contact(const eom::EventPoint& point, const OnEvent& event) {
+  eom::Crossing crossing = point.crossing;
+  crossing.function -= first_contact();
+  const eom::AtEvent answer = contacts_->take(point.t, point.x, crossing, point.functions.subspan(first_contact()));
+  mode_ = (mode_ & ~eom::contact_bits) | contacts_->mode();
+  if (const eom::ModeEvent* told = contacts_->told(); told != nullptr && event) event({told->t, told->kind, told->name}, point.x);
+  if (answer == eom::AtEvent::restart) hold_sides(point.t, point.x.data(), true);
+  return answer;
 }
 
 /// Of an accepted step: the work of its projection; others were made on trial.
@@ -136,38 +183,45 @@ int Integration::project(double t, double* x) {
   return 0;
 }
 
+std::vector<double> Integration::restarts() const {
+  std::vector<double> times;
+  for (const Signal& signal : request_.scene.inputs) {
+    for (const double t : signal.jumps()) {
+      if (t > request_.scene.t0 && t < request_.scene.t1) times.push_back(t);
+    }
+  }
+  std::sort(times.begin(), times.end());
+  times.erase(std::unique(times.begin(), times.end()), times.end());
+  times.push_back(request_.scene.t1);
+  return times;
+}
+
 eom::Result Integration::run(const eom::Options& options, const Observer& observer, const OnEvent& event) {
   position_correction = velocity_correction = work = 0;
   kink_at_ = std::nan("");
   kink_crossings.assign(code_.kinks.size(), 0);
   projected_.clear();
-  std::vector<double> restarts;
-  for (const Signal& signal : request_.scene.inputs) {
-    for (const double t : signal.jumps()) {
-      if (t > request_.scene.t0 && t < request_.scene.t1) restarts.push_back(t);
-    }
-  }
-  std::sort(restarts.begin(), restarts.end());
-  restarts.erase(std::unique(restarts.begin(), restarts.end()), restarts.end());
-  restarts.push_back(request_.scene.t1);
-
   eom::Options piece = options;
   piece.quadratures = request_.watch_power ? 1 : 0;
   eom::Result total;
   total.x = initial_state();
   total.t = request_.scene.t0;
   rows_.start(total.t, total.x.data(), inputs(total.t));
+  for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
+    if (event) event({told.t, told.kind, told.name}, total.x);
+  }
   const auto f = [this](double t, const double* x, double* dx) { return rhs(t, x, dx); };
   const auto watch = [&](const eom::StepView& step) {
     accept(step);
     const bool go_on = !observer || observer(step);
     hold_sides(step.t1, step.x1.data(), false);
+    if (contacts_) contacts_->hold(step.t1, step.x1.data());
     return go_on;
   };
   const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
   const auto after = [this](double t, double* x) { return rows_.size() == 0 ? 0 : project(t, x); };
-  for (const double end : restarts) {
+  for (const double end : restarts()) {
     side_ = (total.t + end) / 2;
     hold_sides(total.t, total.x.data(), true);
     const eom::Result part =
@@ -185,7 +239,11 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
           "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "
           "a constraint with friction, or a smooth law", code_.kinks[kink_], part.t);
     }
-    if (part.outcome != eom::Outcome::done) break;
+    if (contacts_ && contacts_->ended()) {
+      total.outcome = *contacts_->ended();
+      total.detail = contacts_->detail();
+    }
+    if (total.outcome != eom::Outcome::done) break;
   }
   return total;
 }

@@ -6,7 +6,7 @@
 #include <eom/constraints/projection.hpp>
 #include <eom/events/integrate.hpp>
 
-#include "run/constraint_rows.hpp"
+#include "run/contact_modes.hpp"
 
 namespace eomgen::run {
 
@@ -16,8 +16,9 @@ class Integration {
 
   /// observer(step, u_side): called after each accepted step; may be empty.
   using Observer = std::function<bool(const eom::StepView&)>;
-  /// event(index, t, x): a recorded one before the observer sees the step that it lies in, a stop after it.
-  using OnEvent = std::function<void(std::size_t index, double t, std::span<const double> x)>;
+  /// One of the model: a recorded one before the observer sees the step that it lies in, a stop after it; or a change of
+  /// mode of a contact, after the step that ends there.
+  using OnEvent = std::function<void(const RunEvent& event, std::span<const double> x)>;
   eom::Result run(const eom::Options& options, const Observer& observer, const OnEvent& event = {});
 
   std::vector<double> initial_state() const;
@@ -27,13 +28,19 @@ class Integration {
 
   std::vector<std::size_t> kink_crossings;  // of the run, per kink
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
+  double contact_work = 0;  // of impacts, and where sliding in two directions starts or ends
 
  private:
   int rhs(double t, const double* x, double* dx);
   int motion(double t, const double* x, const double* u, int mode, double* dx);
-  int events(double t, const double* x, double* g) const;
+  int events(double t, const double* x, double* g);
   std::vector<eom::EventFunction> watched() const;
   void hold_sides(double t, const double* x, bool anew);
+  std::vector<eom::ModeEvent> start_contacts(double t, std::span<double> x);
+  void cross_kink(const eom::EventPoint& point, std::size_t kink);
+  eom::AtEvent change_contact(const eom::EventPoint& point, const OnEvent& event);
+  std::vector<double> restarts() const;
+  std::size_t first_contact() const { return request_.events.size() + code_.kinks.size(); }
   void accept(const eom::StepView& step);
   eom::AtEvent at_event(const eom::EventPoint& point, const OnEvent& event);
   int project(double t, double* x);
@@ -46,7 +53,7 @@ class Integration {
   std::size_t power_ = 0, energy_ = 0;
   std::size_t kink_ = 0;  // crossed last, and when
   double kink_at_ = 0;
-  int mode_ = 0;     // sides of the kinks of the step that is being made
+  int mode_ = 0;     // of the step that is being made: contacts, sides of kinks
   std::vector<double> g_, g_size_;  // event functions; largest |g| seen of each kink
   std::vector<std::pair<double, double>> projected_;  // time, work of projections since the last accepted step
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
@@ -55,6 +62,7 @@ class Integration {
   std::vector<double> y_;
   ConstraintRows rows_;
   eom::Projection projection_;
+  std::unique_ptr<ContactModes> contacts_;  // where there are any
 };
 
 }  // namespace eomgen::run

@@ -58,10 +58,9 @@ class Watch {
   }
 
   /// An event: told, and a row of its own, put in order when the rest of its step is written.
-  void event(std::size_t index, double t, std::span<const double> x) {
-    const WatchedEvent& event = request_.events[index];
-    events_.push_back({t, event.stop ? "stop" : "custom", event.name});
-    if (request_.every > 0 && !event.stop) pending_.emplace_back(t, std::vector<double>(x.begin(), x.end()));
+  void event(const RunEvent& event, std::span<const double> x) {
+    events_.push_back(event);
+    if (request_.every > 0 && event.kind == "custom") pending_.emplace_back(event.t, std::vector<double>(x.begin(), x.end()));
   }
 
   /// Where a coordinate left its range, the run ends with the step before; tells what happened.
@@ -99,7 +98,7 @@ class Watch {
       drifts_[i].see(y_[conserved_[i]], conserved_[i] == energy_ ? magnitude : terms);
     }
     const double work = request_.watch_power ? x[2 * request_.code.free.size() + request_.code.integrals] : 0;
-    balance_.see(y_[energy_] - integration_.work, work, magnitude);
+    balance_.see(y_[energy_] - integration_.work - integration_.contact_work, work, magnitude);
     defect_ = std::max(defect_, integration_.constraint_defect(t, x));
   }
 
@@ -247,7 +246,7 @@ RunResult integrate_scene(const RunRequest& request) {
   Watch watch(request, integration);
   const Clock::time_point start = Clock::now();
   eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); },
-                                    [&](std::size_t i, double t, std::span<const double> x) { watch.event(i, t, x); });
+                                    [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); });
   result.seconds_integrate = seconds_since(start);
   watch.cut(end);
   watch.finish(end.t, end.x.data());
@@ -262,6 +261,7 @@ RunResult integrate_scene(const RunRequest& request) {
   result.projection_position = integration.position_correction;
   result.projection_velocity = integration.velocity_correction;
   result.projection_work = integration.work;
+  result.contact_work = integration.contact_work;
   std::vector<double> y(request.code.output_names.size());
   integration.outputs(end.t, end.x.data(), y);
   for (std::size_t i = 0; i < y.size(); ++i) {

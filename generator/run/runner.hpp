@@ -5,6 +5,7 @@
 
 #include <atomic>
 #include <eom/events/locator.hpp>
+#include <eom/modes/contacts.hpp>
 #include <eom/ode.hpp>
 #include <functional>
 #include <string>
@@ -32,6 +33,7 @@ struct Code {
   std::size_t active_constraints = 0;
   std::vector<bool> holonomic = {};       // per active constraint: false where it binds velocities only
   std::vector<std::string> kinks = {};    // "abs", "max": their surfaces follow the model's events in g
+  std::vector<eom::Contact> contacts = {};  // after them, eom::contact_values of each
   std::size_t first_kink_bit = 0;         // of mode: two for each kink, above and below its surface
 };
 
@@ -70,6 +72,7 @@ struct RunResult {
   double power_balance = 0;      // largest |E - E(0) - W| relative to the energies exchanged
   double constraint_drift = 0;   // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
+  double contact_work = 0;  // of impacts
   std::vector<RunEvent> events;
   std::vector<KinkCrossings> kinks;
 };
@@ -78,6 +81,15 @@ struct RunResult {
 struct IntegralOutputs {
   std::string psi;
   std::vector<std::string> slopes;
+};
+
+/// The outputs of a contact: along each tangent the slip, its slopes by the rates of the free coordinates, the friction.
+struct ContactOutputs {
+  std::vector<std::string> slip;
+  std::vector<std::vector<std::string>> slopes;
+  std::vector<std::string> phi;
+  std::size_t constraint = 0;   // active, of one that can be left
+  std::string restitution;      // of one that can be left
 };
 
 struct RunRequest {
@@ -93,6 +105,7 @@ struct RunRequest {
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
   std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
+  std::vector<ContactOutputs> contacts = {};    // per Code::contacts
   std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
 };
 

@@ -293,6 +293,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
   result.solved = problem.solved;
+  result.apart = problem.apart;
   for (const model::Event& event : m.model->events) result.stops.push_back(event.stop);
   for (const std::uint32_t i : scene.stop) result.stops[i] = true;
   require_regular(m, system, scene, result);
@@ -322,7 +323,8 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     bool found = coordinates.contains(want.name);
     for (const system::Output& output : system.outputs) {
       const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      const bool table = !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix);
+      const bool table = !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix) &&
+                         !output.name.starts_with(system::contact_prefix);
       const bool of_all = want.name == "all" && table;
       if (!of_all && output.name != want.name && !part) continue;
       take(output.name);
@@ -331,7 +333,8 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     if (!found) {
       std::string names;
       for (const system::Output& output : system.outputs) {
-        if (!coordinates.contains(output.name) && !output.name.starts_with(derive::magnitude_prefix)) names += (names.empty() ? "" : ", ") + output.name;
+        const bool hidden = output.name.starts_with(derive::magnitude_prefix) || output.name.starts_with(system::contact_prefix);
+        if (!coordinates.contains(output.name) && !hidden) names += (names.empty() ? "" : ", ") + output.name;
       }
       const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};
       throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");

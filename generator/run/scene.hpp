@@ -36,6 +36,7 @@ struct Scene {
   std::vector<Signal> inputs;      // one per input of the model
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
   std::vector<bool> stops;           // per event of the model: whether it ends the run
+  std::vector<bool> apart;           // per contact: whether it does not touch at the start
   std::vector<std::string> solved;   // sentences: what followed from the constraints
 };
 

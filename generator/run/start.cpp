@@ -42,11 +42,35 @@ class StartSolver {
     p_.qdot.assign(all, 0);
     for (const auto& [key, given] : p_.given) value(key) = given.value;
     impose_fixed();
+    leave(0);
     solve(0);
+    leave(1);
     solve(1);
   }
 
  private:
+  // A contact that can be left is left where all that its gap depends on is given, and the gap is open (order 0) or opening (1).
+  void leave(std::uint8_t order) {
+    p_.apart.resize(s_.contacts.size(), false);
+    for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
+      if (!s_.contacts[j].unilateral || p_.apart[j]) continue;
+      const std::size_t k = *s_.contacts[j].unilateral;
+      VectorXd residual;
+      MatrixXd A;
+      linearise(order, residual, A);
+      const auto found = std::find(rows_[order].begin(), rows_[order].end(), k);
+      const auto row = static_cast<Eigen::Index>(found - rows_[order].begin());
+      bool given = std::isfinite(residual(row));
+      for (std::size_t i = 0; i < n_; ++i) {
+        const StartProblem::Key key{s_.free[i], order};
+        if (A(row, static_cast<Eigen::Index>(i)) != 0) given = given && p_.given.contains(key) && !may_move(key);
+      }
+      if (!given || !(residual(row) > 0) || relative(residual, A, order, row) <= start_tolerance) continue;
+      p_.apart[j] = order == 0;  // what opens is told by the run
+      for (auto& rows : rows_) std::erase(rows, k);
+    }
+  }
+
   double& value(StartProblem::Key key) { return (key.second == 0 ? p_.q : p_.qdot)[key.first]; }
   std::string label(StartProblem::Key key) const {
     return p_.mechanics.model->coordinates[key.first].name + (key.second == 0 ? "" : "_dot");

@@ -29,6 +29,7 @@ struct StartProblem {
 
   std::vector<double> q, qdot;  // out: all coordinates
   std::vector<std::string> solved = {};  // out: a sentence for each value that followed
+  std::vector<bool> apart = {};          // out: per contact, whether what can be left is left
 };
 
 /// Fills q, qdot. Positions by Newton on psi = 0, then rates by A qdot + b = 0. Throws Error{stage "scene"} with the

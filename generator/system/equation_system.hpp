@@ -12,8 +12,9 @@
 #include <string>
 #include <vector>
 
+#include <eom/modes/contact_state.hpp>
+
 #include "symbolic/factorisation.hpp"
-#include "system/contact_modes.hpp"
 
 namespace eomgen::system {
 
@@ -65,7 +66,7 @@ struct Event {
   Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
 };
 
-/// Coulomb's law at one contact (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters f and the reactions
+/// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters f and the reactions
 /// with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends on the mode.
 struct Contact {
   std::string name;
@@ -76,7 +77,27 @@ struct Contact {
   std::vector<Ref> slip, slip_rate;      // per tangent; the rate may use qddot
   std::vector<std::array<Ref, 3>> directions;  // t_a; none where a coordinate rubs
   Ref static_coefficient, dynamic_coefficient;
+  std::optional<Ref> width;                    // of the smooth law, which has no static coefficient
+  std::optional<std::uint32_t> unilateral;     // which of the active constraints can be left
+  Ref restitution;                             // of impacts then
+
+  bool sticks() const { return !slip.empty() && !width; }
+  eom::ContactShape shape() const {
+    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), sticks()};
+  }
 };
+
+/// Symbols of the mode of a contact: 1, -1, 0 as it slides along its tangent, against it, sticks; 1, -1 as it presses, or as
+/// a unilateral one touches, is apart.
+inline symbolic::Symbol slides_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 0}; }
+inline symbolic::Symbol presses_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 1}; }
+
+/// Outputs that a run needs of a contact, and nobody asks for by name: the slope of slip.NAME by the rate of a coordinate, phi
+/// along the tangent, the coefficient of restitution.
+inline constexpr const char* contact_prefix = "contact.";
+std::string slip_slope_output(const std::string& slip, const std::string& coordinate);
+std::string phi_output(const std::string& slip);
+std::string restitution_output(const std::string& contact);
 
 struct EquationSystem {
   std::shared_ptr<Dag> dag;
@@ -95,6 +116,7 @@ struct EquationSystem {
   std::vector<Ref> A;      // m x n, row-major
   std::vector<Ref> b;      // m: A qdot + b = 0
   std::vector<Ref> gamma;  // m: A qddot + gamma = 0
+  std::vector<Ref> apart;  // m, or none: 1 where the mode has left a constraint, whose row of A and gamma is 0 then
 
   std::optional<QuasiEquations> quasi;  // another way to M and f
   std::optional<Solution> solution;     // equal to what M, f, A, gamma give

@@ -9,7 +9,6 @@
 
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
-#include "system/contact_modes.hpp"
 #include "verify/friction_law.hpp"
 #include "verify/motion.hpp"
 #include "verify/plain_forces.hpp"
@@ -253,7 +252,7 @@ double compiled_difference(const CompiledForm& form, const EquationSystem& s, co
   at.t = exactly(at.t);
   for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
     for (Real& value : *part) value = exactly(value);
-  if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at, mode);
+  if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at);
   const std::vector<Real> reference = right_hand_side(s, judge, at);
   const auto dx = form.rhs(cln::double_approx(at.t), rounded(state_vector(s, at)), rounded(at.parameters), rounded(at.inputs),
                            mode);
@@ -296,14 +295,10 @@ State with_any_friction(const mechanics::Mechanics& mechanics, const Judge& judg
 }
 
 std::vector<int> modes_of(const EquationSystem& s) {
-  std::vector<std::size_t> dimensions;
-  std::vector<bool> surface;
-  for (const system::Contact& contact : s.contacts) {
-    dimensions.push_back(contact.slip.size());
-    surface.push_back(contact.reactions.size() == 1);
-  }
+  std::vector<eom::ContactShape> shapes;
+  for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());
   constexpr std::size_t enough = 40;
-  return system::contact_modes(dimensions, surface, enough);
+  return eom::contact_modes(shapes, enough);
 }
 
 }  // namespace
@@ -350,8 +345,13 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   if (first.contacts.empty()) return compare_code(subjects, values.front(), judge, 0, tally);
   for (const int mode : modes_of(first)) {
     State lawful = state;
-    set_friction(mechanics, judge, lawful, lawful_friction(first, judge, state, mode));
-    compare_code(subjects, values_of(first, mechanics, judge, lawful), judge, mode, tally);
+    lawful.mode = mode;
+    set_friction(mechanics, judge, lawful, lawful_friction(first, judge, lawful));
+    const SystemValues in_mode = values_of(first, mechanics, judge, lawful);
+    double largest = 0;
+    for (const Residual& row : in_mode.rows) largest = std::max(largest, row.relative());
+    tally.note("contacts of " + name_of(first), judge_name, false, largest);
+    compare_code(subjects, in_mode, judge, mode, tally);
   }
 }
 

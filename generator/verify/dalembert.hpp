@@ -34,6 +34,7 @@ struct State {
   std::vector<Real> integrals;       // of functions of time, from the start of the run; empty: not computed yet
   std::vector<Real> phi;  // components of friction along the tangents, and what they amount to
   std::vector<FrictionForce> friction;
+  int mode = 0;                      // of the contacts (eom/modes/contact_state.hpp)
 };
 
 /// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.

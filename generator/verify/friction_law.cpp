@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "symbolic/evaluate.hpp"
-#include "system/contact_modes.hpp"
 #include "verify/linear_solve.hpp"
 
 namespace eomgen::verify {
@@ -18,14 +17,15 @@ using symbolic::Ref;
 
 class Law {
  public:
-  Law(const system::EquationSystem& s, const Judge& judge, const State& state, int mode)
-      : s_(s), judge_(judge), state_(state), mode_(mode) {
+  Law(const system::EquationSystem& s, const Judge& judge, const State& state) : s_(s), judge_(judge), state_(state) {
     for (const system::Contact& contact : s.contacts) {
       for (const auto* list : {&contact.gram, &contact.slip, &contact.slip_rate}) {
         roots_.insert(roots_.end(), list->begin(), list->end());
       }
+      const bool rough = !contact.slip.empty();
       roots_.push_back(contact.reactions.empty() ? contact.normal : s.dag->zero());
-      roots_.push_back(contact.dynamic_coefficient);
+      roots_.push_back(rough ? contact.dynamic_coefficient : s.dag->zero());
+      roots_.push_back(contact.width.value_or(s.dag->zero()));
       for (const std::uint32_t k : contact.reactions) roots_.push_back(s.reactions[k].value);
     }
   }
@@ -47,11 +47,14 @@ class Law {
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
       const system::Contact& c = s_.contacts[j];
       const std::vector<Real> gram = take(c.gram.size()), slip = take(c.slip.size()), rate = take(c.slip.size());
-      const Real given = take(1)[0], mu = take(1)[0];
+      const Real given = take(1)[0], mu = take(1)[0], width = take(1)[0];
       const std::vector<Real> lambda = take(c.reactions.size());
+      if (slip.empty()) continue;
       const Real normal = normal_force(j, gram, given, lambda);
       for (std::size_t a = 0; a < slip.size(); ++a) {
-        if (slides(j) == 0) result.push_back(rate[a]);
+        if (c.unilateral && presses(j) < 0) result.push_back(phi[c.first + a]);
+        else if (c.width) result.push_back(phi[c.first + a] + mu * normal * slip[a] / length(slip, width));
+        else if (slides(j) == 0) result.push_back(rate[a]);
         else result.push_back(phi[c.first + a] + mu * normal * heading(j, slip, a));
       }
     }
@@ -59,27 +62,30 @@ class Law {
   }
 
  private:
-  int slides(std::size_t j) const { return system::contact_leaf(mode_, 2 * j); }
+  int slides(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j); }
+  int presses(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j + 1); }
   Real root(const Real& x) const { return cln::realpart(cln::sqrt(judge_.precision().round(x))); }
 
   Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given, const std::vector<Real>& lambda) const {
     if (lambda.empty()) return cln::abs(given);
-    if (lambda.size() == 1) return system::contact_leaf(mode_, 2 * j + 1) * root(gram[0]) * lambda[0];
+    if (lambda.size() == 1) return presses(j) * root(gram[0]) * lambda[0];
     Real square = 0;
     for (std::size_t k = 0; k < 4; ++k) square = square + gram[k] * lambda[k / 2] * lambda[k % 2];
     return root(square);
   }
   Real heading(std::size_t j, const std::vector<Real>& slip, std::size_t a) const {
     if (slip.size() == 1) return slides(j);
-    Real square = 0;
+    return slip[a] / length(slip, 0);
+  }
+  Real length(const std::vector<Real>& slip, const Real& more) const {
+    Real square = more * more;
     for (const Real& w : slip) square = square + w * w;
-    return slip[a] / root(square);
+    return root(square);
   }
 
   const system::EquationSystem& s_;
   const Judge& judge_;
   const State& state_;
-  int mode_;
   std::vector<Ref> roots_;
 };
 
@@ -90,6 +96,7 @@ void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& stat
   state.friction.clear();
   const Lookup lookup(judge, state);
   for (const mechanics::Contact& contact : m.contacts) {
+    if (contact.dimensions() == 0) continue;
     FrictionForce friction{contact.place, contact.coordinate, {Real(0), Real(0), Real(0)}};
     if (contact.place == 0) friction.force[0] = state.phi[contact.first];
     for (std::size_t a = 0; a < contact.directions.size(); ++a) {
@@ -101,8 +108,8 @@ void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& stat
   }
 }
 
-std::vector<Real> lawful_friction(const system::EquationSystem& s, const Judge& judge, const State& state, int mode) {
-  const Law law(s, judge, state, mode);
+std::vector<Real> lawful_friction(const system::EquationSystem& s, const Judge& judge, const State& state) {
+  const Law law(s, judge, state);
   std::size_t n = 0;
   for (const system::Contact& contact : s.contacts) n += contact.slip.size();
   std::vector<Real> phi(n, judge.precision().round(Real(0)));

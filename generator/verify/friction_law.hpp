@@ -10,7 +10,7 @@ namespace eomgen::verify {
 /// Sets State::phi and the forces that it stands for, along the tangents of the mechanics.
 void set_friction(const mechanics::Mechanics& mechanics, const Judge& judge, State& state, std::vector<Real> phi);
 
-/// phi of the law in `mode`. Throws std::domain_error where the iteration finds none.
-std::vector<Real> lawful_friction(const system::EquationSystem& system, const Judge& judge, const State& state, int mode);
+/// phi of the law in the mode of the state. Throws std::domain_error where the iteration finds none.
+std::vector<Real> lawful_friction(const system::EquationSystem& system, const Judge& judge, const State& state);
 
 }  // namespace eomgen::verify

@@ -59,6 +59,13 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     }
     right.push_back(-out.gamma[k]);
   }
+  for (std::size_t j = 0; j < s.contacts.size(); ++j) {  // what is left has lambda = 0 in place of its constraint
+    const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
+    if (!k || eom::contact_leaf(lookup.state.mode, 2 * j + 1) > 0) continue;
+    for (std::size_t i = 0; i < n; ++i) matrix[(n + *k) * size + i] = 0;
+    matrix[(n + *k) * size + n + *k] = 1;
+    right[n + *k] = 0;
+  }
   std::vector<std::vector<Real>> columns{right};
   for (std::size_t i = 0; i < size && with_inverse; ++i) {
     columns.emplace_back(size, Real(0));
@@ -143,7 +150,7 @@ Real Lookup::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::integral: return state.integrals.at(symbol.index);
     case SymbolKind::side: return 0;  // every branch follows the state
     case SymbolKind::friction: return state.phi.at(symbol.index);
-    case SymbolKind::contact: return 0;  // outputs tell it; no equation uses it before the law is closed
+    case SymbolKind::contact: return eom::contact_leaf(state.mode, 2 * std::size_t{symbol.index} + symbol.order);
     case SymbolKind::extra: break;
   }
   throw std::logic_error("verify: a symbol without a value");

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "derive/lagrange.hpp"
+#include "eom/modes/contacts.hpp"
 #include "model/model.hpp"
 #include "program/build.hpp"
 #include "program/interpret.hpp"
@@ -18,7 +19,7 @@ class RoughProgram {
       : model_(model::read_model_text(text, "rough")), mechanics_(mechanics::build_mechanics(model_)) {
     std::vector<system::EquationSystem> systems{derive::lagrange(mechanics_, system::Approach::one)};
     program::Request request;
-    request.with = {"contacts"};
+    request.with = {"events"};
     for (const auto& output : systems[0].outputs) {
       if (output.name.find("friction.") == 0 || output.name.find("reaction.") == 0) request.outputs.push_back(output.name);
     }
@@ -45,6 +46,11 @@ class RoughProgram {
     const auto values = program::interpret(program_.functions[1], arguments(t, x, mode)).results[0];
     std::copy(values.begin(), values.end(), g);
     return 0;
+  }
+  std::vector<eom::Contact> contact_list() const {
+    std::vector<eom::Contact> result;
+    for (const program::ContactInfo& contact : program_.contacts) result.push_back({contact, contact.name, 0});
+    return result;
   }
   double output(const std::string& name, double t, const double* x, int mode) const {
     const auto values = program::interpret(program_.functions[2], arguments(t, x, mode)).results[0];

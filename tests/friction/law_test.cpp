@@ -7,7 +7,6 @@
 
 #include "friction/compiled.hpp"
 #include "friction/rough_models.hpp"
-#include "system/contact_modes.hpp"
 #include "verify/certificate.hpp"
 
 using namespace eomgen;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "eom/modes/coulomb.hpp"
+#include "eom/modes/contacts.hpp"
 #include "friction/compiled.hpp"
 #include "friction/rough_models.hpp"
 
@@ -19,15 +19,13 @@ constexpr double closed_form = 1e-10;
 
 template <class Observer>
 eom::ModeResult run(const test::RoughProgram& rough, std::vector<double> x0, double t1, Observer&& observer) {
-  std::vector<eom::CoulombContact> contacts;
-  for (const auto& contact : rough.program().contacts) contacts.push_back({contact.name, contact.dimensions, contact.surface});
   const auto rhs = [&](double t, const double* x, int mode, double* dx) { return rough.rhs(t, x, mode, dx); };
   const auto functions = [&](double t, const double* x, int mode, double* g) { return rough.contacts(t, x, mode, g); };
-  eom::Coulomb rule(contacts, rough.states(), rhs, functions);
+  eom::Contacts rule(rough.contact_list(), rough.states(), rhs, functions);
   eom::Options options;
   options.rtol = 1e-13;
   options.atol = 1e-13;
-  const int mode = rule.mode_at(0, x0.data(), 1e-12);
+  const int mode = rule.start(0, x0);
   return eom::integrate_modes("dop853", rhs, 0, x0, mode, t1, options, functions, rule.functions(), rule.table(), rule,
                               std::forward<Observer>(observer));
 }

@@ -26,7 +26,9 @@ Dialect c_dialect() {
 /// The prototype with the argument names of docs/abi.md, whatever the model's own names are.
 std::string prototype(const std::string& name, const program::Function& function) {
   FunctionText text;
-  for (const auto& result : function.results) text.results.push_back(result.first);
+  for (const auto& result : function.results) {
+    if (!program::is_code(result.first)) text.results.push_back(result.first);
+  }
   ModelNames names;
   names.x = "x";
   names.p = "p";
@@ -56,8 +58,7 @@ std::string sizes(const std::string& name, const program::Program& program, cons
       {"states", program.state_count()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
       {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
       {"output_count", program.outputs.size()}, {"prepared_size", program.prepared_count()}};
-  const std::size_t events = program.events.size() + program.kinks.size();
-  if (events > 0) entries.emplace_back("event_count", events);
+  if (program.event_count() > 0) entries.emplace_back("event_count", program.event_count());
   std::vector<std::string> lines;
   for (const auto& [what, count] : entries) lines.push_back(fmt::format("  {}_{} = {}", name, what, count));
   return fmt::format("{}", fmt::join(lines, ",\n"));

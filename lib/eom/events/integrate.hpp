@@ -31,9 +31,10 @@ enum class AtEvent {
   stop,     // the run ends here: stopped_by_event
 };
 
-/// What a handler is given. At a passing crossing x and functions are to be left alone and the answer is not asked.
+/// What a handler is given. At a passing crossing it is to be left alone and the answer is not asked. At a breaking one the handler
+/// may change x, and move t on by a part of the step that is not worth an integration.
 struct EventPoint {
-  double t;
+  double& t;
   std::span<double> x;
   Crossing crossing;
   std::span<EventFunction> functions;  // of all events: which are watched from here on
@@ -179,7 +180,7 @@ class Run {
     total_.t = crossing.t;
     if (!go_on) return end(Outcome::stopped_by_event, "stopped by the observer");
     crowded_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : crowded_ + 1;
-    const AtEvent answer = handler_(EventPoint{crossing.t, total_.x, crossing, locator_.functions()});
+    const AtEvent answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
     if (answer == AtEvent::stop) return end(Outcome::stopped_by_event, "");
     if (crowded_ >= events_without_progress)
       return end(Outcome::step_too_small, "events follow one another without time going on");

@@ -38,9 +38,10 @@ struct Mode {
   std::vector<WatchedSurface> watched;
 };
 
-/// What the rule is given; it may change x (an impact), and puts it onto the surface where that matters.
+/// What the rule is given; it may change x (an impact), puts it onto the surface where that matters, and may move t on to where
+/// what little was left of the mode has ended.
 struct ModePoint {
-  double t;
+  double& t;
   std::span<double> x;
   int mode;
   Crossing crossing;
@@ -99,81 +100,97 @@ class Chatter {
   int shrinking_ = 0;
 };
 
+/// The mode that a run is in, and what becomes of it at the surfaces that bound it.
+template <class Rule>
+class Switch {
+ public:
+  Switch(std::span<const Mode> table, Rule& rule, int start) : mode(start), table_(table), rule_(rule) {}
+
+  void watch(std::span<EventFunction> functions) const {
+    for (EventFunction& f : functions) f.watch = Watch::off;
+    for (const WatchedSurface& s : table_[static_cast<std::size_t>(mode)].watched)
+      functions[s.function] = {s.direction, Watch::breaking, s.direction != Direction::any};
+  }
+
+  AtEvent take(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions) {
+    const ModePoint here{t, x, mode, crossing};
+    ++transitions;
+    std::optional<Transition> next;
+    if (const std::optional<double> at = chatter_.see(t)) {
+      if constexpr (requires { rule_.settle(here); }) {
+        next = rule_.settle(here);
+        chatter_.forget();
+      }
+      if (!next) return end_chattering(*at);
+    }
+    if (!next) next = rule_(here);
+    if (!next->kind.empty()) events.push_back({t, next->kind, next->name, mode, next->mode});
+    mode = next->mode;
+    watch(functions);
+    if (next->outcome == Outcome::done) return AtEvent::restart;
+    ended = next->outcome;
+    return AtEvent::stop;
+  }
+
+  int mode;
+  std::vector<ModeEvent> events;
+  std::size_t transitions = 0;
+  double accumulation = std::numeric_limits<double>::quiet_NaN();
+  Outcome ended = Outcome::done;  // another one: the run was ended here
+  std::string detail;
+
+ private:
+  AtEvent end_chattering(double at) {
+    accumulation = at;
+    ended = Outcome::step_too_small;
+    char text[160];
+    std::snprintf(text, sizeof text, "chattering: after %zu changes of mode they accumulate at t = %.17g", transitions, at);
+    detail = text;
+    return AtEvent::stop;
+  }
+
+  std::span<const Mode> table_;
+  Rule& rule_;
+  Chatter chatter_;
+};
+
 template <class F, class G, class Rule, class Observer, class AfterStep>
 class Machine {
  public:
   Machine(F& rhs, G& events, std::span<const Mode> table, std::size_t functions, Rule& rule, int mode,
           Observer& observer, AfterStep& after_step)
-      : rhs_(rhs), events_(events), table_(table), functions_(functions), rule_(rule), observer_(observer),
+      : rhs_(rhs), events_(events), functions_(functions), switch_(table, rule, mode), observer_(observer),
         after_step_(after_step) {
-    result_.mode = mode;
-    for (EventFunction& f : functions_) f.watch = Watch::off;
-    watch(functions_);
+    switch_.watch(functions_);
   }
 
   ModeResult run(std::string_view method, double t0, std::span<const double> x0, double t1, const Options& options) {
     const Result end = integrate_events(
-        method, [this](double t, const double* x, double* dx) { return rhs_(t, x, result_.mode, dx); }, t0, x0, t1, options,
-        [this](double t, const double* x, double* g) { return events_(t, x, result_.mode, g); }, functions_,
-        [this](const EventPoint& point) { return take(point); },
-        [this](const StepView& view) { return observer_(view, result_.mode); },
-        [this](double t, double* x) { return after_step_(t, x, result_.mode); });
-    static_cast<Result&>(result_) = end;
-    if (ended_ != Outcome::done) {
-      result_.outcome = ended_;
-      result_.detail = detail_;
+        method, [this](double t, const double* x, double* dx) { return rhs_(t, x, switch_.mode, dx); }, t0, x0, t1, options,
+        [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); }, functions_,
+        [this](const EventPoint& point) { return switch_.take(point.t, point.x, point.crossing, point.functions); },
+        [this](const StepView& view) { return observer_(view, switch_.mode); },
+        [this](double t, double* x) { return after_step_(t, x, switch_.mode); });
+    ModeResult result;
+    static_cast<Result&>(result) = end;
+    if (switch_.ended != Outcome::done) {
+      result.outcome = switch_.ended;
+      result.detail = switch_.detail;
     }
-    return std::move(result_);
+    result.mode = switch_.mode;
+    result.events = std::move(switch_.events);
+    result.transitions = switch_.transitions;
+    result.accumulation = switch_.accumulation;
+    return result;
   }
 
  private:
-  void watch(std::span<EventFunction> functions) const {
-    for (EventFunction& f : functions) f.watch = Watch::off;
-    for (const WatchedSurface& s : table_[static_cast<std::size_t>(result_.mode)].watched)
-      functions[s.function] = {s.direction, Watch::breaking, s.direction != Direction::any};
-  }
-
-  AtEvent take(const EventPoint& point) {
-    const ModePoint here{point.t, point.x, result_.mode, point.crossing};
-    ++result_.transitions;
-    std::optional<Transition> next;
-    if (const std::optional<double> accumulation = chatter_.see(point.t)) {
-      if constexpr (requires { rule_.settle(here); }) {
-        next = rule_.settle(here);
-        chatter_.forget();
-      }
-      if (!next) return end_chattering(*accumulation);
-    }
-    if (!next) next = rule_(here);
-    if (!next->kind.empty()) result_.events.push_back({point.t, next->kind, next->name, result_.mode, next->mode});
-    result_.mode = next->mode;
-    watch(point.functions);
-    if (next->outcome == Outcome::done) return AtEvent::restart;
-    ended_ = next->outcome;
-    return AtEvent::stop;
-  }
-
-  AtEvent end_chattering(double accumulation) {
-    result_.accumulation = accumulation;
-    ended_ = Outcome::step_too_small;
-    char text[160];
-    std::snprintf(text, sizeof text, "chattering: after %zu changes of mode they accumulate at t = %.17g",
-                  result_.transitions, accumulation);
-    detail_ = text;
-    return AtEvent::stop;
-  }
-
   F& rhs_;
   G& events_;
-  std::span<const Mode> table_;
   std::vector<EventFunction> functions_;
-  Rule& rule_;
+  Switch<Rule> switch_;
   Observer& observer_;
   AfterStep& after_step_;
-  ModeResult result_;
-  Chatter chatter_;
-  Outcome ended_ = Outcome::done;
-  std::string detail_;
 };
 
 struct NoObserver {

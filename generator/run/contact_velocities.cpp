@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/contact_velocities.hpp"
+
+#include <cmath>
+
+namespace eomgen::run {
+
+ContactVelocities::ContactVelocities(const RunRequest& request, ConstraintRows& rows)
+    : request_(request), rows_(rows), projection_(request.code.free.size(), rows.size(), 0), y_(request.code.output_names.size()) {}
+
+double ContactVelocities::still() const {
+  constexpr double rounding = 1e-15, share = 1e-3;
+  const Scene& scene = request_.scene;
+  return std::max({rounding, scene.atol, share * scene.rtol * largest_slip_});
+}
+
+double ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact) {
+  const ContactOutputs& outputs = request_.contacts[contact];
+  if (outputs.restitution.empty()) return 0;
+  request_.code.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
+  return y_[index_of(request_.code.output_names, outputs.restitution)];
+}
+
+void ContactVelocities::forget() {
+  largest_slip_ = 0;
+  held_.assign(request_.contacts.size(), Held{-1, still()});
+}
+
+// Slip is known to the tolerance of the rates that it is made of; a fixed step makes it change by as much as the last one did.
+void ContactVelocities::hold(double t, const double* x, const double* u, int mode) {
+  constexpr double tolerances = 30, steps = 1.5;
+  const Scene& scene = request_.scene;
+  const std::size_t n = request_.code.free.size();
+  if (request_.code.outputs(t, x, scene.parameters.data(), u, mode, y_.data()) != 0) return;
+  for (std::size_t j = 0; j < held_.size(); ++j) {
+    if (request_.contacts[j].slip.size() != 2) continue;
+    double known = 0, squares = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+      const double w = y_[index_of(request_.code.output_names, request_.contacts[j].slip[a])];
+      squares += w * w;
+      double sum = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double slope = y_[index_of(request_.code.output_names, request_.contacts[j].slopes[a][i])];
+        sum += std::abs(slope) * (scene.atol + scene.rtol * std::abs(x[n + i]));
+      }
+      known = std::max(known, sum);
+    }
+    const double speed = std::sqrt(squares);
+    const double change = scene.step > 0 && held_[j].speed >= 0 ? steps * std::abs(speed - held_[j].speed) : 0;
+    held_[j] = {speed, std::max({still(), tolerances * known, change})};
+  }
+}
+
+std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, int mode, std::size_t contact) {
+  std::array<double, 2> w{};
+  if (request_.code.outputs(t, x, request_.scene.parameters.data(), u, mode, y_.data()) != 0) return w;
+  for (std::size_t a = 0; a < 2; ++a) w[a] = y_[index_of(request_.code.output_names, request_.contacts[contact].slip[a])];
+  return w;
+}
+
+int ContactVelocities::move(double t, std::span<double> x, const double* u) {
+  const Code& code = request_.code;
+  const double* p = request_.scene.parameters.data();
+  return projection_(t, x.data(),
+                     [&](double at, const double* state, double* psi, double* A, double* b) { return rows_(at, state, u, psi, A, b); },
+                     [&](double at, const double* state, double* M, double* h) { return code.mass(at, state, p, M, h); })
+      .code;
+}
+
+double ContactVelocities::approach(double t, std::span<const double> x, const double* u, std::size_t contact) {
+  return rows_.rate(t, x.data(), u, rows_.row_of(contact));
+}
+
+// Contacts that touch and would be driven into one another by the impulse take part in it; others are left alone.
+int ContactVelocities::impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution) {
+  const std::vector<double> before(x.begin(), x.end());
+  const double after = -restitution * approach(t, x, u, contact);
+  int part = mode;
+  for (std::size_t j = 0; j < request_.contacts.size(); ++j) {
+    if (j != contact && request_.code.contacts[j].unilateral) part = eom::with_contact_digit(part, j, 3);
+  }
+  for (std::size_t round = 0; round <= request_.contacts.size(); ++round) {
+    std::copy(before.begin(), before.end(), x.begin());
+    rows_.slide_all(part);
+    rows_.target(rows_.row_of(contact), after);
+    const int code = move(t, x, u);
+    rows_.clear_targets();
+    if (code != 0) return code;
+    bool more = false;
+    for (std::size_t j = 0; j < request_.contacts.size(); ++j) {
+      const bool left_out = eom::contact_digit(part, j) == 3 && eom::contact_digit(mode, j) != 3;
+      if (!request_.code.contacts[j].unilateral || !left_out || approach(t, x, u, j) >= -still()) continue;
+      part = eom::with_contact_digit(part, j, 0);
+      more = true;
+    }
+    if (!more) break;
+  }
+  return 0;
+}
+
+int ContactVelocities::stick(double t, std::span<double> x, const double* u, int mode, std::size_t) {
+  rows_.mode(mode);
+  return move(t, x, u);
+}
+
+// Sliding starts against the friction that held. Where none held, along the tangents' sum: any direction is as good.
+int ContactVelocities::slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact) {
+  const ContactOutputs& outputs = request_.contacts[contact];
+  if (const int code = request_.code.outputs(t, x.data(), request_.scene.parameters.data(), u, mode, y_.data()); code != 0) return code;
+  std::vector<double> direction;
+  double length = 0;
+  for (const std::string& phi : outputs.phi) direction.push_back(-y_[index_of(request_.code.output_names, phi)]);
+  for (const double d : direction) length = std::hypot(length, d);
+  if (!(length > 0)) direction.assign(direction.size(), length = 1);
+  rows_.mode(mode);
+  for (std::size_t a = 0; a < direction.size(); ++a) rows_.target(rows_.slip_row_of(contact) + a, 2 * least_slip(contact) * direction[a] / length);
+  const int code = move(t, x, u);
+  rows_.clear_targets();
+  return code;
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What happens to velocities where a contact changes its mode: impacts, sliding in two directions that starts or ends. In: the
+// compiled code. Out: the state with the velocities that are nearest in the metric of M, which is what an impulse along the
+// constraints gives.
+#pragma once
+
+#include <array>
+#include <eom/constraints/projection.hpp>
+
+#include "run/constraint_rows.hpp"
+
+namespace eomgen::run {
+
+class ContactVelocities {
+ public:
+  ContactVelocities(const RunRequest& request, ConstraintRows& rows);
+
+  /// As eom::ContactMotion; u: the inputs there.
+  int impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution);
+  int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
+  int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
+  double approach(double t, std::span<const double> x, const double* u, std::size_t contact);
+
+  /// Slip and gap speeds up to here count as none: within the tolerances of the run.
+  double still() const;
+  void forget();
+  void see_slip(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
+  /// A step begins at (t, x): how much slip in two directions counts there.
+  void hold(double t, const double* x, const double* u, int mode);
+  double least_slip(std::size_t contact) const { return held_[contact].least; }
+  std::array<double, 2> slip(double t, const double* x, const double* u, int mode, std::size_t contact);
+  double restitution(double t, const double* x, const double* u, std::size_t contact);
+
+ private:
+  int move(double t, std::span<double> x, const double* u);
+
+  const RunRequest& request_;
+  ConstraintRows& rows_;
+  eom::Projection projection_;
+  std::vector<double> y_;
+  struct Held {
+    double speed = -1, least = 0;  // speed: -1 before the first step
+  };
+  std::vector<Held> held_;  // per contact
+  double largest_slip_ = 0;
+};
+
+}  // namespace eomgen::run

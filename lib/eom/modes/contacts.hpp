@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: MIT
+// Contacts as modes: sticking, sliding and apart; which functions bound each, and what follows where one of them is crossed.
+// In: the contacts of a model, its functions rhs(t, x, mode, dx) and contacts(t, x, mode, g) in the numbering of the C ABI
+// (docs/abi.md, "Modes"), five values per contact:
+//   slip    the slip speed along the (first) tangent
+//   above   mu_s |N| - phi of one direction, mu_s |N| - |phi| of two
+//   below   mu_s |N| + phi of one direction; of two the slip speed along the second tangent
+//   hold    the normal force as it presses; of a contact that is apart the gap
+//   margin  of the law's solution: where it is negative there is none, or several
+// and what changes velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode of a start.
+//
+// Sliding in two directions has no value at slip 0. It ends at the least slip that counts, from where the little that is left is
+// extrapolated, and starts with twice as much in the direction in which friction gives way.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/modes/contact_state.hpp"
+#include "eom/modes/machine.hpp"
+
+namespace eom {
+
+struct Contact : ContactShape {
+  std::string name;
+  double restitution = 0;  // of impacts where it can be left: speed after over speed before
+};
+
+/// For contacts with one direction of sliding that cannot be left: nothing changes velocities.
+struct ContactMotion {
+  /// Velocities after an impact at contact j, with the contacts that touch in `mode`. Returns a code of the ABI.
+  int impact(double, std::span<double>, int, std::size_t, double) { return 0; }
+  /// Slip 0 at contact j in `mode`.
+  int stick(double, std::span<double>, int, std::size_t) { return 0; }
+  /// Goes on from (t, x), where contact j slides slowly, to where it stops.
+  int stop(double&, std::span<double>, int, std::size_t) { return 0; }
+  /// Twice the least slip, in the direction in which contact j gives way; `mode` as it still sticks.
+  int slide(double, std::span<double>, int, std::size_t) { return 0; }
+  /// The least slip in two directions that counts.
+  double least_slip(std::size_t) const { return 1e-12; }
+  /// d(gap)/dt of contact j.
+  double approach(double, std::span<const double>, std::size_t) { return 0; }
+  /// Slip and gap speeds up to here count as none.
+  double still() const { return 1e-12; }
+};
+
+inline constexpr std::size_t contact_values = 5;
+
+template <class Rhs, class Functions, class Motion = ContactMotion>
+class Contacts {
+ public:
+  Contacts(std::vector<Contact> contacts, std::size_t states, Rhs rhs, Functions functions, Motion motion = {})
+      : contacts_(std::move(contacts)), dx_(states), g_(contact_values * contacts_.size()), rhs_(std::move(rhs)),
+        functions_(std::move(functions)), motion_(std::move(motion)) {
+    if (contacts_.size() > max_contacts) throw std::invalid_argument("eom::Contacts: more contacts than a mode has digits for");
+    for (const Contact& contact : contacts_) {
+      if (std::is_same_v<Motion, ContactMotion> && (contact.dimensions == 2 || contact.unilateral))
+        throw std::invalid_argument("eom::Contacts: '" + contact.name + "' changes velocities, and no motion is given");
+    }
+    make_table();
+  }
+
+  std::size_t functions() const { return g_.size(); }
+  std::span<const Mode> table() const { return table_; }
+  void restitution(std::size_t contact, double e) { contacts_[contact].restitution = e; }
+
+  /// Makes the functions those that are watched: the speed of slip in two directions, beyond the least one.
+  void shift(double* g) const {
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+      if (contacts_[j].dimensions != 2) continue;
+      double* const value = g + contact_values * j;
+      value[0] = std::hypot(value[0], value[2]) - motion_.least_slip(j);
+      value[2] = 1;
+    }
+  }
+
+  /// The mode of a start: what slips slides; what does not sticks if the static law allows, else slides off; what is apart
+  /// (of contacts that can be left), or leaves at once, stays apart. `apart`: per contact; empty: all touch. x changes where something
+  /// hits at the start.
+  int start(double t, std::span<double> x, std::span<const bool> apart = {}) {
+    int mode = 0;
+    for (std::size_t j = 0; j < apart.size(); ++j)
+      if (contacts_[j].unilateral && apart[j]) mode = with_contact_digit(mode, j, 3);
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+      if (!contacts_[j].unilateral || contact_digit(mode, j) == 3) continue;
+      const double speed = motion_.approach(t, x, j);
+      if (speed > motion_.still()) mode = with_contact_digit(mode, j, 3);
+      if (speed < -motion_.still()) mode = hit(t, x, mode, j).mode;
+    }
+    return settled(t, x, mode);
+  }
+
+  Transition operator()(const ModePoint& point) {
+    const std::size_t j = point.crossing.function / contact_values;
+    switch (point.crossing.function % contact_values) {
+      case 0: return stop_sliding(point, j);
+      // Friction at its limit along the tangent gives way against it, and the other way round.
+      case 1: return start_sliding(point, j, contacts_[j].dimensions == 2 ? 1 : 2);
+      case 2: return start_sliding(point, j, 1);
+      case 3: return change_hold(point, j);
+      default: break;
+    }
+    const int code = rhs_(point.t, point.x.data(), point.mode, dx_.data());
+    return {point.mode, "singular_configuration", contacts_[j].name,
+            code == 4 ? Outcome::friction_many_solutions : Outcome::friction_no_solution};
+  }
+
+  /// Bounces that accumulate end with contact.
+  std::optional<Transition> settle(const ModePoint& point) {
+    const std::size_t j = point.crossing.function / contact_values;
+    if (point.crossing.function % contact_values != 3 || !contacts_[j].unilateral) return std::nullopt;
+    return hit(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
+  }
+
+ private:
+  Transition failed(const ModePoint& point, int code) const { return {point.mode, "", "", outcome_of_abi_code(code)}; }
+
+  double speed(const double* g, std::size_t j) const {
+    const double* const value = g + contact_values * j;
+    return contacts_[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
+  }
+  bool static_law_holds(std::size_t j) const {
+    const double* const g = g_.data() + contact_values * j;
+    return g[1] >= 0 && (contacts_[j].dimensions == 2 || g[2] >= 0);
+  }
+
+  Transition stop_sliding(const ModePoint& point, std::size_t j) {
+    const int digit = contact_digit(point.mode, j), sign = digit - digit % 3, sticking = with_contact_digit(point.mode, j, sign);
+    const std::string& name = contacts_[j].name;
+    if (contacts_[j].dimensions == 2) {
+      if (const int code = motion_.stop(point.t, point.x, point.mode, j); code != 0) return failed(point, code);
+    }
+    if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0) return failed(point, code);
+    if (static_law_holds(j)) {
+      const int code = contacts_[j].dimensions == 2 ? motion_.stick(point.t, point.x, sticking, j) : 0;
+      return code != 0 ? failed(point, code) : Transition{sticking, "stick", name};
+    }
+    if (contacts_[j].dimensions == 2) {
+      const int code = motion_.slide(point.t, point.x, sticking, j);
+      return code != 0 ? failed(point, code) : Transition{point.mode, "reverse", name};
+    }
+    return {with_contact_digit(point.mode, j, sign + 3 - digit % 3), "reverse", name};
+  }
+
+  Transition start_sliding(const ModePoint& point, std::size_t j, int way) {
+    const int digit = contact_digit(point.mode, j);
+    if (contacts_[j].dimensions == 2) {
+      if (const int code = motion_.slide(point.t, point.x, point.mode, j); code != 0) return failed(point, code);
+    }
+    return {with_contact_digit(point.mode, j, digit - digit % 3 + way), "slip", contacts_[j].name};
+  }
+
+  Transition change_hold(const ModePoint& point, std::size_t j) {
+    const int digit = contact_digit(point.mode, j);
+    if (!contacts_[j].unilateral) return {with_contact_digit(point.mode, j, (digit + 3) % 6)};
+    if (digit == 3) return hit(point.t, point.x, point.mode, j);
+    return {with_contact_digit(point.mode, j, 3), "lose_contact", contacts_[j].name};
+  }
+
+  /// An impact at contact j, which is apart; it stays so if it bounces.
+  Transition hit(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
+    const double speed = motion_.approach(t, x, j), e = bounces ? contacts_[j].restitution : 0;
+    const bool away = e > 0 && -speed * e > motion_.still();
+    if (speed < 0) {
+      const int code = motion_.impact(t, x, with_contact_digit(mode, j, 0), j, away ? e : 0);
+      if (code != 0) return {mode, "", "", outcome_of_abi_code(code)};
+    }
+    const int after = away ? mode : with_contact_digit(mode, j, 0);
+    return {settled(t, x, after), "contact", contacts_[j].name};
+  }
+
+  /// The mode with the contacts that touch in `mode` sliding or sticking as the velocities say.
+  int settled(double t, std::span<double> x, int mode) {
+    const auto touches = [&](std::size_t j) { return !contacts_[j].unilateral || contact_digit(mode, j) < 3; };
+    const auto evaluate = [&] { return functions_(t, x.data(), mode, g_.data()) == 0; };
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {  // what an impact elsewhere has lifted
+      if (contacts_[j].unilateral && touches(j) && motion_.approach(t, x, j) > motion_.still()) mode = with_contact_digit(mode, j, 3);
+    }
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+      if (!touches(j) || !contacts_[j].sticks) continue;
+      const int high = contact_digit(mode, j) / 3 * 3;
+      mode = with_contact_digit(mode, j, high);
+      if (!evaluate()) return mode;
+      if (speed(g_.data(), j) <= motion_.still()) continue;
+      const bool back = contacts_[j].dimensions == 1 && g_[contact_values * j] < 0;
+      mode = with_contact_digit(mode, j, high + (back ? 2 : 1));
+    }
+    // One change may call for another; contacts that do not settle are left to the rule.
+    for (std::size_t round = 0; round < 4 * contacts_.size(); ++round) {
+      if (!evaluate()) return mode;
+      const int next = better(t, x, mode);
+      if (next == mode) break;
+      mode = next;
+    }
+    return mode;
+  }
+
+  int better(double t, std::span<double> x, int mode) {
+    for (std::size_t j = 0; j < contacts_.size(); ++j) {
+      const int digit = contact_digit(mode, j);
+      const double* g = g_.data() + contact_values * j;
+      if (contacts_[j].unilateral && digit == 3) continue;
+      if (contacts_[j].unilateral && g[3] < 0) return with_contact_digit(mode, j, 3);
+      if (contacts_[j].surface && g[3] < 0) return with_contact_digit(mode, j, (digit + 3) % 6);
+      if (digit % 3 != 0 || !contacts_[j].sticks || static_law_holds(j)) continue;
+      if (contacts_[j].dimensions == 1) return with_contact_digit(mode, j, g[1] < 0 ? digit + 2 : digit + 1);
+      if (motion_.slide(t, x, mode, j) == 0) return with_contact_digit(mode, j, digit + 1);
+    }
+    return mode;
+  }
+
+  void watch_contact(Mode& mode, std::size_t j, int digit) const {
+    const Contact& contact = contacts_[j];
+    const std::size_t first = contact_values * j;
+    const bool apart = contact.unilateral && digit >= 3;
+    if (contact.sticks && !apart) {
+      if (digit % 3 == 0) {
+        mode.watched.push_back({first + 1, Direction::down});
+        if (contact.dimensions == 1) mode.watched.push_back({first + 2, Direction::down});
+      } else {
+        mode.watched.push_back({first, digit % 3 == 1 ? Direction::down : Direction::up});
+      }
+    }
+    if (!apart && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
+    if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
+    const char* state = apart ? " is apart" : contact.dimensions == 0 ? " touches" : !contact.sticks || digit % 3 != 0 ? " slides" : " sticks";
+    mode.name += (mode.name.empty() ? "" : ", ") + contact.name + state;
+  }
+
+  void make_table() {
+    std::size_t modes = 1;
+    for (std::size_t j = 0; j < contacts_.size(); ++j) modes *= contact_states;
+    table_.resize(modes);
+    for (std::size_t m = 0; m < table_.size(); ++m) {
+      for (std::size_t j = 0; j < contacts_.size(); ++j) watch_contact(table_[m], j, contact_digit(static_cast<int>(m), j));
+    }
+  }
+
+  std::vector<Contact> contacts_;
+  std::vector<double> dx_, g_;
+  std::vector<Mode> table_;
+  Rhs rhs_;
+  Functions functions_;
+  Motion motion_;
+};
+
+}  // namespace eom
