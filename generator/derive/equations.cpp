@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/equations.hpp"
 
+#include <algorithm>
 #include <numeric>
 
 namespace eomgen::derive {

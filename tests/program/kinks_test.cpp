@@ -143,6 +143,7 @@ TEST_CASE("system: for_each_expression comes to every expression once") {
   contact.gram = some(), contact.slip = some(), contact.slip_rate = some();
   contact.normal = next(), contact.static_coefficient = next(), contact.dynamic_coefficient = next();
   contact.directions = {{next(), next(), next()}};
+  contact.width = next(), contact.restitution = next();
   s.contacts = {contact};
   s.reactions = {{0, "r", next()}}, s.outputs = {{"o", next()}}, s.events = {{"e", next()}};
   s.energy = next(), s.kinetic = next(), s.potential = next(), s.power = next();
