@@ -64,6 +64,7 @@ class Document {
     energies(one, two);
     equations(one, two);
     reactions(one);
+    contacts();
     text_ += "\\end{document}\n";
     return std::move(text_);
   }
@@ -167,6 +168,20 @@ class Document {
                                         [](const reading::ReadConstraint& c) { return !c.holonomic; });
     if (velocities) text_ += "Of a constraint on velocities it is the multiplier times the coefficients of the velocities.\n";
     for (const Statement& s : statements) display(s.formula);
+  }
+
+  void contacts() {
+    std::vector<Statement> statements;
+    add_contacts(m_, statements);
+    if (statements.empty()) return;
+    heading("Contacts");
+    std::string before;
+    for (const Statement& s : statements) {
+      const std::string title = s.name + ", " + s.role;
+      if (title != before) text_ += escape_latex(title) + ":\n";
+      before = title;
+      display(s.formula);
+    }
   }
 
   const Mechanics& m_;

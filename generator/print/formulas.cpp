@@ -228,6 +228,7 @@ std::vector<Statement> statements(const Mechanics& m, const ReadingForm& form, c
   if (wanted("lagrangian")) add_lagrangian(m, form, out);
   if (wanted("equations")) add_equations(m, form, out);
   if (wanted("reactions")) add_reactions(form, out);
+  if (wanted("friction")) add_contacts(m, out);
   std::vector<std::string> of_geometry;
   for (const char* key : {"basis", "metric", "line_element", "christoffel"}) {
     if (wanted(key)) of_geometry.emplace_back(key);

@@ -38,6 +38,9 @@ void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::
 /// Frenet triad, curvature, torsion, line element of the curve that is left; `asked`: throws Error where there is none.
 void add_frenet(const mechanics::Mechanics& mechanics, bool asked, std::vector<Statement>& out);
 
+/// Contacts with friction or that can be left: directions, slip, normal force, the law in every mode.
+void add_contacts(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+
 void add_singular(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 
 }  // namespace eomgen::print

@@ -140,6 +140,7 @@ class LatexStyle final : public Style {
   std::string minus() const override { return " - "; }
   std::string leading_minus() const override { return "-"; }
   std::string equals() const override { return " = "; }
+  std::string at_least() const override { return " \\ge "; }
   std::string comma() const override { return ",\\quad "; }
   std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
     std::size_t total = 0;

@@ -111,6 +111,7 @@ class MathmlStyle final : public Style {
   std::string minus() const override { return op("−"); }
   std::string leading_minus() const override { return "<mo form=\"prefix\">−</mo>"; }
   std::string equals() const override { return op("="); }
+  std::string at_least() const override { return op("≥"); }
   std::string comma() const override { return op(",") + "<mspace width=\"1em\"/>"; }
   std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
     static const std::string open = "<math displaystyle=\"true\">", close = "</math>";

@@ -31,10 +31,14 @@ class Walk {
       case Form::dot: return style_.dotted((*this)(f.args[0]), f.order);
       case Form::dot_product: return style_.dot_product({at_least(f.args[0], Piece::product)}, {at_least(f.args[1], Piece::product)});
       case Form::differential: return style_.differential((*this)(f.args[0]));
-      case Form::relation: return {listed(f.args, style_.equals()), Piece::relation};
+      case Form::relation: return {listed(f.args, between(f)), Piece::relation};
       case Form::list: return {listed(f.args, style_.comma()), Piece::relation};
     }
     return {};
+  }
+
+  std::string between(const Formula& relation) const {
+    return relation.word == reading::at_least ? style_.at_least() : style_.equals();
   }
 
   /// Top-level terms of all sides of a relation, with their signs and the equals signs.
@@ -44,7 +48,7 @@ class Walk {
     const std::vector<Formula> sides = f.form == Form::relation ? f.args : std::vector<Formula>{f};
     for (std::size_t side = 0; side < sides.size(); ++side) {
       std::vector<std::string> terms = broken_terms(sides[side]);
-      if (side > 0) terms.front() = style_.equals() + terms.front();
+      if (side > 0) terms.front() = between(f) + terms.front();
       if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" does not stand on a line of its own
         all.back() += terms.front();
         continue;

@@ -51,6 +51,7 @@ class Style {
   virtual std::string minus() const = 0;         // between terms
   virtual std::string leading_minus() const = 0;
   virtual std::string equals() const = 0;
+  virtual std::string at_least() const = 0;
   virtual std::string comma() const = 0;
   /// A whole formula from its top-level pieces, broken into lines or elements where it is long. `starts[i]`: piece i
   /// begins a side of a relation.

@@ -11,7 +11,7 @@
 
 namespace eomgen::print {
 
-/// One printed formula. `key`: equations (momentum form, one per coordinate), explicit (M qddot + h = Q), reactions,
+/// One printed formula. `key`: equations (momentum form, one per coordinate), explicit (M qddot + h = Q), reactions, friction,
 /// basis, metric, christoffel, line_element, frenet, energies, lagrangian, constraints, singular.
 struct Item {
   std::string key, name;

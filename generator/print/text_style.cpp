@@ -99,6 +99,7 @@ class TextStyle final : public Style {
   std::string minus() const override { return " - "; }
   std::string leading_minus() const override { return "-"; }
   std::string equals() const override { return " = "; }
+  std::string at_least() const override { return " >= "; }
   std::string comma() const override { return ", "; }
   std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
     return joined(pieces, "");

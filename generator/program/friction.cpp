@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "error.hpp"
+#include "program/normal_forces.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -30,8 +30,12 @@ class Closure {
   }
 
   FrictionSolution run() {
+    for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) {
+      for (const std::uint32_t k : s_.contacts[j].reactions) normal_[j].push_back(affine(s_.reactions[k].value));
+    }
+    find_coupled_curves();
     for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) add_rows(j);
-    result_.phi = solve_rows();
+    solve_rows();
     for (std::size_t i = 0; i < motion_.size(); ++i) {
       (i < s_.free.size() ? result_.qddot : result_.lambda).push_back(at(motion_[i]));
     }
@@ -122,12 +126,14 @@ class Closure {
 
   void add_rows(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
-    for (const std::uint32_t k : c.reactions) normal_[j].push_back(affine(s_.reactions[k].value));
-    if (c.reactions.size() == 2) close_curve(j);
+    if (c.reactions.size() == 2 && coupled_.empty()) close_curve(j);
     for (std::size_t a = 0; a < c.slip.size(); ++a) {
       const Affine rate = affine(c.slip_rate[a]);
       const Affine law = sliding_law(j, a);
       const std::size_t row = c.first + a;
+      if (c.reactions.size() == 2 && !coupled_.empty()) {
+        by_normal_[place_of(j)][row] = dag_.neg(by_mode(j, dag_.zero(), dag_.mul(c.dynamic_coefficient, heading(j, a))));
+      }
       for (std::size_t b = 0; b < count_; ++b) {
         const Ref none = b == row ? dag_.one() : dag_.zero();  // apart: phi = 0
         matrix_[row * count_ + b] = by_touch(j, none, by_mode(j, rate.slope[b], law.slope[b]));
@@ -146,7 +152,7 @@ class Closure {
     if (c.reactions.empty()) {
       law.value = dag_.mul(drag, absolute(c.normal));
     } else if (c.reactions.size() == 2) {
-      law.value = dag_.mul(drag, curve_normal_[j]);
+      if (coupled_.empty()) law.value = dag_.mul(drag, curve_normal_[j]);
     } else {
       const Ref factor = dag_.mul(drag, dag_.mul(presses(j), root(c.gram[0])));
       law.value = dag_.mul(factor, normal_[j][0].value);
@@ -157,16 +163,29 @@ class Closure {
     return law;
   }
 
+  // Curves whose normal forces feel the friction at another contact are solved for together (normal_forces.hpp).
+  void find_coupled_curves() {
+    std::vector<std::uint32_t> curves;
+    bool coupled = false;
+    for (std::uint32_t j = 0; j < s_.contacts.size(); ++j) {
+      const Contact& c = s_.contacts[j];
+      if (c.reactions.size() != 2) continue;
+      curves.push_back(j);
+      for (const Affine& lambda : normal_[j]) {
+        for (std::size_t b = 0; b < count_; ++b) coupled = coupled || (b != c.first && !dag_.is_zero(lambda.slope[b]));
+      }
+    }
+    if (!coupled) return;
+    coupled_ = std::move(curves);
+    by_normal_.assign(coupled_.size(), std::vector<Ref>(count_, dag_.zero()));
+  }
+  std::size_t place_of(std::uint32_t curve) const {
+    return static_cast<std::size_t>(std::find(coupled_.begin(), coupled_.end(), curve) - coupled_.begin());
+  }
+
   // nu = |lambda^T G lambda|^(1/2) with lambda = l0 - sigma mu nu L: (1 - mu^2 LGL) nu^2 + 2 sigma mu l0GL nu - l0Gl0 = 0.
   void close_curve(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
-    for (const Affine& lambda : normal_[j]) {
-      for (std::size_t b = 0; b < count_; ++b) {
-        if (b == c.first || dag_.is_zero(lambda.slope[b])) continue;
-        throw Error("program", {}, "the normal force on the curve '" + c.name + "' depends on the friction at another contact",
-                    "this is not supported for curves yet: give the contacts surfaces of one equation each");
-      }
-    }
     const auto form = [&](auto&& x, auto&& y) {
       Ref sum = dag_.zero();
       for (std::size_t k = 0; k < 4; ++k) {
@@ -214,8 +233,10 @@ class Closure {
   }
 
   // Gauss, unrolled; zeros cost nothing, and contacts that do not feel one another stay apart.
-  std::vector<Ref> solve_rows() {
+  void solve_rows() {
     const std::size_t n = count_;
+    std::vector<std::vector<Ref>> sides{right_};
+    sides.insert(sides.end(), by_normal_.begin(), by_normal_.end());
     for (std::size_t k = 0; k < n; ++k) {
       for (std::size_t i = k + 1; i < n; ++i) {
         if (dag_.is_zero(matrix_[i * n + k])) continue;
@@ -223,16 +244,43 @@ class Closure {
         for (std::size_t b = k + 1; b < n; ++b) {
           matrix_[i * n + b] = dag_.sub(matrix_[i * n + b], dag_.mul(l, matrix_[k * n + b]));
         }
-        right_[i] = dag_.sub(right_[i], dag_.mul(l, right_[k]));
+        for (std::vector<Ref>& side : sides) side[i] = dag_.sub(side[i], dag_.mul(l, side[k]));
       }
     }
-    std::vector<Ref> phi(n);
-    for (std::size_t k = n; k-- > 0;) {
-      Ref sum = right_[k];
-      for (std::size_t b = k + 1; b < n; ++b) sum = dag_.sub(sum, dag_.mul(matrix_[k * n + b], phi[b]));
-      phi[k] = dag_.div(sum, matrix_[k * n + k]);
+    for (std::vector<Ref>& side : sides) {
+      for (std::size_t k = n; k-- > 0;) {
+        for (std::size_t b = k + 1; b < n; ++b) side[k] = dag_.sub(side[k], dag_.mul(matrix_[k * n + b], side[b]));
+        side[k] = dag_.div(side[k], matrix_[k * n + k]);
+      }
     }
-    return phi;
+    result_.phi = sides[0];
+    if (!coupled_.empty()) add_coupled(sides);
+  }
+
+  // phi = sides[0] + sum_d sides[1 + d] nu_d
+  void add_coupled(const std::vector<std::vector<Ref>>& sides) {
+    std::vector<CurveForce> forces;
+    for (const std::uint32_t j : coupled_) {
+      CurveForce force{s_.contacts[j].gram, {}, std::vector<std::array<Ref, 2>>(coupled_.size())};
+      for (std::size_t k = 0; k < 2; ++k) {
+        force.a[k] = at(normal_[j][k]);
+        for (std::size_t d = 0; d < coupled_.size(); ++d) {
+          force.b[d][k] = dag_.zero();
+          for (std::size_t b = 0; b < count_; ++b) {
+            force.b[d][k] = dag_.add(force.b[d][k], dag_.mul(normal_[j][k].slope[b], sides[1 + d][b]));
+          }
+        }
+      }
+      forces.push_back(std::move(force));
+    }
+    const NormalForces normal = coupled_normal_forces(dag_, forces);
+    for (std::size_t b = 0; b < count_; ++b) {
+      for (std::size_t d = 0; d < coupled_.size(); ++d) {
+        result_.phi[b] = dag_.add(result_.phi[b], dag_.mul(sides[1 + d][b], normal.nu[d]));
+      }
+    }
+    result_.none.push_back(normal.settled);
+    result_.many.push_back(dag_.one());
   }
 
   /// |N| of contact j; the multiplier of one surface into `press`.
@@ -274,6 +322,8 @@ class Closure {
   std::map<std::uint32_t, std::vector<Affine>> normal_;  // multipliers of each contact
   std::map<std::uint32_t, Ref> curve_normal_, margin_;
   std::vector<Ref> matrix_, right_;                 // of phi
+  std::vector<std::uint32_t> coupled_;              // curves, where their normal forces are coupled
+  std::vector<std::vector<Ref>> by_normal_;         // per coupled curve: what its normal force adds to right_
   FrictionSolution result_;
 };
 

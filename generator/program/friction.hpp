@@ -28,7 +28,7 @@ struct FrictionSolution {
   std::vector<ContactWatch> watch;
 };
 
-/// Throws Error for curves whose normal forces depend on one another's friction.
+/// Closes the laws of all contacts.
 FrictionSolution close_friction(const system::EquationSystem& system, const LinearSolve& solve);
 
 }  // namespace eomgen::program

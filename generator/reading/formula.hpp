@@ -26,7 +26,7 @@ enum class Form {
   dot,         // args[0] with `order` dots over it
   dot_product, // args[0] . args[1]
   differential,// d args[0]
-  relation,    // args[0] = args[1] = ...
+  relation,    // args[0] = args[1] = ...; with `word` at_least: args[0] >= args[1]
   list,        // args, with commas
 };
 
@@ -40,6 +40,8 @@ struct Formula {
   std::vector<Formula> args;
   std::vector<Formula> lower, upper;
 };
+
+inline constexpr const char* at_least = ">=";
 
 Formula number(const Rational& value);  // negative ones are wrapped
 Formula symbol(const Symbol& symbol);

@@ -155,6 +155,7 @@ Sum absorb_roots(const Sum& sum) {
     const Sum base = root.atom->args[0];
     Sum rest = divide(sum, {1, {root}});
     Rational exponent = root.exponent;
+    if (base.size() < 2) continue;  // one term divides everything, again and again
     for (std::optional<Sum> q; rest.size() > 1 && (q = exact_quotient(rest, base)); exponent = exponent + 1) rest = *q;
     if (exponent != root.exponent) return rest * Sum(Monomial{{root.atom, exponent}}, 1);
   }

@@ -60,6 +60,19 @@ json forces_of(mechanics::Mechanics& m) {
   return result;
 }
 
+json contacts_of(const mechanics::Mechanics& m) {
+  json result = json::array();
+  for (const mechanics::Contact& contact : m.contacts) {
+    const std::size_t equations = contact.constraints.size();
+    json slip = json::array();
+    for (const symbolic::Ref w : contact.slip) slip.push_back(shown(m, w));
+    result.push_back({{"name", contact.name}, {"kind", equations == 0 ? "coordinate" : equations == 1 ? "surface" : "curve"},
+                      {"law", contact.dimensions() == 0 ? "none" : contact.width ? "smooth" : "coulomb"}, {"slip", slip},
+                      {"unilateral", contact.unilateral}});
+  }
+  return result;
+}
+
 json singular_of(const mechanics::Mechanics& m) {
   json result = json::array();
   for (const print::Item& item : print::render(m, reading::derive_reading(m, system::Approach::two), {"singular"})) {
@@ -96,7 +109,7 @@ json examine(const model::Model& model) {
   }
   return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
           {"dof", static_cast<long>(m.free.size()) - static_cast<long>(m.active.size())}, {"parameters", parameters},
-          {"constraints", constraints_of(m)}, {"forces", forces_of(m)}, {"conserved", conserved},
+          {"constraints", constraints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
           {"singular", singular_of(m)},
           {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
 }
@@ -136,6 +149,13 @@ void print_readable(const json& found) {
     for (const json& condition : f["domain"]) fmt::print("{}{}", &condition == &f["domain"].front() ? " where " : ", ", text(condition));
     if (!text(f["reason"]).empty()) fmt::print(" ({})", text(f["reason"]));
     fmt::print("\n");
+  }
+  if (!found["contacts"].empty()) heading("contacts");
+  for (const json& c : found["contacts"]) {
+    std::string slip;
+    for (const json& w : c["slip"]) slip += (slip.empty() ? ", slip " : "; ") + text(w);
+    const std::string law = c["law"] == "none" ? "no friction" : c["law"] == "smooth" ? "the smooth law of friction" : "Coulomb's law";
+    fmt::print("  {:<20} {}, {}{}{}\n", text(c["name"]), text(c["kind"]), law, slip, c["unilateral"].get<bool>() ? "; can be left" : "");
   }
   if (!found["conserved"].empty()) heading("conserved");
   for (const json& c : found["conserved"]) {

@@ -20,12 +20,12 @@ using json = nlohmann::ordered_json;
 
 struct Options {
   std::string model, approach = "auto", format = "text";
-  std::vector<std::string> show{"equations", "constraints", "reactions"};
+  std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 
 const std::vector<std::string>& show_keys() {
   static const std::vector<std::string> keys{"basis", "metric", "christoffel", "line_element", "frenet", "energies", "lagrangian",
-                                             "equations", "constraints", "reactions", "conserved", "singular", "routh", "linear", "all"};
+                                             "equations", "constraints", "reactions", "friction", "conserved", "singular", "routh", "linear", "all"};
   return keys;
 }
 
@@ -126,7 +126,7 @@ int execute(const Options& options, const Common& common) {
   model::Model model = load_model(options.model);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   // Approach I shows the constraint forces too, so it is what `auto` means wherever something is eliminated.
-  const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !mechanics.fixed.empty());
+  const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !(mechanics.fixed.empty() && mechanics.contacts.empty()));
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
   std::vector<print::Item> items = print::render(mechanics, form, options.show);
