@@ -148,13 +148,16 @@ class StartSolver {
 
   // |psi_k| against the size of its linear terms: the relative measure of the contract.
   double relative(const VectorXd& residual, const MatrixXd& A, std::uint8_t order, Eigen::Index k) const {
-    double terms = 0;
+    double terms = 0, slopes = 0, largest = 0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const double x = order == 0 ? p_.q[s_.free[i]] : p_.qdot[s_.free[i]];
-      terms += std::abs(A(k, static_cast<Eigen::Index>(i)) * x);
+      const double x = order == 0 ? p_.q[s_.free[i]] : p_.qdot[s_.free[i]], slope = std::abs(A(k, static_cast<Eigen::Index>(i)));
+      terms += std::abs(slope * x);
+      slopes += slope;
+      largest = std::max(largest, std::abs(x));
     }
     const double size = std::abs(residual(k));
-    if (size == 0) return 0;
+    // What is beyond the last digit of the other coordinates is 0, whatever it is made of.
+    if (size <= newton_tolerance * slopes * largest) return 0;
     // At rest every term of A qdot vanishes; b itself is then the scale.
     return terms > size ? size / terms : 1;
   }

@@ -294,6 +294,24 @@ State with_any_friction(const mechanics::Mechanics& mechanics, const Judge& judg
   return state;
 }
 
+/// A state in `mode`: what is apart is moved off its constraint, along the coordinate that does so fastest.
+State in_mode(const EquationSystem& s, const SystemValues& at, const State& state, int mode) {
+  State result = state;
+  result.mode = mode;
+  for (std::size_t j = 0; j < s.contacts.size(); ++j) {
+    const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
+    if (!k || eom::contact_leaf(mode, 2 * j + 1) > 0) continue;
+    std::size_t steepest = 0;
+    const auto slope = [&](std::size_t i) { return at.A[*k * s.free.size() + i]; };
+    for (std::size_t i = 1; i < s.free.size(); ++i) {
+      if (cln::abs(slope(i)) > cln::abs(slope(steepest))) steepest = i;
+    }
+    Real& q = result.q[s.free[steepest]];
+    q = q + (cln::minusp(slope(steepest)) ? -1 : 1) * (cln::abs(q) + 1) / 16;
+  }
+  return result;
+}
+
 std::vector<int> modes_of(const EquationSystem& s) {
   std::vector<eom::ContactShape> shapes;
   for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());
@@ -344,8 +362,7 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   compare_integrals(mechanics, first, values.front(), judge, tally);
   if (first.contacts.empty()) return compare_code(subjects, values.front(), judge, 0, tally);
   for (const int mode : modes_of(first)) {
-    State lawful = state;
-    lawful.mode = mode;
+    State lawful = in_mode(first, values.front(), state, mode);
     set_friction(mechanics, judge, lawful, lawful_friction(first, judge, lawful));
     const SystemValues in_mode = values_of(first, mechanics, judge, lawful);
     double largest = 0;

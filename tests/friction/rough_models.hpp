@@ -148,4 +148,144 @@ holonomic = "y"
 friction = { static = "mu", dynamic = "mu" }
 )toml";
 
+// A ball on a rough floor that it can leave.
+inline const std::string floor = R"toml(format = 1
+title = "Bouncing ball"
+[parameters]
+m = "1 kg"
+g = "9.81 m/s^2"
+e = 0.5
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "floor"
+holonomic = "y"
+holds = "unilateral"
+restitution = "e"
+friction = { static = 0.4, dynamic = 0.3 }
+)toml";
+
+// A particle on a rough sphere that it can leave, in space.
+inline const std::string dome = R"toml(format = 1
+title = "Particle on a rough sphere, with a spring"
+[parameters]
+m = "1 kg"
+g = "9.81 m/s^2"
+R0 = "1 m"
+K = "2 N/m"
+L0 = "0.5 m"
+a = "0.3 m"
+b = "1.2 m"
+mu_s = 0.3
+mu_d = 0.2
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[point]]
+name = "D"
+position = "a*E1 + b*E2"
+[[force]]
+gravity = "-g*E3"
+[[force]]
+spring = { between = ["D", "P"], stiffness = "K", length = "L0" }
+[[constraint]]
+name = "sphere"
+holonomic = "R - R0"
+holds = "unilateral"
+friction = { static = "mu_s", dynamic = "mu_d" }
+)toml";
+
+// The smooth law.
+inline const std::string creeping = R"toml(format = 1
+[parameters]
+m = 1
+mu = 0.3
+g = 9.81
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y", "z"] }
+[[force]]
+gravity = "-g*E3 + 2*E1"
+[[constraint]]
+name = "table"
+holonomic = "z"
+friction = { dynamic = "mu", law = "smooth", width = "1e-3 m/s" }
+)toml";
+
+// The normal force on a wire that feels the friction in a hinge: one quadratic equation.
+inline const std::string hinge = R"toml(format = 1
+title = "Bead on a rough rod, a pendulum on a rough hinge"
+[parameters]
+m1 = "1 kg"
+m2 = "2 kg"
+L = "0.5 m"
+g = "9.81 m/s^2"
+mu = 0.2
+T = "0.3 N*m"
+[[particle]]
+name = "A"
+mass = "m1"
+position = { cartesian = ["x1", "y1", "z1"] }
+[[particle]]
+name = "B"
+mass = "m2"
+position = "A + L*sin(theta)*E1 - L*cos(theta)*E3"
+[coordinates]
+theta = "rad"
+[[force]]
+gravity = "-g*E3"
+[[force]]
+name = "hinge"
+dry = { coordinate = "theta", normal = "T", static = 1, dynamic = 0.8 }
+[[constraint]]
+name = "wire"
+holonomic = ["y1", "z1"]
+friction = { static = "mu", dynamic = "mu" }
+)toml";
+
+// Two wires whose normal forces feel the friction of one another: Newton's iteration.
+inline const std::string wires = R"toml(format = 1
+title = "Two beads on rough wires, a mass between them on two rods"
+[parameters]
+m1 = "1 kg"
+m2 = "2 kg"
+L = "1 m"
+g = "9.81 m/s^2"
+mu = 0.2
+[[particle]]
+name = "A"
+mass = "m1"
+position = { cartesian = ["x1", "y1", "z1"] }
+[[particle]]
+name = "B"
+mass = "m1"
+position = { cartesian = ["x2", "y2", "z2"] }
+[[particle]]
+name = "C"
+mass = "m2"
+position = { cartesian = ["x3", "y3", "z3"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "wireA"
+holonomic = ["y1", "z1"]
+friction = { static = "mu", dynamic = "mu" }
+[[constraint]]
+name = "wireB"
+holonomic = ["y2 - 1", "z2 - x2/5"]
+friction = { static = "mu", dynamic = "mu" }
+[[constraint]]
+name = "rodA"
+holonomic = "(x1-x3)^2 + (y1-y3)^2 + (z1-z3)^2 - L^2"
+[[constraint]]
+name = "rodB"
+holonomic = "(x2-x3)^2 + (y2-y3)^2 + (z2-z3)^2 - L^2"
+)toml";
+
 }  // namespace eomgen::test
