@@ -88,9 +88,7 @@ ErrorEstimate estimate_error(int order, double t0, const Result& first, const Op
         detail::repetition(options, std::abs(first.t - t0), first.statistics.steps, order, part);
     const Result again = run(next.options);
     ++estimate.runs;
-    estimate.statistics.steps += again.statistics.steps;
-    estimate.statistics.rejected += again.statistics.rejected;
-    estimate.statistics.rhs_evaluations += again.statistics.rhs_evaluations;
+    estimate.statistics += again.statistics;
     const bool comparable = again.outcome == Outcome::done || again.outcome == first.outcome;
     if (!comparable) estimate.outcome = again.outcome;
     for (std::size_t i = 0; i < first.x.size(); ++i) {

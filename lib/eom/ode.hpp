@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Initial value problems x' = f(t, x). In: a method's name, a right-hand side, a start and an end, options.
-// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/.
+// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/ and implicit/.
 #pragma once
 
 #include <array>
@@ -12,17 +12,21 @@
 #include <tuple>
 #include <utility>
 
-#include "eom/explicit_rk/drive.hpp"
+#include "eom/drive.hpp"
+#include "eom/explicit_rk/method.hpp"
 #include "eom/explicit_rk/registry.hpp"
+#include "eom/implicit/registry.hpp"
 #include "eom/run_types.hpp"
+#include "eom/with_jacobian.hpp"
 
 namespace eom {
 
 /// Every method that integrate() knows, in the registry's order.
 inline std::span<const MethodInfo> methods() {
-  static constexpr auto table = []<class... T>(std::tuple<T...>*) {
-    return std::array<MethodInfo, sizeof...(T)>{{{T::name, T::order, T::dense_order, !T::error.empty()}...}};
-  }(static_cast<explicit_rk::Registry*>(nullptr));
+  static constexpr auto table = []<class... T, class... I>(std::tuple<T...>*, std::tuple<I...>*) {
+    return std::array<MethodInfo, sizeof...(T) + sizeof...(I)>{{{T::name, T::order, T::dense_order, !T::error.empty()}...,
+                                                                {I::name, I::order, I::dense_order, I::adaptive, true}...}};
+  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr));
   return table;
 }
 
@@ -49,29 +53,53 @@ inline void check_problem(double t0, std::span<const double> x0, double t1, cons
   throw std::invalid_argument("eom::integrate: no method is called '" + std::string(method) + "'; there are " + known);
 }
 
+/// The explicit methods are compiled for each right-hand side, which may then be inlined into the stages.
+template <class T, class F, class Observer, class AfterStep>
+Result run_explicit(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+                    AfterStep& after_step) {
+  return Run<explicit_rk::Method<T, F>, Observer, AfterStep>(rhs, t0, x0, t1, options, observer, after_step).run();
+}
+
+/// The implicit ones once for all.
+template <class T, class F, class Observer, class AfterStep>
+Result run_implicit(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+                    AfterStep& after_step) {
+  implicit::Problem problem = implicit::problem_of(rhs);
+  implicit::ObserverOf see = implicit::observer_of(observer);
+  if constexpr (std::is_same_v<std::remove_cv_t<AfterStep>, NoProjection>) {
+    return Run<T, implicit::ObserverOf, AfterStep>(problem, t0, x0, t1, options, see, after_step).run();
+  } else {
+    implicit::AfterStepOf move = implicit::after_step_of(after_step);
+    return Run<T, implicit::ObserverOf, implicit::AfterStepOf>(problem, t0, x0, t1, options, see, move).run();
+  }
+}
+
 }  // namespace detail
 
 /// Integrates from (t0, x0) to t1, which may lie before t0.
 /// rhs(t, x, dx) -> int; observer(StepView) -> bool, false stops; after_step(t, x) -> int may move the state at the end
 /// of a step (a projection) before the step counts as accepted. A nonzero code from rhs or after_step is retried with
-/// shorter steps before it ends the run. Throws std::invalid_argument for an unknown method or senseless options.
+/// shorter steps before it ends the run. An rhs with a member jacobian (with_jacobian.hpp) gives it to implicit methods.
+/// Throws std::invalid_argument for an unknown method or senseless options.
 template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                  const Options& options = {}, Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
-  Result result;
-  const auto try_method = [&]<class T>(T*) {
-    if (method != T::name) return false;
-    if (T::error.empty() && options.fixed_step <= 0)
+  const auto asked = [&](const char* name, bool adaptive) {
+    if (method != name) return false;
+    if (!adaptive && options.fixed_step <= 0)
       throw std::invalid_argument("eom::integrate: " + std::string(method) + " needs Options::fixed_step");
-    result = explicit_rk::Run<T, std::remove_reference_t<F>, std::remove_reference_t<Observer>,
-                              std::remove_reference_t<AfterStep>>(rhs, t0, x0, t1, options, observer, after_step)
-                 .run();
     return true;
   };
-  const bool known = [&]<class... T>(std::tuple<T...>*) {
-    return (try_method(static_cast<T*>(nullptr)) || ...);
+  Result result;
+  const bool known_explicit = [&]<class... T>(std::tuple<T...>*) {
+    return ((asked(T::name, !T::error.empty()) &&
+             (result = detail::run_explicit<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
   }(static_cast<explicit_rk::Registry*>(nullptr));
+  const bool known = known_explicit || [&]<class... T>(std::tuple<T...>*) {
+    return ((asked(T::name, T::adaptive) &&
+             (result = detail::run_implicit<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
+  }(static_cast<implicit::Registry*>(nullptr));
   if (!known) detail::throw_unknown(method);
   return result;
 }

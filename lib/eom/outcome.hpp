@@ -3,6 +3,8 @@
 // In: return codes of the emitted C ABI.  Out: Outcome and its spelling, as results and CSV files print it.
 #pragma once
 
+#include <limits>
+
 namespace eom {
 
 enum class Outcome {
@@ -37,6 +39,12 @@ constexpr const char* name(Outcome outcome) {
   return "not_finite";
 }
 
+/// The C ABI's code of a value that is not finite.
+inline constexpr int code_not_finite = 5;
+
+/// What the step of an implicit method returns where its iteration does not converge: a shorter step may do.
+inline constexpr int code_no_convergence = std::numeric_limits<int>::min();
+
 /// The outcome that a return code of the C ABI stands for; 0 is done. A code outside the ABI (a projection that did
 /// not converge, a caller's own) gives step_too_small: no step, however small, could be completed.
 constexpr Outcome outcome_of_abi_code(int code) {
@@ -46,7 +54,7 @@ constexpr Outcome outcome_of_abi_code(int code) {
     case 2: return Outcome::chart_left;
     case 3: return Outcome::friction_no_solution;
     case 4: return Outcome::friction_many_solutions;
-    case 5: return Outcome::not_finite;
+    case code_not_finite: return Outcome::not_finite;
     default: return Outcome::step_too_small;
   }
 }

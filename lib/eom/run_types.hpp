@@ -34,6 +34,25 @@ struct Statistics {
   std::size_t rejected = 0;
   std::size_t rhs_evaluations = 0;
   std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic, since an added stage failed
+  // of implicit methods
+  std::size_t jacobians = 0;        // df/dx evaluated, by the right-hand side's own function or by differences
+  std::size_t difference_evaluations = 0;  // of rhs_evaluations: for differences; 0 where the function was given
+  std::size_t factorisations = 0;   // of the matrices of the implicit step
+  std::size_t newton_iterations = 0;
+  std::size_t newton_failures = 0;  // iterations given up; the step is then tried with a new df/dx or made shorter
+
+  Statistics& operator+=(const Statistics& other) {
+    steps += other.steps;
+    rejected += other.rejected;
+    rhs_evaluations += other.rhs_evaluations;
+    dense_fallbacks += other.dense_fallbacks;
+    jacobians += other.jacobians;
+    difference_evaluations += other.difference_evaluations;
+    factorisations += other.factorisations;
+    newton_iterations += other.newton_iterations;
+    newton_failures += other.newton_failures;
+    return *this;
+  }
 };
 
 struct Result {
@@ -61,6 +80,7 @@ struct MethodInfo {
   int order;
   int dense_order;
   bool adaptive;                    // false: needs Options::fixed_step
+  bool implicit = false;            // uses df/dx: for stiff systems
 };
 
 /// The observer that looks at nothing.

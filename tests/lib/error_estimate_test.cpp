@@ -21,7 +21,7 @@ void check_estimate(double estimate, double error) {
 
 template <class Problem>
 void check_tolerances(const Problem& problem, double t1) {
-  for (const char* method : {"dopri5", "tsit5", "dop853"})
+  for (const char* method : problems::adaptive_methods())
     for (int digits = 4; digits <= 15; ++digits)
       for (const double end : {t1, -0.7 * t1}) {
         CAPTURE(std::string(method));

@@ -122,7 +122,7 @@ TEST_CASE("observer: sees adjoining steps from t0 to t1, and the dense output me
 
 TEST_CASE("dense output: between the steps it is as accurate as the steps themselves, within a factor of 10") {
   const problems::Kepler kepler;
-  for (const char* method : {"dopri5", "tsit5", "dop853"}) {
+  for (const char* method : problems::adaptive_methods()) {
     CAPTURE(std::string(method));
     double at_steps = 0;
     double between = 0;
@@ -176,7 +176,7 @@ TEST_CASE("quadratures: trailing components are integrated, but do not choose th
     dx[0] = -x[0];
     return 0;
   };
-  for (const char* method : {"dopri5", "tsit5", "dop853"}) {
+  for (const char* method : problems::adaptive_methods()) {
     CAPTURE(std::string(method));
     eom::Options options;
     options.quadratures = 1;
@@ -240,7 +240,7 @@ TEST_CASE("tolerances: purely relative ones work for components that start at ze
   eom::Options options;
   options.rtol = 1e-10;
   options.atol = 0;
-  for (const char* method : {"dopri5", "tsit5", "dop853"}) {
+  for (const char* method : problems::adaptive_methods()) {
     CAPTURE(std::string(method));
     auto result = eom::integrate(method, rhs, 0, start, 3, options);
     CHECK(result.outcome == eom::Outcome::done);

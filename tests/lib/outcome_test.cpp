@@ -63,7 +63,7 @@ TEST_CASE("codes: one that only too long a step meets does not end the run") {
   eom::Options options;
   options.rtol = 1e-6;
   options.initial_step = 5;
-  for (const char* method : {"dopri5", "tsit5", "dop853"}) {
+  for (const char* method : problems::adaptive_methods()) {
     const eom::Result result = run(method, rhs, 20, options, 0);
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(result.statistics.rejected > 0);
@@ -110,7 +110,7 @@ TEST_CASE("diverged: beyond the stated bound, and when the steps are used up") {
 }
 
 TEST_CASE("step_too_small: a pole of the motion, x' = x^2, and a fixed step lost in t") {
-  for (const char* method : {"dopri5", "tsit5", "dop853"}) {
+  for (const char* method : problems::adaptive_methods()) {
     const eom::Result pole = run(method, [](double, const double* x, double* dx) { return dx[0] = x[0] * x[0], 0; }, 2);
     CHECK(pole.outcome == eom::Outcome::step_too_small);
     CHECK(std::abs(pole.t - 1) < 1e-6);

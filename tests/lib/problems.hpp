@@ -8,7 +8,17 @@
 #include <numbers>
 #include <vector>
 
+#include "eom/ode.hpp"
+
 namespace problems {
+
+/// The names of the methods that choose their steps.
+inline std::vector<const char*> adaptive_methods() {
+  std::vector<const char*> names;
+  for (const eom::MethodInfo& method : eom::methods())
+    if (method.adaptive) names.push_back(method.name);
+  return names;
+}
 
 using State = std::vector<double>;
 

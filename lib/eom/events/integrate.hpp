@@ -71,7 +71,7 @@ class Run {
       cut_.reset();
       const Result part = integrate(method_, rhs_, total_.t, total_.x, t1_, piece,
                                     [this](const StepView& view) { return observe(view); }, after_step_);
-      add(part.statistics);
+      total_.statistics += part.statistics;
       if (!cut_) {
         total_.outcome = part.outcome;
         total_.detail = part.detail;
@@ -85,13 +85,6 @@ class Run {
   }
 
  private:
-  void add(const Statistics& part) {
-    total_.statistics.steps += part.steps;
-    total_.statistics.rejected += part.rejected;
-    total_.statistics.rhs_evaluations += part.rhs_evaluations;
-    total_.statistics.dense_fallbacks += part.dense_fallbacks;
-  }
-
   /// After each accepted step: passing events are told, a breaking one ends the piece.
   bool observe(const StepView& view) {
     if (values_.empty()) return observer_(view);
@@ -147,7 +140,7 @@ class Run {
         return true;
       };
       const Result step = integrate(method_, rhs_, t0, x0, t, one, look, after_step_);
-      add(step.statistics);
+      total_.statistics += step.statistics;
       if (step.outcome != Outcome::done) return go_on;  // the dense output's state stays
       total_.statistics.steps -= final ? 0 : step.statistics.steps;
       crossing.t = t;

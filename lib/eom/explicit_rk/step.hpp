@@ -41,8 +41,12 @@ class Stepper {
   const double* derivative0() const { return k_; }
   const double* derivative1() const { return k_ + T::stages * n_; }
   double* scratch() { return stage_; }
-  std::size_t rhs_evaluations() const { return rhs_evaluations_; }
-  std::size_t dense_fallbacks() const { return dense_fallbacks_; }
+  Statistics statistics() const {
+    Statistics counted;
+    counted.rhs_evaluations = rhs_evaluations_;
+    counted.dense_fallbacks = dense_fallbacks_;
+    return counted;
+  }
 
   int evaluate(double t, const double* x, double* dx) const {
     ++rhs_evaluations_;

@@ -1,6 +1,15 @@
 // SPDX-License-Identifier: MIT
-// A run of an explicit Runge-Kutta method from t0 to t1. In: a tableau, a right-hand side, a start, options, an observer
-// and an after_step. Out: Result. Steps are chosen by the error estimate, or fixed where Options::fixed_step says so.
+// A run of a one-step method from t0 to t1, whatever its family. In: the method with its start, options, an observer and
+// an after_step. Out: Result. Steps are chosen by the error estimate, or fixed where Options::fixed_step says so.
+//
+// A Method has the static members order, adaptive, error_uses_end and interpolate, and
+//   size(), x0(), x1(), derivative0(), derivative1(), scratch()   its arrays
+//   evaluate(t, x, dx), evaluate_start(t), evaluate_end()         the right-hand side, at x0, at x1; codes
+//   attempt(t0, t1)                                               a trial step; a code
+//   error_norm(rtol, atol)                                        of it: 1 is just allowed
+//   after_accepted(h, error), after_rejected(h, error), after_failed(h)   the next step's size
+//   accept(moved)                                                 the end becomes the start
+//   statistics()                                                  but for steps and rejected
 #pragma once
 
 #include <algorithm>
@@ -13,19 +22,17 @@
 #include <type_traits>
 #include <utility>
 
-#include "eom/explicit_rk/controller.hpp"
-#include "eom/explicit_rk/step.hpp"
 #include "eom/run_types.hpp"
 
-namespace eom::explicit_rk {
+namespace eom {
 
-template <class T, class F, class Observer, class AfterStep>
+template <class Method, class Observer, class AfterStep>
 class Run {
  public:
-  Run(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+  template <class Problem>
+  Run(Problem& problem, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
       AfterStep& after_step)
-      : stepper_(rhs, x0, options.quadratures),
-        controller_(T::control, T::order),
+      : stepper_(problem, x0, options),
         options_(options),
         observer_(observer),
         after_step_(after_step),
@@ -107,7 +114,7 @@ class Run {
       moved = !std::equal(x1, x1 + stepper_.size(), stepper_.scratch());
       if (moved && !all_finite(x1)) return code_not_finite;
     }
-    if (moved || !error_uses_end<T>()) {
+    if (moved || !Method::error_uses_end) {
       const int code = stepper_.evaluate_end();
       if (code != 0) return code;
     }
@@ -116,9 +123,9 @@ class Run {
 
   bool accept(double t_next, double error, bool moved) {
     const StepView view{t_, t_next, {stepper_.x0(), stepper_.size()}, {stepper_.x1(), stepper_.size()}, &stepper_,
-                        &Stepper<T, F>::interpolate};
+                        &Method::interpolate};
     const bool go_on = observer_(view);
-    if (adaptive()) h_ = std::min(controller_.after_accepted(std::abs(t_next - t_), error), longest_step());
+    if (adaptive()) h_ = std::min(stepper_.after_accepted(std::abs(t_next - t_), error), longest_step());
     t_ = t_next;
     stepper_.accept(moved);
     ++steps_;
@@ -131,7 +138,7 @@ class Run {
 
   bool reject(double h, double error) {
     ++rejected_;
-    h_ = controller_.after_rejected(std::abs(h), error);
+    h_ = stepper_.after_rejected(std::abs(h), error);
     if (h_ >= smallest_step(t_)) return true;
     return end(Outcome::step_too_small, "the error estimate asks for a step below 16 units in the last place of t = " +
                                             printed(t_));
@@ -140,9 +147,11 @@ class Run {
   /// After a code (or a value that is not finite): a shorter step, down to the smallest; a fixed step ends at once.
   bool retry(int code) {
     ++rejected_;
-    h_ = controller_.after_failed(adaptive() ? std::min(h_, std::abs(t_end_ - t_)) : 0);
+    h_ = stepper_.after_failed(adaptive() ? std::min(h_, std::abs(t_end_ - t_)) : 0);
     if (adaptive() && h_ >= smallest_step(t_)) return true;
-    const std::string what = code == code_not_finite ? "a value that is not finite" : "code " + std::to_string(code);
+    const std::string what = code == code_not_finite       ? "a value that is not finite"
+                             : code == code_no_convergence ? "the iteration of the implicit step does not converge"
+                                                           : "code " + std::to_string(code);
     return end(outcome_of_abi_code(code), what + " just after t = " + printed(t_));
   }
 
@@ -161,7 +170,7 @@ class Run {
     if (stepper_.evaluate(t_ + direction_ * h0, x_euler, f1) != 0 || !all_finite(f1)) return 0.01 * h0;
     const double size_change = norm(n, [&](std::size_t i) { return f1[i] - f0[i]; }) / h0;
     const double largest = std::max(size_f, size_change);
-    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 1.0 / T::order);
+    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 1.0 / Method::order);
     return std::min(100 * h0, h1);
   }
 
@@ -201,18 +210,15 @@ class Run {
   }
 
   Result result() {
-    return {outcome_,
-            t_,
-            {stepper_.x0(), stepper_.x0() + stepper_.size()},
-            {steps_, rejected_, stepper_.rhs_evaluations(), stepper_.dense_fallbacks()},
-            std::move(detail_)};
+    Statistics statistics = stepper_.statistics();
+    statistics.steps = steps_;
+    statistics.rejected = rejected_;
+    return {outcome_, t_, {stepper_.x0(), stepper_.x0() + stepper_.size()}, statistics, std::move(detail_)};
   }
 
   static constexpr double epsilon = std::numeric_limits<double>::epsilon();
-  static constexpr int code_not_finite = 5;  // the C ABI's
 
-  Stepper<T, F> stepper_;
-  Controller controller_;
+  Method stepper_;
   const Options& options_;
   Observer& observer_;
   AfterStep& after_step_;
@@ -228,4 +234,4 @@ class Run {
   std::string detail_;
 };
 
-}  // namespace eom::explicit_rk
+}  // namespace eom

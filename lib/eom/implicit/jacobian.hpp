@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: MIT
+// df/dx and df/dt: from the right-hand side's own function, or by differences. In: a problem, a state and its derivative.
+// Out: matrix and vector, what they cost. The last components of x, quadratures, stay out: nothing depends on them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+#include "eom/implicit/problem.hpp"
+
+namespace eom::implicit {
+
+class Jacobian {
+ public:
+  enum class Differences { one_sided, central };  // central: for methods whose order needs the derivatives
+
+  /// n components, the first m of which count; smallest: a size below which a component is not told from 0.
+  Jacobian(const Problem& problem, std::size_t n, std::size_t m, double smallest, Differences differences)
+      : problem_(problem), n_(n), m_(m), smallest_(smallest), differences_(differences), dfdx_(m * m), dfdt_(m),
+        x_(n), up_(n), down_(n) {}
+
+  double operator()(std::size_t i, std::size_t j) const { return dfdx_[i + m_ * j]; }
+  double dfdt(std::size_t i) const { return dfdt_[i]; }
+
+  /// At (t, x), where the right-hand side is f; h: the step in which it will be used. Returns a code.
+  int evaluate(double t, const double* x, const double* f, double h, Statistics& counts) {
+    ++counts.jacobians;
+    if (problem_.jacobian != nullptr) {
+      const int code = problem_.jacobian(problem_.self, t, x, dfdx_.data(), dfdt_.data());
+      if (code != no_jacobian_here) return code != 0 || all_finite() ? code : code_not_finite;
+    }
+    const std::size_t before = counts.rhs_evaluations;
+    const int code = by_differences(t, x, f, h, counts);
+    counts.difference_evaluations += counts.rhs_evaluations - before;
+    return code != 0 || all_finite() ? code : code_not_finite;
+  }
+
+ private:
+  int by_differences(double t, const double* x, const double* f, double h, Statistics& counts) {
+    const double part = differences_ == Differences::central ? 6e-6 : 1.5e-8;  // cube and square root of the rounding
+    std::copy_n(x, n_, x_.data());
+    double largest = 0;
+    for (std::size_t j = 0; j < m_; ++j) largest = std::max(largest, std::abs(x[j]));
+    for (std::size_t j = 0; j < m_; ++j) {
+      double size = std::max({std::abs(x[j]), std::abs(h * f[j]), largest > 0 ? std::min(smallest_, largest) : smallest_});
+      if (size == 0) size = largest > 0 ? largest : 1;
+      const int code = quotient(part * size, f, &dfdx_[m_ * j], counts, [&](double by) {
+        x_[j] = x[j] + by;
+        return x_[j] - x[j];
+      }, [&] { return t; });
+      x_[j] = x[j];
+      if (code != 0) return code;
+    }
+    if (differences_ == Differences::one_sided) return 0;  // df/dt is not asked for
+    double at = t;
+    const double in_t = std::max(part * std::abs(h), 64 * std::numeric_limits<double>::epsilon() * std::abs(t));
+    return quotient(in_t, f, dfdt_.data(), counts, [&](double by) {
+      at = t + by;
+      return at - t;
+    }, [&] { return at; });
+  }
+
+  /// (f at +size less f at -size, or less f itself) by the distance; move(by) gives what was moved in binary64.
+  template <class Move, class Time>
+  int quotient(double size, const double* f, double* result, Statistics& counts, Move move, Time time) {
+    const double ahead = move(size);
+    const int code_up = evaluate(time(), up_.data(), counts);
+    if (code_up == 0 && differences_ == Differences::one_sided) return divide(up_.data(), f, ahead, result);
+    const double back = move(-size);
+    const int code_down = evaluate(time(), down_.data(), counts);
+    if (code_up != 0 && code_down != 0) return code_up;
+    if (code_up != 0) return divide(down_.data(), f, back, result);  // at the edge of what has a value
+    if (code_down != 0) return divide(up_.data(), f, ahead, result);
+    return divide(up_.data(), down_.data(), ahead - back, result);
+  }
+
+  int evaluate(double t, double* dx, Statistics& counts) {
+    ++counts.rhs_evaluations;
+    return problem_.f(problem_.self, t, x_.data(), dx);
+  }
+
+  int divide(const double* a, const double* b, double by, double* result) const {
+    for (std::size_t i = 0; i < m_; ++i) result[i] = (a[i] - b[i]) / by;
+    return 0;
+  }
+
+  bool all_finite() const {
+    return std::all_of(dfdx_.begin(), dfdx_.end(), [](double value) { return std::isfinite(value); });
+  }
+
+  Problem problem_;
+  std::size_t n_, m_;
+  double smallest_;
+  Differences differences_;
+  std::vector<double> dfdx_, dfdt_, x_, up_, down_;
+};
+
+}  // namespace eom::implicit

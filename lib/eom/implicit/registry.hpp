@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: MIT
+// The implicit methods there are. A new one is a file with its class, and a line here.
+#pragma once
+
+#include <tuple>
+
+#include "eom/implicit/radau5.hpp"
+
+namespace eom::implicit {
+
+using Registry = std::tuple<
+    Radau5>;
+
+}  // namespace eom::implicit
