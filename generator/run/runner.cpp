@@ -225,7 +225,7 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
       names += fmt::format("{}, ", method.name);
       known.emplace_back(method.name);
     }
-    static constexpr const char* later[] = {"tsit5", "taylor", "radau5", "rodas", "midpoint", "variational2", "variational4"};
+    static constexpr const char* later[] = {"taylor", "rodas", "midpoint", "variational2", "variational4"};
     for (const char* name : later) {
       if (asked == name) throw Error("run", {}, fmt::format("solver '{}' is not supported yet", asked), "choose from: " + names + "auto");
     }
