@@ -150,7 +150,7 @@ class Run {
     h_ = stepper_.after_failed(adaptive() ? std::min(h_, std::abs(t_end_ - t_)) : 0);
     if (adaptive() && h_ >= smallest_step(t_)) return true;
     const std::string what = code == code_not_finite       ? "a value that is not finite"
-                             : code == code_no_convergence ? "the iteration of the implicit step does not converge"
+                             : code == code_no_convergence ? "the iteration of the implicit step does not converge, or its matrix is singular,"
                                                            : "code " + std::to_string(code);
     return end(outcome_of_abi_code(code), what + " just after t = " + printed(t_));
   }

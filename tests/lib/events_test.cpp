@@ -49,7 +49,7 @@ std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::
       eom::integrate_events(method.name, oscillator, 0, oscillator.start, t1, options, g, std::move(functions), handler);
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(result.t == t1);
-  CHECK(problems::largest_difference(result.x, oscillator.exact(t1)) < tolerances::event_state);
+  CHECK(problems::largest_difference(result.x, oscillator.exact(t1)) < problems::coarser(method) * tolerances::event_state);
   return seen;
 }
 
@@ -67,8 +67,8 @@ TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, b
         REQUIRE(seen.size() == 6);
         for (std::size_t k = 0; k < seen.size(); ++k) {
           const double exact = std::copysign((static_cast<double>(k) + 0.5) * pi, t1);
-          CHECK(std::abs(seen[k].t - exact) < tolerances::event_time);
-          CHECK(std::abs(seen[k].x[0]) < tolerances::event_time);
+          CHECK(std::abs(seen[k].t - exact) < problems::coarser(method) * tolerances::event_time);
+          CHECK(std::abs(seen[k].x[0]) < problems::coarser(method) * tolerances::event_time);
           // cos falls through its zero at pi/2; going back from 0 it is met at -pi/2, where it rises with t.
           CHECK(seen[k].up == ((k % 2 == 1) != (t1 < 0)));
         }
@@ -101,7 +101,7 @@ TEST_CASE("all methods: several functions in one step come in the order of the r
       const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
       const auto handler = [&](const EventPoint& point) {
         order.push_back(point.crossing.function);
-        CHECK(std::abs(point.t - (0.5 - 0.1 * static_cast<double>(point.crossing.function))) < tolerances::event_time);
+        CHECK(std::abs(point.t - (0.5 - 0.1 * static_cast<double>(point.crossing.function))) < problems::coarser(method) * tolerances::event_time);
         return AtEvent::go_on;
       };
       const std::vector<double> start{0};
@@ -127,9 +127,9 @@ TEST_CASE("all methods: a double root inside one step is two events, and one tha
       }
       REQUIRE(seen.size() == 3);  // on the way down from the start too
       const double half = std::acos(level);
-      CHECK(std::abs(seen[0].t - half) < tolerances::grazing_time);
-      CHECK(std::abs(seen[1].t - (2 * pi - half)) < tolerances::grazing_time);
-      CHECK(std::abs(seen[2].t - (2 * pi + half)) < tolerances::grazing_time);
+      CHECK(std::abs(seen[0].t - half) < problems::coarser(method) * tolerances::grazing_time);
+      CHECK(std::abs(seen[1].t - (2 * pi - half)) < problems::coarser(method) * tolerances::grazing_time);
+      CHECK(std::abs(seen[2].t - (2 * pi + half)) < problems::coarser(method) * tolerances::grazing_time);
     }
   }
 }
@@ -140,8 +140,8 @@ TEST_CASE("an event function that starts at zero is not found at the start, but 
     CAPTURE(std::string(method.name));
     const auto seen = crossings(method, 7, velocity, {{Direction::any, Watch::breaking}}, tight(method));
     REQUIRE(seen.size() == 2);
-    CHECK(std::abs(seen[0].t - pi) < tolerances::event_time);
-    CHECK(std::abs(seen[1].t - 2 * pi) < tolerances::event_time);
+    CHECK(std::abs(seen[0].t - pi) < problems::coarser(method) * tolerances::event_time);
+    CHECK(std::abs(seen[1].t - 2 * pi) < problems::coarser(method) * tolerances::event_time);
   }
 }
 

@@ -28,36 +28,46 @@ class Jacobian {
   /// At (t, x), where the right-hand side is f; h: the step in which it will be used. Returns a code.
   int evaluate(double t, const double* x, const double* f, double h, Statistics& counts) {
     ++counts.jacobians;
+    bool given = false;
     if (problem_.jacobian != nullptr) {
       const int code = problem_.jacobian(problem_.self, t, x, dfdx_.data(), dfdt_.data());
-      if (code != no_jacobian_here) return code != 0 || all_finite() ? code : code_not_finite;
+      const bool complete = code == 0 || (code == no_time_derivative_here && differences_ == Differences::one_sided);
+      if (complete) return all_finite() ? 0 : code_not_finite;
+      if (code != no_jacobian_here && code != no_time_derivative_here) return code;
+      given = code == no_time_derivative_here;
     }
     const std::size_t before = counts.rhs_evaluations;
-    const int code = by_differences(t, x, f, h, counts);
+    std::copy_n(x, n_, x_.data());
+    int code = given ? 0 : in_state(t, x, f, h, counts);
+    if (code == 0 && differences_ == Differences::central) code = in_time(t, f, h, counts);  // the others do not ask for it
     counts.difference_evaluations += counts.rhs_evaluations - before;
     return code != 0 || all_finite() ? code : code_not_finite;
   }
 
  private:
-  int by_differences(double t, const double* x, const double* f, double h, Statistics& counts) {
-    const double part = differences_ == Differences::central ? 6e-6 : 1.5e-8;  // cube and square root of the rounding
-    std::copy_n(x, n_, x_.data());
+  /// Of what is moved: the cube and the square root of the rounding.
+  double part() const { return differences_ == Differences::central ? 6e-6 : 1.5e-8; }
+
+  int in_state(double t, const double* x, const double* f, double h, Statistics& counts) {
     double largest = 0;
     for (std::size_t j = 0; j < m_; ++j) largest = std::max(largest, std::abs(x[j]));
     for (std::size_t j = 0; j < m_; ++j) {
       double size = std::max({std::abs(x[j]), std::abs(h * f[j]), largest > 0 ? std::min(smallest_, largest) : smallest_});
       if (size == 0) size = largest > 0 ? largest : 1;
-      const int code = quotient(part * size, f, &dfdx_[m_ * j], counts, [&](double by) {
+      const int code = quotient(part() * size, f, &dfdx_[m_ * j], counts, [&](double by) {
         x_[j] = x[j] + by;
         return x_[j] - x[j];
       }, [&] { return t; });
       x_[j] = x[j];
       if (code != 0) return code;
     }
-    if (differences_ == Differences::one_sided) return 0;  // df/dt is not asked for
+    return 0;
+  }
+
+  int in_time(double t, const double* f, double h, Statistics& counts) {
     double at = t;
-    const double in_t = std::max(part * std::abs(h), 64 * std::numeric_limits<double>::epsilon() * std::abs(t));
-    return quotient(in_t, f, dfdt_.data(), counts, [&](double by) {
+    const double size = std::max(part() * std::abs(h), 64 * std::numeric_limits<double>::epsilon() * std::abs(t));
+    return quotient(size, f, dfdt_.data(), counts, [&](double by) {
       at = t + by;
       return at - t;
     }, [&] { return at; });

@@ -16,13 +16,29 @@ struct Problem {
   int (*jacobian)(void* self, double t, const double* x, double* dfdx, double* dfdt) = nullptr;
 };
 
+/// The address of a callable, of a function too, and back.
+template <class F>
+void* address_of(F& callable) {
+  if constexpr (std::is_function_v<F>)
+    return reinterpret_cast<void*>(&callable);
+  else
+    return const_cast<void*>(static_cast<const void*>(&callable));
+}
+template <class F>
+F& at_address(void* self) {
+  if constexpr (std::is_function_v<F>)
+    return *reinterpret_cast<F*>(self);
+  else
+    return *static_cast<F*>(self);
+}
+
 template <class F>
 Problem problem_of(F& rhs) {
-  Problem problem{const_cast<void*>(static_cast<const void*>(&rhs)),
-                  [](void* self, double t, const double* x, double* dx) -> int { return (*static_cast<F*>(self))(t, x, dx); }};
+  Problem problem{address_of(rhs),
+                  [](void* self, double t, const double* x, double* dx) -> int { return at_address<F>(self)(t, x, dx); }};
   if constexpr (requires(double t, const double* x, double* result) { rhs.jacobian(t, x, result, result); })
     problem.jacobian = [](void* self, double t, const double* x, double* dfdx, double* dfdt) -> int {
-      return static_cast<F*>(self)->jacobian(t, x, dfdx, dfdt);
+      return at_address<F>(self).jacobian(t, x, dfdx, dfdt);
     };
   return problem;
 }
@@ -34,8 +50,7 @@ struct ObserverOf {
 };
 template <class Observer>
 ObserverOf observer_of(Observer& observer) {
-  return {const_cast<void*>(static_cast<const void*>(&observer)),
-          [](void* self, const StepView& step) -> bool { return (*static_cast<Observer*>(self))(step); }};
+  return {address_of(observer), [](void* self, const StepView& step) -> bool { return at_address<Observer>(self)(step); }};
 }
 
 struct AfterStepOf {
@@ -45,8 +60,7 @@ struct AfterStepOf {
 };
 template <class AfterStep>
 AfterStepOf after_step_of(AfterStep& after_step) {
-  return {const_cast<void*>(static_cast<const void*>(&after_step)),
-          [](void* self, double t, double* x) -> int { return (*static_cast<AfterStep*>(self))(t, x); }};
+  return {address_of(after_step), [](void* self, double t, double* x) -> int { return at_address<AfterStep>(self)(t, x); }};
 }
 
 }  // namespace eom::implicit

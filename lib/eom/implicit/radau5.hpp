@@ -17,8 +17,8 @@
 #include <span>
 #include <vector>
 
-#include "eom/drive.hpp"
 #include "eom/implicit/base.hpp"
+#include "eom/implicit/newton.hpp"
 #include "eom/implicit/radau5_tableau.hpp"
 
 namespace eom::implicit {
@@ -132,7 +132,6 @@ class Radau5 : public Base {
   static constexpr double keep_jacobian = 1e-3;  // of the contraction of Newton's iteration
   static constexpr double same_step = 1e-9;
   static constexpr int most_iterations = 7;
-  static constexpr int most_to_rounding = 50;
 
   void set_tolerances(const Options& options, std::span<const double> x) {
     double largest = 0;
@@ -225,35 +224,35 @@ class Radau5 : public Base {
     return scale > 0 ? scale : std::max(std::abs(h_ * f0_[i]), 1e-300);
   }
 
+  /// Newton's iteration; false with a code of the right-hand side, or 0 where it does not converge.
   bool iterate(int& code) {
-    const int most = fixed_ ? most_to_rounding : most_iterations;
-    remaining_ = fixed_ ? 1 : std::pow(std::max(remaining_, epsilon), 0.8);
+    remaining_ = std::pow(std::max(remaining_, epsilon), 0.8);
     contraction_ = keep_jacobian;
+    ToRounding to_rounding;
     double before = 0, ratio_before = 0;
-    for (newton_ = 1; newton_ <= most; ++newton_) {
+    for (newton_ = 1; fixed_ || newton_ <= most_iterations; ++newton_) {
       if ((code = evaluate_stages()) != 0) return false;
       ++counts_.newton_iterations;
       const double size = correct();
       if (!std::isfinite(size)) return fail(0.5);
-      if (newton_ > 1) {
+      if (fixed_) {
+        const ToRounding::State state = to_rounding.see(size);
+        contraction_ = to_rounding.contraction();
+        if (state != ToRounding::State::goes_on) return state == ToRounding::State::converged || fail(0.5);
+        continue;
+      }
+      if (newton_ > 1 && newton_ < most_iterations) {
         const double ratio = size / before;
-        if (fixed_) {
-          if (newton_ == 2) contraction_ = ratio;
-          if (ratio > 0.95 && size < 1e-5) return true;  // rounding is what is left
-          if (ratio > 2) return fail(0.5);
-          remaining_ = ratio < 1 ? ratio / (1 - ratio) : 1;
-        } else if (newton_ < most) {
-          contraction_ = newton_ == 2 ? ratio : std::sqrt(ratio * ratio_before);
-          if (contraction_ >= 0.99) return fail(0.5);
-          remaining_ = contraction_ / (1 - contraction_);
-          const int left = most - 1 - newton_;
-          const double expected = remaining_ * size * std::pow(contraction_, left) / newton_tolerance_;
-          if (expected >= 1) return fail(0.8 * std::pow(std::min(expected, 20.0), -1.0 / (4 + left)));
-        }
+        contraction_ = newton_ == 2 ? ratio : std::sqrt(ratio * ratio_before);
         ratio_before = ratio;
+        if (contraction_ >= 0.99) return fail(0.5);
+        remaining_ = contraction_ / (1 - contraction_);
+        const int left = most_iterations - 1 - newton_;
+        const double expected = remaining_ * size * std::pow(contraction_, left) / newton_tolerance_;
+        if (expected >= 1) return fail(0.8 * std::pow(std::min(expected, 20.0), -1.0 / (4 + left)));
       }
       before = std::max(size, epsilon * epsilon);
-      if (remaining_ * size <= (fixed_ ? epsilon / 4 : newton_tolerance_)) return true;
+      if (remaining_ * size <= newton_tolerance_) return true;
     }
     return fail(0.5);
   }

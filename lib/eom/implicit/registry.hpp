@@ -4,11 +4,15 @@
 
 #include <tuple>
 
+#include "eom/implicit/midpoint.hpp"
 #include "eom/implicit/radau5.hpp"
+#include "eom/implicit/rodas.hpp"
 
 namespace eom::implicit {
 
 using Registry = std::tuple<
-    Radau5>;
+    Radau5,
+    Rodas,
+    Midpoint>;
 
 }  // namespace eom::implicit

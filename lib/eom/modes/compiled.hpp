@@ -1,17 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Functions of the C ABI of emitted code as integrate() and integrate_modes() take them. In: pointers to NAME_rhs and
-// NAME_events, parameters, inputs. Out: callables; nothing is copied, so the arrays have to stay.
+// Functions of the C ABI of emitted code as integrate() and integrate_modes() take them. In: pointers to NAME_rhs,
+// NAME_events and NAME_jac, parameters, inputs. Out: callables; nothing is copied, so the arrays have to stay.
 #pragma once
+
+#include "eom/with_jacobian.hpp"
 
 namespace eom {
 
 struct CompiledModel {
   using Function = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* result);
 
+  using Derivatives = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx, double* dfdt);
+
   Function rhs_function = nullptr;
   Function events_function = nullptr;
   const double* p = nullptr;
   const double* u = nullptr;  // null: the defaults
+  Derivatives jac_function = nullptr;
 
   /// The right-hand side, and the event functions, with the mode as the caller's.
   auto rhs() const {
@@ -19,6 +24,12 @@ struct CompiledModel {
   }
   auto events() const {
     return [*this](double t, const double* x, int mode, double* g) { return events_function(t, x, p, u, mode, g); };
+  }
+  /// The right-hand side with its derivatives, NAME_jac, for implicit methods; without it they take differences.
+  auto rhs_and_jacobian() const {
+    return WithJacobian{rhs(), [*this](double t, const double* x, int mode, double* dfdx, double* dfdt) {
+      return jac_function == nullptr ? no_jacobian_here : jac_function(t, x, p, u, mode, dfdx, dfdt);
+    }};
   }
   /// The same in one mode.
   auto rhs(int mode) const {

@@ -165,12 +165,16 @@ class Machine {
   }
 
   ModeResult run(std::string_view method, double t0, std::span<const double> x0, double t1, const Options& options) {
-    const Result end = integrate_events(
-        method, [this](double t, const double* x, double* dx) { return rhs_(t, x, switch_.mode, dx); }, t0, x0, t1, options,
-        [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); }, functions_,
-        [this](const EventPoint& point) { return switch_.take(point.t, point.x, point.crossing, point.functions); },
-        [this](const StepView& view) { return observer_(view, switch_.mode); },
-        [this](double t, double* x) { return after_step_(t, x, switch_.mode); });
+    const auto f = [this](double t, const double* x, double* dx) { return rhs_(t, x, switch_.mode, dx); };
+    Result end;
+    if constexpr (requires(double t, const double* x, double* entries) { rhs_.jacobian(t, x, 0, entries, entries); }) {
+      const auto jacobian = [this](double t, const double* x, double* dfdx, double* dfdt) {
+        return rhs_.jacobian(t, x, switch_.mode, dfdx, dfdt);
+      };
+      end = run_smooth(method, WithJacobian{f, jacobian}, t0, x0, t1, options);
+    } else {
+      end = run_smooth(method, f, t0, x0, t1, options);
+    }
     ModeResult result;
     static_cast<Result&>(result) = end;
     if (switch_.ended != Outcome::done) {
@@ -185,6 +189,16 @@ class Machine {
   }
 
  private:
+  template <class InMode>
+  Result run_smooth(std::string_view method, const InMode& f, double t0, std::span<const double> x0, double t1,
+                    const Options& options) {
+    return integrate_events(
+        method, f, t0, x0, t1, options, [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); },
+        functions_, [this](const EventPoint& point) { return switch_.take(point.t, point.x, point.crossing, point.functions); },
+        [this](const StepView& view) { return observer_(view, switch_.mode); },
+        [this](double t, double* x) { return after_step_(t, x, switch_.mode); });
+  }
+
   F& rhs_;
   G& events_;
   std::vector<EventFunction> functions_;

@@ -1,0 +1,84 @@
+// What the implicit midpoint rule claims: time symmetry, quadratic invariants, symplecticity; as far as rounding lets it.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "eom/ode.hpp"
+#include "lib/problems.hpp"
+#include "support/tolerances.hpp"
+
+namespace {
+
+eom::Options fixed(double step) {
+  eom::Options options;
+  options.fixed_step = step;
+  return options;
+}
+
+/// Euler's equations of a free body with the moments of inertia 1, 2, 3.
+int free_body(double, const double* w, double* dw) {
+  dw[0] = (2.0 - 3.0) / 1.0 * w[1] * w[2];
+  dw[1] = (3.0 - 1.0) / 2.0 * w[2] * w[0];
+  dw[2] = (1.0 - 2.0) / 3.0 * w[0] * w[1];
+  return 0;
+}
+double energy(const double* w) { return w[0] * w[0] + 2 * w[1] * w[1] + 3 * w[2] * w[2]; }
+double momentum(const double* w) { return w[0] * w[0] + 4 * w[1] * w[1] + 9 * w[2] * w[2]; }
+
+/// Largest drifts of both over so many steps of size 0.1.
+double drift(const char* method, int steps) {
+  const problems::State start{0.3, 1, 0.2};
+  double largest = 0;
+  const auto observe = [&](const eom::StepView& view) {
+    largest = std::max({largest, std::abs(energy(view.x1.data()) - energy(start.data())),
+                        std::abs(momentum(view.x1.data()) - momentum(start.data()))});
+    return true;
+  };
+  eom::integrate(method, free_body, 0, start, 0.1 * steps, fixed(0.1), observe);
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("midpoint: there and back again is the identity but for rounding; rk4 is not") {
+  const problems::Pendulum pendulum;
+  const auto miss = [&](const char* method) {
+    const eom::Result there = eom::integrate(method, pendulum, 0, pendulum.start, 100, fixed(0.125));
+    return problems::largest_difference(eom::integrate(method, pendulum, 100, there.x, 0, fixed(0.125)).x, pendulum.start);
+  };
+  CHECK(miss("midpoint") < 1e-12);  // 1600 steps, each of some roundings
+  CHECK(miss("rk4") > 1e-6);
+}
+
+TEST_CASE("midpoint: both quadratic invariants of a free body stay for 100000 steps; rk4 loses them") {
+  CHECK(drift("midpoint", 100'000) < 1e-12);  // 1e5 roundings of random sign, of some units each
+  CHECK(drift("rk4", 100'000) > 1e-5);
+}
+
+TEST_CASE("midpoint: the area of a triangle of neighbouring states of a pendulum is kept (symplectic)") {
+  const problems::Pendulum pendulum;
+  const auto mapped = [&](double theta, double rate) {
+    return eom::integrate("midpoint", pendulum, 0, problems::State{theta, rate}, 10, fixed(0.25)).x;
+  };
+  // the determinant of the flow's derivative by central differences: an error of 1e-8 from their step of 1e-4
+  constexpr double by = 1e-4;
+  const auto a = mapped(1 + by, 0.3), b = mapped(1 - by, 0.3), c = mapped(1, 0.3 + by), d = mapped(1, 0.3 - by);
+  const double determinant = ((a[0] - b[0]) * (c[1] - d[1]) - (a[1] - b[1]) * (c[0] - d[0])) / (4 * by * by);
+  CHECK(std::abs(determinant - 1) < 1e-6);
+}
+
+TEST_CASE("midpoint: with the jacobian given no differences are taken") {
+  const problems::Oscillator oscillator;
+  const auto jacobian = [](double, const double*, double* dfdx, double* dfdt) {
+    dfdx[0] = dfdx[3] = dfdt[0] = dfdt[1] = 0;
+    dfdx[1] = -1;
+    dfdx[2] = 1;
+    return 0;
+  };
+  const auto result = eom::integrate("midpoint", eom::WithJacobian{oscillator, jacobian}, 0, oscillator.start, 10, fixed(0.01));
+  CHECK(result.statistics.difference_evaluations == 0);
+  CHECK(result.statistics.jacobians == 1);  // linear: one serves for all steps
+  CHECK(problems::largest_difference(result.x, oscillator.exact(10)) < 1e-4);
+}
