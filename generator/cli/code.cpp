@@ -41,7 +41,7 @@ verify::CompiledForm CompiledCode::form() const {
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
+  run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.jac, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
   code.kinks = kinks_;
   code.contacts = contacts_;
   code.first_kink_bit = program::first_kink_bit;

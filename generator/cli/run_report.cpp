@@ -43,6 +43,13 @@ std::string final_values(const Simulation& simulation) {
   return out;
 }
 
+std::string implicit_cost(const eom::Statistics& cost) {
+  std::string text = fmt::format("df/dx {} times, {} factorisations", cost.jacobians, cost.factorisations);
+  if (cost.newton_iterations > 0) text += fmt::format(", {} iterations, {} attempts given up", cost.newton_iterations, cost.newton_failures);
+  if (cost.difference_evaluations > 0) text += fmt::format(", {} evaluations for differences", cost.difference_evaluations);
+  return text;
+}
+
 /// What became of that which must not change, and how much to believe.
 std::string watched(const Simulation& simulation) {
   const run::RunResult& result = simulation.result;
@@ -111,6 +118,12 @@ nlohmann::ordered_json RunReport::json() const {
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
       {"certificate", certificate.summary()}};
+  if (run::method_named(result.solver).implicit) {
+    const eom::Statistics& cost = result.statistics;
+    document["implicit"] = {{"jacobians", cost.jacobians}, {"difference_evaluations", cost.difference_evaluations},
+                            {"factorisations", cost.factorisations}, {"newton_iterations", cost.newton_iterations},
+                            {"newton_failures", cost.newton_failures}};
+  }
   if (!estimate_wanted) return document;
   Json estimate = nullptr;
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
@@ -139,6 +152,7 @@ std::string RunReport::text() const {
   for (const run::KinkCrossings& k : result.kinks) out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
+  if (run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}",
                                      seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,

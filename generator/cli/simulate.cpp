@@ -108,7 +108,7 @@ Simulation simulate(const SimulationRequest& request) {
   const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), request.overrides);
-  run::choose_solver(scene.solver, scene);  // a wrong name is told before anything is compiled
+  const std::string solver = run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
 
   const bool watch_power = !energy_is_conserved(*derived);
   program::Request wanted;
@@ -118,6 +118,7 @@ Simulation simulate(const SimulationRequest& request) {
   }
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
   if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
+  if (run::method_named(solver).implicit) wanted.with.push_back("jac");
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);

@@ -161,6 +161,7 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
   std::vector<Ref> r, c;
   if (!system_.contacts.empty()) {  // the law of friction is not linear: its solution is differentiated
     for (const Ref a : qddot_) r.push_back(d(a));
+    for (const system::IntegralState& integral : system_.integrals) r.push_back(d(integral.rate));
     return r;
   }
   for (std::size_t i = 0; i < n_; ++i) {

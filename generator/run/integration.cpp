@@ -83,6 +83,17 @@ int Integration::rhs(double t, const double* x, double* dx) {
   return code != 0 && mode_ != live ? motion(t, x, u, live, dx) : code;
 }
 
+/// Of the states without the work, which is a quadrature; partial, with the inputs held: df/dt along them is not told.
+int Integration::jacobian(double t, const double* x, double* dfdx, double* dfdt) {
+  if (code_.jac == nullptr) return eom::no_jacobian_here;
+  const double* p = request_.scene.parameters.data();
+  const double* u = inputs(t);
+  const int live = mode_ & eom::contact_bits;
+  int code = code_.jac(t, x, p, u, mode_, dfdx, dfdt);
+  if (code != 0 && mode_ != live) code = code_.jac(t, x, p, u, live, dfdx, dfdt);
+  return code == 0 && !request_.scene.inputs.empty() ? eom::no_time_derivative_here : code;
+}
+
 int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
   const double* p = request_.scene.parameters.data();
   const int code = w_.empty() ? code_.rhs(t, x, p, u, mode, dx) : code_.rhs_prepared(t, x, p, w_.data(), u, mode, dx);
@@ -210,7 +221,9 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
     if (event) event({told.t, told.kind, told.name}, total.x);
   }
-  const auto f = [this](double t, const double* x, double* dx) { return rhs(t, x, dx); };
+  const eom::WithJacobian f{
+      [this](double t, const double* x, double* dx) { return rhs(t, x, dx); },
+      [this](double t, const double* x, double* dfdx, double* dfdt) { return jacobian(t, x, dfdx, dfdt); }};
   const auto watch = [&](const eom::StepView& step) {
     accept(step);
     const bool go_on = !observer || observer(step);
@@ -230,10 +243,7 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
     total.detail = part.detail;
     total.t = part.t;
     total.x = part.x;
-    total.statistics.steps += part.statistics.steps;
-    total.statistics.rejected += part.statistics.rejected;
-    total.statistics.rhs_evaluations += part.statistics.rhs_evaluations;
-    total.statistics.dense_fallbacks += part.statistics.dense_fallbacks;
+    total.statistics += part.statistics;
     if (part.outcome == eom::Outcome::step_too_small && kink_at_ == part.t) {
       total.detail = fmt::format(
           "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "

@@ -32,6 +32,7 @@ class Integration {
 
  private:
   int rhs(double t, const double* x, double* dx);
+  int jacobian(double t, const double* x, double* dfdx, double* dfdt);
   int motion(double t, const double* x, const double* u, int mode, double* dx);
   int events(double t, const double* x, double* g);
   std::vector<eom::EventFunction> watched() const;

@@ -9,6 +9,7 @@
 #include <eom/error_estimate.hpp>
 #include <eom/watch/drift.hpp>
 #include <limits>
+#include <stdexcept>
 
 #include "model/names.hpp"
 #include "run/integration.hpp"
@@ -167,10 +168,7 @@ class Watch {
 
 void estimate_error(const RunRequest& request, const eom::Result& first, const eom::Options& options, RunResult& result) {
   const Clock::time_point start = Clock::now();
-  int order = 0;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if (method.name == result.solver) order = method.order;
-  }
+  const int order = method_named(result.solver).order;
   Integration again(request, result.solver);
   bool same_end = true;
   double stop = std::numeric_limits<double>::epsilon() * std::abs(first.t);
@@ -209,6 +207,13 @@ eom::Options options_of(const RunRequest& request) {
 
 }  // namespace
 
+const eom::MethodInfo& method_named(const std::string& name) {
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (name == method.name) return method;
+  }
+  throw std::logic_error("no method is called " + name);
+}
+
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
   if (asked != "auto") {
     for (const eom::MethodInfo& method : eom::methods()) {
@@ -225,7 +230,7 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
       names += fmt::format("{}, ", method.name);
       known.emplace_back(method.name);
     }
-    static constexpr const char* later[] = {"taylor", "rodas", "midpoint", "variational2", "variational4"};
+    static constexpr const char* later[] = {"taylor", "variational2", "variational4"};
     for (const char* name : later) {
       if (asked == name) throw Error("run", {}, fmt::format("solver '{}' is not supported yet", asked), "choose from: " + names + "auto");
     }
@@ -241,6 +246,8 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
 RunResult integrate_scene(const RunRequest& request) {
   RunResult result;
   std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
+  if (method_named(result.solver).implicit)
+    result.reason += request.code.jac != nullptr ? ", df/dx from the equations" : ", df/dx by differences, since it was not compiled";
   const eom::Options options = options_of(request);
   Integration integration(request, result.solver);
   Watch watch(request, integration);

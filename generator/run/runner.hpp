@@ -25,6 +25,8 @@ struct Code {
   std::size_t prepared = 0;  // entries of what `prepare` writes
   int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*events)(double, const double*, const double*, const double*, int, double*) = nullptr;
+  // Only where an implicit solver was asked for; else, and for df/dt along inputs, it takes differences.
+  int (*jac)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
   int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
   int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
   std::vector<std::string> output_names;  // entries of y: begins with every coordinate and its _dot
@@ -111,6 +113,9 @@ struct RunRequest {
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.
 RunResult integrate_scene(const RunRequest& request);
+
+/// The method of this name; throws std::logic_error where there is none.
+const eom::MethodInfo& method_named(const std::string& name);
 
 /// The solver that `auto` stands for, and why.
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);

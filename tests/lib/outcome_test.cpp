@@ -24,7 +24,8 @@ struct FailsFromOne {
 
 template <class F>
 eom::Result run(const char* method, F rhs, double t1, eom::Options options = {}, double x0 = 1) {
-  if (std::string(method) == "rk4" && options.fixed_step == 0) options.fixed_step = 0.01;
+  for (const eom::MethodInfo& info : eom::methods())
+    if (std::string(method) == info.name && !info.adaptive && options.fixed_step == 0) options.fixed_step = 0.01;
   return eom::integrate(method, rhs, 0, problems::State{x0}, t1, options);
 }
 

@@ -21,7 +21,7 @@ inline std::vector<const char*> adaptive_methods() {
 }
 
 /// By how much a method of order 2 with the fixed steps of the tests is coarser than the others (rk4 is not).
-inline double coarser(const eom::MethodInfo& method) { return method.order < 4 ? 1e5 : 1; }
+inline double coarser(const eom::MethodInfo& method) { return method.order < 4 ? 2e5 : 1; }
 
 using State = std::vector<double>;
 

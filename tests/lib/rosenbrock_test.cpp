@@ -82,6 +82,18 @@ TEST_CASE("rodas: order 5, and no more; the estimate is that of an embedded meth
   CHECK(order_met(times_gamma(last), 0, 6) == 4);
 }
 
+TEST_CASE("rodas: a constant derivative is integrated as exactly as binary64 can, so that no run drifts") {
+  std::array<long double, n> u{};
+  long double sum = -1;
+  for (std::size_t i = 0; i < n; ++i) {
+    long double right = 1;
+    for (std::size_t j = 0; j < i; ++j) right += static_cast<long double>(T::C[i][j]) * u[j];
+    u[i] = static_cast<long double>(T::gamma) * right;
+    sum += static_cast<long double>(T::b[i]) * u[i];
+  }
+  CHECK(std::abs(static_cast<double>(sum)) < tolerances::weight_sum);
+}
+
 TEST_CASE("rodas: the dense output is of order 4 at any point of the step") {
   for (const double s : {0.15, 0.4, 0.65, 0.9}) {
     Vector row{};

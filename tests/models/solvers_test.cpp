@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Implicit solvers on shipped models of every kind: constraints that are projected, inputs that vary, integrals, kinks.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+test::Finished run(const std::string& model, const std::string& solver, double t_end) {
+  return test::run_model(model, [&](cli::SimulationRequest& request) {
+    request.overrides.solver = solver;
+    request.overrides.rtol = 1e-10;
+    request.overrides.atol = 1e-12;
+    request.overrides.t_end = t_end;
+  });
+}
+
+/// Largest difference of the states at the end.
+double difference(const test::Finished& a, const test::Finished& b) {
+  double largest = 0;
+  for (const model::Coordinate& c : a.simulation.derived->model.coordinates)
+    for (const std::string& name : {c.name, c.name + "_dot"}) largest = std::max(largest, std::abs(a.final(name) - b.final(name)));
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the equations") {
+  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
+                            "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
+    CAPTURE(model);
+    const test::Finished reference = run(model, "dop853", 1.5);
+    for (const char* solver : {"radau5", "rodas"}) {
+      CAPTURE(solver);
+      const test::Finished other = run(model, solver, 1.5);
+      const run::RunResult& result = other.simulation.result;
+      CHECK(result.outcome == eom::Outcome::done);
+      CHECK(difference(other, reference) < 1e-6);
+      CHECK(result.statistics.jacobians > 0);
+      // df/dt along inputs is what rodas takes differences for, two evaluations each
+      const bool inputs = !other.simulation.scene.inputs.empty() && std::string(solver) == "rodas";
+      CHECK(result.statistics.difference_evaluations == (inputs ? 2 * result.statistics.jacobians : 0));
+    }
+  }
+}
+
+TEST_CASE("solvers: an implicit one on code that was compiled without df/dx takes differences, and says so") {
+  const test::Finished first = run("cart_pendulum", "dop853", 1.5);
+  run::Overrides overrides;
+  overrides.solver = "radau5";
+  overrides.rtol = 1e-10;
+  overrides.t_end = 1.5;
+  const run::RunResult again = cli::run_again(first.simulation, overrides, false);
+  CHECK(again.outcome == eom::Outcome::done);
+  CHECK(again.reason == "as asked for, df/dx by differences, since it was not compiled");
+  CHECK(again.statistics.difference_evaluations > 0);
+  CHECK(std::abs(test::value_of(again.final, "theta") - first.final("theta")) < 1e-6);
+}
