@@ -11,7 +11,7 @@ using namespace eomgen;
 
 namespace {
 
-test::Finished run(const std::string& scene, const std::string& solver, double rtol, double step = 0) {
+test::Finished motion(const std::string& scene, const std::string& solver, double rtol, double step = 0) {
   return test::run_model("elastic_pendulum", [&](cli::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
@@ -29,13 +29,13 @@ double difference(const test::Finished& a, const test::Finished& b, bool with_r_
 
 }  // namespace
 
-TEST_CASE("elastic_pendulum: k = 1e10 on the smooth solution: fewer than 2000 steps to 1e-8, where dop853 needs ten times as many") {
+TEST_CASE("elastic_pendulum: k = 1e10 on the smooth solution: fewer than 2000 steps to 1e-8, where dop853 needs more than 20000") {
   // dop853 follows the oscillation of 1e5 rad/s whether there is any or not; what its tolerance lets into it shows in r_dot
-  const test::Finished resolved = run("stiff", "dop853", 1e-9);
+  const test::Finished resolved = motion("stiff", "dop853", 1e-9);
   CHECK(resolved.simulation.result.statistics.steps > 20'000);
   for (const char* solver : {"radau5", "rodas"}) {
-    CAPTURE(solver);
-    const test::Finished stiff = run("stiff", solver, 1e-10);
+    CAPTURE(std::string(solver));
+    const test::Finished stiff = motion("stiff", solver, 1e-10);
     const run::RunResult& result = stiff.simulation.result;
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(result.solver == solver);
@@ -45,7 +45,7 @@ TEST_CASE("elastic_pendulum: k = 1e10 on the smooth solution: fewer than 2000 st
     CHECK(difference(stiff, resolved, false) < 1e-8);
     CHECK(std::abs(stiff.final("r_dot")) < 1e-8);  // the smooth solution's is of the order m g/(k s)
     CHECK(stiff.error("max") < 1e-8);
-    MESSAGE(solver, ": ", result.statistics.steps, " steps, ", result.statistics.rhs_evaluations, " evaluations, ",
+    MESSAGE(std::string(solver), ": ", result.statistics.steps, " steps, ", result.statistics.rhs_evaluations, " evaluations, ",
             difference(stiff, resolved, false), " from dop853 with ", resolved.simulation.result.statistics.steps, " steps");
   }
 }
@@ -58,11 +58,11 @@ TEST_CASE("elastic_pendulum: the scene 'stiff' names its solver") {
 
 TEST_CASE("elastic_pendulum: where the oscillation is part of the motion, all solvers resolve it alike") {
   for (const char* scene : {"default", "stretched"}) {
-    CAPTURE(scene);
-    const test::Finished reference = run(scene, "dop853", 1e-13);
+    CAPTURE(std::string(scene));
+    const test::Finished reference = motion(scene, "dop853", 1e-13);
     for (const char* solver : {"radau5", "rodas"}) {
-      CAPTURE(solver);
-      const test::Finished other = run(scene, solver, 1e-10);
+      CAPTURE(std::string(solver));
+      const test::Finished other = motion(scene, solver, 1e-10);
       CHECK(difference(other, reference) < 1e-6);  // 2 s are 32 periods of the spring
       CHECK(difference(other, reference) < 10 * other.error("max"));
       CHECK(other.drift("energy") < 1e-6);
@@ -71,8 +71,8 @@ TEST_CASE("elastic_pendulum: where the oscillation is part of the motion, all so
 }
 
 TEST_CASE("elastic_pendulum: midpoint keeps the energy within bounds that do not grow; its error is of order 2") {
-  const test::Finished reference = run("stretched", "dop853", 1e-13);
-  const test::Finished coarse = run("stretched", "midpoint", 1e-9, 1e-3), fine = run("stretched", "midpoint", 1e-9, 2.5e-4);
+  const test::Finished reference = motion("stretched", "dop853", 1e-13);
+  const test::Finished coarse = motion("stretched", "midpoint", 1e-9, 1e-3), fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
   const double order = std::log2(difference(coarse, reference) / difference(fine, reference)) / 2;
   CHECK(std::abs(order - 2) < 0.3);
   const test::Finished longer = test::run_model("elastic_pendulum", [](cli::SimulationRequest& request) {

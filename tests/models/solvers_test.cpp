@@ -12,7 +12,7 @@ using namespace eomgen;
 
 namespace {
 
-test::Finished run(const std::string& model, const std::string& solver, double t_end) {
+test::Finished motion(const std::string& model, const std::string& solver, double t_end) {
   return test::run_model(model, [&](cli::SimulationRequest& request) {
     request.overrides.solver = solver;
     request.overrides.rtol = 1e-10;
@@ -34,11 +34,11 @@ double difference(const test::Finished& a, const test::Finished& b) {
 TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the equations") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
                             "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
-    CAPTURE(model);
-    const test::Finished reference = run(model, "dop853", 1.5);
+    CAPTURE(std::string(model));
+    const test::Finished reference = motion(model, "dop853", 1.5);
     for (const char* solver : {"radau5", "rodas"}) {
-      CAPTURE(solver);
-      const test::Finished other = run(model, solver, 1.5);
+      CAPTURE(std::string(solver));
+      const test::Finished other = motion(model, solver, 1.5);
       const run::RunResult& result = other.simulation.result;
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(difference(other, reference) < 1e-6);
@@ -51,7 +51,7 @@ TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the
 }
 
 TEST_CASE("solvers: an implicit one on code that was compiled without df/dx takes differences, and says so") {
-  const test::Finished first = run("cart_pendulum", "dop853", 1.5);
+  const test::Finished first = motion("cart_pendulum", "dop853", 1.5);
   run::Overrides overrides;
   overrides.solver = "radau5";
   overrides.rtol = 1e-10;
