@@ -208,6 +208,11 @@ struct InitialValue {
   NodeId value;
   Span span;
 };
+struct InitialRotation {  // "B.omega" = [..]: along its own axes
+  std::uint32_t frame;
+  std::array<NodeId, 3> value;
+  Span span;
+};
 struct InputTable {  // piecewise constant: value[k] from t[k] until t[k+1]
   std::vector<NodeId> t, value;
 };
@@ -224,6 +229,7 @@ struct Scene {
   std::string name;
   NodeId t0 = no_node, t1 = no_node;
   std::vector<InitialValue> initial, guess;
+  std::vector<InitialRotation> rotations;
   std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // coordinate, order that may be moved
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
   std::vector<SceneInput> inputs;

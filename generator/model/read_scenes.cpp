@@ -137,6 +137,7 @@ void Reader::read_scene(const Entry& entry) {
   read_initial(scene, merged_table(entries, "initial"), false);
   read_initial(scene, merged_table(entries, "guess"), true);
   complete_parameters(scene);
+  check_initial_rotations(scene);
   model_.scenes.push_back(std::move(scene));
 }
 
@@ -164,8 +165,6 @@ Symbol& Reader::coordinate_of_key(const Entry& entry, const std::string& what, s
   const Derivative derivative = split_derivative(entry.key);
   Symbol* symbol = scope_.find(derivative.base);
   order = derivative.order;
-  if (entry.key.find('.') != std::string::npos && entry.key.ends_with(".omega"))
-    not_yet(entry.span, "an initial angular velocity");
   if (symbol != nullptr && symbol->kind == SymbolKind::coordinate && order <= 1) return *symbol;
   std::vector<std::string> candidates;
   for (const std::string& name : scope_.names(SymbolKind::coordinate))
@@ -186,6 +185,7 @@ void Reader::read_initial(Scene& scene, const std::vector<const Entry*>& entries
     for (const InitialValue& known : scene.initial) given.insert({known.coordinate, known.order});
   }
   for (const Entry* entry : entries) {
+    if (read_initial_rotation(scene, *entry, guess)) continue;
     InitialValue initial{};
     const Symbol& symbol = coordinate_of_key(*entry, what, initial.order);
     initial.coordinate = symbol.index;

@@ -104,6 +104,8 @@ private:
   void declare_units();
   void read_units();
   void complete_parameters(Scene& scene);
+  bool read_initial_rotation(Scene& scene, const Entry& entry, bool guess);
+  void check_initial_rotations(const Scene& scene) const;
   void read_bodies();
   void read_inertia(Body& body, const Value& table);
   void read_scalar_inertia(Body& body, const Value& value);

@@ -278,11 +278,16 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   require_span(m, scene, result);
   resolve_inputs(m, scene, value, result);
 
-  StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}};
+  StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}, {}};
   for (const model::InitialValue& initial : scene.initial) {
     const double v = value.number(initial.value, "an initial value");
     value.give(initial.coordinate, initial.order, v);
     problem.given[{initial.coordinate, initial.order}] = {v, initial.span};
+  }
+  for (const model::InitialRotation& given : scene.rotations) {
+    StartProblem::Turn turn{given.frame, {}, given.span};
+    for (std::size_t k = 0; k < 3; ++k) turn.value[k] = value.number(given.value[k], "an initial angular velocity");
+    problem.turns.push_back(turn);
   }
   for (const model::InitialValue& guess : scene.guess) {
     problem.guess[{guess.coordinate, guess.order}] = value.number(guess.value, "a guess");

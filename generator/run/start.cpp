@@ -34,6 +34,10 @@ class StartSolver {
       if (s_.holonomic[k]) rows_[0].push_back(k);
       rows_[1].push_back(k);
     }
+    A_ = s_.A;
+    b_ = s_.b;
+    target_.assign(m_, 0);
+    for (const StartProblem::Turn& turn : p_.turns) add_turn(turn);
   }
 
   void run() {
@@ -68,6 +72,22 @@ class StartSolver {
       if (!given || !(residual(row) > 0) || relative(residual, A, order, row) <= start_tolerance) continue;
       p_.apart[j] = order == 0;  // what opens is told by the run
       for (auto& rows : rows_) std::erase(rows, k);
+    }
+  }
+
+  // An angular velocity is linear in the rates: three more rows beside those of the constraints.
+  void add_turn(const StartProblem::Turn& turn) {
+    symbolic::Dag& dag = *s_.dag;
+    symbolic::Substitution imposed = derive::impose(p_.mechanics), written = derive::write_out(p_.mechanics);
+    std::map<Symbol, Ref> zero;
+    for (const std::uint32_t i : s_.free) zero[{SymbolKind::coordinate, i, 1}] = dag.zero();
+    symbolic::Substitution at_rest(dag, zero);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Ref w = written(imposed(p_.mechanics.angular_velocity[turn.frame][k]));
+      rows_[1].push_back(b_.size());
+      for (const std::uint32_t i : s_.free) A_.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(w));
+      b_.push_back(at_rest(w));
+      target_.push_back(turn.value[k]);
     }
   }
 
@@ -128,8 +148,8 @@ class StartSolver {
 
   /// Residual of psi (order 0) or A qdot + b (order 1), and A.
   void linearise(std::uint8_t order, VectorXd& residual, MatrixXd& A) const {
-    std::vector<Ref> refs = s_.A;
-    const std::vector<Ref>& constant = order == 0 ? s_.psi : s_.b;
+    std::vector<Ref> refs = A_;
+    const std::vector<Ref>& constant = order == 0 ? s_.psi : b_;
     refs.insert(refs.end(), constant.begin(), constant.end());
     const std::vector<double> values = evaluate(refs);
     const std::vector<std::size_t>& bound = rows_[order];
@@ -137,7 +157,7 @@ class StartSolver {
     residual.resize(static_cast<Eigen::Index>(bound.size()));
     for (std::size_t row = 0; row < bound.size(); ++row) {
       const std::size_t k = bound[row];
-      double sum = values[m_ * n_ + k];
+      double sum = values[A_.size() + k] - (order == 1 ? target_[k] : 0);
       for (std::size_t i = 0; i < n_; ++i) {
         A(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(i)) = values[k * n_ + i];
         if (order == 1) sum += values[k * n_ + i] * p_.qdot[s_.free[i]];
@@ -238,11 +258,18 @@ class StartSolver {
     return worst(order) <= rounding;
   }
 
+  [[noreturn]] void refuse_turn(const StartProblem::Turn& turn, double off) const {
+    throw Error("scene", p_.mechanics.model->where(turn.span),
+                fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}", p_.mechanics.model->frames[turn.frame].name, off),
+                "start away from the singular places of its angles, which `check` lists; leave rates that follow from it out; its constraints may not allow it");
+  }
+
   [[noreturn]] void refuse(std::uint8_t order, std::size_t k, const std::vector<std::size_t>& free) const {
     VectorXd residual;
     MatrixXd A;
     linearise(order, residual, A);
     const auto row = static_cast<Eigen::Index>(k);
+    if (rows_[order][k] >= m_) refuse_turn(p_.turns[(rows_[order][k] - m_) / 3], residual(row));
     const mechanics::Constraint& constraint = p_.mechanics.constraints[s_.active[rows_[order][k]]];
     std::string given, open;
     model::Span span = p_.scene.span;
@@ -273,6 +300,8 @@ class StartSolver {
   StartProblem& p_;
   const system::EquationSystem& s_;
   std::size_t n_, m_;
+  std::vector<Ref> A_, b_;      // of the constraints, then of given angular velocities
+  std::vector<double> target_;  // what A qdot + b is to be
   std::array<std::vector<std::size_t>, 2> rows_;  // constraints on positions (order 0), on velocities: all
 };
 

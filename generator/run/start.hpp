@@ -2,6 +2,7 @@
 // A start that satisfies the constraints: what is not given is 0, or follows from the constraints where they fix it.
 #pragma once
 
+#include <array>
 #include <map>
 #include <string>
 #include <utility>
@@ -26,6 +27,12 @@ struct StartProblem {
   const std::vector<double>& parameters;
   std::map<Key, Given> given;
   std::map<Key, double> guess;
+  struct Turn {  // the angular velocity of a frame along its own axes, given instead of rates
+    std::uint32_t frame;
+    std::array<double, 3> value;
+    model::Span span;
+  };
+  std::vector<Turn> turns;
 
   std::vector<double> q, qdot;  // out: all coordinates
   std::vector<std::string> solved = {};  // out: a sentence for each value that followed
