@@ -90,6 +90,7 @@ struct Frame {
   std::uint32_t parent = 0;    // whose axes it turns against
   std::vector<NodeId> entries; // angles, parameters
   std::vector<Stage> stages;   // the last is its own axes
+  NodeId regular = no_node;    // is 0 where the angles fail, for Euler angles
   Span span;
 };
 /// A rigid body; its centre of mass is a place.

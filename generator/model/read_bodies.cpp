@@ -144,6 +144,10 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
     turn_about(frame, index, rotation, local);
   } else {
     for (const rotations::Step& step : found.steps) add_stage(index, step, local, rotation.span);
+    if (!found.regular.empty()) {
+      const Context context{"a rotation", on_anything, Shape::scalar, std::nullopt, ""};
+      model_.frames[index].regular = resolver_.text(found.regular, local, rotation.span, context).node;
+    }
     if (found.family == "fixed") frame_sources_[index].principal = frame_sources_[frame.parent].principal;
   }
 }

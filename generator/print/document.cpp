@@ -13,7 +13,7 @@ using mechanics::Mechanics;
 using reading::Formula;
 using reading::ReadingForm;
 
-constexpr std::size_t column_width = 60, page_width = 140;  // printed characters
+constexpr std::size_t column_width = 60, page_width = 125;  // printed characters
 
 constexpr const char* preamble = R"(\documentclass[10pt,a4paper,landscape]{article}
 \usepackage{amsmath}

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "print/notation.hpp"
+#include "reading/trig.hpp"
 
 namespace eomgen::print {
 
@@ -68,6 +69,77 @@ Formula times_multiplier(std::uint32_t k, const Sum& slope) {
   return minus ? reading::negative(std::move(result)) : result;
 }
 
+// (a + b)^2, a^2 b^2
+Formula squared(const Sum& w) {
+  if (w.size() == 1) return arrange(w * w);
+  return reading::wrap(Form::power, {arrange(w), reading::number(2)});
+}
+
+Formula halved(std::vector<Formula> factors) {
+  factors.insert(factors.begin(), reading::number(symbolic::Rational(1) / 2));
+  return reading::product(std::move(factors));
+}
+
+Formula component(const reading::ReadSpin& spin, std::size_t k) {
+  return mark("omega", {reading::number(static_cast<long>(k + 1)), reading::number(static_cast<long>(spin.frame))});
+}
+
+/// w.Jw/2 in as few squares as it has; `named`: of components that are given apart.
+std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named) {
+  std::vector<Formula> terms;
+  std::array<bool, 3> done{};
+  const auto square = [&](std::size_t k) { return named ? reading::wrap(Form::power, {component(spin, k), reading::number(2)}) : squared(spin.w[k]); };
+  for (std::size_t i = 0; i < 3; ++i) {
+    if (done[i] || spin.J[i][i].is_zero()) continue;
+    std::vector<Formula> squares;
+    Sum together;
+    for (std::size_t k = i; k < 3; ++k) {
+      if (!(spin.J[k][k] == spin.J[i][i])) continue;
+      done[k] = true;
+      if (spin.w[k].is_zero()) continue;
+      squares.push_back(square(k));
+      together += spin.w[k] * spin.w[k];
+    }
+    together = named ? together : reading::simplify(together);
+    if (!named && together.size() < squares.size()) squares = {arrange(together)};  // sin^2 + cos^2
+    if (!squares.empty()) terms.push_back(halved({arrange(spin.J[i][i]), reading::sum(std::move(squares))}));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = i + 1; k < 3; ++k) {
+      if (spin.J[i][k].is_zero() || spin.w[i].is_zero() || spin.w[k].is_zero()) continue;
+      const Formula a = named ? component(spin, i) : arrange(spin.w[i]), b = named ? component(spin, k) : arrange(spin.w[k]);
+      terms.push_back(reading::product({arrange(spin.J[i][k]), a, b}));
+    }
+  }
+  return terms;
+}
+
+/// T as squares of velocities and of components of angular velocities; of a model without bodies as it is.
+Formula kinetic_formula(const ReadingForm& form) {
+  if (form.spins.empty()) return arrange(form.kinetic);
+  std::vector<Formula> terms = form.translation.is_zero() ? std::vector<Formula>{} : reading::arranged_terms(form.translation, Layout::grouped);
+  for (const reading::ReadSpin& spin : form.spins) {
+    for (Formula& term : rotational_terms(spin, false)) terms.push_back(std::move(term));
+  }
+  return reading::sum(std::move(terms));
+}
+
+// m r_dot . r_dot/2 + w.Jw/2, with the components of w by name.
+void add_rotations(const Mechanics& m, const ReadingForm& form, const Formula& T, std::vector<Statement>& out) {
+  std::vector<Formula> terms;
+  for (const mechanics::PointMass& mass : m.masses) {
+    const Formula place = reading::number(static_cast<long>(mass.place)), v = dotted(mark("r", {place}));
+    terms.push_back(halved({mark("m", {place}), reading::wrap(Form::dot_product, {v, v})}));
+  }
+  for (const reading::ReadSpin& spin : form.spins) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.push_back({"energies", "angular velocity of " + spin.name, "", "", reading::relation({component(spin, k), arrange(spin.w[k])})});
+    }
+    for (Formula& term : rotational_terms(spin, true)) terms.push_back(std::move(term));
+  }
+  out.push_back({"energies", "kinetic energy", "", "", reading::relation({T, reading::sum(std::move(terms))})});
+}
+
 Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
   try {
     return arrange(reading::read(m, expression));
@@ -101,13 +173,14 @@ Formula explicit_form(const Equation& equation) {
 }
 
 void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
-  if (form.by_parts) return;
   const bool two = form.approach == system::Approach::two;
   const Letters letters(m, two);
+  if (form.by_parts && !form.spins.empty()) add_rotations(m, form, mark(letters.T), out);
+  if (form.by_parts) return;
   const auto add = [&](std::string name, Formula left, const Sum& right) {
     out.push_back({"energies", std::move(name), "", "", reading::relation({std::move(left), arrange(right)})});
   };
-  add(two ? "constrained kinetic energy" : "kinetic energy", mark(letters.T), form.kinetic);
+  out.push_back({"energies", two ? "constrained kinetic energy" : "kinetic energy", "", "", reading::relation({mark(letters.T), kinetic_formula(form)})});
   const bool moving = form.by_degree && !((*form.by_degree)[1].is_zero() && (*form.by_degree)[2].is_zero());
   if (moving) {
     for (int k = 0; k < 3; ++k) {
@@ -120,8 +193,10 @@ void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<State
 void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   if (form.by_parts) return;
   const Formula L = mark(Letters(m, form.approach == system::Approach::two).L);
-  std::vector<Formula> terms = reading::arranged_terms(form.kinetic, Layout::grouped);
-  for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
+  std::vector<Formula> terms = form.spins.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped) : std::vector<Formula>{kinetic_formula(form)};
+  if (!form.potential.is_zero()) {
+    for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
+  }
   out.push_back({"lagrangian", "Lagrangian", "", "", reading::relation({L, reading::sum(std::move(terms))})});
 }
 

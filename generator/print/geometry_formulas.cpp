@@ -13,6 +13,7 @@ using reading::Components;
 using reading::Form;
 using reading::Formula;
 using reading::Geometry;
+using reading::Layout;
 using reading::mark;
 using reading::Sum;
 using reading::SymbolKind;
@@ -92,7 +93,7 @@ class Tables {
   Formula q(std::size_t i) const { return coordinate(g_.coordinates[i]); }
   void entry(const char* key, Formula left, const Sum& right, const char* role) {
     if (right.is_zero()) return;
-    out_.push_back({key, g_.name, "", role, reading::relation({std::move(left), arrange(right)})});
+    out_.push_back({key, g_.name, "", role, reading::relation({std::move(left), arrange(right, right.size() > 6 ? Layout::terms : Layout::grouped)})});  // a bracket must fit on a line
   }
 
   const Geometry& g_;

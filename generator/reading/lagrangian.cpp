@@ -14,9 +14,33 @@ namespace {
 // Of the kinetic energy: with more, no equation fits on a page.
 constexpr std::size_t readable_terms = 800;
 
+bool over_a_sum(const Sum& sum) {
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (const Factor& factor : monomial) {
+      if (factor.atom->op == Op::add && cln::minusp(factor.exponent)) return true;
+    }
+  }
+  return false;
+}
+
 }  // namespace
 
-Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
+std::vector<ReadSpin> read_spins(const Mechanics& m, Bridge& bridge) {
+  std::vector<ReadSpin> result;
+  for (const mechanics::Spin& spin : m.spins) {
+    ReadSpin read;
+    read.name = spin.name;
+    read.frame = spin.frame;
+    for (std::size_t i = 0; i < 3; ++i) {
+      read.w[i] = simplify(bridge.sum(spin.w[i]));
+      for (std::size_t k = 0; k < 3; ++k) read.J[i][k] = bridge.sum(spin.J[i][k]);
+    }
+    result.push_back(std::move(read));
+  }
+  return result;
+}
+
+Sum translational_energy(const Mechanics& m, Bridge& bridge) {
   Sum result = bridge.sum(m.kinetic_given);
   for (const mechanics::PointMass& mass : m.masses) {
     Sum square;
@@ -27,14 +51,18 @@ Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
     result += bridge.sum(mass.mass) * (Rational(1) / 2 * simplify(square));
     if (result.size() > readable_terms) throw TermBudget();
   }
-  for (const mechanics::Spin& spin : m.spins) {
-    std::array<Sum, 3> w;
-    for (std::size_t k = 0; k < 3; ++k) w[k] = simplify(bridge.sum(spin.w[k]));
+  return simplify(result);
+}
+
+Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
+  Sum result = translational_energy(m, bridge);
+  for (const ReadSpin& spin : read_spins(m, bridge)) {
     Sum twice;
     for (std::size_t i = 0; i < 3; ++i) {
+      // Over a sum, as with Euler parameters, products of components are no longer read by anybody.
+      if (over_a_sum(spin.w[i])) throw TermBudget();
       for (std::size_t k = 0; k < 3; ++k) {
-        const Sum J = bridge.sum(spin.J[i][k]);
-        if (!J.is_zero()) twice += J * simplify(w[i] * w[k]);
+        if (!spin.J[i][k].is_zero()) twice += spin.J[i][k] * simplify(spin.w[i] * spin.w[k]);
       }
     }
     result += Rational(1) / 2 * simplify(twice);

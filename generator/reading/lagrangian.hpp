@@ -8,6 +8,9 @@
 namespace eomgen::reading {
 
 /// T = sum m/2 v.v + [energy], eq. (1.31), (3.20): velocities differentiated here, not taken from mechanics.
+/// Rotations, and the kinetic energy without them.
+std::vector<ReadSpin> read_spins(const mechanics::Mechanics& mechanics, Bridge& bridge);
+Sum translational_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
 Sum kinetic_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
 
 /// Q_i of one coordinate, eq. (3.20).

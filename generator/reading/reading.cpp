@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "reading/approaches.hpp"
+#include "reading/lagrangian.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
@@ -29,6 +30,18 @@ void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
     }
     form.constraints.push_back(std::move(c));
   }
+}
+
+void add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+  if (m.spins.empty()) return;
+  const bool imposed = form.approach == system::Approach::two;
+  const std::map<Symbol, Sum> values = imposed_values(m, bridge);
+  const auto read = [&](const Sum& sum) { return imposed ? simplify(bridge.substitute(sum, values)) : sum; };
+  form.spins = read_spins(m, bridge);
+  for (ReadSpin& spin : form.spins) {
+    for (Sum& w : spin.w) w = read(w);
+  }
+  if (!form.by_parts) form.translation = read(translational_energy(m, bridge));
 }
 
 // Equations that are too long to be read: what is left is which coordinates and forces there are.
@@ -60,6 +73,7 @@ ReadingForm derive_reading(const Mechanics& m, system::Approach approach) {
   } catch (const TermBudget&) {
     leave_by_parts(m, form);
   }
+  add_spins(m, bridge, form);
   add_constraints(m, bridge, form);
   return form;
 }

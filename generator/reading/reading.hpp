@@ -59,10 +59,20 @@ struct SingularSet {
   std::vector<Formula> solutions; // phi = 0, phi = pi where these are known
 };
 
+/// Rotation of a body: T = sum_ik J_ik w_i w_k/2.
+struct ReadSpin {
+  std::string name;
+  std::uint32_t frame = 0;
+  Components w;
+  std::array<Components, 3> J;
+};
+
 struct ReadingForm {
   system::Approach approach = system::Approach::one;
   bool by_parts = false;  // too large to be multiplied out: m r_ddot . dr/dq in place of the equations written out
   Sum kinetic, potential, lagrangian;  // unconstrained for I, constrained for II
+  Sum translation;              // the part of `kinetic` that is not of `spins`; 0 where by_parts
+  std::vector<ReadSpin> spins;  // for I as they are, for II with the constraints imposed
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
   std::vector<ReadConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones

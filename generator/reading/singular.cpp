@@ -112,6 +112,24 @@ void add_determinant(Bridge& bridge, const std::string& approach, const Sum& kin
   }
 }
 
+// Where the determinant is too large to be written out: the angles of bodies fail where their basis has no dual. With the first or
+// the last of them gone the basis of the other two never fails.
+void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
+  Mechanics m = mechanics;  // shares the Dag; lowering may add nodes to it
+  for (const model::Body& body : m.model->bodies) {
+    const model::Frame& frame = m.model->frames[body.frame];
+    if (frame.regular == model::no_node) continue;
+    const auto gone = [&](std::size_t k) {
+      const model::Node& entry = m.model->arena[frame.entries[k]];
+      return entry.op != model::Op::coordinate || m.is_eliminated(entry.index);
+    };
+    const auto given = [&](std::size_t k) { return m.model->arena[frame.entries[k]].op != model::Op::coordinate; };
+    const Sum regular = bridge.sum(mechanics::lower_scalar(m, frame.regular));
+    if (m.q.size() > largest_determinant && !given(0) && !given(2)) sets.add_factors("I", regular);
+    if (m.free.size() > largest_determinant && !gone(0) && !gone(2)) sets.add_factors("II", bridge.substitute(regular, values));
+  }
+}
+
 }  // namespace
 
 std::vector<SingularSet> singular_sets(const Mechanics& m) {
@@ -138,6 +156,7 @@ std::vector<SingularSet> singular_sets(const Mechanics& m) {
       if (stays && m.free.size() > largest_determinant) sets.add_factors("II", bridge.substitute(g.determinant, values));
     }
   }
+  add_rotations(m, bridge, values, sets);
   return sets.take();
 }
 

@@ -182,15 +182,18 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
   }
 }
 
-/// The largest residual, each relative to the sum of the absolute values of its terms.
-double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Judge& judge) {
+/// The largest residual, each relative to the sum of the absolute values of its terms, at unknowns of the size of their scale.
+double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion, const Judge& judge) {
+  Lookup sized = at;
+  for (std::size_t i = 0; i < sized.state.qddot.size(); ++i) sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
   double largest = 0;
   for (const Ref residual : form.residuals) {
     std::vector<Ref> roots{residual};
     top_level_terms(dag, residual, roots);
     const std::vector<Real> value = symbolic::evaluate(dag, roots, at, judge.digits());
+    const std::vector<Real> size = symbolic::evaluate(dag, roots, sized, judge.digits());
     Real scale = 0;
-    for (std::size_t i = 1; i < value.size(); ++i) scale = scale + cln::abs(value[i]);
+    for (std::size_t i = 1; i < value.size(); ++i) scale = scale + cln::max(cln::abs(value[i]), cln::abs(size[i]));
     largest = std::max(largest, relative(value[0], scale));
   }
   return largest;
@@ -202,12 +205,12 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
                         const Judge& judge, bool try_wrong_ones) {
   Lookup lookup(judge, motion.state);
   lookup.lambda = motion.lambda;
-  const double largest = largest_residual(form, *mechanics.dag, lookup, judge);
+  const double largest = largest_residual(form, *mechanics.dag, lookup, motion, judge);
   for (const std::uint32_t i : mechanics.free) {
     if (!try_wrong_ones) break;
     const Real right = lookup.state.qddot[i];
     lookup.state.qddot[i] = 2 * right + 1;
-    const bool noticed = largest_residual(form, *mechanics.dag, lookup, judge) > 1e-9;
+    const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, judge) > 1e-9;
     lookup.state.qddot[i] = right;
     if (!noticed) return 1;
   }

@@ -6,7 +6,7 @@
 namespace eomgen::verify {
 
 Motion motion_at(const Judge& judge, const State& at) {
-  Motion motion{at, {}};
+  Motion motion{at, {}, {}};
   State& s = motion.state;
   const std::size_t n = s.q.size(), m = judge.constraints().size(), size = n + m;
   const std::vector<Real> no_forces(m, Real(0));
@@ -28,10 +28,23 @@ Motion motion_at(const Judge& judge, const State& at) {
       matrix[(n + k) * size + i] = c.gradient[k][i];
     }
   }
-  const Solution solution = solve(std::move(matrix), std::move(right));
+  std::vector<Real> row_scale;
+  for (std::size_t i = 0; i < n; ++i) row_scale.push_back(rest[i].scale);
+  for (std::size_t k = 0; k < m; ++k) row_scale.push_back(cln::abs(right[n + k]));
+  std::vector<std::vector<Real>> columns{std::move(right)};  // and the inverse
+  for (std::size_t i = 0; i < size; ++i) {
+    columns.emplace_back(size, Real(0));
+    columns.back()[i] = 1;
+  }
+  const Solution solution = solve(std::move(matrix), std::move(columns));
   if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
   for (std::size_t k = 0; k < m; ++k) motion.lambda.push_back(solution.x()[n + k]);
+  for (std::size_t i = 0; i < size; ++i) {
+    Real scale = 0;
+    for (std::size_t k = 0; k < size; ++k) scale = scale + cln::abs(solution.columns[k + 1][i]) * row_scale[k];
+    motion.scale.push_back(scale);
+  }
   return motion;
 }
 

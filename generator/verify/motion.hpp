@@ -9,6 +9,8 @@ namespace eomgen::verify {
 struct Motion {
   State state;               // with qddot
   std::vector<Real> lambda;  // per scalar constraint
+  /// What errors of the size of the equations' terms do to qddot and lambda: what is far smaller is rounding.
+  std::vector<Real> scale;
 };
 
 /// The residuals are affine in qddot and lambda: N + 1 evaluations and one solve. Throws Singular where qddot and

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "derive/conservative.hpp"
+#include "models/reading_of.hpp"
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+TEST_CASE("R11: a constant moment is not conservative, and is where the body turns about its direction only") {
+  Read r11("R11_constant_moment"), axis("R11_constant_moment_fixed_axis");
+  CHECK(derive::classify_forces(r11.s.mechanics).at(0).conservative == derive::Verdict::no);
+  const derive::ForceClass fixed = derive::classify_forces(axis.s.mechanics).at(0);
+  CHECK(fixed.conservative == derive::Verdict::yes);
+  REQUIRE(fixed.potential.has_value());
+  CHECK(same(reading::read(axis.s.mechanics, *fixed.potential), -(axis("M0") * axis("n"))));
+}
+
+// Ziegler's two ways to one attitude: half a turn about E3, or half turns about E1 and then E2, which do no work.
+TEST_CASE("R11: two ways to the same attitude with different work") {
+  const auto rotation = [](int axis) {
+    std::array<std::array<int, 3>, 3> R{};
+    for (int k = 0; k < 3; ++k) R[static_cast<std::size_t>(k)][static_cast<std::size_t>(k)] = k == axis ? 1 : -1;
+    return R;
+  };
+  const auto product = [](const auto& a, const auto& b) {
+    std::array<std::array<int, 3>, 3> c{};
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t k = 0; k < 3; ++k) c[i][j] += a[i][k] * b[k][j];
+    return c;
+  };
+  CHECK(product(rotation(1), rotation(0)) == rotation(2));
+  // In the model: with 1-2-3 angles the moment's components along n1, n2 vanish on the second way, and not along n3 at n1 = n2 = 0.
+  Read r11("R11_constant_moment");
+  const reading::ReadingForm form = r11.form(system::Approach::two);
+  const Sum M0 = r11("M0"), n1 = r11("n1"), n2 = r11("n2");
+  CHECK(r11.equation(form, "n1").force.is_zero());
+  CHECK(same(r11.equation(form, "n2").force, M0 * sin(n1)));
+  CHECK(same(r11.equation(form, "n3").force, M0 * cos(n1) * cos(n2)));
+}
+
+TEST_CASE("R11: the energy gains what the moment does; about the fixed axis T + U is kept and the turn is that of M0/J") {
+  const Finished run = run_model("R11_constant_moment");
+  CHECK(run.simulation.result.power_balance < 1e-8);
+  for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(run.rows.at(i, "work") == doctest::Approx(run.rows.at(i, "power")).epsilon(1e-12));
+  const Finished axis = run_model("R11_constant_moment_fixed_axis");
+  CHECK(axis.drift("energy.applied") < 1e-12);
+  CHECK(axis.final("n") == doctest::Approx(0.1 + 5 + 0.3 / 2.5 * 25 / 2).epsilon(1e-12));
+}

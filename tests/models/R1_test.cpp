@@ -1,0 +1,128 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/attitude.hpp"
+#include "support/elliptic.hpp"
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+constexpr double J[3] = {1, 2, 2.5};
+constexpr double tolerance = 1e-9;  // twenty seconds, some four turns, at rtol 1e-12
+
+void tighten(cli::SimulationRequest& request) {
+  request.overrides.rtol = 1e-12;
+  request.overrides.atol = 1e-13;
+}
+
+/// w along the body's axes from w2 = 0, w1 > 0, w3 > 0, where the axis of the largest moment is circled.
+std::array<double, 3> jacobi_solution(double w1, double w3, double t) {
+  const double E2 = J[0] * w1 * w1 + J[2] * w3 * w3, h2 = J[0] * J[0] * w1 * w1 + J[2] * J[2] * w3 * w3;
+  const double rate = std::sqrt((J[2] - J[1]) * (h2 - E2 * J[0]) / (J[0] * J[1] * J[2]));
+  const double k = std::sqrt((J[1] - J[0]) * (E2 * J[2] - h2) / ((J[2] - J[1]) * (h2 - E2 * J[0])));
+  REQUIRE(k < 1);
+  const test::Jacobi s = test::jacobi(rate * t, k);
+  return {w1 * s.cn, std::sqrt((E2 * J[2] - h2) / (J[1] * (J[2] - J[1]))) * s.sn, w3 * s.dn};
+}
+
+double worst_against_jacobi(const test::Finished& run) {
+  double worst = 0;
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    const std::array<double, 3> w = jacobi_solution(0.2, 1, run.rows.t[i]);
+    for (std::size_t k = 0; k < 3; ++k) worst = std::max(worst, std::abs(run.rows.at(i, "B.omega" + std::to_string(k + 1)) - w[k]));
+  }
+  return worst;
+}
+
+/// The free body with these rotation and start, as a model of its own; all nine e_k . E_j are outputs.
+std::string model_text(const std::string& rotation, const std::string& start) {
+  std::string text = "format = 1\ntitle = \"t\"\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] }\nrotation = " + rotation + "\n[definitions]\n", outputs;
+  for (char k = '1'; k <= '3'; ++k) {
+    for (char j = '1'; j <= '3'; ++j) {
+      text += std::string("c") + k + j + " = \"dot(B.e" + k + ", E" + j + ")\"\n";
+      outputs += std::string(outputs.empty() ? "" : ", ") + "\"c" + k + j + "\"";
+    }
+  }
+  return text + "[scene.default]\nt = [0, 1.5]\nrtol = 1e-13\natol = 1e-14\ninitial = { " + start + ", \"B.omega\" = [0.3, -0.4, 0.5] }\noutputs = [" + outputs + "]\n";
+}
+
+}  // namespace
+
+TEST_CASE("R1: the angular velocity is Jacobi's, in angles and in Euler parameters, and E and H are kept") {
+  for (const char* name : {"R1_free_body", "R1_free_body_euler_parameters"}) {
+    INFO(name);
+    const test::Finished run = test::run_model(name, tighten);
+    CHECK(worst_against_jacobi(run) < tolerance);
+    CHECK(run.drift("energy") < 1e-11);
+    for (const char* h : {"angular_momentum.E1", "angular_momentum.E2"}) CHECK(run.drift(h) < 1e-10);
+    // On the ellipsoid of the energy and the sphere of the momentum.
+    for (std::size_t i = 0; i < run.rows.size(); ++i) {
+      double energy = 0, momentum = 0;
+      for (std::size_t k = 0; k < 3; ++k) {
+        const double w = run.rows.at(i, "B.omega" + std::to_string(k + 1));
+        energy += J[k] * w * w / 2;
+        momentum += J[k] * J[k] * w * w;
+      }
+      CHECK(energy == doctest::Approx((0.04 + 2.5) / 2).epsilon(tolerance));
+      CHECK(momentum == doctest::Approx(0.04 + 6.25).epsilon(tolerance));
+    }
+  }
+}
+
+TEST_CASE("R1: with two equal moments w turns at a constant rate, with three it does not change") {
+  for (const char* scene : {"axisymmetric", "symmetric"}) {
+    INFO(scene);
+    const test::Finished run = test::run_model("R1_free_body", [&](cli::SimulationRequest& request) {
+      tighten(request);
+      request.scene = scene;
+    });
+    const double rate = run.parameter("J3") == 2 ? 0 : (2.5 - 2.0) / 2;  // (J3 - J1)/J1 w3
+    for (std::size_t i = 0; i < run.rows.size(); ++i) {
+      const double t = run.rows.t[i];
+      CHECK(std::abs(run.rows.at(i, "B.omega1") - 0.2 * std::cos(rate * t)) < tolerance);
+      CHECK(std::abs(run.rows.at(i, "B.omega2") - 0.2 * std::sin(rate * t)) < tolerance);
+      CHECK(std::abs(run.rows.at(i, "B.omega3") - 1) < tolerance);
+    }
+  }
+}
+
+TEST_CASE("R1: near the middle axis it tumbles: e2 turns over, and E and H are kept") {
+  const test::Finished run = test::run_model("R1_free_body_euler_parameters", [](cli::SimulationRequest& request) {
+    tighten(request);
+    request.scene = "tumbling";
+  });
+  double least = 1, greatest = -1;
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    least = std::min(least, run.rows.at(i, "B.omega2"));
+    greatest = std::max(greatest, run.rows.at(i, "B.omega2"));
+    double length = 0;
+    for (const char* e : {"e0", "e1", "e2", "e3"}) length += std::pow(run.rows.at(i, e), 2);
+    CHECK(std::abs(length - 1) < 1e-11);  // rows are read off the dense output; the steps are projected
+  }
+  CHECK(greatest > 1.99);
+  CHECK(least < -1.99);
+  CHECK(run.drift("energy") < 1e-11);
+  for (const char* h : {"angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) CHECK(run.drift(h) < 1e-10);
+}
+
+TEST_CASE("R1: all twelve sets of Euler angles, Euler parameters and a Rodrigues vector give the same attitude") {
+  std::vector<std::array<double, 9>> found;
+  const Eigen::Matrix3d start = test::some_attitude();
+  for (const rotations::Rotation& r : rotations::registry()) {
+    const std::optional<test::Attitude> written = test::attitude_in(r, start);
+    if (!written) continue;
+    INFO(r.name);
+    const std::string path = std::string(EOMGEN_BINARY_DIR) + "/R1_" + r.name + ".toml";
+    test::write_text(path, model_text(written->rotation, written->start));
+    const test::Finished run = test::run_model(path);
+    found.emplace_back();
+    for (std::size_t i = 0; i < 9; ++i) found.back()[i] = run.final("c" + std::to_string(i / 3 + 1) + std::to_string(i % 3 + 1));
+    for (std::size_t i = 0; i < 9; ++i) CHECK(std::abs(found.back()[i] - found.front()[i]) < tolerance);
+    CHECK(std::abs(found.back()[0] - start(0, 0)) > 0.01);  // it has moved
+  }
+  CHECK(found.size() == 14);
+}
