@@ -99,21 +99,26 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
 
 void add_constraints(Mechanics& m, Lowering& lower) {
   for (const model::Constraint& constraint : m.model->constraints) {
+    if (constraint.sinking != model::no_node && !vanishes(*m.dag, {lower.scalar(constraint.sinking)})) {
+      throw Error("mechanics", m.model->where(constraint.span), "the point of contact of '" + constraint.name + "' leaves the plane as the body turns",
+                  "give in 'at' the point of the body that is nearest to the plane, or the shape");
+    }
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) {
       Constraint result;
       result.name = constraint.name;
       result.label = constraint.psi.size() > 1 ? constraint.name + "." + std::to_string(k + 1) : constraint.name;
       result.written = constraint.psi[k];
       result.unilateral = constraint.unilateral;
-      if (constraint.velocity) {
+      const bool velocities = constraint.binds_velocities(k);
+      if (velocities) {
         add_velocity_form(m, lower, result);
       } else {
         add_position_form(m, lower, result);
       }
       if (vanishes(*m.dag, result.gradient)) {
         throw Error("mechanics", m.model->where(constraint.span),
-                    "constraint '" + result.label + "' does not depend on any " + (constraint.velocity ? "velocity" : "coordinate"),
-                    constraint.velocity ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
+                    "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
+                    velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                                         : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
       m.constraints.push_back(std::move(result));

@@ -183,10 +183,14 @@ struct Constraint {
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
   bool curve = false;       // holonomic = ["psi1", "psi2"]
   bool velocity = false;    // velocity = "..": psi binds velocities
+  bool rolling = false;     // of three equations the first two bind velocities, the third positions
+  NodeId sinking = no_node;  // of rolling and sliding: vanishes if the point of contact is one
   bool unilateral = false;  // psi >= 0: it pushes and does not pull
   NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
   Span span;
+
+  bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }
 };
 
 struct Event {  // a change of sign of `when`

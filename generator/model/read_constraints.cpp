@@ -9,8 +9,8 @@ namespace eomgen::model {
 void Reader::declare_constraints() {
   for (const Value* table : sections("constraint")) {
     check_keys(*table, {"[[constraint]]",
-                        {"name", "holonomic", "velocity", "holds", "restitution", "friction"},
-                        {"rolling", "sliding", "shape"}});
+                        {"name", "holonomic", "velocity", "rolling", "sliding", "holds", "restitution", "friction"},
+                        {}});
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
     Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
@@ -27,6 +27,7 @@ void Reader::read_constraints() {
     Constraint& constraint = model_.constraints[index++];
     const std::string what = fmt::format("the constraint '{}'", constraint.name);
     const Value* velocity = table->find("velocity");
+    if (read_contact(constraint, *table)) continue;
     if (velocity != nullptr && table->find("holonomic") != nullptr) {
       source_.fail(velocity->span, fmt::format("{} is both 'holonomic' and 'velocity'", what),
                    "write one [[constraint]] for each; the velocities of a holonomic one follow");
@@ -40,6 +41,23 @@ void Reader::read_constraints() {
     read_holds(constraint, *table);
     if (const Value* friction = table->find("friction")) read_friction(constraint, *friction);
   }
+}
+
+// rolling = { .. } or sliding = { .. }; false for any other constraint.
+bool Reader::read_contact(Constraint& constraint, const Value& table) {
+  const Entry *rolling = table.entry("rolling"), *sliding = table.entry("sliding");
+  if (rolling == nullptr && sliding == nullptr) return false;
+  const Entry& kind = rolling != nullptr ? *rolling : *sliding;
+  for (const char* other : {"holonomic", "velocity", "sliding"}) {
+    if (table.find(other) == nullptr || other == kind.key) continue;
+    source_.fail(key_span(table, other), fmt::format("the constraint '{}' is both '{}' and '{}'", constraint.name, kind.key, other),
+                 "write one [[constraint]] for each");
+  }
+  for (const char* later : {"friction", "holds", "restitution"}) {
+    if (const Entry* entry = table.entry(later)) not_yet(entry->span, fmt::format("'{}' of a {} body", later, kind.key));
+  }
+  read_rolling(constraint, kind.value, rolling != nullptr);
+  return true;
 }
 
 // holds = "unilateral": psi >= 0, with a coefficient of restitution.

@@ -150,6 +150,11 @@ private:
   // read_constraints.cpp: [[constraint]], [energy]
   void declare_constraints();
   void read_constraints();
+  bool read_contact(Constraint& constraint, const Value& table);
+  // read_rolling.cpp
+  void read_rolling(Constraint& constraint, const Value& table, bool rolling);
+  std::map<std::string, Typed> plane_of_contact(const Value& on);
+  Typed contact_arm(const Value& table, const std::string& body, std::map<std::string, Typed> local);
   void read_equations(Constraint& constraint, const Value& value);
   // read_friction.cpp
   void read_friction(Constraint& constraint, const Value& value);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 
 #include "derive/imposition.hpp"
 #include "run/scene.hpp"
@@ -38,6 +39,7 @@ class StartSolver {
     b_ = s_.b;
     target_.assign(m_, 0);
     for (const StartProblem::Turn& turn : p_.turns) add_turn(turn);
+    hold_angles();
   }
 
   void run() {
@@ -72,6 +74,24 @@ class StartSolver {
       if (!given || !(residual(row) > 0) || relative(residual, A, order, row) <= start_tolerance) continue;
       p_.apart[j] = order == 0;  // what opens is told by the run
       for (auto& rows : rows_) std::erase(rows, k);
+    }
+  }
+
+  // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their rates that
+  // are not given are 0.
+  void hold_angles() {
+    const model::Model& model = *p_.mechanics.model;
+    const auto touches = [](const model::Constraint& c) { return c.sinking != model::no_node; };
+    if (std::none_of(model.constraints.begin(), model.constraints.end(), touches)) return;
+    for (std::uint32_t f = 1; f < model.frames.size(); ++f) {
+      const auto given = [f](const StartProblem::Turn& turn) { return turn.frame == f; };
+      const bool turns = std::any_of(p_.turns.begin(), p_.turns.end(), given);
+      for (const model::NodeId entry : model.frames[f].entries) {
+        const model::Node& node = model.arena[entry];
+        if (node.op != model::Op::coordinate) continue;
+        if (!p_.guess.contains({node.index, 0})) held_.insert({node.index, 0});
+        if (!turns) held_.insert({node.index, 1});
+      }
     }
   }
 
@@ -141,7 +161,7 @@ class StartSolver {
     std::vector<std::size_t> result;
     for (std::size_t i = 0; i < n_; ++i) {
       const StartProblem::Key key{s_.free[i], order};
-      if (!p_.given.contains(key) || may_move(key)) result.push_back(i);
+      if ((!p_.given.contains(key) && !held_.contains(key)) || may_move(key)) result.push_back(i);
     }
     return result;
   }
@@ -300,6 +320,7 @@ class StartSolver {
   StartProblem& p_;
   const system::EquationSystem& s_;
   std::size_t n_, m_;
+  std::set<StartProblem::Key> held_;  // not given, and 0
   std::vector<Ref> A_, b_;      // of the constraints, then of given angular velocities
   std::vector<double> target_;  // what A qdot + b is to be
   std::array<std::vector<std::size_t>, 2> rows_;  // constraints on positions (order 0), on velocities: all

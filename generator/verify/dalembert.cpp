@@ -46,7 +46,7 @@ double Residual::relative() const { return verify::relative(value, scale); }
 Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(digits), precision_(digits) {
   for (const model::Constraint& constraint : model.constraints) {
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
-    holonomic_.insert(holonomic_.end(), constraint.psi.size(), !constraint.velocity);
+    for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.binds_velocities(k));
   }
   constexpr int rounding = 5;  // digits that sums of many terms may lose
   if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
