@@ -207,6 +207,20 @@ std::vector<double> Integration::restarts() const {
   return times;
 }
 
+/// Whose law of friction has no solution, or several: the margin of that contact is the smallest.
+void Integration::tell_friction(eom::Result& end) {
+  const bool none = end.outcome == eom::Outcome::friction_no_solution;
+  if (!none && end.outcome != eom::Outcome::friction_many_solutions) return;
+  if (!contacts_ || events(end.t, end.x.data(), g_.data()) != 0) return;
+  std::size_t worst = 0;
+  const auto margin = [&](std::size_t j) { return g_[first_contact() + eom::contact_values * j + 4]; };
+  for (std::size_t j = 1; j < code_.contacts.size(); ++j) {
+    if (margin(j) < margin(worst)) worst = j;
+  }
+  end.detail = fmt::format("just after t = {:.17g} the law of friction at '{}' has {}: friction changes its own normal force by more than that force (Painleve)",
+                           end.t, code_.contacts[worst].name, none ? "no solution" : "several solutions");
+}
+
 eom::Result Integration::run(const eom::Options& options, const Observer& observer, const OnEvent& event) {
   position_correction = velocity_correction = work = 0;
   kink_at_ = std::nan("");
@@ -253,6 +267,7 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
       total.outcome = *contacts_->ended();
       total.detail = contacts_->detail();
     }
+    tell_friction(total);
     if (total.outcome != eom::Outcome::done) break;
   }
   return total;

@@ -40,6 +40,7 @@ class Integration {
   std::vector<eom::ModeEvent> start_contacts(double t, std::span<double> x);
   void cross_kink(const eom::EventPoint& point, std::size_t kink);
   eom::AtEvent change_contact(const eom::EventPoint& point, const OnEvent& event);
+  void tell_friction(eom::Result& end);
   std::vector<double> restarts() const;
   std::size_t first_contact() const { return request_.events.size() + code_.kinks.size(); }
   void accept(const eom::StepView& step);

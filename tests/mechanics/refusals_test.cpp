@@ -78,3 +78,25 @@ TEST_CASE("mechanics refuses: a coordinate that moves no mass") {
 TEST_CASE("mechanics accepts: a force that acts only beyond a kink") {
   CHECK(refusal(planar + "[[force]]\non = \"P\"\nforce = \"-max(0, x - 50)*E1\"\n").message == "accepted");
 }
+
+TEST_CASE("mechanics refuses: more friction than there are directions to move in") {
+  const std::string slot = "[[constraint]]\nname = \"a\"\nholonomic = \"x - y/2\"\nfriction = { static = 0.2, dynamic = 0.1 }\n";
+  const std::string joint = "[[force]]\nname = \"b\"\ndry = { coordinate = \"y\", normal = 1, static = 0.2, dynamic = 0.1 }\n";
+  CHECK(refusal(planar + slot).message == "accepted");
+  const Refusal r = refusal(planar + slot + joint);
+  CHECK(r.message == "with 'b' friction can hold 2 directions, and the system has 1 degree of freedom: where all stick, the forces are not determined");
+  CHECK(r.line == 15);
+  const std::string smooth = "[[force]]\nname = \"b\"\ndry = { coordinate = \"y\", normal = 1, dynamic = 0.1, law = \"smooth\", width = 0.001 }\n";
+  CHECK(refusal(planar + slot + smooth).message == "accepted");
+}
+
+TEST_CASE("mechanics refuses: restitution beyond 1, a width that is not positive") {
+  const auto wall = [](const std::string& e) {
+    return planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nholds = \"unilateral\"\nrestitution = " + e + "\n";
+  };
+  CHECK(refusal(wall("1")).message == "accepted");
+  CHECK(refusal(wall("1.5")).message == "the coefficient of restitution of 'a' is not between 0 and 1");
+  CHECK(refusal(wall("-0.1")).line == 13);
+  const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nfriction = { dynamic = 0.1, law = \"smooth\", width = 0 }\n");
+  CHECK(r.message == "the width of the friction of 'a' is not positive");
+}
