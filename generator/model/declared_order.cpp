@@ -4,16 +4,24 @@
 #include <algorithm>
 #include <numeric>
 #include <tuple>
+#include <type_traits>
 
 namespace eomgen::model {
 namespace {
+
+// What the program itself has added comes last.
+template <class T>
+bool is_made_up(const T& item) {
+  if constexpr (std::is_same_v<T, Parameter>) return item.start_of.has_value();
+  return false;
+}
 
 // Sorts by place in the file; gives the new index of each old one.
 template <class T>
 std::vector<std::uint32_t> sort_by_place(std::vector<T>& items) {
   std::vector<std::uint32_t> order(items.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto place = [&](std::uint32_t i) { return std::tuple(items[i].span.line, items[i].span.column); };
+  const auto place = [&](std::uint32_t i) { return std::tuple(is_made_up(items[i]), items[i].span.line, items[i].span.column); };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
   std::vector<std::uint32_t> moved(items.size());
   std::vector<T> sorted;

@@ -32,6 +32,7 @@ struct Parameter {
   bool positive = false;
   Span span;
   bool used = false;
+  std::optional<std::uint32_t> start_of;  // initial(q): the coordinate whose start value every run puts here
 };
 struct Function {  // of time
   std::string name;

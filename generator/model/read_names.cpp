@@ -231,6 +231,7 @@ void Reader::warn_misspelt(const std::string& name, Span span) {
 
 void Reader::warn_unused() {
   for (Parameter& parameter : model_.parameters) {
+    if (parameter.start_of) continue;  // initial(q)
     parameter.used = scope_.find(parameter.name)->used;
     if (parameter.used) continue;
     resolver_.warn(parameter.span, fmt::format("the parameter '{}' is not used", parameter.name),

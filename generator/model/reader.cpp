@@ -104,6 +104,7 @@ Model read_model_text(const std::string& text, const std::string& file) {
   Reader reader(source, root);
   Model model = reader.read();
   restore_declared_order(model);
+  name_start_values(model);
   add_start_time(model, reader.units_stated());
   model.file = file;
   model.id = std::filesystem::path(file).stem().string();

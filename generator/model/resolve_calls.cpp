@@ -27,10 +27,7 @@ Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
   if (name == "position" || name == "velocity" || name == "acceleration") return place_call(syntax, node);
   if (name == "integral") return integral(syntax, node);
   if (name == "omega") return omega_call(syntax, node);
-  if (name == "initial") {
-    source_.fail(node.span, "initial() is not supported yet",
-                 "give the start value a name in [parameters] and use that in the scene too");
-  }
+  if (name == "initial") return initial(syntax, node);
   const std::string hint = did_you_mean(name, function_names());
   const bool value = scope_.find(name) != nullptr;
   source_.fail(node.span, fmt::format("there is no function {}", quote(name)),
@@ -148,6 +145,35 @@ Typed Resolver::partial_derivative(const Syntax& syntax, const SyntaxNode& node)
   Typed result = make(Op::partial_derivative, inner.vector, {inner, variable}, node.span);
   result.loose = inner.loose;
   if (inner.dimension && variable.dimension) result.dimension = quotient(*inner.dimension, *variable.dimension);
+  return result;
+}
+
+// The start value of a coordinate: a parameter that every run sets from its own start.
+Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
+  arity(node, 1, 1);
+  const SyntaxNode& of = syntax.nodes[node.children[0]];
+  Symbol* const found = of.kind == SyntaxKind::name && of.parts.size() == 1 ? scope_.find(of.parts[0]) : nullptr;
+  if (found == nullptr || found->kind != SymbolKind::coordinate) {
+    source_.fail(of.span, "initial() takes a coordinate", "write initial(q) with the name of a coordinate of the model");
+  }
+  symbol(*found, of.span);
+  const std::uint32_t coordinate = found->index;
+  allow(on_time, node.span, "initial()");
+  std::uint32_t index = 0;
+  while (index < model_.parameters.size() && model_.parameters[index].start_of != coordinate) ++index;
+  if (index == model_.parameters.size()) {
+    Parameter start;
+    start.start_of = coordinate;
+    start.name = "initial_" + model_.coordinates[coordinate].name;  // made unlike any other name at the end (start_time.hpp)
+    start.value = number(0, node.span).node;
+    start.used = true;
+    start.span = node.span;
+    model_.parameters.push_back(std::move(start));
+  }
+  Typed result = make(Op::parameter, false, {}, node.span);
+  result.facts |= on_time;
+  result.dimension = model_.coordinates[coordinate].unit.dimension;
+  model_.arena.nodes[result.node].index = index;
   return result;
 }
 

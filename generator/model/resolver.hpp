@@ -122,6 +122,7 @@ private:
   Typed time_derivative(const Syntax& syntax, const SyntaxNode& node);
   Typed partial_derivative(const Syntax& syntax, const SyntaxNode& node);
   Typed integral(const Syntax& syntax, const SyntaxNode& node);
+  Typed initial(const Syntax& syntax, const SyntaxNode& node);
   bool holds_integral(NodeId root) const;
   Typed vector_call(const Syntax& syntax, const SyntaxNode& node);
   Typed place_call(const Syntax& syntax, const SyntaxNode& node);

@@ -22,6 +22,19 @@ std::string free_name(const Model& model, std::string name) {
 
 }  // namespace
 
+void name_start_values(Model& model) {
+  for (Parameter& p : model.parameters) {
+    if (!p.start_of) continue;
+    const Coordinate& q = model.coordinates[*p.start_of];
+    std::string name;
+    std::swap(name, p.name);  // not in its own way
+    p.name = free_name(model, name);
+    p.unit = q.unit;
+    p.note = "start value of " + q.name;
+    if (!q.tex.empty()) p.tex = "{" + q.tex + "}^{0}";
+  }
+}
+
 void add_start_time(Model& model, bool units_stated) {
   if (model.integrals.empty()) return;
   for (std::size_t i = 0; i < model.integrals.size(); ++i) {

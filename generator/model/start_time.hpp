@@ -7,6 +7,9 @@
 
 namespace eomgen::model {
 
+/// Names the parameters that stand for initial(q).
+void name_start_values(Model& model);
+
 /// Where the model has integrals: appends the parameter `t_start`, gives every scene its own value of it, and names the
 /// integrals. Names get underscores until nothing else is called so.
 void add_start_time(Model& model, bool units_stated);

@@ -53,6 +53,10 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
       throw Error("scene", {}, fmt::format("'{}' is the start of the run, from which integrals count: it cannot be set", name),
                   "state it in the scene: t = [t0, t1]");
     }
+    if (found->start_of) {
+      throw Error("scene", {}, fmt::format("'{}' is the start value of a coordinate: it cannot be set", name),
+                  "state the start in the scene: initial = { .. }");
+    }
     formula[index] = m.dag->constant(value);
   }
   std::vector<cln::cl_R> values(n, 0);
@@ -292,7 +296,17 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (const model::InitialValue& guess : scene.guess) {
     problem.guess[{guess.coordinate, guess.order}] = value.number(guess.value, "a guess");
   }
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {  // initial(q): what is known of q before the constraints are met
+    const auto& start_of = m.model->parameters[i].start_of;
+    if (!start_of) continue;
+    const auto given = problem.given.find({*start_of, 0});
+    const auto guess = problem.guess.find({*start_of, 0});
+    result.parameters[i] = given != problem.given.end() ? given->second.value : guess != problem.guess.end() ? guess->second : 0;
+  }
   solve_start(problem);
+  for (std::size_t i = 0; i < result.parameters.size(); ++i) {
+    if (const auto& start_of = m.model->parameters[i].start_of) result.parameters[i] = problem.q[*start_of];
+  }
   result.q = problem.q;
   result.qdot = problem.qdot;
   resolve_ranges(m, value, result);

@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <tuple>
 
 #include "program.hpp"
 
@@ -106,4 +107,47 @@ TEST_CASE("a start that no values can close is refused") {
   folder.write("loop.toml", loop("initial = { x1 = -1, y1 = 0, x1_dot = 0 }\n"));  // 4 from the other pivot; 3.5 at most
   const ChildResult result = expect(2, folder, {"run", "loop.toml"});
   CHECK(contains(result.err, "the start breaks constraint"));
+}
+
+TEST_CASE("initial(q) is the start value of each scene, also of a coordinate that follows from a constraint") {
+  const Folder folder;
+  // A spring that is slack at the start, and a slide that is tied to the crank by x - initial(x) = R (theta - initial(theta)).
+  folder.write("slack.toml", R"(format = 1
+[parameters]
+m = "2 kg"
+k = "8 N/m"
+g = "3 m/s^2"
+R = "0.5 m"
+[coordinates]
+theta = "rad"
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+[[particle]]
+name = "W"
+mass = "m"
+position = "R*cos(theta)*E2 + R*sin(theta)*E3"
+[[force]]
+generalized = { y = "m*g - k*(y - initial(y))" }
+[[constraint]]
+name = "tie"
+holonomic = "x - initial(x) - R*(theta - initial(theta))"
+[scene.default]
+t = [0, 1]
+initial = { x = 1, theta = 0.25, y = 0.125, theta_dot = 1 }
+[scene.other]
+from = "default"
+initial = { x = -3, y = 2 }
+)");
+  expect(0, folder, {"verify", "slack.toml"});
+  // y = y0 + (m g/k)(1 - cos 2t); both tied masses move on without forces.
+  for (const auto& [scene, x0, y0] : {std::tuple("default", 1.0, 0.125), std::tuple("other", -3.0, 2.0)}) {
+    const Json run = document(folder, {"run", "slack.toml", "--scene", scene});
+    CHECK(run["final"]["y"].get<double>() == doctest::Approx(y0 + 0.75 * (1 - std::cos(2.0))).epsilon(1e-9));
+    CHECK(run["final"]["theta"].get<double>() == doctest::Approx(1.25).epsilon(1e-9));
+    CHECK(run["final"]["x"].get<double>() == doctest::Approx(x0 + 0.5).epsilon(1e-9));
+  }
+  const ChildResult set = expect(2, folder, {"run", "slack.toml", "--set", "initial_y=1"});
+  CHECK(contains(set.err, "'initial_y' is the start value of a coordinate: it cannot be set"));
 }
