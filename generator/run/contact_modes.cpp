@@ -46,6 +46,7 @@ std::vector<eom::ModeEvent> ContactModes::start(double t, std::span<double> x) {
   const std::vector<eom::Contact>& contacts = request_.code.contacts;
   std::vector<double> g(rule_.functions());
   velocities_.forget();
+  if (two_directions_) velocities_.hold(t, x.data(), inputs_(t), 0);  // how much slip counts, before any is given
   std::vector<double> slip(contacts.size(), 0.0);
   std::array<bool, eom::max_contacts> apart{};
   for (std::size_t j = 0; j < contacts.size(); ++j) {

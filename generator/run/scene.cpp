@@ -107,6 +107,24 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
   }
 }
 
+// Coefficients of friction, which the reader saw at the default values only.
+void require_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
+  for (const mechanics::Contact& contact : m.contacts) {
+    if (contact.dimensions() == 0) continue;
+    const std::vector<Ref> both{contact.width ? contact.dynamic_coefficient : contact.static_coefficient, contact.dynamic_coefficient};
+    const std::vector<Symbol> symbols = m.dag->symbols(both);
+    if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; })) continue;
+    const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
+    const std::vector<cln::cl_R> mu = symbolic::evaluate(*m.dag, both, lookup, digits);
+    const bool negative = cln::minusp(mu[0]) || cln::minusp(mu[1]);
+    if (!negative && mu[0] >= mu[1]) continue;
+    throw Error("scene", m.model->where(scene.span),
+                negative ? fmt::format("a coefficient of friction of '{}' is negative here", contact.name)
+                         : fmt::format("the static coefficient of friction of '{}' is less than the dynamic one here", contact.name),
+                negative ? "friction opposes slip: give coefficients of 0 or more" : "give static >= dynamic");
+  }
+}
+
 // Expressions of a scene are evaluated once, at its start.
 class SceneEvaluator {
  public:
@@ -253,6 +271,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = parameter_values(m, scene, overrides);
   require_masses(m, parameters);
+  require_coefficients(m, parameters, scene);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
   // The start is computed with the binary64 parameters that the run will use.
   std::vector<cln::cl_R> rounded;

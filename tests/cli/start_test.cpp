@@ -112,7 +112,7 @@ TEST_CASE("a start that no values can close is refused") {
 TEST_CASE("initial(q) is the start value of each scene, also of a coordinate that follows from a constraint") {
   const Folder folder;
   // A spring that is slack at the start, and a slide that is tied to the crank by x - initial(x) = R (theta - initial(theta)).
-  folder.write("slack.toml", R"(format = 1
+  folder.write("slack.toml", R"toml(format = 1
 [parameters]
 m = "2 kg"
 k = "8 N/m"
@@ -139,7 +139,7 @@ initial = { x = 1, theta = 0.25, y = 0.125, theta_dot = 1 }
 [scene.other]
 from = "default"
 initial = { x = -3, y = 2 }
-)");
+)toml");
   expect(0, folder, {"verify", "slack.toml"});
   // y = y0 + (m g/k)(1 - cos 2t); both tied masses move on without forces.
   for (const auto& [scene, x0, y0] : {std::tuple("default", 1.0, 0.125), std::tuple("other", -3.0, 2.0)}) {
