@@ -5,6 +5,7 @@
 #include <functional>
 #include <set>
 
+#include "mechanics/imposition.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
@@ -261,6 +262,21 @@ void check_determinate(const Mechanics& m) {
 }
 
 }  // namespace
+
+void drop_held_directions(Mechanics& m) {
+  symbolic::Substitution imposed = impose(m);
+  std::uint32_t first = 0;
+  for (Contact& contact : m.contacts) {
+    for (std::size_t a = contact.directions.size(); a-- > 0 && contact.directions.size() == 2;) {
+      if (!m.dag->is_zero(imposed(contact.slip[a]))) continue;
+      contact.directions.erase(contact.directions.begin() + static_cast<std::ptrdiff_t>(a));
+      contact.tangents.erase(contact.tangents.begin() + static_cast<std::ptrdiff_t>(a));
+      contact.slip.erase(contact.slip.begin() + static_cast<std::ptrdiff_t>(a));
+    }
+    contact.first = first;
+    first += static_cast<std::uint32_t>(contact.dimensions());
+  }
+}
 
 void check_coefficients(const Mechanics& m) {
   check_determinate(m);

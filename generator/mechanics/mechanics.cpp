@@ -128,6 +128,7 @@ Mechanics build_mechanics(const model::Model& model) {
   add_constraints(m, lower);
   add_contacts(m, lower);
   eliminate_coordinates(m);
+  drop_held_directions(m);
   add_values(m, lower);
   check_coefficients(m);
   require_equations(m);

@@ -227,7 +227,8 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   kink_crossings.assign(code_.kinks.size(), 0);
   projected_.clear();
   eom::Options piece = options;
-  piece.quadratures = request_.watch_power ? 1 : 0;
+  // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
+  piece.quadratures = request_.watch_power && code_.contacts.empty() ? 1 : 0;
   eom::Result total;
   total.x = initial_state();
   total.t = request_.scene.t0;

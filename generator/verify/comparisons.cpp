@@ -59,7 +59,11 @@ double motion_residual(const SystemValues& v) {
   for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
   for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
     Residual along;  // A qddot and what remains of psi_ddot
-    for (std::size_t i = 0; i < v.state.qddot.size(); ++i) along.add(v.constraints.gradient[k][i] * v.state.qddot[i]);
+    for (std::size_t i = 0; i < v.state.qddot.size(); ++i) {
+      const Real& slope = v.constraints.gradient[k][i];
+      const double size = i < v.scale.size() && std::isfinite(v.scale[i]) ? v.scale[i] : 0;
+      along.add(slope * v.state.qddot[i], cln::abs(slope) * cln::max(cln::abs(v.state.qddot[i]), Real(size)));
+    }
     along.add(v.constraints.psi_ddot[k] - along.value);
     largest = std::max(largest, along.relative());
   }

@@ -25,6 +25,7 @@ struct Solved {
   std::vector<std::vector<Real>> inverse;  // columns of [M A^T; A 0]^-1, where asked for
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
+  std::vector<Real> inertia;  // the diagonal of M
   double condition = 1;
 };
 
@@ -50,6 +51,7 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
   out.psi = take(m), out.A = take(m * n), out.b = take(m), out.gamma = take(m);
   std::vector<Real> matrix(size * size, Real(0));
   std::vector<Real> right = f;
+  for (std::size_t i = 0; i < n; ++i) out.inertia.push_back(M[i * n + i]);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < n; ++k) matrix[i * size + k] = M[i * n + k];
   for (std::size_t k = 0; k < m; ++k) {
@@ -118,7 +120,11 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
   }
   const std::vector<double> unknown = propagate(solved, row_scale);
   v.scale.assign(all + v.lambda.size(), 0.0);
-  for (std::size_t i = 0; i < n; ++i) v.scale[s.free[i]] = unknown[i];
+  // An acceleration that a constraint makes 0 is what remains where the terms of its own equation cancel.
+  for (std::size_t i = 0; i < n; ++i) {
+    const double inertia = std::fabs(cln::double_approx(solved.inertia[i]));
+    v.scale[s.free[i]] = unknown[i] + (inertia > 0 ? row_scale[i] / inertia : 0);
+  }
   for (std::size_t k = 0; k < m; ++k) v.scale[all + s.active[k]] = unknown[n + k];
   for (const mechanics::FixedCoordinate& fixed : mechanics.fixed) {
     const double slope = cln::double_approx(cln::abs(v.constraints.gradient[fixed.constraint][fixed.coordinate]));

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "models/rough.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+TEST_CASE("bouncing_ball: bounces follow at e^k of the first fall, accumulate, and end in sliding that friction stops") {
+  const Finished run = run_rough("bouncing_ball");
+  const double g = run.parameter("g"), e = run.parameter("e"), mu = run.parameter("mu_d"), first = std::sqrt(2 / g);
+  const std::vector<run::RunEvent> events = events_of(run);
+  REQUIRE(events.size() > 15);
+  double t = first, flight = 2 * e * first;
+  for (std::size_t i = 0; i + 2 < events.size(); ++i) {
+    CHECK(events[i].kind == "contact");
+    CHECK(std::abs(events[i].t - t) < by_hand);
+    t += flight;
+    flight *= e;
+  }
+  const double zeno = first * (1 + e) / (1 - e), stops = zeno + 3 / (mu * g);
+  CHECK(std::abs(events[events.size() - 2].t - zeno) < 1e-7);  // bounces are ended at 1e-7 of the first flight
+  CHECK(events.back().kind == "stick");
+  CHECK(std::abs(events.back().t - stops) < 1e-7);
+  CHECK(std::abs(run.final("x") - (3 * zeno + 9 / (2 * mu * g))) < 1e-7);
+  // Impacts take all of m g h, friction all of m 9/2.
+  CHECK(run.simulation.result.contact_work == doctest::Approx(-run.parameter("m") * g).epsilon(1e-11));
+  CHECK(run.final("energy") == doctest::Approx(0).scale(1));
+  CHECK(run.simulation.result.power_balance < 1e-9);
+  for (std::size_t i = 0; i < run.rows.size(); ++i) {
+    if (run.rows.t[i] < zeno - 1e-6) CHECK(std::abs(run.rows.at(i, "x") - 3 * run.rows.t[i]) < by_hand);  // impacts are frictionless
+    CHECK(run.rows.at(i, "y") > -1e-12);
+  }
+}
+
+TEST_CASE("bouncing_ball: a plastic impact stays, an elastic one keeps the energy") {
+  const Finished plastic = run_rough("bouncing_ball", "plastic");
+  const double g = plastic.parameter("g"), mu = plastic.parameter("mu_d"), fall = std::sqrt(2 / g);
+  REQUIRE(events_of(plastic).size() == 2);
+  CHECK(std::abs(events_of(plastic)[0].t - fall) < by_hand);
+  CHECK(std::abs(events_of(plastic)[1].t - fall - 3 / (mu * g)) < by_hand);
+  CHECK(plastic.simulation.result.power_balance < 1e-9);
+
+  const Finished elastic = run_rough("bouncing_ball", "elastic");
+  REQUIRE(events_of(elastic).size() == 6);
+  for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(events_of(elastic)[i].t - (2 * static_cast<double>(i) + 1) * fall) < by_hand);
+  CHECK(elastic.final("energy") == doctest::Approx(g + 4.5).epsilon(1e-11));
+}
