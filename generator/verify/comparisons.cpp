@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/comparisons.hpp"
 
-#include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
 
