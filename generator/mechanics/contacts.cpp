@@ -114,7 +114,7 @@ class ContactReader {
       for (const Vec3& y : normals) contact_.gram.push_back(tidy(lower_.dot(x, y)));
     }
     if (equations == 2) {
-      contact_.directions.push_back(unit(symbolic::cross(dag_, normals[0], normals[1])));
+      contact_.directions.push_back(unit(along_curve(a)));
       return;
     }
     std::size_t c = own_.size();
@@ -127,6 +127,17 @@ class ContactReader {
       contact_.directions.push_back(unit(lower_.subtract(a[i], lower_.scale(share, a[c]))));
     }
     if (own_.size() == 3) contact_.directions.push_back(tidy(symbolic::cross(dag_, unit(normals[0]), contact_.directions[0])));
+  }
+
+  /// sum c_i a_i with c = psi_1,i x psi_2,i: along this no psi changes; shorter than the product of the gradients.
+  Vec3 along_curve(const std::vector<Vec3>& a) {
+    Vec3 sum{dag_.zero(), dag_.zero(), dag_.zero()};
+    for (std::size_t i = 0; i < 3; ++i) {
+      const std::uint32_t j = own_[(i + 1) % 3], k = own_[(i + 2) % 3];
+      const Ref c = tidy(dag_.sub(dag_.mul(slope(0)[j], slope(1)[k]), dag_.mul(slope(0)[k], slope(1)[j])));
+      for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] = dag_.add(sum[axis], dag_.mul(c, a[i][axis]));
+    }
+    return tidy(sum);
   }
 
   /// grad psi_k = sum psi_i a^ij a_j over the coordinates of the particle, (1.22).
