@@ -38,7 +38,7 @@ std::vector<system::Approach> approaches(const mechanics::Mechanics& m, Approach
 
 // Nothing to integrate and no right-hand side to emit; what such a model can tell is its constraint forces.
 void require_freedom(const mechanics::Mechanics& m) {
-  if (m.free.size() > m.active.size()) return;
+  if (m.freedom() > 0) return;
   const model::Constraint& last = m.model->constraints.back();
   throw Error("derive", m.model->where(last.span),
               m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"

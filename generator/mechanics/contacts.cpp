@@ -259,6 +259,7 @@ namespace {
 // More directions that can stick than there are to move in: what friction holds is not determined by the motion.
 void check_determinate(const Mechanics& m) {
   if (m.free.size() < m.active.size()) return;  // told elsewhere
+  // Everything touches: what can be left may hold too.
   const std::size_t freedom = m.free.size() - m.active.size();
   std::size_t directions = 0;
   for (const Contact& contact : m.contacts) {
@@ -267,7 +268,7 @@ void check_determinate(const Mechanics& m) {
     if (directions <= freedom) continue;
     throw Error("mechanics", m.model->where(law_of(m, contact).span),
                 "with '" + contact.name + "' friction can hold " + std::to_string(directions) + " directions, and the system has " +
-                    std::to_string(freedom) + (freedom == 1 ? " degree" : " degrees") + " of freedom: where all stick, the forces are not determined",
+                    std::to_string(freedom) + (freedom == 1 ? " degree" : " degrees") + " of freedom" + (m.freedom() > static_cast<long>(freedom) ? " while everything touches" : "") + ": where all stick, the forces are not determined",
                 "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
   }
 }

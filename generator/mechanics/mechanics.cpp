@@ -89,6 +89,11 @@ bool Mechanics::is_eliminated(std::uint32_t coordinate) const {
   return std::any_of(fixed.begin(), fixed.end(), [=](const FixedCoordinate& f) { return f.coordinate == coordinate; });
 }
 
+long Mechanics::freedom() const {
+  const auto holds = [this](std::uint32_t k) { return !constraints[k].unilateral; };
+  return static_cast<long>(free.size()) - static_cast<long>(std::count_if(active.begin(), active.end(), holds));
+}
+
 Ref Mechanics::velocity_form(const Constraint& constraint) const {
   Ref sum = constraint.rate;
   for (std::size_t i = 0; i < qdot.size(); ++i) sum = dag->add(sum, dag->mul(constraint.gradient[i], qdot[i]));

@@ -140,6 +140,8 @@ struct Mechanics {
   std::vector<std::array<Ref, 3>> angular_velocity;  // per Model::frames entry, along its own axes
 
   bool is_eliminated(std::uint32_t coordinate) const;
+  /// Degrees of freedom: coordinates that stay less constraints that always hold.
+  long freedom() const;
   /// f . qdot + b of a constraint.
   Ref velocity_form(const Constraint& constraint) const;
 };

@@ -39,7 +39,7 @@ double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] 
 }  // namespace
 
 TEST_CASE("friction: the equations take up forces of any size, and the program obeys the law in every mode") {
-  for (const std::string* text : {&test::belt, &test::dry, &test::rough_line, &test::sphere, &test::helix, &test::dumbbell, &test::floor, &test::dome, &test::creeping,
+  for (const std::string* text : {&test::belt, &test::dry, &test::rough_line, &test::sphere, &test::helix, &test::dumbbell, &test::floor, &test::drop, &test::dome, &test::creeping,
                                   &test::hinge, &test::wires}) {
     check_routes(*text);
   }

@@ -169,6 +169,26 @@ restitution = "e"
 friction = { static = 0.4, dynamic = 0.3 }
 )toml";
 
+// A ball that falls on a floor: one coordinate, and nothing left to move while it touches.
+inline const std::string drop = R"toml(format = 1
+[parameters]
+m = "1 kg"
+g = "9.81 m/s^2"
+[coordinates]
+y = "m"
+[[particle]]
+name = "P"
+mass = "m"
+position = "y*E2"
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "floor"
+holonomic = "y"
+holds = "unilateral"
+restitution = 0.5
+)toml";
+
 // A particle on a rough sphere that it can leave, in space.
 inline const std::string dome = R"toml(format = 1
 title = "Particle on a rough sphere, with a spring"

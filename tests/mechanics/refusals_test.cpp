@@ -100,3 +100,13 @@ TEST_CASE("mechanics refuses: restitution beyond 1, a width that is not positive
   const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nfriction = { dynamic = 0.1, law = \"smooth\", width = 0 }\n");
   CHECK(r.message == "the width of the friction of 'a' is not positive");
 }
+
+TEST_CASE("mechanics: a constraint that can be left takes no degree of freedom; friction counts what moves while it touches") {
+  const std::string stop = "[[constraint]]\nname = \"stop\"\nholonomic = \"x\"\nholds = \"unilateral\"\n";
+  const std::string plane = "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n";
+  const model::Model model = model::read_model_text(planar + stop + plane, "stop.toml");
+  CHECK(mechanics::build_mechanics(model).freedom() == 1);
+  const Refusal r = refusal(planar + stop + plane + "friction = { static = 0.3, dynamic = 0.2 }\n");
+  CHECK(r.message == "with 'plane' friction can hold 1 directions, and the system has 0 degrees of freedom while everything touches: "
+                     "where all stick, the forces are not determined");
+}

@@ -108,7 +108,7 @@ json examine(const model::Model& model) {
     warnings.push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
   }
   return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
-          {"dof", static_cast<long>(m.free.size()) - static_cast<long>(m.active.size())}, {"parameters", parameters},
+          {"dof", m.freedom()}, {"parameters", parameters},
           {"constraints", constraints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
           {"singular", singular_of(m)},
           {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
