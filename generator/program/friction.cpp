@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "program/elimination.hpp"
 #include "program/normal_forces.hpp"
 
 namespace eomgen::program {
@@ -206,9 +207,8 @@ class Closure {
     const Ref discriminant = dag_.add(dag_.mul(b, b), dag_.mul(a, square));
     curve_normal_[j] = dag_.div(dag_.sub(root(discriminant), b), a);
     margin_[j] = by_mode(j, dag_.one(), a);
-    // a <= 0: two roots where b < 0 and the discriminant allows, none otherwise.
-    const Ref two = dag_.call(symbolic::Op::min, dag_.neg(b), discriminant);
-    add_codes(j, two);
+    // a < 0: the roots have one sign, that of b; both are solutions where it is positive and the discriminant allows, none otherwise.
+    add_codes(margin_[j], dag_.call(symbolic::Op::min, b, discriminant));
   }
 
   // phi = -mu w p sqrt(g) (x0 + L phi) has just one solution with p x >= 0 for one p where |factor L| < 1.
@@ -222,37 +222,20 @@ class Closure {
     if (dag_.is_zero(feedback)) return;
     margin_[j] = by_touch(j, dag_.one(), by_mode(j, dag_.one(), dag_.sub(dag_.one(), absolute(feedback))));
     const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
-    add_codes(j, dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
+    add_codes(margin_[j], dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
   }
 
   /// Where the margin is negative: several solutions if `several` is positive, none otherwise.
-  void add_codes(std::uint32_t j, Ref several) {
+  void add_codes(Ref margin, Ref several) {
     const Ref minus = dag_.integer(-1), one = dag_.one(), zero = dag_.zero();
-    result_.none.push_back(dag_.select(margin_[j], zero, dag_.select(several, zero, minus, one), one));
-    result_.many.push_back(dag_.select(margin_[j], zero, dag_.select(several, zero, one, minus), one));
+    result_.none.push_back(dag_.select(margin, zero, dag_.select(several, zero, minus, one), one));
+    result_.many.push_back(dag_.select(margin, zero, dag_.select(several, zero, one, minus), one));
   }
 
-  // Gauss, unrolled; zeros cost nothing, and contacts that do not feel one another stay apart.
   void solve_rows() {
-    const std::size_t n = count_;
     std::vector<std::vector<Ref>> sides{right_};
     sides.insert(sides.end(), by_normal_.begin(), by_normal_.end());
-    for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t i = k + 1; i < n; ++i) {
-        if (dag_.is_zero(matrix_[i * n + k])) continue;
-        const Ref l = dag_.div(matrix_[i * n + k], matrix_[k * n + k]);
-        for (std::size_t b = k + 1; b < n; ++b) {
-          matrix_[i * n + b] = dag_.sub(matrix_[i * n + b], dag_.mul(l, matrix_[k * n + b]));
-        }
-        for (std::vector<Ref>& side : sides) side[i] = dag_.sub(side[i], dag_.mul(l, side[k]));
-      }
-    }
-    for (std::vector<Ref>& side : sides) {
-      for (std::size_t k = n; k-- > 0;) {
-        for (std::size_t b = k + 1; b < n; ++b) side[k] = dag_.sub(side[k], dag_.mul(matrix_[k * n + b], side[b]));
-        side[k] = dag_.div(side[k], matrix_[k * n + k]);
-      }
-    }
+    if (count_ > 0) eliminate(dag_, matrix_, sides);
     result_.phi = sides[0];
     if (!coupled_.empty()) add_coupled(sides);
   }
@@ -279,8 +262,8 @@ class Closure {
         result_.phi[b] = dag_.add(result_.phi[b], dag_.mul(sides[1 + d][b], normal.nu[d]));
       }
     }
-    result_.none.push_back(normal.settled);
-    result_.many.push_back(dag_.one());
+    add_codes(normal.settled, normal.several);
+    if (coupled_.size() == 1) margin_[coupled_[0]] = normal.settled;
   }
 
   /// |N| of contact j; the multiplier of one surface into `press`.

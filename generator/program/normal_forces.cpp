@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/normal_forces.hpp"
 
-#include "symbolic/factorisation.hpp"
+#include "program/elimination.hpp"
 
 namespace eomgen::program {
 
@@ -38,6 +38,7 @@ class Iteration {
     result.settled = dag_.sub(dag_.mul(dag_.constant(enough), size), last);
     // At rest without any normal force nothing is left to settle.
     result.settled = dag_.select(dag_.zero(), size, result.settled, dag_.one());
+    result.several = dag_.integer(-1);  // how many there are is not known then
     return result;
   }
 
@@ -46,7 +47,8 @@ class Iteration {
     const CurveForce& c = curves_[0];
     const Ref A = form(c, c.a, c.a), half = form(c, c.a, c.b[0]), margin = dag_.sub(dag_.one(), form(c, c.b[0], c.b[0]));
     const Ref discriminant = dag_.add(dag_.mul(half, half), dag_.mul(margin, A));
-    return {{dag_.div(dag_.add(half, root(discriminant)), margin)}, margin};
+    // Beyond that the roots have one sign: both are solutions where their sum 2 half/margin is positive.
+    return {{dag_.div(dag_.add(half, root(discriminant)), margin)}, margin, dag_.call(Op::min, dag_.neg(half), discriminant)};
   }
 
  private:
@@ -73,24 +75,9 @@ class Iteration {
         matrix[c * n + d] = dag_.sub(c == d ? dag_.one() : dag_.zero(), slope);
       }
     }
-    return solve(std::move(matrix), std::move(right));
-  }
-
-  std::vector<Ref> solve(std::vector<Ref> m, std::vector<Ref> r) const {
-    const std::size_t n = r.size();
-    for (std::size_t k = 0; k < n; ++k) {
-      for (std::size_t i = k + 1; i < n; ++i) {
-        if (dag_.is_zero(m[i * n + k])) continue;
-        const Ref l = dag_.div(m[i * n + k], m[k * n + k]);
-        for (std::size_t j = k + 1; j < n; ++j) m[i * n + j] = dag_.sub(m[i * n + j], dag_.mul(l, m[k * n + j]));
-        r[i] = dag_.sub(r[i], dag_.mul(l, r[k]));
-      }
-    }
-    for (std::size_t k = n; k-- > 0;) {
-      for (std::size_t j = k + 1; j < n; ++j) r[k] = dag_.sub(r[k], dag_.mul(m[k * n + j], r[j]));
-      r[k] = dag_.div(r[k], m[k * n + k]);
-    }
-    return r;
+    std::vector<std::vector<Ref>> sides{std::move(right)};
+    eliminate(dag_, std::move(matrix), sides);
+    return std::move(sides[0]);
   }
 
   Dag& dag_;

@@ -18,11 +18,13 @@ struct CurveForce {
 
 struct NormalForces {
   std::vector<symbolic::Ref> nu;
-  symbolic::Ref settled;  // negative where there is no solution, or the iteration has not come to rest
+  symbolic::Ref settled;  // negative where the law has no solution, or several, or the iteration has not come to rest
+  symbolic::Ref several;  // positive where there are several then
 };
 
-/// One curve in closed form; several by Newton's iteration, unrolled, from the normal forces without friction: its steps are halved where they would make a normal
-/// force negative. Where friction changes no normal force by more than itself there is just one solution, and it converges.
+/// One curve in closed form; several by Newton's iteration, unrolled, from the normal forces without friction: its steps are halved
+/// where they would make a normal force negative. Where friction changes no normal force by more than itself there is just one
+/// solution, and it converges.
 NormalForces coupled_normal_forces(symbolic::Dag& dag, const std::vector<CurveForce>& curves);
 
 }  // namespace eomgen::program

@@ -78,6 +78,10 @@ TEST_CASE("friction: on the helix the force is mu |N| against the motion, with N
 TEST_CASE("friction: the dumbbell on a rough floor has its Painleve situations beyond mu = 2 sqrt 2") {
   const double theta = std::atan(std::sqrt(2.0)), g = 9.81;
   for (const double mu : {2.8, 3.0}) {
+    std::string curve = test::dumbbell;  // the same floor with a wall behind it, as one contact of two equations
+    curve.replace(curve.find("[\"x\", \"y\"]"), 10, "[\"x\", \"y\", \"z\"]");
+    curve.replace(curve.find("holonomic = \"y\""), 15, "holonomic = [\"y\", \"z\"]");
+    const test::RoughProgram rail(curve, {1, 1, mu, g});
     const test::RoughProgram rough(test::dumbbell, {1, 1, mu, g});
     for (const double speed : {0.5, -0.5}) {
       for (const double spin : {0.0, 6.0}) {
@@ -96,6 +100,11 @@ TEST_CASE("friction: the dumbbell on a rough floor has its Painleve situations b
           CHECK(code == (mu < 2 * std::sqrt(2.0) ? 0 : solutions == 0 ? 3 : 4));
           if (mu < 2 * std::sqrt(2.0)) CHECK(solutions == 1);
         }
+        double dx[4];
+        // The slip of the curve along its own tangent, which may be turned.
+        double values[5];
+        rail.contacts(0, x, 0, values);
+        CHECK(rail.rhs(0, x, values[0] > 0 ? 1 : 2, dx) == (mu < 2 * std::sqrt(2.0) ? 0 : solutions == 0 ? 3 : 4));
       }
     }
   }
