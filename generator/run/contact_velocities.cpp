@@ -6,7 +6,19 @@
 namespace eomgen::run {
 
 ContactVelocities::ContactVelocities(const RunRequest& request, ConstraintRows& rows)
-    : request_(request), rows_(rows), projection_(request.code.free.size(), rows.size(), 0), y_(request.code.output_names.size()) {}
+    : request_(request), rows_(rows), projection_(request.code.free.size(), rows.size(), 0), y_(request.code.output_names.size()) {
+  const auto all = [&](const std::vector<std::string>& names) {
+    std::vector<std::size_t> result;
+    for (const std::string& name : names) result.push_back(index_of(request.code.output_names, name));
+    return result;
+  };
+  for (const ContactOutputs& outputs : request.contacts) {
+    Places places{all(outputs.slip), all(outputs.phi), {}, {}};
+    for (const std::vector<std::string>& slopes : outputs.slopes) places.slopes.push_back(all(slopes));
+    if (!outputs.restitution.empty()) places.restitution = index_of(request.code.output_names, outputs.restitution);
+    places_.push_back(std::move(places));
+  }
+}
 
 double ContactVelocities::still() const {
   constexpr double rounding = 1e-15, share = 1e-3;
@@ -15,10 +27,9 @@ double ContactVelocities::still() const {
 }
 
 double ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact) {
-  const ContactOutputs& outputs = request_.contacts[contact];
-  if (outputs.restitution.empty()) return 0;
+  if (!places_[contact].restitution) return 0;
   request_.code.outputs(t, x, request_.scene.parameters.data(), u, 0, y_.data());
-  return y_[index_of(request_.code.output_names, outputs.restitution)];
+  return y_[*places_[contact].restitution];
 }
 
 void ContactVelocities::forget() {
@@ -33,14 +44,14 @@ void ContactVelocities::hold(double t, const double* x, const double* u, int mod
   const std::size_t n = request_.code.free.size();
   if (request_.code.outputs(t, x, scene.parameters.data(), u, mode, y_.data()) != 0) return;
   for (std::size_t j = 0; j < held_.size(); ++j) {
-    if (request_.contacts[j].slip.size() != 2) continue;
+    if (places_[j].slip.size() != 2) continue;
     double known = 0, squares = 0;
     for (std::size_t a = 0; a < 2; ++a) {
-      const double w = y_[index_of(request_.code.output_names, request_.contacts[j].slip[a])];
+      const double w = y_[places_[j].slip[a]];
       squares += w * w;
       double sum = 0;
       for (std::size_t i = 0; i < n; ++i) {
-        const double slope = y_[index_of(request_.code.output_names, request_.contacts[j].slopes[a][i])];
+        const double slope = y_[places_[j].slopes[a][i]];
         sum += std::abs(slope) * (scene.atol + scene.rtol * std::abs(x[n + i]));
       }
       known = std::max(known, sum);
@@ -54,7 +65,7 @@ void ContactVelocities::hold(double t, const double* x, const double* u, int mod
 std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, int mode, std::size_t contact) {
   std::array<double, 2> w{};
   if (request_.code.outputs(t, x, request_.scene.parameters.data(), u, mode, y_.data()) != 0) return w;
-  for (std::size_t a = 0; a < 2; ++a) w[a] = y_[index_of(request_.code.output_names, request_.contacts[contact].slip[a])];
+  for (std::size_t a = 0; a < 2; ++a) w[a] = y_[places_[contact].slip[a]];
   return w;
 }
 
@@ -105,11 +116,10 @@ int ContactVelocities::stick(double t, std::span<double> x, const double* u, int
 
 // Sliding starts against the friction that held. Where none held, along the tangents' sum: any direction is as good.
 int ContactVelocities::slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact) {
-  const ContactOutputs& outputs = request_.contacts[contact];
   if (const int code = request_.code.outputs(t, x.data(), request_.scene.parameters.data(), u, mode, y_.data()); code != 0) return code;
   std::vector<double> direction;
   double length = 0;
-  for (const std::string& phi : outputs.phi) direction.push_back(-y_[index_of(request_.code.output_names, phi)]);
+  for (const std::size_t phi : places_[contact].phi) direction.push_back(-y_[phi]);
   for (const double d : direction) length = std::hypot(length, d);
   if (!(length > 0)) direction.assign(direction.size(), length = 1);
   rows_.mode(mode);

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <eom/constraints/projection.hpp>
+#include <optional>
 
 #include "run/constraint_rows.hpp"
 
@@ -34,7 +35,14 @@ class ContactVelocities {
  private:
   int move(double t, std::span<double> x, const double* u);
 
+  struct Places {  // among the outputs
+    std::vector<std::size_t> slip, phi;
+    std::vector<std::vector<std::size_t>> slopes;
+    std::optional<std::size_t> restitution;
+  };
+
   const RunRequest& request_;
+  std::vector<Places> places_;  // per contact
   ConstraintRows& rows_;
   eom::Projection projection_;
   std::vector<double> y_;
