@@ -124,7 +124,8 @@ class Document {
   void energies(const ReadingForm& one, const ReadingForm& two) {
     std::vector<Statement> statements;
     add_energies(m_, one, statements);
-    if (!m_.fixed.empty()) add_energies(m_, two, statements);
+    const auto fixes = [](const reading::ReadConstraint& c) { return c.fixes.has_value(); };
+    if (std::any_of(two.constraints.begin(), two.constraints.end(), fixes)) add_energies(m_, two, statements);
     if (statements.empty()) return;
     heading("Energies");
     for (const Statement& s : statements) display(s.formula);
@@ -161,6 +162,7 @@ class Document {
   void reactions(const ReadingForm& form) {
     std::vector<Statement> statements;
     add_reactions(form, statements);
+    add_constraint_forces(m_, statements);
     if (statements.empty()) return;
     heading("Constraint forces");
     text_ += "The force of a constraint $\\psi = 0$ on the system is its multiplier times $\\partial\\psi/\\partial\\mathbf{r}$.\n";

@@ -22,6 +22,8 @@ using reading::SymbolKind;
 
 namespace {
 
+constexpr std::size_t longest_in_a_list = 3;  // terms of an acceleration that still fits on a line with its coordinate and rate
+
 Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
 Formula dotted(const Formula& f) {
   Formula result = reading::wrap(Form::dot, {f});
@@ -220,9 +222,14 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
     if (c.fixes) {
       const std::uint32_t q = c.fixes->coordinate;
       add("fixes a coordinate", reading::relation({psi, written, zero}));
-      add("fixes a coordinate", reading::wrap(Form::list, {reading::relation({coordinate(q, 0), arrange(c.value)}),
-                                                           reading::relation({coordinate(q, 1), arrange(c.value_rate)}),
-                                                           reading::relation({coordinate(q, 2), arrange(c.value_acceleration)})}));
+      std::vector<Formula> motion{reading::relation({coordinate(q, 0), arrange(c.value)}),
+                                  reading::relation({coordinate(q, 1), arrange(c.value_rate)}),
+                                  reading::relation({coordinate(q, 2), arrange(c.value_acceleration, Layout::terms)})};
+      if (c.value_acceleration.size() > longest_in_a_list) {
+        for (Formula& f : motion) add("fixes a coordinate", std::move(f));
+      } else {
+        add("fixes a coordinate", reading::wrap(Form::list, std::move(motion)));
+      }
     } else if (!c.holonomic) {
       const mechanics::Integrable found = m.classification[c.constraint].integrable;
       add(found == mechanics::Integrable::yes  ? "binds velocities, integrable"
@@ -302,7 +309,10 @@ std::vector<Statement> statements(const Mechanics& m, const ReadingForm& form, c
   if (wanted("energies")) add_energies(m, form, out);
   if (wanted("lagrangian")) add_lagrangian(m, form, out);
   if (wanted("equations")) add_equations(m, form, out);
-  if (wanted("reactions")) add_reactions(form, out);
+  if (wanted("reactions")) {
+    add_reactions(form, out);
+    add_constraint_forces(m, out);
+  }
   if (wanted("friction")) add_contacts(m, out);
   std::vector<std::string> of_geometry;
   for (const char* key : {"basis", "metric", "line_element", "christoffel"}) {

@@ -31,6 +31,8 @@ void add_constraints(const mechanics::Mechanics& mechanics, const reading::Readi
 void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
+/// Force and moment of the constraints on every body that has coordinates and angles of its own.
+void add_constraint_forces(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
 /// x e_1 + y e_2 + z e_3
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
 void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys, std::vector<Statement>& out);

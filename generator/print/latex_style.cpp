@@ -171,6 +171,7 @@ class LatexStyle final : public Style {
   static std::string letter(const std::string& word) {
     if (word.back() == '~') return "\\tilde{" + letter(word.substr(0, word.size() - 1)) + "}";
     if (word.starts_with("cal ")) return "\\mathcal{" + word.substr(4) + "}";
+    if (word.starts_with("bold ")) return "\\mathbf{" + word.substr(5) + "}";
     if (word.starts_with("det ")) return "\\det(" + word.substr(4) + "_{ik})";
     if (word == "...") return "\\ldots";
     if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "\\mathbf{" + word + "}";

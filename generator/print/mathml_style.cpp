@@ -133,6 +133,7 @@ class MathmlStyle final : public Style {
       return "<mover accent=\"true\">" + letter(word.substr(0, word.size() - 1)) + "<mo>~</mo></mover>";
     }
     if (word.starts_with("cal ")) return "<mi mathvariant=\"script\">" + word.substr(4) + "</mi>";
+    if (word.starts_with("bold ")) return "<mi mathvariant=\"bold\">" + word.substr(5) + "</mi>";
     if (word.starts_with("det ")) {
       return row("<mi>det</mi>" + op("(") + "<msub><mi>" + word.substr(4) + "</mi>" + row("<mi>i</mi><mi>k</mi>") + "</msub>" + op(")"));
     }

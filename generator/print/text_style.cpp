@@ -110,6 +110,7 @@ class TextStyle final : public Style {
  private:
   static std::string letter(const std::string& word) {
     if (word == "metric a") return "a";
+    if (word.starts_with("bold ")) return word.substr(5);
     if (word.starts_with("det ")) return "det(" + word.substr(4) + "_ik)";
     if (!word.starts_with("cal ")) return word;
     const std::string rest = word.substr(5);

@@ -110,6 +110,21 @@ std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic) {
   return parts;
 }
 
+namespace {
+
+/// e_i + sum_c e_c dq_c/dq_i over the eliminated coordinates q_c that depend on q_i, of components e along the coordinates.
+template <class Component>
+Sum along_free(const Mechanics& m, Bridge& bridge, std::uint32_t i, const std::map<Symbol, Sum>& values, Component&& component) {
+  Sum result = component(i);
+  for (const mechanics::FixedCoordinate& fixed : m.fixed) {
+    const Sum slope = bridge.derivative(values.at(coordinate_symbol(fixed.coordinate, 0)), coordinate_symbol(i, 0));
+    if (fixed.coordinate != i && !slope.is_zero()) result += component(fixed.coordinate) * slope;
+  }
+  return result;
+}
+
+}  // namespace
+
 Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagrangian, std::uint32_t i,
                            const std::map<Symbol, Sum>& values) {
   Equation result;
@@ -121,11 +136,14 @@ Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagran
   result.expanded = simplify(result.expanded);
   result.momentum = bridge.substitute(momentum, values);
   result.slope = bridge.substitute(slope, values);
-  result.force = bridge.substitute(generalized_force(m, bridge, i), values);
+  const auto force = [&](std::uint32_t k) { return generalized_force(m, bridge, k); };
+  result.force = simplify(bridge.substitute(along_free(m, bridge, i, values, force), values));
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const mechanics::Constraint& c = m.constraints[k];
-    const Sum gradient = c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(i, 0)) : simplify(bridge.sum(c.gradient[i]));
-    Sum imposed = bridge.substitute(gradient, values);
+    const auto gradient = [&](std::uint32_t j) {
+      return c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(j, 0)) : simplify(bridge.sum(c.gradient[j]));
+    };
+    Sum imposed = bridge.substitute(along_free(m, bridge, i, values, gradient), values);
     if (!imposed.is_zero()) result.multipliers.push_back({k, std::move(imposed)});
   }
   return result;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "mechanics/dependent.hpp"
 #include "reading/approaches.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/trig.hpp"
@@ -63,7 +64,8 @@ void leave_by_parts(const Mechanics& m, ReadingForm& form) {
 
 }  // namespace
 
-ReadingForm derive_reading(const Mechanics& m, system::Approach approach) {
+ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
+  const Mechanics m = approach == system::Approach::two ? mechanics::impose_dependent(given) : given;
   ReadingForm form;
   form.approach = approach;
   Bridge bridge(m);
@@ -90,6 +92,10 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
       residual = dag.sub(residual, dag.mul(lambda, to_dag(dag, term.slope)));
     }
     result.push_back(residual);
+  }
+  for (const ReadConstraint& c : form.constraints) {  // what approach II wrote in terms of other coordinates has moved as it says
+    if (!c.fixes || m.is_eliminated(c.fixes->coordinate)) continue;
+    result.push_back(dag.sub(m.qddot[c.fixes->coordinate], to_dag(dag, c.value_acceleration)));
   }
   return result;
 }

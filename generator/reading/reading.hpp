@@ -24,7 +24,7 @@ struct ReadConstraint {
   std::string label;
   bool holonomic = true;
   Sum psi, rate, acceleration;
-  std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t)
+  std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t); by approach II also of other coordinates
   Sum value, value_rate, value_acceleration;        // of that coordinate
 };
 

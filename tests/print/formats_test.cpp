@@ -141,11 +141,11 @@ kinetic = "m*(T_dot^2 + L^2*psi_dot^2)/2"
 potential = "lambda*T"
 [[constraint]]
 name = "c"
-holonomic = "T - L*psi^2"
+holonomic = "T^2 - L*psi^2"
 )", "letters");
   const Printed printed(model, system::Approach::two);
   CHECK(printed.of("lagrangian")[0].latex.starts_with("\\tilde{\\mathcal{L}} = "));
   CHECK(printed.of("energies")[0].text.starts_with("kinetic~ = "));
   CHECK(printed.of("constraints")[0].latex.starts_with("\\Psi = "));
-  CHECK(printed.of("equations")[0].text.find("= mu") != std::string::npos);
+  CHECK(printed.of("equations")[0].text.find("= 2 mu T") != std::string::npos);
 }

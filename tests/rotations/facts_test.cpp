@@ -19,7 +19,7 @@ void same_axes(Turning& model) {
 
 }  // namespace
 
-// Ex 5.9: about E1 by a quarter, then about E3 by a quarter, is about (1, 1, 1) by a third of a turn. In the axes that the body
+// Ex 5.8: about E1 by a quarter, then about E3 by a quarter, is about (1, 1, 1) by a third of a turn. In the axes that the body
 // carries the same two steps come in the other order.
 TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not the other way round") {
   Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") + body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
@@ -104,4 +104,102 @@ TEST_CASE("axes on the way of Euler angles: e' after the first, e'' after the se
   CHECK(distance(model.vector("a3"), {0, 0, 1}) < exact);
   CHECK(size(dot(model.vector("a1"), model.vector("a2"))) < exact);
   CHECK(distance(model.vector("w"), {0, 0, 0}) < exact);  // (5.59)
+}
+
+// Ex 5.2: R = Q2 Q1^T of a body that turns about e1 of the one before it; w_R = w_2 - w_1, eq. (5.95), (5.96).
+TEST_CASE("the relative angular velocity of two bodies, along the axes between them and not its rate alone") {
+  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") + body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
+                "[definitions]\nr = \"n2_dot*A.e1\"\nw = \"omega(B) - omega(A)\"\n" + three("A", "a") + three("B", "b"));
+  model.at[{"n1", 0}] = ratio(2, 3);
+  model.at[{"n2", 0}] = ratio(-5, 4);
+  model.at[{"n1", 1}] = ratio(3, 2);
+  model.at[{"n2", 1}] = ratio(4, 3);
+  CHECK(distance(model.vector("w"), model.vector("r")) < exact);
+  // w_R is the axial vector of Rdot R^T with R = Q2 Q1^T, which turns while its axis e1 does.
+  const Real phi = model.at[{"n2", 0}], dphi = model.at[{"n2", 1}], dtheta = model.at[{"n1", 1}];
+  const auto R = [&](const Numbers& v) {  // sum b_k (a_k . v)
+    Numbers sum{0, 0, 0};
+    for (const char* k : {"1", "2", "3"}) {
+      const Numbers a = model.vector(std::string("a") + k), b = model.vector(std::string("b") + k);
+      for (std::size_t c = 0; c < 3; ++c) sum[c] = sum[c] + b[c] * dot(a, v);
+    }
+    return sum;
+  };
+  const Real one = cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits))), h = cln::expt(ratio(1, 10), 20);
+  Numbers axial{0, 0, 0};
+  const Real n1 = model.at[{"n1", 0}];
+  for (std::size_t k = 0; k < 3; ++k) {
+    Numbers unit{0, 0, 0};
+    unit[k] = 1;
+    const Numbers here = R(unit);
+    const auto at = [&](const Real& step) {
+      model.at[{"n1", 0}] = n1 + step * dtheta;
+      model.at[{"n2", 0}] = phi + step * dphi;
+      return R(unit);
+    };
+    const Numbers after = at(h), before = at(-h);
+    at(0);
+    Numbers rate;
+    for (std::size_t c = 0; c < 3; ++c) rate[c] = (after[c] - before[c]) / (2 * h);
+    const Numbers part = cross(here, rate);
+    for (std::size_t c = 0; c < 3; ++c) axial[c] = axial[c] + part[c] / 2;
+  }
+  // (5.95): phi_dot e1 + sin(phi) theta_dot e2 + (1 - cos(phi)) theta_dot e3, on the axes of the first body.
+  const Numbers e1 = model.vector("a1"), e2 = model.vector("a2"), e3 = model.vector("a3");
+  const Real s = cln::sin(phi * one), c = cln::cos(phi * one);
+  Numbers expected;
+  for (std::size_t k = 0; k < 3; ++k) expected[k] = dphi * e1[k] + s * dtheta * e2[k] + (1 - c) * dtheta * e3[k];
+  CHECK(distance(axial, expected) < difference);
+}
+
+// Ex 5.3 (g): a quarter about E3, then a quarter about E2: E1 -> E2 -> E2, E2 -> -E1 -> E3, E3 -> E3 -> E1.
+TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
+  Turning model(body("F", "{ axis = \"E2\", angle = \"n2\" }") + body("E", "{ axis = \"F.e3\", angle = \"n1\" }", "relative_to = \"F\"\n") +
+                "[definitions]\n" + three("E", "a"));
+  model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
+  CHECK(distance(model.vector("a1"), {0, 1, 0}) < exact);
+  CHECK(distance(model.vector("a2"), {0, 0, 1}) < exact);
+  CHECK(distance(model.vector("a3"), {1, 0, 0}) < exact);
+}
+
+// Ex 5.5: north, east, down at longitude l and latitude b: about E3 by l, then about the new e2 by -(pi/2 + b).
+TEST_CASE("north, east and down are two rotations from the fixed axes") {
+  Turning model(body("A", "{ axis = \"E3\", angle = \"l\" }") + body("B", "{ axis = \"A.e2\", angle = \"-pi/2 - b\" }", "relative_to = \"A\"\n") +
+                "[coordinates]\nb = \"rad\"\n[definitions]\n" + three("B", "a") +
+                "b1 = \"-cos(l)*sin(b)*E1 - sin(l)*sin(b)*E2 + cos(b)*E3\"\nb2 = \"-sin(l)*E1 + cos(l)*E2\"\nb3 = \"-cos(l)*cos(b)*E1 - sin(l)*cos(b)*E2 - sin(b)*E3\"\n");
+  model.at[{"l", 0}] = ratio(9, 4);
+  model.at[{"b", 0}] = ratio(4, 5);
+  same_axes(model);
+}
+
+// Ex 5.6: (5.122), the angular velocity of a rotation about an axis that turns, as the Rodrigues formula has it (5.46).
+TEST_CASE("about an axis that turns: the corotational part and what the turning axis adds") {
+  Turning model(body("A", "{ axis = \"E3\", angle = \"p\" }") + body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
+                "[definitions]\nw = \"omega(C)\"\na = \"n_dot*A.e1 - p_dot*(cos(n)*E3 - sin(n)*A.e2) + p_dot*E3\"\n"
+                "b = \"p_dot*(cos(n)*E3 - sin(n)*A.e2)\"\n");
+  model.at[{"p", 0}] = ratio(2, 3);
+  model.at[{"n", 0}] = ratio(7, 4);
+  model.at[{"p", 1}] = ratio(-3, 5);
+  model.at[{"n", 1}] = ratio(5, 7);
+  const Numbers w = model.vector("w"), turning = model.vector("a"), carried = model.vector("b");
+  // w_C = w_B + B w_A, in which B turns w_A = p_dot E3 about e1: b is p_dot (cos E3 - sin e2).
+  for (std::size_t k = 0; k < 3; ++k) CHECK(size(w[k] - (turning[k] + carried[k])) < exact);
+}
+
+// Ex 5.7: (5.124), (5.125): polar axes.
+TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
+  Turning model(body("B", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") +
+                "b1 = \"cos(n)*E1 + sin(n)*E2\"\nb2 = \"-sin(n)*E1 + cos(n)*E2\"\nb3 = \"E3\"\nw = \"B.omega - n_dot*E3\"\n");
+  model.at[{"n", 0}] = ratio(11, 4);
+  model.at[{"n", 1}] = ratio(3, 4);
+  same_axes(model);
+  CHECK(distance(model.vector("w"), {0, 0, 0}) < exact);
+}
+
+// Ex 5.9, printed last: half a turn about E1, then half a turn about E2, is half a turn about E3.
+TEST_CASE("two half turns about axes at right angles are one about the third") {
+  Turning model(body("A", "{ axis = \"E2\", angle = \"n\" }") + body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
+                body("C", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") + three("C", "b"));
+  model.at[{"n", 0}] = 2 * half_pi();
+  same_axes(model);
 }

@@ -11,6 +11,7 @@
 #include "cli/usage.hpp"
 #include "derive/lagrange.hpp"
 #include "model/names.hpp"
+#include "mechanics/dependent.hpp"
 #include "print/render.hpp"
 
 namespace eomgen::cli {
@@ -86,7 +87,7 @@ void print_readable(const std::vector<print::Item>& items, const std::string& ap
 /// The same quantity from the reading form, where functions of time keep their names; nothing if it has no such form.
 std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, const reading::ReadingForm& form, const std::string& name) {
   if (form.by_parts) return std::nullopt;
-  if (name == "energy" && m.fixed.empty()) return form.kinetic + form.potential;
+  if (name == "energy" && mechanics::impose_dependent(m).fixed.empty()) return form.kinetic + form.potential;
   for (const reading::Equation& equation : form.equations) {
     if (name == "momentum." + m.model->coordinates[equation.coordinate].name) return equation.momentum;
   }
@@ -126,7 +127,7 @@ int execute(const Options& options, const Common& common) {
   model::Model model = load_model(options.model);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   // Approach I shows the constraint forces too, so it is what `auto` means wherever something is eliminated.
-  const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !(mechanics.fixed.empty() && mechanics.contacts.empty()));
+  const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
   std::vector<print::Item> items = print::render(mechanics, form, options.show);
