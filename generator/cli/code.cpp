@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "program/kinks.hpp"
+#include "program/taylor.hpp"
 
 namespace eomgen::cli {
 
@@ -17,6 +18,7 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
       prepared_(program.prepared_count()),
       active_(program.active_constraints),
       holonomic_(program.holonomic) {
+  if (program.taylor) taylor_order_ = static_cast<int>(program::taylor_order(*program.taylor));
   for (const program::ContactInfo& contact : program.contacts) contacts_.push_back({contact, contact.name, 0});
 }
 
@@ -42,6 +44,8 @@ verify::CompiledForm CompiledCode::form() const {
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
   run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.jac, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
+  code.taylor = model.taylor;
+  code.taylor_order = taylor_order_;
   code.kinks = kinks_;
   code.contacts = contacts_;
   code.first_kink_bit = program::first_kink_bit;

@@ -22,6 +22,7 @@ class CompiledCode {
   std::vector<std::uint32_t> free_;
   std::size_t integrals_;
   std::size_t prepared_ = 0;
+  int taylor_order_ = 0;
   std::size_t active_;
   std::vector<bool> holonomic_;
   std::vector<eom::Contact> contacts_;

@@ -119,6 +119,7 @@ Simulation simulate(const SimulationRequest& request) {
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
   if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
   if (run::method_named(solver).implicit) wanted.with.push_back("jac");
+  if (run::method_named(solver).series) wanted.with.push_back("taylor");
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);

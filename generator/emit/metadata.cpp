@@ -9,6 +9,7 @@
 #include "emit/text.hpp"
 #include "error.hpp"
 #include "program/kinks.hpp"
+#include "program/taylor.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -97,6 +98,10 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
   for (const std::string& set : context.singular) lines.push_back("singular    " + set);
   for (const program::Function& function : program.functions) {
     lines.push_back(fmt::format("{:11} {}", function.name == "rhs_prepared" ? "rhs after" : function.name, operations_text(function.operations)));
+  }
+  if (program.taylor) {
+    lines.push_back(fmt::format("taylor      {} once, {} at each order, and {} sums of products", operations_text(program.taylor->start.operations),
+                                operations_text(program.taylor->next.operations), program.taylor->products));
   }
   const std::vector<std::string> gone = eliminated(program, context);
   if (!gone.empty()) lines.push_back("eliminated  " + joined(gone));
@@ -201,6 +206,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["active_constraints"] = program.active_constraints;
   for (const bool holonomic : program.holonomic) info["constraint_kinds"].push_back(holonomic ? "holonomic" : "velocity");
   info["prepared"] = program.prepared_count();
+  if (program.taylor) info["taylor_order"] = program::taylor_order(*program.taylor);
   add_modes(program, info);
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};
@@ -293,6 +299,9 @@ std::string purpose(const std::string& function) {
   if (function == "mass") return "M qddot + h = A^T lambda: M by columns, h.";
   if (function == "constraints") return "psi = 0, A qdot + b = 0 of the constraints with multipliers: A by columns.";
   if (function == "reactions") return "The multipliers of all constraints, in the order of the model.";
+  if (function == "taylor") {
+    return "coefficients[i + N k], k = 0..order: the k-th derivative of x_i over k!, N entries of x; u stands still. 6: order is beyond NAME_taylor_order.";
+  }
   if (function == "events") return "Event functions: each event is where its entry changes its sign; then kinks, then contacts.";
   if (function == "outputs") return "The outputs asked for.";
   return function;

@@ -12,6 +12,11 @@ using program::Slot;
 std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names) {
   using Kind = Argument::Kind;
   std::vector<Argument> list;
+  if (function == "taylor_next") {
+    list = {{Kind::number, Slot::time, names.arguments_t}, {Kind::input, Slot::state, names.x}, {Kind::input, Slot::prepared, names.w}};
+    for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
+    return list;
+  }
   const bool of_state = function != "prepare";
   if (of_state) list.push_back({Kind::number, Slot::time, names.arguments_t});
   if (of_state) list.push_back({Kind::input, Slot::state, names.x});

@@ -10,6 +10,7 @@
 #include "error.hpp"
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
+#include "program/taylor.hpp"
 #include "system/expressions.hpp"
 
 namespace eomgen::program {
@@ -147,10 +148,10 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
   if (name == "constraints") return functions.constraints();
   if (name == "reactions") return functions.reactions();
   if (name == "events") return functions.events();
-  const bool later = name == "taylor" || name == "rhs_batch";
+  const bool later = name == "rhs_batch";
   throw Error("program", {},
               later ? fmt::format("function `{}` is not supported yet", name) : fmt::format("there is no function `{}`", name),
-              "functions that can be asked for: jac, jac_p, mass, constraints, reactions, outputs, events");
+              "functions that can be asked for: jac, jac_p, mass, constraints, reactions, outputs, events, taylor");
 }
 
 }  // namespace
@@ -184,6 +185,10 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   };
   for (const std::string& name : request.with) {
     if (name == "outputs" || name == "rhs") continue;  // by the names asked for; always
+    if (name == "taylor") {
+      program.taylor = taylor_series(program.functions.front());
+      continue;
+    }
     add(wanted_function(*chosen.functions, name, request));
     if (name == "events") {
       for (const system::Event& event : system.events) program.events.push_back(event.name);

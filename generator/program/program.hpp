@@ -61,6 +61,15 @@ struct Function {
   Operations operations;
 };
 
+/// The recurrences of the Taylor series of `rhs` (taylor.hpp).
+/// The array w of `next`: `zeros` values of order 0, then the sums S, then 1 where k is 1 and else 0, then 1/k.
+struct Taylor {
+  Function start;  // "taylor_start": results z (into w), dx
+  Function next;   // "taylor_next": time is k, the state x is x_k; results a, b (k-th factors of each sum), dx (its k-th coefficient)
+  std::size_t zeros = 0, products = 0;
+  std::size_t prepared() const { return zeros + products + 2; }
+};
+
 struct Tried {
   std::string route;
   system::Approach approach = system::Approach::two;
@@ -102,6 +111,7 @@ struct Program {
   std::vector<std::string> kinks;      // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
+  std::optional<Taylor> taylor;        // where it was asked for
   std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only
 };
 

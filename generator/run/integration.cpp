@@ -94,6 +94,25 @@ int Integration::jacobian(double t, const double* x, double* dfdx, double* dfdt)
   return code == 0 && !request_.scene.inputs.empty() ? eom::no_time_derivative_here : code;
 }
 
+/// Of the states without the work, which is integrated along them.
+int Integration::taylor(double t, const double* x, int order, double* coefficients) {
+  const double* p = request_.scene.parameters.data();
+  const double* u = inputs(t);
+  const int live = mode_ & eom::contact_bits;
+  const int code = code_.taylor(t, x, p, u, mode_, order, coefficients);
+  return code != 0 && mode_ != live ? code_.taylor(t, x, p, u, live, order, coefficients) : code;
+}
+
+/// The right-hand side with its derivatives as methods take them.
+struct MotionOf {
+  Integration& of;
+  int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
+  int jacobian(double t, const double* x, double* dfdx, double* dfdt) const { return of.jacobian(t, x, dfdx, dfdt); }
+  int taylor(double t, const double* x, int order, double* coefficients) const { return of.taylor(t, x, order, coefficients); }
+  int taylor_order() const { return of.code_.taylor_order; }
+  std::size_t taylor_states() const { return 2 * of.n_ + of.code_.integrals; }
+};
+
 int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
   const double* p = request_.scene.parameters.data();
   const int code = w_.empty() ? code_.rhs(t, x, p, u, mode, dx) : code_.rhs_prepared(t, x, p, w_.data(), u, mode, dx);
@@ -236,9 +255,7 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
     if (event) event({told.t, told.kind, told.name}, total.x);
   }
-  const eom::WithJacobian f{
-      [this](double t, const double* x, double* dx) { return rhs(t, x, dx); },
-      [this](double t, const double* x, double* dfdx, double* dfdt) { return jacobian(t, x, dfdx, dfdt); }};
+  const MotionOf f{*this};
   const auto watch = [&](const eom::StepView& step) {
     accept(step);
     const bool go_on = !observer || observer(step);

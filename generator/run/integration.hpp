@@ -31,8 +31,10 @@ class Integration {
   double contact_work = 0;  // of impacts, and where sliding in two directions starts or ends
 
  private:
+  friend struct MotionOf;
   int rhs(double t, const double* x, double* dx);
   int jacobian(double t, const double* x, double* dfdx, double* dfdt);
+  int taylor(double t, const double* x, int order, double* coefficients);
   int motion(double t, const double* x, const double* u, int mode, double* dx);
   int events(double t, const double* x, double* g);
   std::vector<eom::EventFunction> watched() const;

@@ -214,6 +214,15 @@ const eom::MethodInfo& method_named(const std::string& name) {
   throw std::logic_error("no method is called " + name);
 }
 
+std::string unfit(const std::string& solver, const Scene& scene) {
+  if (!method_named(solver).series) return "";
+  // The series of the motion holds them still; a table does so between its jumps.
+  for (const Signal& signal : scene.inputs) {
+    if (signal.moves()) return "its series knows inputs that stand still or jump, and one here is an expression of t";
+  }
+  return "";
+}
+
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
   if (asked != "auto") {
     for (const eom::MethodInfo& method : eom::methods()) {
@@ -221,6 +230,9 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
       if (!method.adaptive && scene.step <= 0) {
         throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
                     "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
+      }
+      if (const std::string why = unfit(asked, scene); !why.empty()) {
+        throw Error("run", {}, fmt::format("solver '{}' cannot integrate this scene: {}", asked, why), "take dop853 or auto");
       }
       return {asked, "as asked for"};
     }
@@ -230,7 +242,7 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
       names += fmt::format("{}, ", method.name);
       known.emplace_back(method.name);
     }
-    static constexpr const char* later[] = {"taylor", "variational2", "variational4"};
+    static constexpr const char* later[] = {"variational2", "variational4"};
     for (const char* name : later) {
       if (asked == name) throw Error("run", {}, fmt::format("solver '{}' is not supported yet", asked), "choose from: " + names + "auto");
     }
@@ -248,6 +260,10 @@ RunResult integrate_scene(const RunRequest& request) {
   std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
   if (method_named(result.solver).implicit)
     result.reason += request.code.jac != nullptr ? ", df/dx from the equations" : ", df/dx by differences, since it was not compiled";
+  if (method_named(result.solver).series) {
+    if (request.code.taylor == nullptr) throw Error("run", {}, "the code was compiled without its Taylor series", "choose the solver taylor when the code is made");
+    result.reason += ", series from the equations";
+  }
   const eom::Options options = options_of(request);
   Integration integration(request, result.solver);
   Watch watch(request, integration);

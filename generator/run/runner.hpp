@@ -37,6 +37,9 @@ struct Code {
   std::vector<std::string> kinks = {};    // "abs", "max": their surfaces follow the model's events in g
   std::vector<eom::Contact> contacts = {};  // after them, eom::contact_values of each
   std::size_t first_kink_bit = 0;         // of mode: two for each kink, above and below its surface
+  // Only where the solver taylor was asked for, up to its highest order.
+  int (*taylor)(double, const double*, const double*, const double*, int, int, double*) = nullptr;
+  int taylor_order = 0;
 };
 
 struct Invariant {
@@ -116,6 +119,9 @@ RunResult integrate_scene(const RunRequest& request);
 
 /// The method of this name; throws std::logic_error where there is none.
 const eom::MethodInfo& method_named(const std::string& name);
+
+/// Why a solver cannot integrate the scene, or "" where it can.
+std::string unfit(const std::string& solver, const Scene& scene);
 
 /// The solver that `auto` stands for, and why.
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);

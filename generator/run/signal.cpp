@@ -50,6 +50,10 @@ double Signal::operator()(double t, double side_of) const {
   return value_[piece];
 }
 
+bool Signal::moves() const {
+  return time_.empty() && std::any_of(code_.begin(), code_.end(), [](const Step& step) { return step.op == Op::symbol; });
+}
+
 double Signal::evaluate(double t) const {
   for (std::size_t i = 0; i < code_.size(); ++i) {
     const Step& step = code_[i];

@@ -18,6 +18,8 @@ class Signal {
 
   /// The value at t. At a jump: the value of the piece that `side_of` (a time inside the current piece) lies in.
   double operator()(double t, double side_of) const;
+  /// Whether it changes between its jumps.
+  bool moves() const;
   const std::vector<double>& jumps() const { return time_; }
 
  private:

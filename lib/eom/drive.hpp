@@ -9,6 +9,7 @@
 //   error_norm(rtol, atol)                                        of it: 1 is just allowed
 //   after_accepted(h, error), after_rejected(h, error), after_failed(h)   the next step's size
 //   accept(moved)                                                 the end becomes the start
+//   first_step()                                                  left out: from the derivatives at the start
 //   statistics()                                                  but for steps and rejected
 #pragma once
 
@@ -57,7 +58,7 @@ class Run {
     if (!all_finite(stepper_.x0()) || !all_finite(stepper_.derivative0()))
       return end(Outcome::not_finite, "the state or its derivative is not finite at the start");
     if (options_.fixed_step > 0) return plan_fixed_steps();
-    h_ = options_.initial_step > 0 ? options_.initial_step : initial_step();
+    h_ = options_.initial_step > 0 ? options_.initial_step : first_step();
     h_ = std::min(std::max(h_, smallest_step(t_)), longest_step());  // a shorter one is lost in the rounding of t
     return true;
   }
@@ -153,6 +154,13 @@ class Run {
                              : code == code_no_convergence ? "the iteration of the implicit step does not converge, or its matrix is singular,"
                                                            : "code " + std::to_string(code);
     return end(outcome_of_abi_code(code), what + " just after t = " + printed(t_));
+  }
+
+  double first_step() {
+    if constexpr (requires { stepper_.first_step(); })
+      return stepper_.first_step();
+    else
+      return initial_step();
   }
 
   /// HNW I, section II.4: a step for which an Euler step, and the change of the derivative along it, stay small.

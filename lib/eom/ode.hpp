@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Initial value problems x' = f(t, x). In: a method's name, a right-hand side, a start and an end, options.
-// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/ and implicit/.
+// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/, implicit/ and taylor/.
 #pragma once
 
 #include <array>
@@ -17,16 +17,19 @@
 #include "eom/explicit_rk/registry.hpp"
 #include "eom/implicit/registry.hpp"
 #include "eom/run_types.hpp"
+#include "eom/taylor/registry.hpp"
 #include "eom/with_jacobian.hpp"
 
 namespace eom {
 
 /// Every method that integrate() knows, in the registry's order.
 inline std::span<const MethodInfo> methods() {
-  static constexpr auto table = []<class... T, class... I>(std::tuple<T...>*, std::tuple<I...>*) {
-    return std::array<MethodInfo, sizeof...(T) + sizeof...(I)>{{{T::name, T::order, T::dense_order, !T::error.empty()}...,
-                                                                {I::name, I::order, I::dense_order, I::adaptive, true}...}};
-  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr));
+  static constexpr auto table = []<class... T, class... I, class... S>(std::tuple<T...>*, std::tuple<I...>*, std::tuple<S...>*) {
+    return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(S)>{
+        {{T::name, T::order, T::dense_order, !T::error.empty()}...,
+         {I::name, I::order, I::dense_order, I::adaptive, true}...,
+         {S::name, S::order, S::dense_order, S::adaptive, false, true}...}};
+  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr), static_cast<taylor::Registry*>(nullptr));
   return table;
 }
 
@@ -60,11 +63,10 @@ Result run_explicit(F& rhs, double t0, std::span<const double> x0, double t1, co
   return Run<explicit_rk::Method<T, F>, Observer, AfterStep>(rhs, t0, x0, t1, options, observer, after_step).run();
 }
 
-/// The implicit ones once for all.
-template <class T, class F, class Observer, class AfterStep>
-Result run_implicit(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
-                    AfterStep& after_step) {
-  implicit::Problem problem = implicit::problem_of(rhs);
+/// The others once for all; problem: what they know of the right-hand side.
+template <class T, class Problem, class Observer, class AfterStep>
+Result run_once(Problem problem, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+                AfterStep& after_step) {
   implicit::ObserverOf see = implicit::observer_of(observer);
   if constexpr (std::is_same_v<std::remove_cv_t<AfterStep>, NoProjection>) {
     return Run<T, implicit::ObserverOf, AfterStep>(problem, t0, x0, t1, options, see, after_step).run();
@@ -74,12 +76,24 @@ Result run_implicit(F& rhs, double t0, std::span<const double> x0, double t1, co
   }
 }
 
+template <class T, class F, class Observer, class AfterStep>
+Result run_series(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+                  AfterStep& after_step) {
+  const taylor::Problem problem = taylor::problem_of(rhs);
+  if (problem.highest_order < 2 || problem.states == 0 || problem.states > x0.size())
+    throw std::invalid_argument("eom::integrate: " + std::string(T::name) + " needs a right-hand side with a Taylor series (eom/taylor/problem.hpp)");
+  if (options.series_order < 0 || options.series_order == 1 || options.series_order > problem.highest_order)
+    throw std::invalid_argument("eom::integrate: series_order has to be 0, or from 2 to the highest order of the series");
+  return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
+}
+
 }  // namespace detail
 
 /// Integrates from (t0, x0) to t1, which may lie before t0.
 /// rhs(t, x, dx) -> int; observer(StepView) -> bool, false stops; after_step(t, x) -> int may move the state at the end
 /// of a step (a projection) before the step counts as accepted. A nonzero code from rhs or after_step is retried with
-/// shorter steps before it ends the run. An rhs with a member jacobian (with_jacobian.hpp) gives it to implicit methods.
+/// shorter steps before it ends the run. An rhs with a member jacobian (with_jacobian.hpp) gives it to implicit methods, one with
+/// a member taylor (taylor/problem.hpp) its series to `taylor`.
 /// Throws std::invalid_argument for an unknown method or senseless options.
 template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
@@ -98,9 +112,12 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
   }(static_cast<explicit_rk::Registry*>(nullptr));
   const bool known = known_explicit || [&]<class... T>(std::tuple<T...>*) {
     return ((asked(T::name, T::adaptive) &&
-             (result = detail::run_implicit<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
+             (result = detail::run_once<T>(implicit::problem_of(rhs), t0, x0, t1, options, observer, after_step), true)) || ...);
   }(static_cast<implicit::Registry*>(nullptr));
-  if (!known) detail::throw_unknown(method);
+  const bool known_series = known || [&]<class... T>(std::tuple<T...>*) {
+    return ((asked(T::name, T::adaptive) && (result = detail::run_series<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
+  }(static_cast<taylor::Registry*>(nullptr));
+  if (!known_series) detail::throw_unknown(method);
   return result;
 }
 

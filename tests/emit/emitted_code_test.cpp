@@ -142,6 +142,47 @@ int main() {
   CHECK(emit::run_process({program}).status == 0);
 }
 
+TEST_CASE("emitted code: Taylor series compile cleanly, and the header's agree with the C function's, in long double too") {
+  auto list = {example("chain3", chain(3), {"k", "x", "w"}, {"m1", "a", "b", "l1", "z", "dx", "g"}, {}, {"taylor"}),
+               example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}, {"taylor", "mass"})};
+  for (const Example& e : list) {
+    INFO(e.context.id);
+    compiles_everywhere(e);
+    const Folder folder;
+    emit::write_files(folder.path, emit::emit(e.program, e.context));
+    std::ofstream(folder.path + "/use.cpp") << fmt::format(R"(
+#include "{0}.hpp"
+#include "{0}.h"
+namespace model = eom::{0};
+int main() {{
+  constexpr int order = 20, n = model::state_count;
+  double x[n], p[model::parameter_count], c[n*(order + 1)], d[n*(order + 1)], dx[n];
+  long double X[n], P[model::parameter_count], C[n*(order + 1)];
+  model::defaults(x, p);
+  model::defaults(X, P);
+  if ({0}_taylor(0, x, p, nullptr, 0, order, c) != 0 || model::taylor<double>(0, x, p, nullptr, 0, order, d) != 0) return 1;
+  if (model::taylor<long double>(0, X, P, nullptr, 0, order, C) != 0 || model::rhs<double>(0, x, p, nullptr, 0, dx) != 0) return 2;
+  for (int k = 0; k <= order; ++k) {{
+    double largest = 1e-300;  // of one order
+    for (int i = 0; i < n; ++i) largest = std::fmax(largest, std::fabs(c[n*k + i]));
+    for (int i = 0; i < n; ++i) {{
+      if (!(std::fabs(c[n*k + i] - d[n*k + i]) <= 1e-12*largest)) return 3;
+      if (!(std::fabs(c[n*k + i] - static_cast<double>(C[n*k + i])) <= 1e-10*largest)) return 4;
+    }}
+  }}
+  for (int i = 0; i < n; ++i) if (x[i] != c[i] || !(std::fabs(c[n + i] - dx[i]) <= 1e-13*(1 + std::fabs(dx[i])))) return 5;
+  if ({0}_taylor(0, x, p, nullptr, 0, {0}_taylor_order + 1, c) != 6 || {0}_taylor(0, x, p, nullptr, 0, 0, c) != 0) return 6;
+  x[n - 1] = 1e300;
+  return {0}_taylor(0, x, p, nullptr, 0, order, c) == 5 ? 0 : 7;
+}}
+)", e.context.id);
+    const std::string object = folder.path + "/object.o", program = folder.path + "/use";
+    CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/" + e.context.id + ".c"}) == "");
+    CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
+    CHECK(emit::run_process({program}).status == 0);
+  }
+}
+
 TEST_CASE("emitted code: codes 1 and 5 tell singular and not finite apart") {
   const Folder cache;
   const Setting setting("EOMGEN_CACHE_DIR", cache.path);

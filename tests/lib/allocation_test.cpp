@@ -6,7 +6,7 @@
 #include <string>
 
 #include "eom/ode.hpp"
-#include "lib/problems.hpp"
+#include "lib/series_problems.hpp"
 
 namespace {
 std::size_t allocations = 0;
@@ -21,7 +21,7 @@ void operator delete(void* memory) noexcept { std::free(memory); }
 void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tenth of a period") {
-  const problems::Kepler kepler;
+  const problems::KeplerSeries kepler;
   for (const eom::MethodInfo& method : eom::methods()) {
     CAPTURE(std::string(method.name));
     eom::Options options;

@@ -58,7 +58,7 @@ const auto position = [](double, const double* x, double* g) { return g[0] = x[0
 }  // namespace
 
 TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, both ways in time") {
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const Watch watch : {Watch::passing, Watch::breaking})
       for (const double t1 : {20.0, -20.0}) {
         CAPTURE(std::string(method.name));
@@ -76,7 +76,7 @@ TEST_CASE("all methods: the zeros of cos t and no others, passing or breaking, b
 }
 
 TEST_CASE("all methods: directions are those of time, whichever way the run goes") {
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const double t1 : {20.0, -20.0}) {
       CAPTURE(std::string(method.name));
       const auto up = crossings(method, t1, position, {{Direction::up, Watch::breaking}}, tight(method));
@@ -93,7 +93,7 @@ TEST_CASE("all methods: several functions in one step come in the order of the r
     for (int i = 0; i < 4; ++i) g[i] = t - (0.5 - 0.1 * i);  // times 0.5, 0.4, 0.3, 0.2
     return 0;
   };
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const Watch watch : {Watch::passing, Watch::breaking}) {
       eom::Options options;
       options.fixed_step = 1;  // all in one step
@@ -116,7 +116,7 @@ TEST_CASE("all methods: a double root inside one step is two events, and one tha
   // x = cos t, and a level just below its maximum at 2 pi: crossed at 2 pi -+ acos(level), 0.0014 apart from it.
   for (const double level : {1 - 1e-6, 1 + 1e-6}) {
     const auto g = [level](double, const double* x, double* value) { return value[0] = x[0] - level, 0; };
-    for (const eom::MethodInfo& method : eom::methods()) {
+    for (const eom::MethodInfo& method : problems::methods()) {
       CAPTURE(std::string(method.name));
       eom::Options options = tight(method);
       if (!method.adaptive) options.fixed_step = 0.005;
@@ -136,7 +136,7 @@ TEST_CASE("all methods: a double root inside one step is two events, and one tha
 
 TEST_CASE("an event function that starts at zero is not found at the start, but when it comes back") {
   const auto velocity = [](double, const double* x, double* g) { return g[0] = x[1], 0; };  // -sin t: 0 at the start
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const auto seen = crossings(method, 7, velocity, {{Direction::any, Watch::breaking}}, tight(method));
     REQUIRE(seen.size() == 2);
@@ -147,7 +147,7 @@ TEST_CASE("an event function that starts at zero is not found at the start, but 
 
 TEST_CASE("a passing event leaves the run as it was, to the last bit") {
   const problems::Pendulum pendulum;
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     const eom::Options options = tight(method);
     const eom::Result plain = eom::integrate(method.name, pendulum, 0, pendulum.start, 12, options);
     const auto handler = [](const EventPoint&) { return AtEvent::stop; };  // not asked
@@ -161,7 +161,7 @@ TEST_CASE("a passing event leaves the run as it was, to the last bit") {
 TEST_CASE("events are as accurate as the steps: the time of a stop has the order of the method") {
   // theta = 0 is reached after a quarter of the period.
   const problems::Pendulum pendulum;
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const auto error = [&](double step) {
       eom::Options options;
@@ -186,7 +186,7 @@ TEST_CASE("events are as accurate as the steps: the time of a stop has the order
 
 TEST_CASE("the observer sees steps that join, the last before an event ending there") {
   const problems::Oscillator oscillator{{1, 0}};
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     double reached = 0;
     std::vector<double> ends;

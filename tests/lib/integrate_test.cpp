@@ -24,7 +24,7 @@ eom::Options tight(const eom::MethodInfo& method) {
 
 template <class Problem>
 void check_closed_form(const Problem& problem, double t1) {
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const double end : {t1, -t1}) {
       CAPTURE(std::string(method.name));
       CAPTURE(end);
@@ -46,7 +46,7 @@ TEST_CASE("all methods: harmonic oscillator, Kepler and pendulum end where their
 
 TEST_CASE("pendulum: after the period of the arithmetic-geometric mean it is back at its start") {
   const problems::Pendulum pendulum;
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const auto result = eom::integrate(method.name, pendulum, 0, pendulum.start, pendulum.period(), tight(method));
     CHECK(problems::largest_difference(result.x, pendulum.start) < problems::coarser(method) * tolerances::closed_form);
@@ -93,7 +93,7 @@ TEST_CASE("rk4: 4 evaluations a step and one at the start; dopri5: 6; dop853: 12
 
 TEST_CASE("observer: sees adjoining steps from t0 to t1, and the dense output meets both ends") {
   const problems::Kepler kepler;
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     eom::Options options;
     if (!method.adaptive) options.fixed_step = 0.05;
@@ -149,7 +149,7 @@ TEST_CASE("after_step: the run goes on from the moved state, with its derivative
     dx[1] = 0;
     return 0;
   };
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     eom::Options options;
     options.fixed_step = 0.125;  // steps end at t = 1 exactly

@@ -58,7 +58,7 @@ TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan
   const std::array<double, 3> p{0.2, 1, 0.5};
   const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr};
   const double slip = 2 * (pi - std::atan(2.5)), stick = 5;
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const std::vector<double> start{0, 0.2};  // sticking; x = 1 after 5
     const ModeResult r = eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 60, tight(method), model.events(), 3,
@@ -84,7 +84,7 @@ TEST_CASE("implicit methods: df/dx of the mode that holds is what they are given
     return 0;
   };
   eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr, jacobian};
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     if (!method.implicit) continue;
     CAPTURE(std::string(method.name));
     const std::vector<double> start{0, 0.2};
@@ -111,7 +111,7 @@ TEST_CASE("all methods: an oscillator with Coulomb friction stops where and when
   // 4.1, -3.5, 2.9, -2.3, 1.7, -1.1, 0.5, and |0.5| > 0.3: -(0.5 - 2 * 0.3) = 0.1, where it stays, after 7 pi.
   const std::array<double, 3> p{0, 0.3, 0.3};
   const eom::CompiledModel model{belt_rhs, belt_events, p.data(), nullptr};
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const std::vector<double> start{4.1, 0};
     const ModeResult r = eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 50, tight(method), model.events(), 3,
@@ -163,7 +163,7 @@ TEST_CASE("all methods: a bouncing ball ends told, where its bounces accumulate"
   const std::vector<Mode> flight{{"flight", {{0, Direction::down}}}, {"rest", {}}};
   const std::vector<double> start{1, 0};
   const double fall = std::sqrt(2 / gravity);
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const double e : {0.5, 0.8}) {
       CAPTURE(std::string(method.name));
       CAPTURE(e);
@@ -193,7 +193,7 @@ TEST_CASE("a ball on a table of height 1 never falls through it, down to where r
     point.x[1] = std::abs(0.3 * point.x[1]);
     return Transition{0, "contact", "table"};
   };
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     double lowest = 1;
     const auto observe = [&](const eom::StepView& view, int) { return lowest = std::min(lowest, view.x1[0]), true; };

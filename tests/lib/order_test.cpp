@@ -65,7 +65,7 @@ double measured_order(Error error, const eom::MethodInfo& method, double directi
 }  // namespace
 
 TEST_CASE("all methods: the measured order is the stated one, forwards and backwards") {
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const double direction : {1.0, -1.0}) {
       CAPTURE(std::string(method.name));
       CAPTURE(direction);
@@ -76,7 +76,7 @@ TEST_CASE("all methods: the measured order is the stated one, forwards and backw
 }
 
 TEST_CASE("all methods: the dense output's error within a step is of the stated order plus one") {
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (const double direction : {1.0, -1.0}) {
       CAPTURE(std::string(method.name));
       CAPTURE(direction);

@@ -24,7 +24,7 @@ struct FailsFromOne {
 
 template <class F>
 eom::Result run(const char* method, F rhs, double t1, eom::Options options = {}, double x0 = 1) {
-  for (const eom::MethodInfo& info : eom::methods())
+  for (const eom::MethodInfo& info : problems::methods())
     if (std::string(method) == info.name && !info.adaptive && options.fixed_step == 0) options.fixed_step = 0.01;
   return eom::integrate(method, rhs, 0, problems::State{x0}, t1, options);
 }
@@ -41,7 +41,7 @@ TEST_CASE("codes: the outcomes of the C ABI, told by every method just before th
   const eom::Outcome expected[] = {eom::Outcome::singular_mass_matrix, eom::Outcome::chart_left,
                                    eom::Outcome::friction_no_solution, eom::Outcome::friction_many_solutions,
                                    eom::Outcome::not_finite,           eom::Outcome::step_too_small};
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : problems::methods())
     for (int code = 1; code <= 6; ++code) {
       CAPTURE(std::string(method.name));
       CAPTURE(code);
@@ -79,7 +79,7 @@ TEST_CASE("a code at the start ends the run there") {
 }
 
 TEST_CASE("not_finite: at the start, and later with the last finite state kept") {
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     CHECK(run(method.name, [](double, const double*, double* dx) { return dx[0] = not_a_number, 0; }, 1).outcome ==
           eom::Outcome::not_finite);
@@ -94,7 +94,7 @@ TEST_CASE("not_finite: at the start, and later with the last finite state kept")
 }
 
 TEST_CASE("diverged: beyond the stated bound, and when the steps are used up") {
-  for (const eom::MethodInfo& method : eom::methods()) {
+  for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const eom::Result grown = run(method.name, [](double, const double* x, double* dx) { return dx[0] = x[0], 0; }, 400);
     CHECK(grown.outcome == eom::Outcome::diverged);

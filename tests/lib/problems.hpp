@@ -12,10 +12,18 @@
 
 namespace problems {
 
-/// The names of the methods that choose their steps.
+/// The methods that take any right-hand side; those that need its series have tests of their own (taylor_test.cpp).
+inline std::vector<eom::MethodInfo> methods() {
+  std::vector<eom::MethodInfo> result;
+  for (const eom::MethodInfo& method : eom::methods())
+    if (!method.series) result.push_back(method);
+  return result;
+}
+
+/// The names of those that choose their steps.
 inline std::vector<const char*> adaptive_methods() {
   std::vector<const char*> names;
-  for (const eom::MethodInfo& method : eom::methods())
+  for (const eom::MethodInfo& method : methods())
     if (method.adaptive) names.push_back(method.name);
   return names;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <string>
 
+#include "error.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -61,4 +62,26 @@ TEST_CASE("solvers: an implicit one on code that was compiled without df/dx take
   CHECK(again.reason == "as asked for, df/dx by differences, since it was not compiled");
   CHECK(again.statistics.difference_evaluations > 0);
   CHECK(std::abs(test::value_of(again.final, "theta") - first.final("theta")) < 1e-6);
+}
+
+TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, kinks, friction, impacts and rolling") {
+  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "bilinear_oscillator", "cart_pendulum", "knife_edge",
+                            "P7_moving_sphere_pfaffian", "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {
+    CAPTURE(std::string(model));
+    const test::Finished reference = motion(model, "dop853", 1.5), other = motion(model, "taylor", 1.5);
+    const run::RunResult& result = other.simulation.result;
+    CHECK(result.outcome == reference.simulation.result.outcome);
+    CHECK(result.reason == "as asked for, series from the equations");
+    CHECK(difference(other, reference) < 1e-6);
+    CHECK(result.events.size() == reference.simulation.result.events.size());
+    CHECK(result.power_balance < 1e-6);
+  }
+}
+
+TEST_CASE("solvers: taylor refuses inputs that its series does not know, and code without a series") {
+  CHECK_THROWS_WITH_AS(motion("P3_moving_plane_gust", "taylor", 1.5), doctest::Contains("an expression of t"), Error);
+  const test::Finished first = motion("cart_pendulum", "dop853", 0.5);
+  run::Overrides overrides;
+  overrides.solver = "taylor";
+  CHECK_THROWS_WITH_AS(cli::run_again(first.simulation, overrides, false), doctest::Contains("compiled without its Taylor series"), Error);
 }

@@ -66,10 +66,10 @@ program::Request request_of(const Options& options, Derived& derived, const run:
 }
 
 void require_with(const std::vector<std::string>& with) {
-  const std::vector<std::string> known{"jac", "jac_p", "mass", "constraints", "reactions", "outputs", "events", "energy"};
+  const std::vector<std::string> known{"jac", "jac_p", "mass", "constraints", "reactions", "outputs", "events", "energy", "taylor"};
   for (const std::string& name : with) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const bool later = name == "taylor" || name == "rhs_batch";
+    const bool later = name == "rhs_batch";
     throw Error("emit", {}, later ? fmt::format("the function {} is not supported yet", name)
                                   : fmt::format("there is no function {} to emit", model::quote(name)),
                 choice_of(name, known));
@@ -167,7 +167,7 @@ Execute declare_emit(CLI::App& app) {
   app.add_option("-o", options->folder, "the folder for the sources; it is made if need be")->required();
   app.add_option("--target", options->target, "cpp, c, python, or latex for a document")->capture_default_str();
   add_list(app, "--with", options->with,
-           "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy");
+           "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, taylor");
   add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin: how constraints that stay are solved")

@@ -6,7 +6,9 @@
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
+#include "emit/taylor.hpp"
 #include "emit/text.hpp"
+#include "program/taylor.hpp"
 #include "skeletons/c_model_c.hpp"
 #include "skeletons/c_model_h.hpp"
 
@@ -59,6 +61,7 @@ std::string sizes(const std::string& name, const program::Program& program, cons
       {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
       {"output_count", program.outputs.size()}, {"prepared_size", program.prepared_count()}};
   if (program.event_count() > 0) entries.emplace_back("event_count", program.event_count());
+  if (program.taylor) entries.emplace_back("taylor_order", program::taylor_order(*program.taylor));
   std::vector<std::string> lines;
   for (const auto& [what, count] : entries) lines.push_back(fmt::format("  {}_{} = {}", name, what, count));
   return fmt::format("{}", fmt::join(lines, ",\n"));
@@ -82,10 +85,14 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
                          {"prototype", prototype(name, function)},
                          {"definition", definition(fmt::format("{}_{}", name, function.name), function, text, names)}});
   }
+  if (program.taylor) {
+    const TaylorText text = print_taylor(program, names, context, dialect, name + "_");
+    functions.push_back({{"purpose", purpose("taylor")}, {"prototype", text.head}, {"definition", text.definition}});
+  }
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},
-      {"includes", packs ? "#include <float.h>\n#include <math.h>\n#include <string.h>" : "#include <math.h>"},
+      {"includes", packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>" : "#include <math.h>"},
       {"kernels", packs ? sincos_kernel(name + "_", "static inline", "") + "\n" : ""},
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},

@@ -12,7 +12,9 @@
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
+#include "emit/taylor.hpp"
 #include "emit/text.hpp"
+#include "program/taylor.hpp"
 #include "skeletons/cpp_model_hpp.hpp"
 
 namespace eomgen::emit {
@@ -79,7 +81,7 @@ struct Prepared {
 )";
 
 /// Named indices into the arrays: x[State::theta].
-std::string enums(const ModelNames& names, std::size_t prepared) {
+std::string enums(const ModelNames& names, std::size_t prepared, const std::optional<program::Taylor>& taylor) {
   std::string result;
   const auto add = [&result](const char* type, const char* count, const std::vector<std::string>& entries) {
     if (!entries.empty()) {
@@ -96,6 +98,7 @@ std::string enums(const ModelNames& names, std::size_t prepared) {
   add("Reaction", "reaction_count", names.reactions);
   if (!names.events.empty()) add("Event", "event_count", names.events);
   result += fmt::format("inline constexpr std::size_t prepared_size = {};\n", prepared);
+  if (taylor) result += fmt::format("inline constexpr int taylor_order = {};\n", program::taylor_order(*taylor));
   result.pop_back();
   return result;
 }
@@ -109,12 +112,17 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
   bool packs = false;
+  std::string taylor;
   for (const program::Function& function : program.functions) {
     const FunctionText text = print_function(function, names, context, dialect);
     packs = packs || text.packs > 0;
     functions.push_back({{"purpose", purpose(function.name)},
                          {"head", function_head(function.name, function, text, names, "Real")},
                          {"body", text.body}});
+  }
+  if (program.taylor) {
+    const TaylorText text = print_taylor(program, names, context, dialect, "");
+    taylor = "\n" + text.definition;
   }
   std::vector<EmittedFile> files = {
       {name + ".hpp",
@@ -123,8 +131,8 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
                  {"name", name},
                 {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>" : "#include <cmath>\n#include <cstddef>"},
                 {"kernels", packs ? generic_sincos + sincos_kernel(kernel_prefix, "inline", "std::") : ""},
-                 {"enums", enums(names, program.prepared_count())},
-                 {"prepared", program.prepared_count() > 0 ? prepared_struct : ""},
+                 {"enums", enums(names, program.prepared_count(), program.taylor)},
+                 {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
                 {"info", string_literal(info_json(program, context), "      ")},
                  {"defaults", defaults_body(program, context, dialect)},
                  {"selftest", selftest_body(program, context, [](const std::string& f) { return f + "<double>"; }, "nullptr", dialect)}},

@@ -41,6 +41,7 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   find(handle_, name + "_rhs_prepared", rhs_prepared);
   find(handle_, name + "_jac", jac);
   find(handle_, name + "_jac_p", jac_p);
+  find(handle_, name + "_taylor", taylor);
   find(handle_, name + "_mass", mass);
   find(handle_, name + "_constraints", constraints);
   find(handle_, name + "_reactions", reactions);
@@ -76,6 +77,7 @@ LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
   outputs = other.outputs;
   events = other.events;
   jac = other.jac;
+  taylor = other.taylor;
   mass = other.mass;
   constraints = other.constraints;
   defaults = other.defaults;

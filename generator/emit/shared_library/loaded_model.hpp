@@ -14,6 +14,8 @@ using PreparedRhsFunction = int (*)(double t, const double* x, const double* p, 
                                     double* dx);
 using JacobianFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
                                  double* dfdt);
+using TaylorFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, int order,
+                               double* coefficients);
 using MassFunction = int (*)(double t, const double* x, const double* p, double* M, double* h);
 using ConstraintFunction = int (*)(double t, const double* x, const double* p, double* psi, double* A, double* b);
 
@@ -37,6 +39,7 @@ class LoadedModel {
   RhsFunction events = nullptr;     // g in place of dx
   RhsFunction outputs = nullptr;    // y in place of dx
   JacobianFunction jac = nullptr;
+  TaylorFunction taylor = nullptr;
   MassFunction mass = nullptr;
   ConstraintFunction constraints = nullptr;
   void (*defaults)(double* x, double* p) = nullptr;

@@ -165,16 +165,7 @@ class Machine {
   }
 
   ModeResult run(std::string_view method, double t0, std::span<const double> x0, double t1, const Options& options) {
-    const auto f = [this](double t, const double* x, double* dx) { return rhs_(t, x, switch_.mode, dx); };
-    Result end;
-    if constexpr (requires(double t, const double* x, double* entries) { rhs_.jacobian(t, x, 0, entries, entries); }) {
-      const auto jacobian = [this](double t, const double* x, double* dfdx, double* dfdt) {
-        return rhs_.jacobian(t, x, switch_.mode, dfdx, dfdt);
-      };
-      end = run_smooth(method, WithJacobian{f, jacobian}, t0, x0, t1, options);
-    } else {
-      end = run_smooth(method, f, t0, x0, t1, options);
-    }
+    Result end = run_smooth(method, InMode{rhs_, switch_.mode}, t0, x0, t1, options);
     ModeResult result;
     static_cast<Result&>(result) = end;
     if (switch_.ended != Outcome::done) {
@@ -189,7 +180,25 @@ class Machine {
   }
 
  private:
-  template <class InMode>
+  /// The right-hand side in the mode of the time, with what it knows of its derivatives.
+  struct InMode {
+    F& rhs;
+    const int& mode;
+    int operator()(double t, const double* x, double* dx) const { return rhs(t, x, mode, dx); }
+    int jacobian(double t, const double* x, double* dfdx, double* dfdt) const
+      requires requires(F& f) { f.jacobian(t, x, 0, dfdx, dfdt); }
+    {
+      return rhs.jacobian(t, x, mode, dfdx, dfdt);
+    }
+    int taylor(double t, const double* x, int order, double* c) const
+      requires requires(F& f) { f.taylor(t, x, 0, order, c); }
+    {
+      return rhs.taylor(t, x, mode, order, c);
+    }
+    int taylor_order() const { return rhs.taylor_order(); }
+    std::size_t taylor_states() const { return rhs.taylor_states(); }
+  };
+
   Result run_smooth(std::string_view method, const InMode& f, double t0, std::span<const double> x0, double t1,
                     const Options& options) {
     return integrate_events(

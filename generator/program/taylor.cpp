@@ -1,0 +1,463 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/taylor.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <stdexcept>
+#include <tuple>
+
+#include "error.hpp"
+
+namespace eomgen::program {
+namespace {
+
+using symbolic::Op;
+using symbolic::Rational;
+
+constexpr std::size_t stack_budget = std::size_t{1} << 21;  // bytes of the series of all products
+
+// Operands of `next` whose place in w is known at the end: sum i is {input, i}, these are {side, 0}, {side, 1}.
+constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{Slot::time, 0};
+
+Operand minus(Operand operand) {
+  operand.negated = !operand.negated;
+  return operand;
+}
+
+/// A value of the right-hand side: `zero` in `start`; in `next` its coefficient of order k, where it moves at all.
+struct Series {
+  bool moves = false;
+  Operand zero, next;
+};
+Series minus(Series series) { return {series.moves, minus(series.zero), minus(series.next)}; }
+
+using Key = std::tuple<Slot, std::uint32_t, bool>;
+Key key(const Operand& o) { return {o.slot, o.index, o.negated}; }
+using Keys = std::pair<Key, Key>;
+Keys keys(const Series& s) { return {key(s.zero), key(s.next)}; }
+
+Operand constant(Function& function, const Rational& value) {
+  auto& list = function.constants;
+  const auto found = std::find(list.begin(), list.end(), value);
+  const auto index = static_cast<std::uint32_t>(found - list.begin());
+  if (found == list.end()) list.push_back(value);
+  return {Slot::constant, index, false};
+}
+
+Operand push(Function& function, Op op, std::vector<Operand> operands, std::string name = {}) {
+  if (operands.size() == 1 && (op == Op::add || op == Op::mul)) return operands[0];
+  Instruction instruction;
+  instruction.op = op;
+  instruction.operands = std::move(operands);
+  instruction.name = std::move(name);
+  function.code.push_back(std::move(instruction));
+  return {Slot::value, static_cast<std::uint32_t>(function.code.size() - 1), false};
+}
+
+class Recurrences {
+ public:
+  explicit Recurrences(const Function& rhs) : rhs_(rhs) {
+    start_.name = "taylor_start";
+    next_.name = "taylor_next";
+    start_.constants = rhs.constants;
+    start_.uses_input = rhs.uses_input;
+  }
+
+  Taylor run() {
+    for (const Instruction& instruction : rhs_.code) {
+      section_ = instruction.section.empty() ? section_ : instruction.section;
+      const std::size_t first = start_.code.size();
+      values_.push_back(of(instruction));
+      if (first < start_.code.size()) start_.code[first].section = instruction.section;
+    }
+    return finished();
+  }
+
+ private:
+  Series read(const Operand& operand) const {
+    Series series;
+    switch (operand.slot) {
+      case Slot::value: series = values_[operand.index]; break;
+      case Slot::state: series = {true, {Slot::state, operand.index}, {Slot::state, operand.index}}; break;
+      case Slot::time: series = {true, {Slot::time, 0}, time_rate}; break;
+      default: series.zero = {operand.slot, operand.index};
+    }
+    return operand.negated ? minus(series) : series;
+  }
+
+  Operand at_start(Op op, std::vector<Operand> operands, const std::string& name = {}) {
+    return push(start_, op, std::move(operands), name);
+  }
+  Operand at_next(Op op, std::vector<Operand> operands) { return push(next_, op, std::move(operands)); }
+  Operand one() { return constant(start_, 1); }
+
+  /// What `start` computed, in `next`.
+  Operand kept(const Operand& value) {
+    Operand result = value;
+    if (value.slot == Slot::constant) {
+      result = constant(next_, start_.constants[value.index]);
+    } else if (value.slot != Slot::pi) {
+      const auto [at, anew] = kept_.try_emplace({value.slot, value.index}, static_cast<std::uint32_t>(zeros_.size()));
+      if (anew) zeros_.push_back({value.slot, value.index});
+      result = {Slot::prepared, at->second};
+    }
+    result.negated = value.negated;
+    return result;
+  }
+
+  /// sum over 0 < j < k of a_j b_(k-j); the second factor may follow with `close`.
+  Operand open(const Operand& a) {
+    factors_.push_back({a, {}});
+    return {Slot::input, static_cast<std::uint32_t>(factors_.size() - 1)};
+  }
+  void close(const Operand& sum, const Operand& b) { factors_[sum.index][1] = b; }
+  Operand sum(const Operand& a, const Operand& b) {
+    const Operand result = open(a);
+    close(result, b);
+    return result;
+  }
+
+  /// k a_k: of the derivative.
+  Operand weighted(const Series& a) {
+    const auto [at, anew] = weighted_.try_emplace(key(a.next));
+    if (anew) at->second = at_next(Op::mul, {order_k, a.next});
+    return at->second;
+  }
+
+  Series copied(const Instruction& instruction) {
+    Instruction copy = instruction;
+    for (Operand& operand : copy.operands) operand = read(operand).zero;
+    start_.code.push_back(std::move(copy));
+    return {false, {Slot::value, static_cast<std::uint32_t>(start_.code.size() - 1)}, {}};
+  }
+
+  Series of(const Instruction& instruction) {
+    std::vector<Series> a;
+    bool moves = false;
+    for (const Operand& operand : instruction.operands) {
+      a.push_back(read(operand));
+      moves = moves || a.back().moves;
+    }
+    if (!moves) return copied(instruction);
+    const std::string& name = instruction.name;
+    switch (instruction.op) {
+      case Op::add: return total(a, name);
+      case Op::mul: return product(a, name);
+      case Op::div: return quotient(a[0], a[1], name);
+      case Op::sin: return trig(a[0], instruction)[0];
+      case Op::cos: return trig(a[0], instruction)[1];
+      case Op::sqrt: return root(a[0], name);
+      case Op::pow: return general_power(a[0], a[1], instruction);
+      case Op::abs: case Op::sign: case Op::min: case Op::max: case Op::select: return branch(a, instruction);
+      default: return function(a, instruction);
+    }
+  }
+
+  Series total(const std::vector<Series>& a, const std::string& name = {}) {
+    std::vector<Operand> zero, next;
+    for (const Series& s : a) {
+      zero.push_back(s.zero);
+      if (s.moves) next.push_back(s.next);
+    }
+    return {true, at_start(Op::add, zero, name), at_next(Op::add, next)};
+  }
+
+  Series times(const Series& a, const Series& b, const std::string& name = {}) {
+    const auto [at, anew] = products_.try_emplace(std::minmax(keys(a), keys(b)));
+    if (!anew) return at->second;
+    Series& c = at->second;
+    c.moves = true;
+    c.zero = at_start(Op::mul, {a.zero, b.zero}, name);
+    const Operand s = sum(a.next, b.next);
+    if (keys(a) == keys(b)) {
+      c.next = at_next(Op::add, {s, at_next(Op::mul, {constant(next_, 2), kept(a.zero), a.next})});
+    } else {
+      c.next = at_next(Op::add, {s, at_next(Op::mul, {kept(a.zero), b.next}), at_next(Op::mul, {a.next, kept(b.zero)})});
+    }
+    return c;
+  }
+
+  Series scaled(const Series& a, const Operand& factor, const std::string& name = {}) {
+    return {true, at_start(Op::mul, {factor, a.zero}, name), at_next(Op::mul, {kept(factor), a.next})};
+  }
+
+  Series product(const std::vector<Series>& a, const std::string& name) {
+    std::vector<Operand> still;
+    std::vector<Series> moving;
+    for (const Series& s : a) {
+      if (s.moves) moving.push_back(s);
+      else still.push_back(s.zero);
+    }
+    const bool last_scales = !still.empty();
+    Series result = moving[0];
+    for (std::size_t i = 1; i < moving.size(); ++i) {
+      result = times(result, moving[i], i + 1 == moving.size() && !last_scales ? name : std::string{});
+    }
+    return last_scales ? scaled(result, at_start(Op::mul, still), name) : result;
+  }
+
+  Series quotient(const Series& a, const Series& b, const std::string& name) {
+    const Operand inverse = at_start(Op::div, {one(), b.zero});
+    if (!b.moves) return {true, at_start(Op::div, {a.zero, b.zero}, name), at_next(Op::mul, {a.next, kept(inverse)})};
+    Series c{true, at_start(Op::div, {a.zero, b.zero}, name), {}};
+    const Operand s = open(b.next);
+    std::vector<Operand> rest{minus(s), minus(at_next(Op::mul, {b.next, kept(c.zero)}))};
+    if (a.moves) rest.insert(rest.begin(), a.next);
+    c.next = at_next(Op::mul, {kept(inverse), at_next(Op::add, rest)});
+    close(s, c.next);
+    return c;
+  }
+
+  Series root(const Series& a, const std::string& name = {}) {
+    Series c{true, at_start(Op::sqrt, {a.zero}, name), {}};
+    const Operand inverse = at_start(Op::div, {constant(start_, Rational(1) / 2), c.zero});
+    const Operand s = open({});
+    c.next = at_next(Op::mul, {kept(inverse), at_next(Op::add, {a.next, minus(s)})});
+    factors_[s.index] = {c.next, c.next};
+    return c;
+  }
+
+  /// The sine and the cosine of one angle, in the pack of the one that was asked for.
+  const std::array<Series, 2>& trig(const Series& a, const Instruction& asked) {
+    const auto [at, anew] = trig_.try_emplace(keys(a));
+    if (!anew) return at->second;
+    std::array<Series, 2>& result = at->second;
+    for (const std::size_t i : {0U, 1U}) {
+      const Op op = i == 0 ? Op::sin : Op::cos;
+      result[i] = {true, at_start(op, {a.zero}, asked.op == op ? asked.name : ""), {}};
+      start_.code.back().pack = asked.pack;
+      start_.code.back().lane = asked.lane;
+    }
+    pair(a, result[0], result[1], true);
+    return result;
+  }
+
+  /// s' = c a', c' = s a', the latter with a minus where it turns.
+  void pair(const Series& a, Series& s, Series& c, bool turns) {
+    const Operand w = weighted(a), of_c = open(w), of_s = open(w);
+    const auto signed_by = [turns](const Operand& o) { return turns ? minus(o) : o; };
+    s.next = at_next(Op::mul, {one_over_k, at_next(Op::add, {of_c, at_next(Op::mul, {w, kept(c.zero)})})});
+    c.next = at_next(Op::mul, {one_over_k, at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, kept(s.zero)}))})});
+    close(of_c, c.next);
+    close(of_s, s.next);
+  }
+
+  /// c of c' = b a', where the k-th coefficient of b may be known only afterwards: close(result.second, b.next).
+  std::pair<Operand, Operand> integrated(const Series& a, const Operand& b_zero) {
+    const Operand w = weighted(a), s = open(w);
+    return {at_next(Op::mul, {one_over_k, at_next(Op::add, {s, at_next(Op::mul, {w, kept(b_zero)})})}), s};
+  }
+
+  /// c_k of b c' = n', given k n_k.
+  Operand divided(const std::vector<Operand>& n, const Series& b) {
+    const Operand inverse = at_start(Op::div, {one(), b.zero});
+    const Operand s = open({});
+    std::vector<Operand> rest = n;
+    rest.push_back(minus(s));
+    const Operand w = at_next(Op::mul, {kept(inverse), at_next(Op::add, rest)});
+    factors_[s.index] = {w, b.next};
+    return at_next(Op::mul, {one_over_k, w});
+  }
+
+  /// 1 + sign a^2.
+  Series one_and_square(const Series& a, bool plus) {
+    const Series square = times(a, a);
+    return total({Series{false, one(), {}}, plus ? square : minus(square)});
+  }
+
+  Series function(const std::vector<Series>& a, const Instruction& instruction) {
+    Series c{true, copied(instruction).zero, {}};
+    switch (instruction.op) {
+      case Op::exp: {
+        const auto [next, s] = integrated(a[0], c.zero);
+        c.next = next;
+        close(s, next);
+        return c;
+      }
+      case Op::tan: case Op::tanh: {
+        const bool plus = instruction.op == Op::tan;
+        const Operand square = at_start(Op::mul, {c.zero, c.zero});
+        const Operand slope = at_start(Op::add, {one(), plus ? square : minus(square)});
+        const auto [next, s] = integrated(a[0], slope);
+        c.next = next;
+        close(s, one_and_square(c, plus).next);
+        return c;
+      }
+      case Op::sinh: case Op::cosh: {
+        const bool odd = instruction.op == Op::sinh;
+        Series other{true, at_start(odd ? Op::cosh : Op::sinh, {a[0].zero}), {}};
+        pair(a[0], odd ? c : other, odd ? other : c, false);
+        return c;
+      }
+      case Op::log: c.next = divided({weighted(a[0])}, a[0]); return c;
+      case Op::atan: c.next = divided({weighted(a[0])}, one_and_square(a[0], true)); return c;
+      case Op::asin: c.next = divided({weighted(a[0])}, root(one_and_square(a[0], false))); return c;
+      case Op::acos: c.next = divided({minus(weighted(a[0]))}, root(one_and_square(a[0], false))); return c;
+      case Op::atan2: c.next = angle(a[0], a[1]); return c;
+      default: throw std::logic_error("an operation without a recurrence");
+    }
+  }
+
+  /// (x^2 + y^2) c' = x y' - y x'.
+  Operand angle(const Series& y, const Series& x) {
+    std::vector<Operand> n;
+    const auto add = [&](const Series& moving, const Series& factor, bool negated) {
+      if (!moving.moves) return;
+      const Operand w = weighted(moving), rest = at_next(Op::mul, {w, kept(factor.zero)});
+      n.push_back(negated ? minus(rest) : rest);
+      if (!factor.moves) return;
+      const Operand s = sum(w, factor.next);
+      n.push_back(negated ? minus(s) : s);
+    };
+    add(y, x, false);
+    add(x, y, true);
+    const auto square = [this](const Series& s) { return s.moves ? times(s, s) : Series{false, at_start(Op::mul, {s.zero, s.zero}), {}}; };
+    return divided(n, total({square(x), square(y)}));
+  }
+
+  /// a c' = b c a' where b stands still, else c' = c (b log a)'.
+  Series general_power(const Series& a, const Series& b, const Instruction& instruction) {
+    Series c{true, copied(instruction).zero, {}};
+    if (b.moves) {
+      const Series log = a.moves ? function({a}, logarithm(instruction)) : Series{false, at_start(Op::log, {a.zero}), {}};
+      const Series exponent = a.moves ? times(b, log) : scaled(b, log.zero);
+      const auto [next, s] = integrated(exponent, c.zero);
+      c.next = next;
+      close(s, next);
+      return c;
+    }
+    const Operand w = weighted(a), s = open(w);
+    const Operand n = at_next(Op::add, {s, at_next(Op::mul, {w, kept(c.zero)})});
+    c.next = divided({at_next(Op::mul, {kept(b.zero), n})}, a);
+    close(s, c.next);
+    return c;
+  }
+  static Instruction logarithm(const Instruction& power) {
+    Instruction result;
+    result.op = Op::log;
+    result.operands = {power.operands[0]};
+    return result;
+  }
+
+  /// The branch of order 0, held.
+  Series branch(const std::vector<Series>& a, const Instruction& instruction) {
+    Series c = copied(instruction);
+    const auto next_of = [this](const Series& s) { return s.moves ? s.next : constant(next_, 0); };
+    const auto choose = [&](const Operand& low, const Operand& high, const Operand& yes, const Operand& no) {
+      c.moves = true;
+      c.next = at_next(Op::select, {kept(low), kept(high), yes, no});
+    };
+    switch (instruction.op) {
+      case Op::abs: choose(a[0].zero, constant(start_, 0), minus(a[0].next), a[0].next); break;
+      case Op::min: choose(a[1].zero, a[0].zero, next_of(a[1]), next_of(a[0])); break;
+      case Op::max: choose(a[0].zero, a[1].zero, next_of(a[1]), next_of(a[0])); break;
+      case Op::select:
+        if (a[2].moves || a[3].moves) choose(a[0].zero, a[1].zero, next_of(a[2]), next_of(a[3]));
+        break;
+      default: break;  // sign: stands still
+    }
+    return c;
+  }
+
+  void write_results() {
+    for (const auto& [name, entries] : rhs_.results) {
+      std::vector<Operand> zero, next;
+      for (const Operand& entry : entries) {
+        const Series series = read(entry);
+        zero.push_back(series.zero);
+        next.push_back(series.moves ? series.next : constant(next_, 0));
+      }
+      start_.results.emplace_back(name, zero);
+      if (!is_code(name)) next_.results.emplace_back(name, next);
+    }
+    for (const PivotTest& test : rhs_.pivots) start_.pivots.push_back({read(test.pivot).zero, read(test.scale).zero});
+    const Operand none = constant(next_, 0);
+    while (factors_.empty() || factors_.size() % taylor_lanes != 0) factors_.push_back({none, none});
+    std::array<std::vector<Operand>, 2> columns;
+    for (const std::array<Operand, 2>& pair : factors_) {
+      columns[0].push_back(pair[0]);
+      columns[1].push_back(pair[1]);
+    }
+    next_.results.insert(next_.results.begin(), {{"a", columns[0]}, {"b", columns[1]}});
+    start_.results.insert(start_.results.begin(), {"z", zeros_});
+  }
+
+  /// Operands of `next` that were named before the length of w was known.
+  void place(Operand& o) const {
+    const auto zeros = static_cast<std::uint32_t>(zeros_.size()), sums = static_cast<std::uint32_t>(factors_.size());
+    if (o.slot == Slot::input) o = {Slot::prepared, zeros + o.index, o.negated};
+    if (o.slot == Slot::side) o = {Slot::prepared, zeros + sums + o.index, o.negated};
+  }
+
+  /// A partner that was added has its angle in another pack, perhaps: packs and lanes anew, by what comes one after another.
+  void number_packs() {
+    std::uint32_t packs = 0, before = 0;
+    std::vector<Operand> angles;
+    for (Instruction& instruction : start_.code) {
+      const std::uint32_t pack = instruction.pack;
+      if (pack != 0) {
+        if (pack != before) angles.clear(), ++packs;
+        const auto at = std::find(angles.begin(), angles.end(), instruction.operands[0]);
+        instruction.pack = packs;
+        instruction.lane = static_cast<std::uint32_t>(at - angles.begin());
+        if (at == angles.end()) angles.push_back(instruction.operands[0]);
+      }
+      before = pack;
+    }
+  }
+
+  Taylor finished() {
+    write_results();
+    number_packs();
+    for (Instruction& instruction : next_.code) std::for_each(instruction.operands.begin(), instruction.operands.end(), [this](Operand& o) { place(o); });
+    for (auto& [name, entries] : next_.results) std::for_each(entries.begin(), entries.end(), [this](Operand& o) { place(o); });
+    for (Function* function : {&start_, &next_}) count(*function);
+    return {std::move(start_), std::move(next_), zeros_.size(), factors_.size()};
+  }
+
+  static void count(Function& function) {
+    Operations& o = function.operations;
+    for (const Instruction& instruction : function.code) {
+      const std::size_t n = instruction.operands.size();
+      switch (instruction.op) {
+        case Op::add: o.add += n - 1; break;
+        case Op::mul: o.mul += n - 1; break;
+        case Op::div: ++o.div; break;
+        case Op::sqrt: ++o.sqrt; break;
+        case Op::sin: case Op::cos: case Op::tan: ++o.trig; break;
+        default: ++o.other;
+      }
+    }
+  }
+
+  const Function& rhs_;
+  Function start_, next_;
+  std::string section_;
+  std::vector<Series> values_;                     // per instruction of rhs
+  std::vector<std::array<Operand, 2>> factors_;    // of the sums
+  std::vector<Operand> zeros_;
+  std::map<std::pair<Slot, std::uint32_t>, std::uint32_t> kept_;
+  std::map<Key, Operand> weighted_;
+  std::map<std::pair<Keys, Keys>, Series> products_;
+  std::map<Keys, std::array<Series, 2>> trig_;
+};
+
+}  // namespace
+
+std::size_t taylor_order(const Taylor& taylor) {
+  return std::min(taylor_highest_order, stack_budget / (2 * sizeof(double) * taylor.products));
+}
+
+Taylor taylor_series(const Function& rhs) {
+  Taylor taylor = Recurrences(rhs).run();
+  if (taylor_order(taylor) < taylor_lowest_order) {
+    throw Error("program", {}, fmt::format("the equations are too large for Taylor series: {} products", taylor.products),
+                "take another solver, and leave taylor out of --with");
+  }
+  return taylor;
+}
+
+}  // namespace eomgen::program
