@@ -15,6 +15,7 @@ std::span<const Command> commands() {
       Command{"emit", "C and C++ sources, or a LaTeX document", declare_emit},
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
       Command{"inverse", "the forces that prescribed motions need", declare_inverse},
+      Command{"sweep", "many runs over a grid of parameters, in parallel, resumable", declare_sweep},
   };
   return entries;
 }

@@ -15,5 +15,6 @@ Execute declare_verify(CLI::App& app);
 Execute declare_emit(CLI::App& app);
 Execute declare_run(CLI::App& app);
 Execute declare_inverse(CLI::App& app);
+Execute declare_sweep(CLI::App& app);
 
 }  // namespace eomgen::cli

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Many runs of one scene over a grid of parameters: compiled once, run by several processes, and gone on with after an interruption.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <thread>
+
+#include "cli/commands/commands.hpp"
+#include "cli/decimal.hpp"
+#include "cli/interrupt.hpp"
+#include "cli/locate.hpp"
+#include "cli/output.hpp"
+#include "cli/simulate.hpp"
+#include "cli/sweep/grid.hpp"
+#include "cli/sweep/ledger.hpp"
+#include "cli/sweep/workers.hpp"
+#include "cli/usage.hpp"
+#include "model/content_hash.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+struct Options {
+  std::string model, scene = "default", out;
+  std::vector<std::string> grid, set, outputs;
+  std::optional<double> rtol, atol, step, t_end;
+  std::optional<std::string> solver;
+  std::size_t jobs = 0;
+  bool no_error_estimate = false;
+};
+
+constexpr const char* refused = "refused";  // in place of an outcome, where a run could not begin
+
+run::Overrides overrides_of(const Options& options) {
+  run::Overrides o;
+  o.parameters = parse_assignments("sweep", options.set);
+  o.rtol = options.rtol;
+  o.atol = options.atol;
+  o.step = options.step;
+  o.t_end = options.t_end;
+  o.solver = options.solver;
+  o.outputs = options.outputs;
+  return o;
+}
+
+/// What makes two sweeps the same: the model's bytes and all that was asked.
+std::string key_of(const Options& options, const model::Model& model) {
+  std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate ? "plain" : "estimate");
+  for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
+    text += '\n';
+    for (const std::string& entry : *list) text += entry + '\x1f';
+  }
+  for (const auto& value : {options.rtol, options.atol, options.step, options.t_end}) text += '\n' + (value ? shortest(*value) : "");
+  return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
+}
+
+// A comma, a quotation mark or a line break inside of a field would be read as the end of it.
+std::string field(std::string text) {
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
+
+class Sweep {
+ public:
+  Sweep(const Options& options, const Common& common, const model::Model& model)
+      : options_(options), seed_(common.seed), grid_(options.grid), file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
+        ledger_((require_writable("--out", file_), file_), key_of(options, model)), resumed_(ledger_.rows().size()) {
+    const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
+    for (const Axis& axis : grid_.axes()) {
+      const auto named = [&](const model::Parameter& p) { return p.name == axis.parameter; };
+      if (std::none_of(model.parameters.begin(), model.parameters.end(), named)) {
+        std::vector<std::string> known;
+        for (const model::Parameter& p : model.parameters) known.push_back(p.name);
+        throw Error("sweep", {}, fmt::format("there is no parameter '{}'", axis.parameter), choice_of(axis.parameter, known));
+      }
+      if (set.contains(axis.parameter)) {
+        throw Error("sweep", {}, fmt::format("'{}' has a grid and a value by --set", axis.parameter), "leave one of them out");
+      }
+    }
+  }
+
+  /// Whether all runs are there.
+  bool run() {
+    std::vector<std::size_t> open;
+    for (std::size_t i = 0; i < grid_.size(); ++i) {
+      if (!ledger_.rows().contains(i)) open.push_back(i);
+    }
+    if (!open.empty()) compute(open);
+    if (ledger_.rows().size() < grid_.size()) return false;
+    ledger_.finish();
+    return true;
+  }
+
+  nlohmann::ordered_json document(const model::Model& model, bool whole) const {
+    return {{"format", 1}, {"model", model.id}, {"scene", options_.scene}, {"runs", grid_.size()}, {"done", ended(true)},
+            {"failed", ended(false)}, {"resumed", resumed_}, {"file", whole ? file_ : file_ + ".partial"}};
+  }
+
+ private:
+  std::size_t ended(bool well) const {
+    const std::size_t at = grid_.axes().size() + 1;
+    std::size_t count = 0;
+    for (const auto& [run, line] : ledger_.rows()) {
+      std::size_t begin = 0;
+      for (std::size_t k = 0; k < at; ++k) begin = line.find(',', begin) + 1;
+      const std::string outcome = line.substr(begin, line.find(',', begin) - begin);
+      count += (outcome == eom::name(eom::Outcome::done) || outcome == eom::name(eom::Outcome::stopped_by_event)) == well;
+    }
+    return count;
+  }
+
+  run::Overrides at(std::size_t index) const {
+    run::Overrides o = overrides_of(options_);
+    o.parameters.merge(grid_.point(index));
+    return o;
+  }
+
+  void compute(std::vector<std::size_t> open) {
+    SimulationRequest request;
+    request.model = options_.model;
+    request.scene = options_.scene;
+    request.estimate = !options_.no_error_estimate;
+    request.seed = seed_;
+    std::optional<Interrupt> interrupt;
+    request.ready = [&interrupt] { interrupt.emplace(); };
+    request.interrupt = &Interrupt::flag();
+    std::vector<std::pair<std::size_t, std::string>> refusals;
+    std::optional<Simulation> first;
+    while (!open.empty() && !first) {  // the first run that can begin compiles the code for all
+      request.overrides = at(open.front());
+      try {
+        first = simulate(request);
+      } catch (const Error& error) {
+        if (Interrupt::flag()) return;
+        if (error.stage() != "scene") throw;
+        refusals.emplace_back(open.front(), error.message());
+        open.erase(open.begin());
+      }
+    }
+    if (!first) throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", refusals.front().second), "change the grid or the scene");
+    columns(first->scene);
+    if (ledger_.rows().empty()) resumed_ = 0;
+    for (const auto& [run, why] : refusals) ledger_.add(run, refusal(run, why));
+    if (first->result.outcome == eom::Outcome::interrupted) return;
+    ledger_.add(open.front(), row(open.front(), first->result));
+    open.erase(open.begin());
+    const auto line = [&](std::size_t run) {
+      try {
+        const run::RunResult result = run_again(*first, at(run), request.estimate);
+        return Interrupt::flag() ? std::string() : row(run, result);
+      } catch (const Error& error) {
+        if (error.stage() != "scene") throw;
+        return refusal(run, error.message());
+      }
+    };
+    const std::size_t jobs = options_.jobs > 0 ? options_.jobs : std::max(1u, std::thread::hardware_concurrency());
+    by_processes(open, jobs, line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); }, Interrupt::flag());
+  }
+
+  void columns(const run::Scene& scene) {
+    names_ = scene.outputs;
+    std::string header = "run";
+    for (const Axis& axis : grid_.axes()) header += "," + axis.parameter;
+    header += ",outcome,t,steps,rhs_evaluations";
+    const model::Model model = model::read_model(locate_model(options_.model));
+    std::vector<std::string> all;
+    for (const model::Coordinate& c : model.coordinates) {
+      all.push_back(c.name);
+      all.push_back(c.name + "_dot");
+    }
+    if (std::find(names_.begin(), names_.end(), "energy") == names_.end()) all.emplace_back("energy");
+    names_.insert(names_.begin(), all.begin(), all.end());
+    for (const std::string& name : names_) header += "," + name;
+    ledger_.set_header(header + ",error_estimate,detail");
+  }
+
+  std::string beginning(std::size_t run) const {
+    std::string text = std::to_string(run);
+    const std::map<std::string, symbolic::Rational> point = grid_.point(run);
+    for (const Axis& axis : grid_.axes()) text += "," + number(cln::double_approx(point.at(axis.parameter)));
+    return text;
+  }
+  std::string refusal(std::size_t run, const std::string& why) const {
+    return beginning(run) + "," + refused + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
+  }
+  std::string row(std::size_t run, const run::RunResult& result) const {
+    std::string text = beginning(run) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t), result.statistics.steps, result.statistics.rhs_evaluations);
+    for (const std::string& name : names_) {
+      const auto found = std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
+      text += "," + (found == result.final.end() ? "" : number(found->second));
+    }
+    const auto& estimate = result.error_estimate;
+    return text + "," + (estimate.empty() ? "" : number(estimate.back().second)) + "," + field(result.detail);
+  }
+
+  const Options& options_;
+  std::uint64_t seed_;
+  Grid grid_;
+  std::string file_;
+  Ledger ledger_;
+  std::size_t resumed_;
+  std::vector<std::string> names_;
+};
+
+int execute(const Options& options, const Common& common) {
+  const model::Model model = model::read_model(locate_model(options.model));
+  Sweep sweep(options, common, model);
+  const bool whole = sweep.run();
+  const nlohmann::ordered_json found = sweep.document(model, whole);
+  if (common.json) {
+    print_document(found);
+  } else {
+    fmt::print("model  {}, scene {}\nruns   {}: {} done, {} failed", model.id, options.scene, found["runs"].get<std::size_t>(),
+               found["done"].get<std::size_t>(), found["failed"].get<std::size_t>());
+    if (found["resumed"] != 0) fmt::print(" ({} of them were there)", found["resumed"].get<std::size_t>());
+    fmt::print("\nwrote  {}\n", found["file"].get<std::string>());
+  }
+  if (!whole) fmt::print(stderr, "interrupted: the same command goes on from the rows that are there\n");
+  return whole && found["failed"] == 0 ? 0 : 3;
+}
+
+}  // namespace
+
+Execute declare_sweep(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  add_list(app, "--grid", options->grid, "PARAMETER=FROM:TO:COUNT, PARAMETER=FROM:TO:log:COUNT or PARAMETER=a,b,c; may be repeated", '\0');
+  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
+  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
+  app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
+  app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
+  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the runs")->check(finite_number());
+  app.add_option("--out", options->out, "the CSV file; without it MODEL_sweep.csv in this folder");
+  add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
+  app.add_option("--jobs", options->jobs, "processes; without it one for each processor")->check(whole_number(1, 1024));
+  app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");
+  return [options](const Common& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,117 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command sweep: its table against single runs, going on after an interruption, and what it refuses.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <sstream>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+// x'' = -(k/m) x from x = 1: cos(sqrt(k/m) t).
+const char* const oscillator =
+    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
+    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
+
+std::vector<Words> rows(const std::string& text) {
+  std::vector<Words> result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream fields(line);
+    result.emplace_back();
+    for (std::string field; std::getline(fields, field, ',');) result.back().push_back(field);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("sweep: every point of the grid is the run that it stands for, the last parameter fastest") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1:100:log:3", "--rtol", "1e-11", "--jobs", "3"});
+  CHECK(found["runs"] == 6);
+  CHECK(found["done"] == 6);
+  CHECK(found["failed"] == 0);
+  CHECK(found["file"] == "oscillator_sweep.csv");
+  const std::vector<Words> table = rows(folder.read("oscillator_sweep.csv"));
+  REQUIRE(table.size() == 8);
+  CHECK(table[1] == Words{"run", "m", "k", "outcome", "t", "steps", "rhs_evaluations", "x", "x_dot", "energy", "error_estimate", "detail"});
+  const double m[] = {1, 1, 1, 2, 2, 2}, k[] = {1, 10, 100, 1, 10, 100};
+  for (std::size_t i = 0; i < 6; ++i) {
+    const Words& row = table[i + 2];
+    CHECK(std::stoul(row[0]) == i);
+    CHECK(std::stod(row[1]) == m[i]);
+    CHECK(std::stod(row[2]) == doctest::Approx(k[i]).epsilon(1e-15));
+    CHECK(row[3] == "done");
+    const double w = std::sqrt(k[i] / m[i]);
+    CHECK(std::abs(std::stod(row[7]) - std::cos(w)) < 1e-9);  // some hundred tolerances of a step
+    CHECK(std::abs(std::stod(row[8]) + w * std::sin(w)) < 1e-8);
+  }
+  CHECK_FALSE(folder.has("oscillator_sweep.csv.partial"));
+}
+
+TEST_CASE("sweep: goes on from what is there, and comes to the same bytes") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:5", "--out", "all.csv"};
+  expect(0, folder, words);
+  const std::string whole = folder.read("all.csv");
+  CHECK(document(folder, words)["resumed"] == 5);
+  // The first two lines, two rows, and a row that was cut off.
+  std::size_t at = 0;
+  for (int line = 0; line < 4; ++line) at = whole.find('\n', at) + 1;
+  folder.write("all.csv.partial", whole.substr(0, at + 7));
+  folder.write("all.csv", "something else");
+  CHECK(document(folder, words)["resumed"] == 2);
+  CHECK(folder.read("all.csv") == whole);
+  // Another sweep does not take it over.
+  folder.write("all.csv.partial", whole.substr(0, at));
+  const ChildResult other = expect(2, folder, {"sweep", "oscillator.toml", "--grid", "k=1:9:4", "--out", "all.csv"});
+  CHECK(contains(other.err, "unfinished table of another sweep"));
+  CHECK(folder.read("all.csv.partial") == whole.substr(0, at));
+}
+
+TEST_CASE("sweep: runs that cannot begin or that fail are kept and counted") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=-1,1,0"}, 3);
+  CHECK(found["done"] == 1);
+  CHECK(found["failed"] == 2);
+  const std::vector<Words> table = rows(folder.read("oscillator_sweep.csv"));
+  CHECK(table[2][2] == "refused");
+  CHECK(contains(table[2].back(), "declared positive"));
+  CHECK(table[3][2] == "done");
+  folder.write("diverging.toml", "format = 1\n[parameters]\nk = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-k*x^3/3\"\n"
+                                 "[scene.default]\nt = [0, 10]\ninitial = { x = 1 }\n");
+  CHECK(document(folder, {"sweep", "diverging.toml", "--grid", "k=0,1"}, 3)["failed"] == 1);
+  const ChildResult none = expect(2, folder, {"sweep", "oscillator.toml", "--grid", "m=-1,-2"});
+  CHECK(contains(none.err, "no run of the grid can begin"));
+}
+
+TEST_CASE("sweep: what is wrong with a grid is told") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const auto refused = [&](const Words& more, const std::string& what) {
+    Words words{"sweep", "oscillator.toml"};
+    words.insert(words.end(), more.begin(), more.end());
+    CAPTURE(what);
+    CHECK(contains(expect(2, folder, words).err, what));
+    CHECK(folder.names() == Words{"oscillator.toml"});
+  };
+  refused({}, "nothing is to be varied");
+  refused({"--grid", "kk=1,2"}, "did you mean 'k'?");
+  refused({"--grid", "k"}, "names no parameter");
+  refused({"--grid", "k=1:2"}, "is no range of values");
+  refused({"--grid", "k=1:2:1"}, "whole number of at least 2");
+  refused({"--grid", "k=1:2:2.5"}, "whole number of at least 2");
+  refused({"--grid", "k=-1:2:log:3"}, "goes through 0");
+  refused({"--grid", "k=1:2:cubic:3"}, "lin or log");
+  refused({"--grid", "k=1,x"}, "no decimal number");
+  refused({"--grid", "k=1,2", "--grid", "k=3,4"}, "two grids");
+  refused({"--grid", "k=1,2", "--set", "k=3"}, "a grid and a value");
+  refused({"--grid", "k=1:2:1000", "--grid", "m=1:2:1001"}, "more than 1000000 points");
+}
