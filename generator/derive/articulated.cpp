@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/articulated.hpp"
 
+#include "derive/body_elimination.hpp"
+#include "derive/body_equations.hpp"
 #include "derive/tensions.hpp"
 #include "derive/tree_equations.hpp"
 
 namespace eomgen::derive {
+
 std::optional<system::EquationSystem> articulated(Mechanics& m, system::Approach approach) {
   if (!m.active.empty() || !m.contacts.empty()) return std::nullopt;
+  if (!m.spins.empty()) return equations_of_bodies(m, approach, "articulated", body_accelerations);
   Dag& dag = *m.dag;
   const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
   if (!motion) return std::nullopt;

@@ -6,56 +6,12 @@
 #include <set>
 
 #include "derive/equations.hpp"
+#include "derive/tree_forces.hpp"
 
 namespace eomgen::derive {
 namespace {
 
 using symbolic::Symbol;
-using symbolic::SymbolKind;
-
-/// Imposes the constraints where they are to be, and writes functions of time out.
-class Spelled {
- public:
-  Spelled(Mechanics& m, bool imposed) : imposed_(imposed), impose_(impose(m)), write_(write_out(m)) {}
-  Ref operator()(Ref r) { return write_(imposed_ ? impose_(r) : r); }
-  Vec3 operator()(const Vec3& v) { return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])}; }
-
- private:
-  bool imposed_;
-  symbolic::Substitution impose_, write_;
-};
-
-/// Uniform gravity acts on every particle alike and is carried as an acceleration; the other forces as forces of theta.
-Vec3 take_gravity(Mechanics& m, Spelled& spelled, Ref& other_potential) {
-  Dag& dag = *m.dag;
-  Vec3 sum = symbolic::zero_vector(dag);
-  other_potential = spelled(mechanics::lower_scalar(m, m.model->energy.potential));
-  for (std::size_t i = 0; i < m.model->forces.size(); ++i) {
-    const auto* gravity = std::get_if<model::Gravity>(&m.model->forces[i].kind);
-    Vec3 g = symbolic::zero_vector(dag);
-    if (gravity != nullptr) g = spelled(mechanics::lower_vector(m, gravity->acceleration));
-    const std::vector<Symbol> symbols = dag.symbols({g[0], g[1], g[2]});
-    const bool uniform = gravity != nullptr && std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
-                           return s.kind == SymbolKind::parameter || s.kind == SymbolKind::time;
-                         });
-    for (std::size_t k = 0; k < 3 && uniform; ++k) sum[k] = dag.add(sum[k], g[k]);
-    if (!uniform) other_potential = dag.add(other_potential, spelled(m.potential_by_force[i]));
-  }
-  return sum;
-}
-
-std::vector<Ref> other_forces(Mechanics& m, const QuasiCoordinates& theta, const std::vector<std::uint32_t>& of,
-                              Spelled& spelled, Ref potential) {
-  Dag& dag = *m.dag;
-  const std::vector<Ref> Q = generalized_forces(m);
-  std::vector<Ref> by_coordinate;
-  for (const std::uint32_t i : of) {
-    const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(potential);
-    by_coordinate.push_back(dag.sub(spelled(Q[i]), slope));
-  }
-  if (theta.identity()) return by_coordinate;
-  return symbolic::transposed_applied(dag, theta.S_inverse, by_coordinate);
-}
 
 /// J of each theta and the particles that it moves; false where it moves two of them differently, or none.
 bool find_joints(Dag& dag, Branches& b, std::vector<std::set<std::size_t>>& moved) {
@@ -144,7 +100,8 @@ std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>&
   if (!find_joints(dag, b, moved) || !find_links(dag, b, moved)) return std::nullopt;
   Ref potential;
   b.gravity = take_gravity(m, spelled, potential);
-  b.f = other_forces(m, b.coordinates, of, spelled, potential);
+  b.f = other_forces(m, of, spelled, potential);
+  if (!b.coordinates.identity()) b.f = symbolic::transposed_applied(dag, b.coordinates.S_inverse, b.f);
   return b;
 }
 

@@ -19,9 +19,12 @@ namespace {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-/// The least-squares solution of J x = d, if it is one: J is rows x n, row-major.
-bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std::size_t n) {
-  std::vector<double> N(n * n), y(n);
+constexpr double screening = 1e-5;  // what passes is decided in many digits
+
+/// The least-squares solution y of J y = d, if it is one: J is rows x n, row-major.
+bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std::size_t n, std::vector<double>& y) {
+  std::vector<double> N(n * n);
+  y.assign(n, 0.0);
   double size = 0;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t r = 0; r < d.size(); ++r) {
@@ -49,7 +52,17 @@ bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std
     residual = std::max(residual, std::abs(rest));
     length = std::max(length, std::abs(d[r]));
   }
-  return residual <= 1e-5 * length;  // a screening: what passes is decided in many digits
+  return residual <= screening * length;
+}
+
+/// force . y is nothing beside its terms.
+bool does_no_work(const double* force, const std::vector<double>& y) {
+  double sum = 0, size = 0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    sum += force[i] * y[i];
+    size += std::abs(force[i] * y[i]);
+  }
+  return std::abs(sum) <= screening * size;
 }
 
 class Search {
@@ -87,7 +100,7 @@ class Search {
 
   std::optional<Conserved> component(bool angular, std::size_t k) {
     const std::vector<Ref> d = displacement(angular, k);
-    if (mechanics::vanishes(dag_, d) || !may_be_in_range(d)) return std::nullopt;
+    if (mechanics::vanishes(dag_, d) || !may_be_conserved(d)) return std::nullopt;
     const Certainty certainty = vanishing(dag_, conditions(d));
     if (certainty == Certainty::no) return std::nullopt;
     Conserved result;
@@ -135,34 +148,49 @@ class Search {
     return d;
   }
 
-  bool may_be_in_range(const std::vector<Ref>& d) const {
+  /// By values at one point: the displacement is one of the coordinates', and the forces do no work on it.
+  bool may_be_conserved(const std::vector<Ref>& d) const {
     std::vector<Ref> both = J_;
     both.insert(both.end(), d.begin(), d.end());
+    both.insert(both.end(), force_.begin(), force_.end());
     for (std::uint64_t point = 1; point <= 4; ++point) {
       std::vector<double> value = symbolic::evaluate(dag_, both, [=](const Symbol& s) { return symbolic::sample_double(s, point); });
       if (!std::all_of(value.begin(), value.end(), [](double x) { return std::isfinite(x); })) continue;
       const auto end = value.begin() + static_cast<std::ptrdiff_t>(J_.size());
-      return is_in_range({value.begin(), end}, {end, value.end()}, n_);
+      const auto force = end + static_cast<std::ptrdiff_t>(d.size());
+      std::vector<double> xi;
+      return is_in_range({value.begin(), end}, {end, force}, n_, xi) && does_no_work(&*force, xi);
     }
     return false;
   }
 
   // What has to vanish: J xi - d, the work on xi, and the work of the constraint forces on it.
   std::vector<Ref> conditions(const std::vector<Ref>& d) {
-    std::vector<Ref> N(n_ * n_, dag_.zero()), y(n_, dag_.zero());
+    std::vector<Ref> y(n_, dag_.zero());
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t r = 0; r < d.size(); ++r) {
-        y[i] = dag_.add(y[i], dag_.mul(J_[r * n_ + i], d[r]));
-        for (std::size_t k = 0; k < n_; ++k) N[i * n_ + k] = dag_.add(N[i * n_ + k], dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
-      }
+      for (std::size_t r = 0; r < d.size(); ++r) y[i] = dag_.add(y[i], dag_.mul(J_[r * n_ + i], d[r]));
     }
-    for (Ref& entry : N) entry = symbolic::tidy(dag_, entry);  // orthogonal coordinates leave a diagonal
-    const symbolic::Factorisation factors(dag_, N, n_, symbolic::Ties::ascending);
-    const std::vector<Ref> xi = factors.backward(factors.forward(y));
+    if (!factors_) factors_.emplace(factorised());
+    const std::vector<Ref> xi = factors_->backward(factors_->forward(y));
     std::vector<Ref> result;
     for (std::size_t r = 0; r < d.size(); ++r) result.push_back(dag_.sub(along(xi, J_, r), d[r]));
     result.push_back(along(xi, force_, 0));
     return result;
+  }
+
+  /// J^T J.
+  symbolic::Factorisation factorised() {
+    symbolic::Expander expand(dag_);
+    std::vector<Ref> N(n_ * n_, dag_.zero());
+    const std::size_t rows = J_.size() / n_;
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t k = 0; k <= i; ++k) {
+        Ref sum = dag_.zero();
+        for (std::size_t r = 0; r < rows; ++r) sum = dag_.add(sum, dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
+        N[i * n_ + k] = N[k * n_ + i] = expand.tidy(sum);  // orthogonal coordinates leave a diagonal
+      }
+    }
+    return {dag_, std::move(N), n_, symbolic::Ties::ascending};
   }
 
   Ref along(const std::vector<Ref>& xi, const std::vector<Ref>& matrix, std::size_t row) const {
@@ -178,6 +206,7 @@ class Search {
   std::vector<Ref> mass_, J_, force_;
   std::vector<Vec3> r_, v_, w_, H_;
   std::vector<std::array<Vec3, 3>> axes_;  // of the spins
+  std::optional<symbolic::Factorisation> factors_;
 };
 
 bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression, Dag& work) {

@@ -17,8 +17,8 @@ std::optional<system::EquationSystem> by_lagrange(mechanics::Mechanics& m, syste
 constexpr RouteEntry entries[] = {
     {"lagrange", "T and U differentiated as they stand", by_lagrange},
     {"jacobian", "velocity Jacobians, M = sum m J^T J", jacobian},
-    {"recursive", "a tree of particles: composite masses, forces from the tips inwards", recursive},
-    {"articulated", "a tree of particles: the tensions of the links first, no mass matrix", articulated},
+    {"recursive", "a tree of particles or bodies: composite masses, forces from the tips inwards", recursive},
+    {"articulated", "a tree of particles or bodies: link after link, no mass matrix", articulated},
     {"christoffel", "M(q), Christoffel symbols of the first kind, expanded", christoffel},
     {"expanded", "T and U expanded first, sin^2 + cos^2 = 1 used", expanded},
 };

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A position as the model writes it: from which place, and with which components along the axes of bodies and frames.
+#pragma once
+
+#include <map>
+#include <optional>
+
+#include "derive/imposition.hpp"
+#include "mechanics/lowering.hpp"
+
+namespace eomgen::derive {
+
+struct WrittenPlace {
+  std::optional<std::uint32_t> from;        // a place; none: the origin
+  std::map<std::uint32_t, Vec3> components;  // by frame, along its own axes
+};
+
+/// Nothing where the position is more than such a sum (cross products, unit vectors, ..).
+std::optional<WrittenPlace> written_place(const Mechanics& mechanics, mechanics::Lowering& lower, std::uint32_t place);
+
+}  // namespace eomgen::derive

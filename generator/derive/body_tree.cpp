@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/body_tree.hpp"
+
+#include <algorithm>
+#include <map>
+#include <tuple>
+
+#include "derive/body_places.hpp"
+#include "derive/tree_forces.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+/// A point that is fixed in a link; link -1: the ground.
+struct Anchor {
+  int link = -1;
+  Vec3 offset;  // from the link's origin, along its axes
+};
+
+class Builder {
+ public:
+  Builder(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed)
+      : m_(m), dag_(*m.dag), of_(of), lower_(m), spelled_(m, imposed), bias_(symbolic::total_time(dag_, m.q.size(), 0, true)) {}
+
+  std::optional<BodyTree> build() {
+    for (const mechanics::PointMass& mass : m_.masses) {
+      if (!add_mass(mass)) return std::nullopt;
+    }
+    if (!covers_coordinates()) return std::nullopt;
+    Ref potential;
+    tree_.gravity = take_gravity(m_, spelled_, potential);
+    tree_.Q = other_forces(m_, of_, spelled_, potential);
+    return std::move(tree_);
+  }
+
+ private:
+  bool add_mass(const mechanics::PointMass& mass) {
+    const Ref m = spelled_(mass.mass);
+    if (!is_constant(m)) return false;
+    const model::Body* body = nullptr;
+    for (const model::Body& b : m_.model->bodies) body = b.place == mass.place ? &b : body;
+    std::optional<Anchor> at = anchor(mass.place);
+    if (at && body != nullptr) at = attached(*at, body->frame);
+    if (!at) return false;
+    if (at->link < 0) return true;  // at rest
+    BodyLink& link = tree_.links[static_cast<std::size_t>(at->link)];
+    const Vec3 mr = symbolic::scale(dag_, m, at->offset);
+    link.mass = dag_.add(link.mass, m);
+    link.moment = symbolic::add(dag_, link.moment, mr);
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        Ref& entry = link.inertia[i][k];
+        if (body != nullptr) entry = dag_.add(entry, spelled_(lower_.scalar(body->inertia[i][k])));
+        entry = dag_.sub(entry, dag_.mul(mr[i], at->offset[k]));
+        if (i == k) entry = dag_.add(entry, dot(dag_, mr, at->offset));
+      }
+    }
+    return true;
+  }
+
+  /// The place in the tree; nothing where its position is not of the form that trees have.
+  std::optional<Anchor> anchor(std::uint32_t place) {
+    if (const auto found = anchors_.find(place); found != anchors_.end()) return found->second;
+    const std::optional<WrittenPlace> written = written_place(m_, lower_, place);
+    std::optional<Anchor> at = Anchor{-1, symbolic::zero_vector(dag_)};
+    if (!written) at.reset();
+    if (at && written->from) at = anchor(*written->from);
+    if (at) at = moved(*at, written->components);
+    anchors_.emplace(place, at);
+    return at;
+  }
+
+  /// Along the axes that the point is fixed in first, then from the inner axes to the outer.
+  std::optional<Anchor> moved(Anchor at, const std::map<std::uint32_t, Vec3>& components) {
+    std::vector<std::uint32_t> frames;
+    for (const auto& [frame, v] : components) frames.push_back(frame);
+    const std::uint32_t here = frame_of(at.link);
+    std::stable_sort(frames.begin(), frames.end(), [&](std::uint32_t a, std::uint32_t b) {
+      return std::make_pair(a != here, depth(a)) < std::make_pair(b != here, depth(b));
+    });
+    for (const std::uint32_t frame : frames) {
+      const Vec3 v = spelled_(components.at(frame));
+      if (is_zero(dag_, v)) continue;
+      const std::optional<Anchor> next = attached(at, frame);
+      if (!next) return std::nullopt;
+      at = *next;
+      at.offset = symbolic::add(dag_, at.offset, v);
+      if (!is_constant(v[0]) || !is_constant(v[1]) || !is_constant(v[2])) at = shifted(at);
+    }
+    return at;
+  }
+
+  /// The point as one that is fixed in the axes of `frame`, by links in between where it is not.
+  std::optional<Anchor> attached(const Anchor& at, std::uint32_t frame) {
+    if (frame_of(at.link) == frame) return at;
+    if (frame == 0) return link_at(at, 0, false);
+    const std::uint32_t parent = m_.model->frames[frame].parent;
+    std::uint32_t inner = parent;
+    while (inner != 0 && inner != frame_of(at.link)) inner = m_.model->frames[inner].parent;
+    // Axes of the ground lie between where the frame does not turn against those that the point is fixed in.
+    const std::optional<Anchor> from = inner == frame_of(at.link) ? attached(at, parent) : attached(*attached(at, 0), parent);
+    return from ? link_at(*from, frame, true) : from;
+  }
+
+  Anchor link_at(const Anchor& at, std::uint32_t frame, bool relative) {
+    const auto key = std::make_tuple(at.link, at.offset, frame);
+    const auto found = known_.find(key);
+    if (found != known_.end()) return {found->second, symbolic::zero_vector(dag_)};
+    BodyLink link = massless(at.link, frame);
+    link.offset = at.offset;
+    link.relative = relative;
+    link.turn = relative ? turn_of(frame) : Turn{};
+    for (std::uint32_t f = frame_of(at.link); !relative && f != 0; f = m_.model->frames[f].parent) {
+      const Turn back = turn_of(f).reversed();
+      link.turn.steps.insert(link.turn.steps.end(), back.steps.begin(), back.steps.end());
+    }
+    if (relative) add_turning(link);
+    const int index = append(std::move(link));
+    known_.emplace(key, index);
+    return {index, symbolic::zero_vector(dag_)};
+  }
+
+  /// A link with the same axes whose origin is the point, which moves.
+  Anchor shifted(const Anchor& at) {
+    BodyLink link = massless(at.link, frame_of(at.link));
+    link.offset = at.offset;
+    for (std::size_t k = 0; k < 3; ++k) link.offset_rate[k] = bias_(at.offset[k]);
+    for (std::size_t k = 0; k < 3; ++k) link.offset_bias[k] = bias_(link.offset_rate[k]);
+    for (std::size_t i = 0; i < of_.size(); ++i) {
+      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, of_[i], 0});
+      const Vec3 J{by(at.offset[0]), by(at.offset[1]), by(at.offset[2])};
+      if (!is_zero(dag_, J)) link.freedoms.push_back({i, symbolic::zero_vector(dag_), J});
+    }
+    return {append(std::move(link)), symbolic::zero_vector(dag_)};
+  }
+
+  BodyLink massless(int parent, std::uint32_t frame) const {
+    const Vec3 none = symbolic::zero_vector(dag_);
+    BodyLink link;
+    link.parent = parent;
+    link.frame = frame;
+    link.offset = link.offset_rate = link.offset_bias = link.moment = none;
+    link.inertia = zero_matrix(dag_);
+    link.mass = dag_.zero();
+    return link;
+  }
+
+  int append(BodyLink link) {
+    tree_.links.push_back(std::move(link));
+    return static_cast<int>(tree_.links.size()) - 1;
+  }
+
+  Turn turn_of(std::uint32_t frame) {
+    Turn turn;
+    for (const model::Stage& stage : m_.model->frames[frame].stages) {
+      Step step;
+      for (std::size_t k = 0; k < 3; ++k) {
+        for (std::size_t j = 0; j < 3; ++j) step.R[k][j] = spelled_(lower_.scalar(stage.R[k][j]));
+        step.w[k] = spelled_(lower_.scalar(stage.w[k]));
+        step.w_bias[k] = bias_(step.w[k]);
+      }
+      turn.steps.push_back(step);
+    }
+    return turn;
+  }
+
+  void add_turning(BodyLink& link) {
+    for (std::size_t i = 0; i < of_.size(); ++i) {
+      symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, of_[i], 1});
+      Vec3 s = symbolic::zero_vector(dag_);
+      for (const Step& step : link.turn.steps) {
+        s = symbolic::add(dag_, times(dag_, step.R, s), {by(step.w[0]), by(step.w[1]), by(step.w[2])});
+      }
+      if (!is_zero(dag_, s)) link.freedoms.push_back({i, s, symbolic::zero_vector(dag_)});
+    }
+  }
+
+  bool covers_coordinates() const {
+    std::vector<int> joints(of_.size(), 0);
+    for (const BodyLink& link : tree_.links) {
+      for (const Freedom& freedom : link.freedoms) ++joints[freedom.index];
+    }
+    return std::all_of(joints.begin(), joints.end(), [](int count) { return count == 1; });
+  }
+
+  bool is_constant(Ref r) const {
+    const std::vector<Symbol> symbols = dag_.symbols({r});
+    return std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
+  }
+  std::uint32_t frame_of(int link) const { return link < 0 ? 0 : tree_.links[static_cast<std::size_t>(link)].frame; }
+  int depth(std::uint32_t frame) const {
+    int count = 0;
+    for (std::uint32_t f = frame; f != 0; f = m_.model->frames[f].parent) ++count;
+    return count;
+  }
+
+  Mechanics& m_;
+  Dag& dag_;
+  const std::vector<std::uint32_t>& of_;
+  mechanics::Lowering lower_;
+  Spelled spelled_;
+  symbolic::Derivation bias_;
+  BodyTree tree_;
+  std::map<std::uint32_t, std::optional<Anchor>> anchors_;
+  std::map<std::tuple<int, Vec3, std::uint32_t>, int> known_;
+};
+
+}  // namespace
+
+std::optional<BodyTree> body_tree(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
+  if (m.spins.empty() || of.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
+  return Builder(m, of, imposed).build();
+}
+
+void use_angular_velocities(Dag& dag, BodyTree& tree) {
+  for (BodyLink& link : tree.links) {
+    const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(), [&](const Freedom& f) { return is_zero(dag, f.shifting); });
+    link.absolute = turns && link.freedoms.size() == 3;
+  }
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What acts on a tree of particles or bodies: uniform gravity as an acceleration that all of it shares, the rest as forces of the
+// coordinates. Shared by the routes over trees.
+#pragma once
+
+#include <vector>
+
+#include "derive/imposition.hpp"
+
+namespace eomgen::derive {
+
+/// Imposes the constraints where they are to be, and writes functions of time out.
+class Spelled {
+ public:
+  Spelled(Mechanics& m, bool imposed) : imposed_(imposed), impose_(impose(m)), write_(write_out(m)) {}
+  Ref operator()(Ref r) { return write_(imposed_ ? impose_(r) : r); }
+  Vec3 operator()(const Vec3& v) { return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])}; }
+
+ private:
+  bool imposed_;
+  symbolic::Substitution impose_, write_;
+};
+
+/// Uniform gravity as an acceleration; `other_potential` is the potential of everything else.
+Vec3 take_gravity(Mechanics& m, Spelled& spelled, Ref& other_potential);
+
+/// Q_i - d(potential)/dq_i of the coordinates `of`.
+std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Spelled& spelled, Ref potential);
+
+}  // namespace eomgen::derive
