@@ -16,6 +16,7 @@ std::span<const Command> commands() {
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
       Command{"inverse", "the forces that prescribed motions need", declare_inverse},
       Command{"sweep", "many runs over a grid of parameters, in parallel, resumable", declare_sweep},
+      Command{"report", "one self-contained page: equations, verification, a run, plots, an animation", declare_report},
   };
   return entries;
 }

@@ -131,7 +131,7 @@ Simulation simulate(const SimulationRequest& request) {
   const run::Code functions = code.for_run();
   run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
   if (request.begin) {
-    run.every = scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
+    run.every = request.rows ? (scene.t1 - scene.t0) / *request.rows : scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
     request.begin(*derived, scene, functions.output_names);
   }
   run.row = request.row;

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "cli/code.hpp"
@@ -28,6 +29,7 @@ struct SimulationRequest {
   /// energy, kinetic, potential, reactions and what the scene asks for). Left out: no rows.
   std::function<void(const Derived&, const run::Scene&, const std::vector<std::string>& names)> begin;
   std::function<void(double t, std::span<const double> values)> row;
+  std::optional<double> rows;  // so many, whatever interval the scene asks for
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
 };

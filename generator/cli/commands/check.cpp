@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
+#include "cli/examination.hpp"
 #include "cli/decimal.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
@@ -86,6 +87,8 @@ std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
   return m.dag->is_constant(value) ? decimal_text(m.dag->value(value)) : shown(m, value);
 }
 
+}  // namespace
+
 json examine(const model::Model& model) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
@@ -113,6 +116,8 @@ json examine(const model::Model& model) {
           {"singular", singular_of(m)},
           {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
 }
+
+namespace {
 
 std::string text(const json& value) { return value.get<std::string>(); }
 

@@ -16,5 +16,6 @@ Execute declare_emit(CLI::App& app);
 Execute declare_run(CLI::App& app);
 Execute declare_inverse(CLI::App& app);
 Execute declare_sweep(CLI::App& app);
+Execute declare_report(CLI::App& app);
 
 }  // namespace eomgen::cli

@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// One page that holds all: the model, its equations, what they were checked against, a run, plots and an animation. No other file, no network.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands/commands.hpp"
+#include "cli/decimal.hpp"
+#include "cli/examination.hpp"
+#include "cli/output.hpp"
+#include "cli/report/html.hpp"
+#include "cli/report/recorded_motion.hpp"
+#include "cli/run_report.hpp"
+#include "cli/simulate.hpp"
+#include "cli/usage.hpp"
+#include "mechanics/dependent.hpp"
+#include "print/render.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Options {
+  std::string model, scene = "default", out;
+  std::vector<std::string> set;
+  std::optional<double> rtol, atol, t_end;
+  std::optional<std::string> solver;
+};
+
+constexpr double rows_of_a_page = 300;
+
+std::string text(const Json& value) { return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump(); }
+
+void add_model(Html& html, const model::Model& model, const Json& found) {
+  html.heading(1, model.title.empty() ? model.id : model.title);
+  html.paragraph(model.id + ".toml", "quiet");
+  if (!model.notes.empty()) html.paragraph(model.notes);
+  std::string source;
+  for (const std::string& line : model.lines) source += line + "\n";
+  html.preformatted("The model file", source);
+  html.heading(2, "Coordinates and parameters");
+  std::vector<std::vector<std::string>> coordinates, parameters, forces;
+  for (const Json& c : found["coordinates"]) {
+    coordinates.push_back({text(c["name"]), text(c["unit"]), c["eliminated"].get<bool>() ? "fixed by a constraint" : ""});
+  }
+  for (const Json& p : found["parameters"]) parameters.push_back({text(p["name"]), text(p["value"]), text(p["unit"])});
+  html.table({"coordinate", "unit", ""}, coordinates);
+  html.paragraph(fmt::format("{} degree{} of freedom", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s"));
+  if (!parameters.empty()) html.table({"parameter", "value", "unit"}, parameters, {1});
+  for (const Json& f : found["forces"]) {
+    forces.push_back({text(f["name"]), text(f["conservative"]), text(f["potential"])});
+  }
+  if (!forces.empty()) html.table({"force", "conservative", "potential"}, forces);
+}
+
+void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<derive::Conserved>& conserved) {
+  const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
+  const system::Approach approach = one ? system::Approach::one : system::Approach::two;
+  const reading::ReadingForm form = reading::derive_reading(m, approach);
+  html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(approach)));
+  const std::vector<std::pair<std::string, std::string>> sections{
+      {"constraints", "Constraints and functions of time"}, {"energies", "Energies"}, {"equations", "Equations of motion"},
+      {"reactions", "Constraint forces"},                   {"friction", "Contacts"},  {"singular", "Where the equations fail"}};
+  for (const auto& [key, title] : sections) {
+    const std::vector<print::Item> items = print::render(m, form, {key});
+    if (items.empty()) continue;
+    html.heading(3, title);
+    std::string before;
+    for (const print::Item& item : items) {
+      const std::string what = item.key == "explicit" ? "written out" : item.key == "singular" ? "approach " + item.role : item.role;
+      if (what != before && !what.empty()) html.paragraph(what, "quiet");
+      before = what;
+      html.formula(item.mathml);
+    }
+  }
+  if (conserved.empty()) return;
+  html.heading(3, "Conserved");
+  for (const derive::Conserved& c : conserved) {
+    html.paragraph(c.title, "quiet");
+    html.formula(print::render_expression(m, "", "", c.expression).mathml);
+  }
+}
+
+void add_certificate(Html& html, const verify::Certificate& certificate) {
+  html.heading(2, "Verification");
+  html.paragraph(certificate.summary());
+  std::vector<std::vector<std::string>> rows;
+  for (const verify::Comparison& c : certificate.comparisons) {
+    rows.push_back({c.a, c.b, fmt::format("{:.1e}", c.max_relative_difference), fmt::format("{:.0e}", c.tolerance), c.shares_code ? "shares code" : "independent"});
+  }
+  html.table({"this", "against", "largest difference", "allowed", ""}, rows, {2, 3});
+}
+
+void add_run(Html& html, const Simulation& simulation, const Json& run, const RecordedMotion& motion, bool moving) {
+  html.heading(2, "The run: scene " + simulation.scene.name);
+  if (moving) {
+    html.markup("<canvas id=\"scene\" width=\"1100\" height=\"800\"></canvas>\n<div class=\"bar\"><button id=\"play\">Play</button>"
+                "<input id=\"time\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"time\"><span id=\"clock\"></span></div>");
+    html.paragraph("Drag to turn the view.", "quiet");
+  }
+  html.markup(motion.plots(simulation.derived->model));
+  html.table({"", ""}, {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
+                        {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
+                        {"tolerances", fmt::format("rtol {}, atol {}", simulation.scene.rtol, simulation.scene.atol)},
+                        {"steps", fmt::format("{} accepted, {} rejected, {} evaluations", text(run["steps"]), text(run["rejected"]), text(run["rhs_evaluations"]))}});
+  std::vector<std::vector<std::string>> rows;
+  const Json& estimate = run["error_estimate"];
+  for (const auto& [name, value] : run["final"].items()) {
+    rows.push_back({name, text(value), estimate.is_object() && estimate.contains(name) ? fmt::format("{:.1e}", estimate[name].get<double>()) : ""});
+  }
+  html.heading(3, "At the end");
+  html.table({"", "value", "estimated error"}, rows, {1, 2});
+  rows.clear();
+  for (const auto& [name, i] : run["invariants"].items()) {
+    rows.push_back({name, text(i["initial"]), i["max_relative_drift"].is_null() ? "" : fmt::format("{:.1e}", i["max_relative_drift"].get<double>())});
+  }
+  if (!rows.empty()) {
+    html.heading(3, "Kept");
+    html.table({"", "at the start", "largest relative drift"}, rows, {1, 2});
+  }
+  rows.clear();
+  for (const Json& e : run["events"]) rows.push_back({text(e["t"]), text(e["kind"]), text(e["name"])});
+  if (!rows.empty()) {
+    html.heading(3, "Events");
+    html.table({"t", "kind", "of"}, rows, {0});
+  }
+}
+
+int execute(const Options& options, const Common& common) {
+  const std::string file = options.out.empty() ? "report.html" : options.out;
+  require_writable("--out", file);
+  RecordedMotion motion;
+  SimulationRequest request;
+  request.model = options.model;
+  request.scene = options.scene;
+  request.seed = common.seed;
+  request.overrides.parameters = parse_assignments("report", options.set);
+  request.overrides.rtol = options.rtol;
+  request.overrides.atol = options.atol;
+  request.overrides.t_end = options.t_end;
+  request.overrides.solver = options.solver;
+  request.rows = rows_of_a_page;
+  request.prepare = [](Derived& derived) { return RecordedMotion::needed(derived.model); };
+  request.begin = [&](const Derived&, const run::Scene&, const std::vector<std::string>& names) { motion.begin(names); };
+  request.row = [&](double t, std::span<const double> y) { motion.row(t, y); };
+  const Simulation simulation = simulate(request);
+  const model::Model& model = simulation.derived->model;
+  const Json run = RunReport{simulation, true}.json();
+  const std::string animation = motion.animation(model);
+  Html html;
+  add_model(html, model, examine(model));
+  add_equations(html, simulation.derived->mechanics, simulation.derived->conserved);
+  add_certificate(html, simulation.certificate);
+  add_run(html, simulation, run, motion, !animation.empty());
+  const std::filesystem::path path(file);
+  write_results(path.has_parent_path() ? path.parent_path().string() : ".",
+                {{path.filename().string(), page(model.title.empty() ? model.id : model.title, html.text(), animation)}});
+  const eom::Outcome outcome = simulation.result.outcome;
+  if (common.json) {
+    print_document({{"format", 1}, {"model", model.id}, {"scene", simulation.scene.name}, {"outcome", eom::name(outcome)}, {"file", file}});
+  } else {
+    fmt::print("wrote {} (outcome of the run: {})\n", file, eom::name(outcome));
+  }
+  return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
+}
+
+}  // namespace
+
+Execute declare_report(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("-o,--out", options->out, "the page; without it report.html in this folder");
+  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
+  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
+  app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
+  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
+  return [options](const Common& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What `check` finds, for other commands too.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "model/model.hpp"
+
+namespace eomgen::cli {
+
+/// The document of docs/schema/check.schema.json.
+nlohmann::ordered_json examine(const model::Model& model);
+
+}  // namespace eomgen::cli

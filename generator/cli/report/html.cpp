@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/report/html.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <kainjow/mustache.hpp>
+#include <stdexcept>
+
+#include "cli/page_skeleton.hpp"
+#include "print/notation.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using print::escape_html;
+
+// Inside of a script element "</script>" and "<!--" mean something, in a string too.
+std::string inside_of_script(const std::string& json) {
+  std::string result;
+  for (const char c : json) result += c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : c == '&' ? "\\u0026" : std::string(1, c);
+  return result;
+}
+
+}  // namespace
+
+void Html::heading(int level, const std::string& text) { text_ += fmt::format("<h{0}>{1}</h{0}>\n", level, escape_html(text)); }
+
+void Html::paragraph(const std::string& text, const std::string& style) {
+  text_ += (style.empty() ? "<p>" : "<p class=\"" + style + "\">") + escape_html(text) + "</p>\n";
+}
+
+void Html::formula(const std::string& mathml) { text_ += "<p class=\"formula\">" + mathml + "</p>\n"; }
+
+void Html::preformatted(const std::string& summary, const std::string& text) {
+  text_ += "<details><summary>" + escape_html(summary) + "</summary><pre>" + escape_html(text) + "</pre></details>\n";
+}
+
+void Html::table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& numbers) {
+  text_ += "<table>\n<tr>";
+  for (const std::string& cell : head) text_ += "<th>" + escape_html(cell) + "</th>";
+  text_ += "</tr>\n";
+  for (const std::vector<std::string>& row : rows) {
+    text_ += "<tr>";
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const bool number = std::find(numbers.begin(), numbers.end(), i) != numbers.end();
+      text_ += (number ? "<td class=\"n\">" : "<td>") + escape_html(row[i]) + "</td>";
+    }
+    text_ += "</tr>\n";
+  }
+  text_ += "</table>\n";
+}
+
+std::string page(const std::string& title, const std::string& body, const std::string& motion) {
+  kainjow::mustache::mustache skeleton{std::string(page_skeleton)};
+  if (!skeleton.is_valid()) throw std::logic_error(skeleton.error_message());
+  kainjow::mustache::data all{kainjow::mustache::data::type::object};
+  all.set("title", escape_html(title));
+  all.set("body", body);
+  all.set("motion", inside_of_script(motion));
+  all.set("moving", motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);
+  return skeleton.render(all);
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command report: a page that is whole, needs nothing else, and lets nothing of a model's text out of its place.
+#include <doctest/doctest.h>
+
+#include <cctype>
+#include <cmath>
+#include <vector>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+/// The first tag that is not closed in its place; "" where all are. Scripts and styles are skipped as text.
+std::string unbalanced(const std::string& page) {
+  const Words void_tags{"meta", "input"};
+  Words open;
+  for (std::size_t at = page.find('<'); at != std::string::npos; at = page.find('<', at)) {
+    const std::size_t end = page.find('>', at);
+    if (end == std::string::npos) return "<";
+    const bool closing = page[at + 1] == '/', single = page[end - 1] == '/';
+    std::string name;
+    for (std::size_t i = at + (closing ? 2 : 1); i < end && (std::isalnum(static_cast<unsigned char>(page[i])) != 0 || page[i] == '-'); ++i) name += page[i];
+    at = end;
+    if (name.empty() || single || std::find(void_tags.begin(), void_tags.end(), name) != void_tags.end()) continue;  // <!DOCTYPE html>
+    if (!closing) {
+      open.push_back(name);
+      if (name == "script" || name == "style") at = page.find("</" + name, end);
+      continue;
+    }
+    if (open.empty() || open.back() != name) return name;
+    open.pop_back();
+  }
+  return open.empty() ? "" : open.back();
+}
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+Json motion(const std::string& page) {
+  const std::string mark = "id=\"motion\">";
+  const std::size_t begin = page.find(mark) + mark.size();
+  return Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+}
+
+}  // namespace
+
+TEST_CASE("report: one page with equations, certificate, run, plots and animation, and no reference to anything else") {
+  const Folder folder;
+  for (const char* model : {"S5_double_pendulum", "R6_rolling_disk", "stick_slip_belt", "P7_moving_sphere"}) {
+    CAPTURE(std::string(model));
+    const Json found = document(folder, {"report", model, "-o", "page.html"});
+    CHECK(found["outcome"] == "done");
+    CHECK(found["file"] == "page.html");
+    const std::string page = folder.read("page.html");
+    CHECK(unbalanced(page) == "");
+    CHECK(count(page, "<math") > 5);
+    CHECK(count(page, "<svg") >= 2);
+    CHECK(contains(page, "pass: 5 points, 50 digits"));
+    for (const char* reference : {"src=", "href=", "@import", "url(", "fetch(", "XMLHttpRequest"}) CHECK_FALSE(contains(page, reference));
+  }
+}
+
+TEST_CASE("report: the animation moves as the run does") {
+  const Folder folder;
+  expect(0, folder, {"report", "S5_double_pendulum", "-o", "page.html", "--t-end", "1"});
+  const Json moving = motion(folder.read("page.html"));
+  REQUIRE(moving["places"].size() == 2);
+  CHECK(moving["t"].back() == 1.0);
+  CHECK(moving["flat"] == true);
+  CHECK(moving["places"][0]["from"] == -1);
+  CHECK(moving["places"][1]["from"] == 0);
+  for (const Json& r : moving["places"][0]["r"]) {  // on a circle of radius L1 = 1, as far as six digits go
+    CHECK(std::hypot(r[0].get<double>(), r[1].get<double>()) == doctest::Approx(1).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("report: what a model writes stays text") {
+  const Folder folder;
+  folder.write("hostile.toml", "format = 1\ntitle = \"</title><script>alert(1)</script>\"\nnotes = \"<img src=x onerror=alert(2)> {{{body}}} & </script>\"\n"
+                               "[parameters]\nm = { value = 1, note = \"<b>\" }\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+                               "[scene.default]\nt = [0, 1]\ninitial = { x_dot = 1 }\n# </pre><script>alert(3)</script>\n");
+  expect(0, folder, {"report", "hostile.toml"});
+  const std::string page = folder.read("report.html");
+  CHECK(unbalanced(page) == "");
+  CHECK(count(page, "<script") == 2);  // the motion and the page's own
+  CHECK(count(page, "<img") == 0);
+  CHECK(contains(page, "&lt;script&gt;alert(1)"));
+  CHECK(contains(page, "{{{body}}}"));
+}
+
+TEST_CASE("report: a run that fails is told on the page, a place that cannot be written before anything is done") {
+  const Folder folder;
+  folder.write("diverging.toml", diverging_text());
+  CHECK(document(folder, {"report", "diverging.toml"}, 3)["file"] == "report.html");
+  CHECK(contains(folder.read("report.html"), "<td>outcome</td>"));
+  CHECK(contains(expect(2, folder, {"report", "diverging.toml", "-o", "nowhere/page.html"}).err, "--out"));
+}
