@@ -14,6 +14,7 @@
 #include "model/names.hpp"
 #include "run/start.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/sample.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -34,8 +35,7 @@ void require_sign(const model::Parameter& p, const cln::cl_R& value, const model
               "give it a positive value, or leave `positive` out of the model");
 }
 
-std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
-  const std::size_t n = m.model->parameters.size();
+std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
   std::vector<Ref> formula = m.parameter_value;
   for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
   for (const auto& [name, value] : overrides.parameters) {
@@ -59,6 +59,11 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
     }
     formula[index] = m.dag->constant(value);
   }
+  return formula;
+}
+
+std::vector<cln::cl_R> parameter_values(Mechanics& m, const std::vector<Ref>& formula, int wanted_digits) {
+  const std::size_t n = formula.size();
   std::vector<cln::cl_R> values(n, 0);
   std::vector<bool> known(n, false);
   // Parameters may use one another without cycles, in any order of the file: n rounds settle the longest chain.
@@ -70,7 +75,7 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const model::Scene& scene,
       if (!ready) continue;
       const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
       try {
-        values[i] = symbolic::evaluate(*m.dag, {formula[i]}, lookup, digits)[0];
+        values[i] = symbolic::evaluate(*m.dag, {formula[i]}, lookup, wanted_digits)[0];
       } catch (const std::exception& error) {
         const model::Parameter& p = m.model->parameters[i];
         throw Error("scene", m.model->where(p.span), fmt::format("parameter '{}' has no value: {}", p.name, error.what()),
@@ -265,11 +270,22 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
 
 }  // namespace
 
+std::vector<cln::cl_R> exact_parameters(Mechanics& m, const model::Scene& scene, const Overrides& overrides, int wanted_digits,
+                                        std::optional<std::uint64_t> moved) {
+  std::vector<Ref> formula = parameter_formulas(m, scene, overrides);
+  for (std::uint32_t i = 0; moved && i < formula.size(); ++i) {
+    if (!m.dag->is_constant(formula[i])) continue;
+    const Rational factor = 1 + (symbolic::sample({SymbolKind::parameter, i, 0}, *moved) - Rational(7) / 10) / 10;
+    formula[i] = m.dag->constant(m.dag->value(formula[i]) * factor);
+  }
+  return parameter_values(m, formula, wanted_digits);
+}
+
 Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides) {
   Scene result;
   result.name = scene.name;
-  const std::vector<cln::cl_R> parameters = parameter_values(m, scene, overrides);
+  const std::vector<cln::cl_R> parameters = parameter_values(m, parameter_formulas(m, scene, overrides), digits);
   require_masses(m, parameters);
   require_coefficients(m, parameters, scene);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));

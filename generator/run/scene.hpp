@@ -46,6 +46,11 @@ inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 Scene resolve_scene(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides);
 
+/// Parameters of a scene in many digits. `moved`: those that are plain numbers are each multiplied by a number near 1 that it
+/// chooses (what is 0 stays 0), and those that are computed from them follow.
+std::vector<cln::cl_R> exact_parameters(mechanics::Mechanics& mechanics, const model::Scene& scene, const Overrides& overrides,
+                                        int digits, std::optional<std::uint64_t> moved = {});
+
 /// Names of all outputs that can be asked for: those of the system, vectors and reactions by their parts.
 std::vector<std::string> expand_outputs(const mechanics::Mechanics& mechanics, const system::EquationSystem& system,
                                         const std::vector<model::Named>& wanted);

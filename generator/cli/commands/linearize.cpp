@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The equations of motion linearised at the start of a scene, or at its state at a time.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "cli/commands/commands.hpp"
+#include "cli/decimal.hpp"
+#include "cli/output.hpp"
+#include "cli/steady.hpp"
+#include "cli/usage.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct Options {
+  std::string model, scene = "default";
+  std::vector<std::string> set;
+  std::optional<double> at;
+};
+
+struct Answer {
+  const SteadyProblem& problem;
+  const linear::Linearisation& l;
+
+  std::vector<std::string> names(const std::vector<std::size_t>& places) const {
+    std::vector<std::string> result;
+    for (const std::size_t i : places) result.push_back(problem.flow->names()[i]);
+    return result;
+  }
+  std::vector<std::string> states() const { return names(l.symmetry.chart.independent); }
+  std::vector<std::string> inputs() const {
+    std::vector<std::string> result;
+    for (const model::Input& input : problem.derived->model.inputs) result.push_back(input.name);
+    return result;
+  }
+  std::vector<std::string> ignorable() const {
+    std::vector<std::size_t> places;
+    for (std::size_t k = 0; k < l.symmetry.chart.positions; ++k) {
+      if (!l.symmetry.retained[k]) places.push_back(l.symmetry.chart.independent[k]);
+    }
+    return names(places);
+  }
+  std::size_t accidental() const { return l.spectrum.zeros - l.structural_zeros; }
+  std::string what() const {
+    switch (l.kind) {
+      case linear::Kind::equilibrium: return "an equilibrium";
+      case linear::Kind::steady: return "a steady motion: only coordinates that nothing feels advance";
+      case linear::Kind::motion: break;
+    }
+    return l.symmetry.autonomous ? "neither an equilibrium nor a steady motion: A(t) along the motion, at this instant"
+                                 : "no steady motion, since the equations depend on t: A(t), at this instant";
+  }
+};
+
+json rows(const linear::Matrix<linear::Precise>& A) {
+  json result = json::array();
+  for (std::size_t i = 0; i < A.rows; ++i) {
+    json row = json::array();
+    for (std::size_t j = 0; j < A.cols; ++j) row.push_back(linear::to_double(A(i, j)));
+    result.push_back(row);
+  }
+  return result;
+}
+
+json to_json(const Answer& a) {
+  json eigenvalues = json::array(), point = json::object();
+  for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back({{"re", e.re}, {"im", e.im}});
+  for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = linear::to_double(a.l.z[i]);
+  return {{"format", 1},
+          {"kind", linear::name(a.l.kind)},
+          {"autonomous", a.l.symmetry.autonomous},
+          {"t", a.problem.t},
+          {"point", point},
+          {"states", a.states()},
+          {"inputs", a.inputs()},
+          {"A", rows(a.l.A)},
+          {"B", rows(a.l.B)},
+          {"eigenvalues", eigenvalues},
+          {"structural_zeros", a.l.structural_zeros},
+          {"other_zeros", a.accidental()},
+          {"ignorable", a.ignorable()},
+          {"dependent", a.names(a.l.symmetry.chart.dependent)},
+          {"certificate", a.problem.certificate}};
+}
+
+std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>& A, const std::vector<std::string>& rows,
+                        const std::vector<std::string>& columns) {
+  std::size_t width = 4;
+  for (const std::string& name : rows) width = std::max(width, name.size());
+  std::string out = fmt::format("\n{:<{}}", title, width + 2);
+  for (const std::string& name : columns) out += fmt::format(" {:>14}", name);
+  out += "\n";
+  for (std::size_t i = 0; i < A.rows; ++i) {
+    out += fmt::format("  {:<{}}", rows[i], width);
+    for (std::size_t j = 0; j < A.cols; ++j) out += fmt::format(" {:>14.7g}", linear::to_double(A(i, j)));
+    out += "\n";
+  }
+  return out;
+}
+
+std::string text(const Answer& a) {
+  const auto& chart = a.l.symmetry.chart;
+  std::string out = fmt::format("{}, scene {}, t = {}: {}\n\n", a.problem.derived->model.id, a.problem.scene.name, a.problem.t, a.what());
+  for (const std::size_t i : chart.independent) out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], linear::to_double(a.l.z[i]));
+  for (const std::size_t i : chart.dependent) {
+    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], linear::to_double(a.l.z[i]));
+  }
+  out += matrix_text("A", a.l.A, a.states(), a.states());
+  if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());
+  out += "\neigenvalues\n";
+  for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i) out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
+  out += fmt::format("\nzeros             {} structural (there for all parameters), {} at these parameters only\n", a.l.structural_zeros, a.accidental());
+  if (!a.ignorable().empty()) out += fmt::format("nothing feels     {}\n", fmt::join(a.ignorable(), ", "));
+  return out + fmt::format("certificate       {}\n", a.problem.certificate);
+}
+
+int execute(const Options& options, const Common& common) {
+  run::Overrides overrides;
+  overrides.parameters = parse_assignments("linearize", options.set);
+  const SteadyProblem problem = steady_problem("linearize", options.model, options.scene, overrides, options.at, common.seed);
+  try {
+    const linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, common.seed);
+    const Answer answer{problem, l};
+    if (common.json) {
+      print_document(to_json(answer));
+    } else {
+      fmt::print("{}", text(answer));
+    }
+  } catch (const std::domain_error& error) {
+    const model::Model& model = problem.derived->model;
+    throw Error("linearize", model.where(model.scene(options.scene).span),
+                fmt::format("the equations of motion have no slope at this state: {}", error.what()),
+                "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
+  }
+  return 0;
+}
+
+}  // namespace
+
+Execute declare_linearize(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
+  app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")->check(finite_number());
+  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  return [options](const Common& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/chart.hpp"
+
+#include <algorithm>
+#include <array>
+#include <tuple>
+
+namespace eomgen::linear {
+namespace {
+
+using Places = std::vector<std::size_t>;
+
+constexpr std::size_t most_charts = 4000;
+constexpr double good_chart = 0.02;  // smallest pivot of the dependent columns, against 1
+constexpr double reach = 0.07;       // of the points beside, relative
+constexpr int sample_points = 3;
+
+Places all_of(std::size_t from, std::size_t to) {
+  Places result;
+  for (std::size_t i = from; i < to; ++i) result.push_back(i);
+  return result;
+}
+
+Places without(const Places& all, const Places& some) {
+  Places result;
+  std::copy_if(all.begin(), all.end(), std::back_inserter(result), [&](std::size_t i) { return std::find(some.begin(), some.end(), i) == some.end(); });
+  return result;
+}
+
+Matrix<double> rounded(const Matrix<Precise>& A) {
+  Matrix<double> B(A.rows, A.cols);
+  std::transform(A.a.begin(), A.a.end(), B.a.begin(), [](const Precise& x) { return to_double(x); });
+  return B;
+}
+
+/// Columns of a block of constraints that may be the dependent ones, the best first.
+struct Candidate {
+  Places columns;
+  double quality;
+};
+
+void subsets(std::size_t n, std::size_t size, std::size_t from, Places& chosen, std::vector<Places>& result) {
+  if (chosen.size() == size) {
+    result.push_back(chosen);
+    return;
+  }
+  for (std::size_t i = from; i < n && result.size() <= most_charts; ++i) {
+    chosen.push_back(i);
+    subsets(n, size, i + 1, chosen, result);
+    chosen.pop_back();
+  }
+}
+
+std::vector<Candidate> candidates(const Matrix<Precise>& block) {
+  const Elimination<Precise> whole(block, tiny<Precise>(40));
+  Places pivots = whole.pivot_columns();
+  std::sort(pivots.begin(), pivots.end());
+  std::vector<Places> all;
+  Places chosen;
+  subsets(block.cols, pivots.size(), 0, chosen, all);
+  if (all.size() > most_charts) all = {pivots};
+  const Matrix<double> A = rounded(block);
+  std::vector<Candidate> result;
+  Candidate best{pivots, 0};
+  for (const Places& columns : all) {
+    const Elimination<double> e(columns_of(A, columns), 1e-9);
+    const Candidate candidate{columns, e.rank() < columns.size() ? 0 : e.smallest_pivot()};
+    if (candidate.quality >= good_chart) result.push_back(candidate);
+    if (candidate.quality > best.quality) best = candidate;
+  }
+  if (result.empty()) result.push_back(best);
+  return result;
+}
+
+Chart chart_of(std::size_t n, const Places& positions, const Places& speeds) {
+  Chart chart;
+  chart.dependent = positions;
+  for (const std::size_t v : speeds) chart.dependent.push_back(n + v);
+  chart.independent = without(all_of(0, 2 * n), chart.dependent);
+  chart.positions = n - positions.size();
+  return chart;
+}
+
+template <class T>
+using Pattern = std::vector<std::vector<bool>>;
+
+/// Where an entry is not 0 at one of the points at least.
+template <class T>
+void join(Pattern<T>& pattern, const Matrix<T>& A, const T& small) {
+  pattern.resize(A.rows, std::vector<bool>(A.cols, false));
+  T largest(0);
+  for (const T& x : A.a) largest = std::max(largest, magnitude(x));
+  for (std::size_t i = 0; i < A.rows; ++i) {
+    for (std::size_t j = 0; j < A.cols; ++j) pattern[i][j] = pattern[i][j] || magnitude(A(i, j)) > small * largest;
+  }
+}
+
+/// Positions and the time are let go where nothing that stays feels them.
+template <class T>
+std::vector<bool> retained_of(const Pattern<T>& feels, std::size_t positions) {
+  const std::size_t size = feels.size();
+  std::vector<bool> retained(size + 1, true);
+  for (std::size_t k = 0; k < positions; ++k) retained[k] = false;
+  retained[size] = false;
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t j = 0; j < size; ++j) {
+      for (std::size_t k = 0; retained[j] && k <= size; ++k) {
+        if (!feels[j][k] || retained[k]) continue;
+        retained[k] = changed = true;
+      }
+    }
+  }
+  return retained;
+}
+
+template <class T>
+std::vector<bool> retained_in(const std::vector<Field<T>>& fields, const Chart& chart, const T& small) {
+  Pattern<T> feels;
+  for (const Field<T>& field : fields) join(feels, reduced(field, chart, tangent(field, chart)), small);
+  return retained_of<T>(feels, chart.positions);
+}
+
+Field<double> rounded(const Field<Precise>& f) {
+  return {rounded(f.X), rounded(f.slope), rounded(f.by_inputs), rounded(f.phi), rounded(f.phi_slope)};
+}
+
+std::uint64_t mixed(std::uint64_t x) {  // splitmix64
+  x += 0x9e3779b97f4a7c15ULL;
+  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  x = (x ^ (x >> 27)) * 0x94d049bb133111ebULL;
+  return x ^ (x >> 31);
+}
+
+/// Entries of z that the retained ones determine alone.
+Places constants(const std::vector<Field<Precise>>& fields, const Chart& chart, const std::vector<bool>& retained) {
+  Pattern<Precise> feels;
+  for (const Field<Precise>& field : fields) join(feels, tangent(field, chart), tiny<Precise>(50));
+  Places result;
+  for (std::size_t i = 0; i + 1 < feels.size(); ++i) {
+    bool kept = true;
+    for (std::size_t k = 0; k < retained.size(); ++k) kept = kept && (!feels[i][k] || retained[k]);
+    if (kept) result.push_back(i);
+  }
+  return result;
+}
+
+Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector<Field<Precise>>& fields) {
+  const std::size_t n = flow.coordinates(), p = flow.on_positions();
+  const std::vector<Candidate> positions = candidates(columns_of(rows_of(here.phi_slope, all_of(0, p)), all_of(0, n)));
+  const std::vector<Candidate> speeds = candidates(columns_of(rows_of(here.phi_slope, all_of(p, here.phi_slope.rows)), all_of(n, 2 * n)));
+  std::vector<Field<double>> rough;
+  for (const Field<Precise>& f : fields) rough.push_back(rounded(f));
+  std::optional<std::tuple<std::size_t, std::size_t, double>> best;
+  Chart result = chart_of(n, positions.front().columns, speeds.front().columns);
+  if (positions.size() * speeds.size() == 1) return result;
+  std::size_t tried = 0;
+  for (const Candidate& a : positions) {
+    for (const Candidate& b : speeds) {
+      if (++tried > most_charts) return result;
+      const Chart chart = chart_of(n, a.columns, b.columns);
+      try {
+        const std::vector<bool> retained = retained_in<double>(rough, chart, 1e-9);
+        const auto count = static_cast<std::size_t>(std::count(retained.begin(), retained.end(), true));
+        // Among equals those that name the speeds of the coordinates that stay, then the best conditioned (coarsely, so that rounding decides nothing).
+        const double quality = std::round(20 * std::min(a.quality, b.quality));
+        const std::tuple<std::size_t, std::size_t, double> score{count, without(a.columns, b.columns).size(), -quality};
+        if (best && !(score < *best)) continue;
+        best = score;
+        result = chart;
+      } catch (const std::domain_error&) {
+        continue;  // fails at a point beside
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+double random_number(std::uint64_t seed, std::uint64_t index) {
+  return 2 * (static_cast<double>(mixed(mixed(seed) + index) >> 11) / 9007199254740992.0) - 1;
+}
+
+template <class T>
+Matrix<T> tangent(const Field<T>& field, const Chart& chart) {
+  Places columns = chart.independent;
+  columns.push_back(field.slope.cols - 1);  // t
+  Matrix<T> result(field.slope.cols, columns.size());
+  for (std::size_t k = 0; k < columns.size(); ++k) result(columns[k], k) = T(1);
+  if (chart.dependent.empty()) return result;
+  const Elimination<T> solver(columns_of(field.phi_slope, chart.dependent), tiny<T>(10));
+  require_domain(solver.rank() == chart.dependent.size(), "the constraints do not determine the dependent coordinates");
+  const Matrix<T> slope = solver.solve(columns_of(field.phi_slope, columns));
+  for (std::size_t i = 0; i < chart.dependent.size(); ++i) {
+    for (std::size_t k = 0; k < columns.size(); ++k) result(chart.dependent[i], k) = -slope(i, k);
+  }
+  return result;
+}
+
+template <class T>
+Matrix<T> reduced(const Field<T>& field, const Chart& chart, const Matrix<T>& tangent) {
+  return rows_of(field.slope, chart.independent) * tangent;
+}
+
+template Matrix<double> tangent(const Field<double>&, const Chart&);
+template Matrix<Precise> tangent(const Field<Precise>&, const Chart&);
+template Matrix<double> reduced(const Field<double>&, const Chart&, const Matrix<double>&);
+template Matrix<Precise> reduced(const Field<Precise>&, const Chart&, const Matrix<Precise>&);
+
+std::optional<State<Precise>> projected(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting) {
+  return projected(flow, z, setting, all_of(0, 2 * flow.coordinates()));
+}
+
+std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, const Setting<Precise>& setting, const Places& columns) {
+  constexpr int most_steps = 60, exact = 120;
+  for (int step = 0; step < most_steps; ++step) {
+    const Field<Precise> field = flow.at(z, setting);
+    const Matrix<Precise> move = Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8)).solve(field.phi);
+    bool done = true;
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      z[columns[i]] = z[columns[i]] - move(i, 0);
+      done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[columns[i]]));
+    }
+    if (done) return z;
+  }
+  return std::nullopt;
+}
+
+std::optional<State<Precise>> beside(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting, std::uint64_t seed) {
+  double size = reach;
+  for (int attempt = 0; attempt < 8; ++attempt, size /= 2) {
+    State<Precise> moved = z;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+      const double offset = size * random_number(seed, 64 * i + static_cast<std::size_t>(attempt));
+      moved[i] = moved[i] + number<Precise>(Precise(offset)) * (Precise(1) + magnitude(z[i]));
+    }
+    try {
+      setting.leaf = flow.leaf(moved, setting);
+      if (auto found = projected(flow, moved, setting)) return found;
+    } catch (const std::domain_error&) {
+      continue;  // outside of a domain: nearer
+    }
+  }
+  return std::nullopt;
+}
+
+Symmetry find_symmetry(const Flow& flow, const State<Precise>& z, const Setting<Precise>& setting, std::uint64_t seed) {
+  std::vector<Field<Precise>> fields;
+  for (int k = 0; k < sample_points; ++k) {
+    Setting<Precise> other = setting;
+    const auto point = beside(flow, z, other, 1000 * seed + static_cast<std::uint64_t>(k));
+    require_domain(point.has_value(), "no points beside it satisfy the constraints");
+    fields.push_back(flow.at(*point, other));
+  }
+  Symmetry result;
+  result.chart = best_chart(flow, flow.at(z, setting), fields);
+  std::vector<bool> retained = retained_in<Precise>(fields, result.chart, tiny<Precise>(50));
+  result.constant = constants(fields, result.chart, retained);
+  result.autonomous = !retained.back() && !flow.uses_integrals();
+  retained.pop_back();
+  result.retained = std::move(retained);
+  return result;
+}
+
+}  // namespace eomgen::linear

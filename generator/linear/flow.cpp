@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/flow.hpp"
+
+#include <algorithm>
+
+namespace eomgen::linear {
+
+using symbolic::SymbolKind;
+
+namespace {
+
+// Of a matrix that was scaled: far above rounding, far below what a mechanical system has.
+template <class T>
+T singular();
+template <>
+double singular<double>() { return 1e-12; }
+template <>
+Precise singular<Precise>() { return tiny<Precise>(60); }
+
+std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
+  std::vector<Symbol> result;
+  for (const std::uint8_t order : {std::uint8_t{0}, std::uint8_t{1}}) {
+    for (const std::uint32_t i : s.free) result.push_back({SymbolKind::coordinate, i, order});
+  }
+  result.push_back({SymbolKind::time, 0, 0});
+  return result;
+}
+
+}  // namespace
+
+Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
+    : system_(s), n_(s.free.size()), m_(s.active.size()), inputs_(m.model->inputs.size()) {
+  Dag& dag = *m.dag;
+  place_.assign(m.q.size(), 0);
+  for (std::size_t i = 0; i < n_; ++i) place_[s.free[i]] = i;
+  for (const char* suffix : {"", "_dot"}) {
+    for (const std::uint32_t i : s.free) names_.push_back(m.model->coordinates[i].name + suffix);
+  }
+  directions_ = state_symbols(s);
+  for (std::uint32_t i = 0; i < inputs_; ++i) directions_.push_back({SymbolKind::input, i, 0});
+  std::vector<Ref> roots = s.M;
+  for (const auto* list : {&s.f, &s.A, &s.gamma, &s.b}) roots.insert(roots.end(), list->begin(), list->end());
+  for (std::size_t k = 0; k < m_; ++k) {
+    if (s.holonomic[k]) holonomic_.push_back(k);
+  }
+  for (const std::size_t k : holonomic_) roots.push_back(s.psi[k]);
+  for (const mechanics::Integral& integral : m.integrals) leaf_.push_back(integral.psi);
+  for (const std::size_t k : holonomic_) phi_expressions_.push_back(s.psi[k]);
+  phi_expressions_.insert(phi_expressions_.end(), leaf_.begin(), leaf_.end());
+  for (std::size_t k = 0; k < m_; ++k) {
+    Ref rate = s.b[k];
+    for (std::size_t i = 0; i < n_; ++i) rate = dag.add(rate, dag.mul(s.A[k * n_ + i], m.qdot[s.free[i]]));
+    phi_expressions_.push_back(rate);
+  }
+  const std::vector<Symbol> symbols = dag.symbols(roots);
+  uses_integrals_ = std::any_of(symbols.begin(), symbols.end(), [](const Symbol& x) { return x.kind == SymbolKind::integral; });
+  tape_ = std::make_unique<Tape>(dag, roots, directions_);
+  leaf_tape_ = std::make_unique<Tape>(dag, leaf_, directions_);
+}
+
+template <class T>
+std::function<T(const Symbol&)> Flow::lookup(const State<T>& z, const Setting<T>& setting) const {
+  return [this, &z, &setting](const Symbol& s) -> T {
+    switch (s.kind) {
+      case SymbolKind::parameter: return setting.parameters[s.index];
+      case SymbolKind::input: return setting.inputs[s.index];
+      case SymbolKind::integral: return setting.integrals[s.index];
+      case SymbolKind::time: return z[2 * n_];
+      case SymbolKind::coordinate:
+        if (s.order < 2) return z[place_[s.index] + (s.order == 0 ? 0 : n_)];
+        break;
+      default: break;
+    }
+    throw std::logic_error("the equations of motion leave a symbol open");
+  };
+}
+
+Tape Flow::tape(std::vector<Ref> expressions) const { return {*system_.dag, std::move(expressions), state_symbols(system_)}; }
+
+template <class T>
+std::vector<T> Flow::leaf(const State<T>& z, const Setting<T>& setting) const {
+  return leaf_tape_->at<T>(lookup(z, setting)).value;
+}
+
+template <class T>
+Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
+  const Sloped<T> s = tape_->at<T>(lookup(z, setting));
+  Field<T> field;
+  differentiate(s, z, field);
+  constrain(s, z, setting, field);
+  return field;
+}
+
+// With K = [M, -A^T; A, 0]: K (a, lambda) = (f, -gamma), and along every direction d
+// K (a', lambda') = (f' - M' a + A'^T lambda, -gamma' - A' a). Rows of A that follow from others are left out by the elimination.
+template <class T>
+void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const {
+  const std::size_t size = n_ + m_, f0 = n_ * n_, A0 = f0 + n_, gamma0 = A0 + m_ * n_;
+  Matrix<T> K(size, size), right(size, 1), A(m_, n_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = 0; j < n_; ++j) K(i, j) = s.value[i * n_ + j];
+    right(i, 0) = s.value[f0 + i];
+  }
+  for (std::size_t k = 0; k < m_; ++k) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      A(k, i) = K(n_ + k, i) = s.value[A0 + k * n_ + i];
+      K(i, n_ + k) = -s.value[A0 + k * n_ + i];
+    }
+    right(n_ + k, 0) = -s.value[gamma0 + k];
+  }
+  const Elimination<T> solver(K, singular<T>());
+  require_domain(solver.rank() == n_ + Elimination<T>(A, singular<T>()).rank(), "the accelerations are not determined");
+  const Matrix<T> y = solver.solve(right);
+  const std::size_t count = directions_.size();
+  Matrix<T> rates(size, count);
+  for (std::size_t d = 0; d < count; ++d) {
+    for (std::size_t i = 0; i < n_; ++i) {
+      T sum = s.slope(f0 + i, d);
+      for (std::size_t j = 0; j < n_; ++j) sum = sum - s.slope(i * n_ + j, d) * y(j, 0);
+      for (std::size_t k = 0; k < m_; ++k) sum = sum + s.slope(A0 + k * n_ + i, d) * y(n_ + k, 0);
+      rates(i, d) = sum;
+    }
+    for (std::size_t k = 0; k < m_; ++k) {
+      T sum = -s.slope(gamma0 + k, d);
+      for (std::size_t j = 0; j < n_; ++j) sum = sum - s.slope(A0 + k * n_ + j, d) * y(j, 0);
+      rates(n_ + k, d) = sum;
+    }
+  }
+  const Matrix<T> slope = solver.solve(rates);
+  field.X = Matrix<T>(2 * n_, 1);
+  field.slope = Matrix<T>(2 * n_, 2 * n_ + 1);
+  field.by_inputs = Matrix<T>(2 * n_, inputs_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    field.X(i, 0) = z[n_ + i];
+    field.X(n_ + i, 0) = y(i, 0);
+    field.slope(i, n_ + i) = T(1);
+    for (std::size_t d = 0; d < 2 * n_ + 1; ++d) field.slope(n_ + i, d) = slope(i, d);
+    for (std::size_t u = 0; u < inputs_; ++u) field.by_inputs(n_ + i, u) = slope(i, 2 * n_ + 1 + u);
+  }
+}
+
+template <class T>
+void Flow::constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& setting, Field<T>& field) const {
+  const std::size_t A0 = n_ * n_ + n_, b0 = A0 + m_ * n_ + m_, psi0 = b0 + m_, width = 2 * n_ + 1;
+  const std::size_t h = holonomic_.size(), rows = on_positions() + m_;
+  field.phi = Matrix<T>(rows, 1);
+  field.phi_slope = Matrix<T>(rows, width);
+  for (std::size_t k = 0; k < h; ++k) {
+    field.phi(k, 0) = s.value[psi0 + k];
+    for (std::size_t d = 0; d < width; ++d) field.phi_slope(k, d) = s.slope(psi0 + k, d);
+  }
+  if (!leaf_.empty()) {
+    const Sloped<T> leaf = leaf_tape_->at<T>(lookup(z, setting));
+    for (std::size_t k = 0; k < leaf_.size(); ++k) {
+      field.phi(h + k, 0) = leaf.value[k] - setting.leaf.at(k);
+      for (std::size_t d = 0; d < width; ++d) field.phi_slope(h + k, d) = leaf.slope(k, d);
+    }
+  }
+  for (std::size_t k = 0; k < m_; ++k) {
+    const std::size_t row = on_positions() + k;
+    field.phi(row, 0) = s.value[b0 + k];
+    for (std::size_t d = 0; d < width; ++d) field.phi_slope(row, d) = s.slope(b0 + k, d);
+    for (std::size_t i = 0; i < n_; ++i) {
+      field.phi(row, 0) = field.phi(row, 0) + s.value[A0 + k * n_ + i] * z[n_ + i];
+      for (std::size_t d = 0; d < width; ++d) field.phi_slope(row, d) = field.phi_slope(row, d) + s.slope(A0 + k * n_ + i, d) * z[n_ + i];
+      field.phi_slope(row, n_ + i) = field.phi_slope(row, n_ + i) + s.value[A0 + k * n_ + i];
+    }
+  }
+}
+
+template Field<double> Flow::at(const State<double>&, const Setting<double>&) const;
+template Field<Precise> Flow::at(const State<Precise>&, const Setting<Precise>&) const;
+template std::vector<double> Flow::leaf(const State<double>&, const Setting<double>&) const;
+template std::vector<Precise> Flow::leaf(const State<Precise>&, const Setting<Precise>&) const;
+template std::function<double(const Symbol&)> Flow::lookup(const State<double>&, const Setting<double>&) const;
+template std::function<Precise(const Symbol&)> Flow::lookup(const State<Precise>&, const Setting<Precise>&) const;
+
+}  // namespace eomgen::linear

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The vector field of the equations of motion at a point and its slopes: (q, v) -> (v, a) with M a = f + A^T lambda and
+// A a + gamma = 0, differentiated with a and lambda as functions of the point. In: an EquationSystem without contacts.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "linear/tape.hpp"
+#include "mechanics/mechanics.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::linear {
+
+/// z = (q, v, t) of the free coordinates.
+template <class T>
+using State = std::vector<T>;
+
+/// What stays as it is while the state moves.
+template <class T>
+struct Setting {
+  std::vector<T> parameters, inputs;
+  std::vector<T> integrals;  // of functions of time, per Model::integrals
+  std::vector<T> leaf;       // values of the integrals of constraints on velocities
+};
+
+template <class T>
+struct Field {
+  Matrix<T> X;           // 2n x 1: v, a
+  Matrix<T> slope;       // 2n x (2n + 1), by z
+  Matrix<T> by_inputs;   // 2n x inputs
+  Matrix<T> phi;         // constraints on positions (holonomic, then leaves), then on velocities
+  Matrix<T> phi_slope;   // by z
+};
+
+class Flow {
+ public:
+  Flow(mechanics::Mechanics& mechanics, const system::EquationSystem& system);
+
+  std::size_t coordinates() const { return n_; }
+  std::size_t inputs() const { return inputs_; }
+  std::size_t on_positions() const { return holonomic_.size() + leaf_.size(); }
+  const std::vector<std::string>& names() const { return names_; }  // of z without t
+  bool uses_integrals() const { return uses_integrals_; }
+
+  /// Throws std::domain_error where the field has no value or no slope.
+  template <class T>
+  Field<T> at(const State<T>& z, const Setting<T>& setting) const;
+
+  /// Values of the integrals that make the leaf of a state.
+  template <class T>
+  std::vector<T> leaf(const State<T>& z, const Setting<T>& setting) const;
+
+  /// Other expressions of the system, with slopes by z.
+  Tape tape(std::vector<Ref> expressions) const;
+  template <class T>
+  std::function<T(const Symbol&)> lookup(const State<T>& z, const Setting<T>& setting) const;
+
+  const std::vector<Ref>& phi_expressions() const { return phi_expressions_; }  // leaves without their constants
+
+ private:
+  template <class T>
+  void differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const;
+  template <class T>
+  void constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& setting, Field<T>& field) const;
+
+  const system::EquationSystem& system_;
+  std::size_t n_, m_, inputs_;
+  std::vector<std::size_t> holonomic_;  // of the active constraints
+  std::vector<Ref> leaf_;
+  std::vector<Ref> phi_expressions_;
+  std::vector<std::string> names_;
+  std::vector<std::size_t> place_;      // of a coordinate of the model in z
+  std::vector<Symbol> directions_;      // z, then inputs
+  bool uses_integrals_ = false;
+  std::unique_ptr<Tape> tape_, leaf_tape_;
+};
+
+}  // namespace eomgen::linear

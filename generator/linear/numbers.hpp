@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The same formulas in binary64, where many points are tried, and in many digits, where something is decided.
+#pragma once
+
+#include <cln/float.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include <cmath>
+#include <stdexcept>
+
+namespace eomgen::linear {
+
+using Precise = cln::cl_R;
+
+/// Digits of everything that is decided here: a zero of multiplicity m leaves roots of 1e-160^(1/m).
+inline constexpr int digits = 160;
+inline cln::float_format_t precise_format() {
+  static const cln::float_format_t format = cln::float_format(digits);
+  return format;
+}
+
+/// 10^-exponent.
+template <class T>
+T tiny(int exponent);
+template <>
+inline double tiny<double>(int exponent) {
+  return std::pow(10.0, -exponent);
+}
+template <>
+inline Precise tiny<Precise>(int exponent) {
+  return cln::cl_float(cln::cl_R(cln::expt(cln::cl_RA(1) / 10, exponent)), precise_format());
+}
+
+inline double magnitude(double x) { return std::abs(x); }
+inline Precise magnitude(const Precise& x) { return cln::abs(x); }
+inline bool is_zero(double x) { return x == 0; }
+inline bool is_zero(const Precise& x) { return cln::zerop(x); }
+inline double to_double(double x) { return x; }
+inline double to_double(const Precise& x) { return cln::double_approx(x); }
+
+template <class T>
+T number(const Precise& x);
+template <>
+inline double number<double>(const Precise& x) {
+  return cln::double_approx(x);
+}
+template <>
+inline Precise number<Precise>(const Precise& x) {
+  return cln::cl_float(x, precise_format());
+}
+
+/// An expression has no value, or no slope, at a point.
+inline void require_domain(bool ok, const char* what) {
+  if (!ok) throw std::domain_error(what);
+}
+
+}  // namespace eomgen::linear

@@ -1,0 +1,217 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/tape.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace eomgen::linear {
+namespace {
+
+using symbolic::Op;
+
+template <class T>
+struct Functions;
+
+template <>
+struct Functions<double> {
+  static double pi() { return 3.14159265358979323846; }
+  static double sqrt(double x) { return std::sqrt(x); }
+  static double sin(double x) { return std::sin(x); }
+  static double cos(double x) { return std::cos(x); }
+  static double atan2(double y, double x) { return std::atan2(y, x); }
+  static double sinh(double x) { return std::sinh(x); }
+  static double cosh(double x) { return std::cosh(x); }
+  static double exp(double x) { return std::exp(x); }
+  static double log(double x) { return std::log(x); }
+  static double power(double x, long n) { return std::pow(x, static_cast<double>(n)); }
+};
+
+template <>
+struct Functions<Precise> {
+  static Precise pi() { return cln::pi(precise_format()); }
+  static Precise sqrt(const Precise& x) { return cln::sqrt(x); }
+  static Precise sin(const Precise& x) { return cln::sin(x); }
+  static Precise cos(const Precise& x) { return cln::cos(x); }
+  static Precise atan2(const Precise& y, const Precise& x) { return cln::atan(x, y); }
+  static Precise sinh(const Precise& x) { return cln::sinh(x); }
+  static Precise cosh(const Precise& x) { return cln::cosh(x); }
+  static Precise exp(const Precise& x) { return cln::exp(x); }
+  static Precise log(const Precise& x) { return cln::ln(x); }
+  static Precise power(const Precise& x, long n) { return cln::expt(x, cln::cl_I(n)); }
+};
+
+/// A value and its partial derivatives by the operands.
+template <class T>
+struct Local {
+  T value{0};
+  std::array<T, 4> slope{T(0), T(0), T(0), T(0)};
+};
+
+template <class T>
+Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves) {
+  const bool one = op == Op::abs || op == Op::sign;
+  const T gap = one ? x[0] : x[0] - x[1];
+  // Decided once, in the digits at hand: exactly on the edge there is no slope.
+  require_domain(!moves || magnitude(gap) > tiny<T>(13) * (magnitude(x[0]) + magnitude(one ? T(1) : x[1])),
+                 "it lies on the edge of abs, sign, min, max or if");
+  const bool below = gap < T(0);
+  switch (op) {
+    case Op::abs: return {magnitude(x[0]), {below ? T(-1) : T(1)}};
+    case Op::sign: return {is_zero(gap) ? T(0) : below ? T(-1) : T(1), {}};
+    case Op::min: return below ? Local<T>{x[0], {T(1), T(0)}} : Local<T>{x[1], {T(0), T(1)}};
+    case Op::max: return below ? Local<T>{x[1], {T(0), T(1)}} : Local<T>{x[0], {T(1), T(0)}};
+    default: return below ? Local<T>{x[2], {T(0), T(0), T(1), T(0)}} : Local<T>{x[3], {T(0), T(0), T(0), T(1)}};
+  }
+}
+
+template <class T>
+Local<T> arcs(Op op, const T& x) {
+  using F = Functions<T>;
+  if (op == Op::atan) return {F::atan2(x, T(1)), {T(1) / (T(1) + x * x)}};
+  const T square = (T(1) - x) * (T(1) + x);
+  require_domain(square > T(0), "asin or acos at 1 or beyond");
+  const T root = F::sqrt(square);
+  if (op == Op::asin) return {F::atan2(x, root), {T(1) / root}};
+  return {F::atan2(root, x), {T(-1) / root}};
+}
+
+template <class T>
+Local<T> arithmetic(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
+  using F = Functions<T>;
+  switch (op) {
+    case Op::add: return {x[0] + x[1], {T(1), T(1)}};
+    case Op::sub: return {x[0] - x[1], {T(1), T(-1)}};
+    case Op::mul: return {x[0] * x[1], {x[1], x[0]}};
+    case Op::neg: return {-x[0], {T(-1)}};
+    case Op::div: {
+      require_domain(!is_zero(x[1]), "division by zero");
+      const T v = x[0] / x[1];
+      return {v, {T(1) / x[1], -v / x[1]}};
+    }
+    case Op::power: {
+      const T before = F::power(x[0], payload - 1);
+      return {before * x[0], {T(payload) * before}};
+    }
+    default: break;
+  }
+  require_domain(x[0] > T(0), "a real power of a number that is not positive");  // Op::pow
+  const T log = F::log(x[0]), v = F::exp(x[1] * log);
+  return {v, {x[1] * v / x[0], moves[1] ? v * log : T(0)}};
+}
+
+template <class T>
+Local<T> of_function(Op op, const T& x, bool moves) {
+  using F = Functions<T>;
+  switch (op) {
+    case Op::sqrt: {
+      require_domain(!(x < T(0)), "sqrt of a negative number");
+      const T v = F::sqrt(x);
+      require_domain(!moves || !is_zero(v), "sqrt of 0 has no slope");
+      return {v, {moves ? T(1) / (T(2) * v) : T(0)}};
+    }
+    case Op::sin: return {F::sin(x), {F::cos(x)}};
+    case Op::cos: return {F::cos(x), {-F::sin(x)}};
+    case Op::tan: {
+      const T c = F::cos(x);
+      require_domain(!is_zero(c), "tan where cos is 0");
+      const T v = F::sin(x) / c;
+      return {v, {T(1) + v * v}};
+    }
+    case Op::sinh: return {F::sinh(x), {F::cosh(x)}};
+    case Op::cosh: return {F::cosh(x), {F::sinh(x)}};
+    case Op::tanh: {
+      const T v = F::sinh(x) / F::cosh(x);
+      return {v, {T(1) - v * v}};
+    }
+    case Op::exp: {
+      const T v = F::exp(x);
+      return {v, {v}};
+    }
+    case Op::log: require_domain(x > T(0), "log of a number that is not positive"); return {F::log(x), {T(1) / x}};
+    default: return arcs(op, x);
+  }
+}
+
+template <class T>
+Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
+  if (symbolic::is_kink(op)) return kinked(op, x, moves[0] || moves[1] || moves[2] || moves[3]);
+  switch (op) {
+    case Op::add: case Op::sub: case Op::mul: case Op::div: case Op::neg: case Op::power: case Op::pow:
+      return arithmetic(op, payload, x, moves);
+    case Op::atan2: {
+      const T square = x[0] * x[0] + x[1] * x[1];
+      require_domain(square > T(0), "atan2(0, 0)");
+      return {Functions<T>::atan2(x[0], x[1]), {x[1] / square, -x[0] / square}};
+    }
+    default: return of_function(op, x[0], moves[0]);
+  }
+}
+
+}  // namespace
+
+Tape::Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> directions) : dag_(dag), directions_(directions.size()) {
+  std::map<Symbol, std::uint32_t> along;
+  for (std::uint32_t i = 0; i < directions.size(); ++i) along[directions[i]] = i;
+  nodes_ = dag.reachable(roots);
+  std::map<Ref, std::uint32_t> place;
+  for (const Ref r : nodes_) {
+    const symbolic::Node& node = dag[r];
+    Step step{node.op, node.payload, node.arity};
+    for (std::uint8_t i = 0; i < node.arity; ++i) {
+      step.args[i] = place.at(node.args[i]);
+      step.moves = step.moves || steps_[step.args[i]].moves;
+    }
+    if (node.op == Op::symbol) {
+      const auto found = along.find(dag.symbol_of(r));
+      step.moves = found != along.end();
+      if (step.moves) step.direction = found->second;
+    }
+    if (step.moves) step.place = static_cast<std::uint32_t>(moving_++);
+    place[r] = static_cast<std::uint32_t>(steps_.size());
+    steps_.push_back(step);
+  }
+  for (const Ref r : roots) roots_.push_back(place.at(r));
+}
+
+template <class T>
+Sloped<T> Tape::at(const std::function<T(const Symbol&)>& lookup) const {
+  std::vector<T> value(steps_.size());
+  Matrix<T> slope(moving_, directions_);
+  for (std::size_t k = 0; k < steps_.size(); ++k) {
+    const Step& step = steps_[k];
+    if (step.op == Op::constant) value[k] = number<T>(dag_.value(nodes_[k]));
+    if (step.op == Op::pi) value[k] = Functions<T>::pi();
+    if (step.op == Op::symbol) {
+      value[k] = lookup(dag_.symbol_of(nodes_[k]));
+      if (step.moves) slope(step.place, step.direction) = T(1);
+    }
+    if (step.arity == 0) continue;
+    std::array<T, 4> x{T(0), T(0), T(0), T(0)};
+    std::array<bool, 4> moves{};
+    for (std::uint8_t i = 0; i < step.arity; ++i) {
+      x[i] = value[step.args[i]];
+      moves[i] = steps_[step.args[i]].moves;
+    }
+    const Local<T> here = local(step.op, step.payload, x, moves);
+    value[k] = here.value;
+    for (std::uint8_t i = 0; i < step.arity; ++i) {
+      if (!moves[i] || is_zero(here.slope[i])) continue;
+      for (std::size_t d = 0; d < directions_; ++d) {
+        const T& inner = slope(steps_[step.args[i]].place, d);
+        if (!is_zero(inner)) slope(step.place, d) = slope(step.place, d) + here.slope[i] * inner;
+      }
+    }
+  }
+  Sloped<T> result{{}, Matrix<T>(roots_.size(), directions_)};
+  for (std::size_t i = 0; i < roots_.size(); ++i) {
+    const Step& step = steps_[roots_[i]];
+    result.value.push_back(value[roots_[i]]);
+    for (std::size_t d = 0; step.moves && d < directions_; ++d) result.slope(i, d) = slope(step.place, d);
+  }
+  return result;
+}
+
+template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&) const;
+template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&) const;
+
+}  // namespace eomgen::linear
