@@ -15,6 +15,7 @@ std::span<const Command> commands() {
       Command{"emit", "C and C++ sources, or a LaTeX document", declare_emit},
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
       Command{"linearize", "the equations linearised at a state, and their eigenvalues", declare_linearize},
+      Command{"bench", "true error against run time, every fitting solver", declare_bench},
       Command{"inverse", "the forces that prescribed motions need", declare_inverse},
       Command{"sweep", "many runs over a grid of parameters, in parallel, resumable", declare_sweep},
       Command{"report", "one self-contained page: equations, verification, a run, plots, an animation", declare_report},

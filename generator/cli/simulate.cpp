@@ -76,6 +76,8 @@ bool energy_is_conserved(const Derived& derived) {
                      [](const derive::Conserved& c) { return c.name == "energy"; });
 }
 
+}  // namespace
+
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
   for (const derive::Conserved& c : derived.conserved) {
@@ -100,8 +102,6 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
   return run;
 }
 
-}  // namespace
-
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
@@ -120,6 +120,9 @@ Simulation simulate(const SimulationRequest& request) {
   if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
   if (run::method_named(solver).implicit) wanted.with.push_back("jac");
   if (run::method_named(solver).series) wanted.with.push_back("taylor");
+  for (const std::string& name : request.with) {
+    if (std::find(wanted.with.begin(), wanted.with.end(), name) == wanted.with.end()) wanted.with.push_back(name);
+  }
   program::Program program = make_program(*derived, wanted);
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);
@@ -137,7 +140,7 @@ Simulation simulate(const SimulationRequest& request) {
   run.row = request.row;
   run.progress = request.progress;
   run.interrupt = request.interrupt;
-  run::RunResult result = run::integrate_scene(run);
+  run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
   return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result)};
 }
 

@@ -20,6 +20,8 @@ struct SimulationRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   bool estimate = true;
+  bool integrate = true;            // false: everything but the run; `result` stays empty
+  std::vector<std::string> with;    // further functions of the code
   std::uint64_t seed = 1;
   /// Called once the model is derived: may add outputs to every candidate, and returns those that the code is to have.
   std::function<std::vector<std::string>(Derived&)> prepare;
@@ -47,6 +49,9 @@ struct Simulation {
 inline constexpr double default_rows = 500;
 
 Simulation simulate(const SimulationRequest& request);
+
+/// What the runner is asked for with compiled code: no rows.
+run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate);
 
 /// The same compiled code once more, with other values: for sweeps and for tests over tolerances. Parameters, starts and
 /// outputs that the code was made for; what else `overrides` may change. No rows.

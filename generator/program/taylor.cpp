@@ -451,8 +451,10 @@ std::size_t taylor_order(const Taylor& taylor) {
   return std::min(taylor_highest_order, stack_budget / (2 * sizeof(double) * taylor.products));
 }
 
+Taylor recurrences(const Function& rhs) { return Recurrences(rhs).run(); }
+
 Taylor taylor_series(const Function& rhs) {
-  Taylor taylor = Recurrences(rhs).run();
+  Taylor taylor = recurrences(rhs);
   if (taylor_order(taylor) < taylor_lowest_order) {
     throw Error("program", {}, fmt::format("the equations are too large for Taylor series: {} products", taylor.products),
                 "take another solver, and leave taylor out of --with");

@@ -21,7 +21,10 @@ inline constexpr std::size_t taylor_lanes = 8;
 inline constexpr std::size_t taylor_highest_order = 40, taylor_lowest_order = 12;
 std::size_t taylor_order(const Taylor& taylor);
 
-/// The recurrences of `rhs`. Branches (abs, min, max, select) are those of order 0. Throws Error where the program is too large.
+/// The recurrences of `rhs`, however large.
+Taylor recurrences(const Function& rhs);
+
+/// The same for emission. Branches (abs, min, max, select) are those of order 0. Throws Error where the program is too large.
 Taylor taylor_series(const Function& rhs);
 
 }  // namespace eomgen::program

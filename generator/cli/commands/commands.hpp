@@ -18,5 +18,6 @@ Execute declare_linearize(CLI::App& app);
 Execute declare_inverse(CLI::App& app);
 Execute declare_sweep(CLI::App& app);
 Execute declare_report(CLI::App& app);
+Execute declare_bench(CLI::App& app);
 
 }  // namespace eomgen::cli

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reference/reference.hpp"
+
+#include <cln/dfloat.h>
+#include <cln/exception.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "error.hpp"
+#include "reference/expansion.hpp"
+
+namespace eomgen::reference {
+namespace {
+
+using States = std::vector<std::vector<Number>>;
+
+constexpr int guard = 4;                  // digits between the last terms and the rounding of the arithmetic
+constexpr std::size_t most_steps = 1000000;
+
+[[noreturn]] void fail(const Number& t, const std::string& why) {
+  throw Error("reference", {}, fmt::format("the reference ends at t = {:.6g}: {}", cln::double_approx(t), why),
+              "shorten the run (--t-end), or start elsewhere", Fault::numerical);
+}
+
+/// log2 |x|, beyond the range of double too.
+double log2_of(const Number& x) {
+  if (cln::zerop(x)) return -std::numeric_limits<double>::infinity();
+  const auto exponent = cln::float_exponent(x);
+  return std::log2(std::abs(cln::double_approx(cln::scale_float(x, -exponent)))) + static_cast<double>(exponent);
+}
+double log2_of(const std::vector<Number>& list) {
+  double largest = -std::numeric_limits<double>::infinity();
+  for (const Number& x : list) largest = std::max(largest, log2_of(x));
+  return largest;
+}
+
+class Run {
+ public:
+  Run(const Problem& problem, const program::Taylor& taylor, Settings settings)
+      : problem_(problem), settings_(settings), expand_(taylor, settings.digits), t_(expand_.number(problem.t0)) {
+    for (const double x : problem.x) x_.push_back(expand_.number(x));
+  }
+
+  States run() {
+    for (const Piece& piece : problem_.pieces) {
+      const double until = &piece == &problem_.pieces.back() ? problem_.times.back() : piece.until;
+      const Number end = expand_.number(until);
+      while (t_ != end) step(piece, end);
+    }
+    return std::move(wanted_);
+  }
+  std::size_t steps() const { return steps_; }
+
+ private:
+  void step(const Piece& piece, const Number& end) {
+    if (problem_.interrupt != nullptr && *problem_.interrupt) fail(t_, "interrupted");
+    if (++steps_ > most_steps) fail(t_, fmt::format("more than {} steps", most_steps));
+    States c;
+    try {
+      c = expand_(t_, x_, problem_.p, piece.u, settings_.order);
+    } catch (const std::domain_error& error) {
+      fail(t_, error.what());
+    } catch (const cln::runtime_exception& error) {
+      fail(t_, error.what());
+    }
+    const double span = cln::double_approx(end - t_);
+    const double h = std::min(length(c), std::abs(span));
+    if (!(h > 1e-14 * std::abs(span)) && h < std::abs(span)) fail(t_, "steps become too short");
+    const bool last = h >= std::abs(span);
+    const Number next = last ? end : t_ + expand_.number(std::copysign(h, span));
+    while (wanted_.size() < problem_.times.size()) {
+      const Number time = expand_.number(problem_.times[wanted_.size()]);
+      if (span > 0 ? time > next : time < next) break;
+      wanted_.push_back(at(c, time - t_));
+    }
+    x_ = at(c, next - t_);
+    t_ = next;
+    if (problem_.progress) problem_.progress((cln::double_approx(t_) - problem_.t0) / (problem_.times.back() - problem_.t0));
+  }
+
+  /// Where the last two terms are 10^-(digits - guard) of the largest value.
+  double length(const States& c) const {
+    const double scale = std::max(log2_of(c[0]), -1000.0) - (settings_.digits - guard) * std::log2(10.0);
+    double h = std::numeric_limits<double>::infinity();
+    for (const int k : {settings_.order - 1, settings_.order}) {
+      h = std::min(h, std::exp2((scale - log2_of(c[static_cast<std::size_t>(k)])) / k));
+    }
+    return h;
+  }
+
+  static std::vector<Number> at(const States& c, const Number& d) {
+    std::vector<Number> x = c.back();
+    for (std::size_t k = c.size() - 1; k-- > 0;) {
+      for (std::size_t i = 0; i < x.size(); ++i) x[i] = x[i] * d + c[k][i];
+    }
+    return x;
+  }
+
+  const Problem& problem_;
+  Settings settings_;
+  Expansion expand_;
+  Number t_;
+  std::vector<Number> x_;
+  States wanted_;
+  std::size_t steps_ = 0;
+};
+
+/// Digits that a and b agree in, relative to `scale` of each component.
+int agreement(const std::vector<Number>& a, const std::vector<Number>& b, const std::vector<double>& scale) {
+  double worst = -1000;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Number difference = a[i] - b[i];
+    if (!cln::zerop(difference)) worst = std::max(worst, (log2_of(difference) - scale[i]) * std::log10(2.0));
+  }
+  return static_cast<int>(std::floor(-worst));
+}
+
+}  // namespace
+
+Solution solve(const Problem& problem, Settings first, Settings second) {
+  const program::Taylor taylor = program::recurrences(problem.rhs);
+  Problem quiet = problem;  // the first run is the cheaper one: its progress is the first third
+  if (problem.progress) quiet.progress = [&](double fraction) { problem.progress(fraction / 3); };
+  Run rough(quiet, taylor, first);
+  const States a = rough.run();
+  if (problem.progress) quiet.progress = [&](double fraction) { problem.progress((1 + 2 * fraction) / 3); };
+  Run sharp(quiet, taylor, second);
+  const States b = sharp.run();
+
+  Solution solution;
+  std::vector<double> scale(problem.x.size(), -std::numeric_limits<double>::infinity());
+  double largest = -1000;
+  for (const std::vector<Number>& state : b) {
+    solution.x.emplace_back();
+    for (std::size_t i = 0; i < state.size(); ++i) {
+      solution.x.back().push_back(cln::double_approx(state[i]));
+      scale[i] = std::max(scale[i], log2_of(state[i]));
+      largest = std::max(largest, scale[i]);
+    }
+  }
+  constexpr double nothing = -66;  // log2: what is 1e-20 of the largest component is rounding
+  for (double& s : scale) s = std::max(s, largest + nothing);
+  solution.digits = std::min(first.digits, second.digits);
+  for (std::size_t j = 0; j < b.size(); ++j) solution.digits = std::min(solution.digits, agreement(a[j], b[j], scale));
+  solution.digits_at_end = std::min({first.digits, second.digits, agreement(a.back(), b.back(), scale)});
+  solution.steps = sharp.steps();
+  solution.method = fmt::format("Taylor series of orders {} and {} in {} and {} digits", first.order, second.order, first.digits, second.digits);
+  return solution;
+}
+
+}  // namespace eomgen::reference

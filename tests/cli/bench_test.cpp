@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// bench: errors are true errors, whatever the times were.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "program.hpp"
+#include "support/elliptic.hpp"
+
+using namespace eomgen::test;
+
+TEST_CASE("bench: every solver's error falls with its tolerance or step, and the document has all of them") {
+  const Folder folder;
+  const Json found = document(folder, {"bench", "P2_planar_pendulum", "--t-end", "1", "--csv", "out.csv", "--svg", "out.svg"});
+  CHECK(found["reference"]["digits"].get<int>() >= 30);
+  CHECK(found["left_out"].empty());
+  CHECK(contains(found["advice"].get<std::string>(), "for 1e-12"));
+  for (const Json& solver : document(folder, {"list"})["solvers"]) {
+    const std::string name = solver["name"];
+    CAPTURE(name);
+    std::vector<double> errors;
+    for (const Json& row : found["rows"]) {
+      if (row["solver"] != name) continue;
+      REQUIRE(row["outcome"] == "done");
+      CHECK(row["step"].is_null() == solver["adaptive"].get<bool>());
+      CHECK(row["error_along"].get<double>() >= row["error"].get<double>());
+      CHECK(row["seconds"].get<double>() > 0);
+      errors.push_back(row["error_along"]);
+    }
+    REQUIRE(errors.size() >= 9);
+    const double fall = errors.front() / errors.back();
+    CHECK(fall > (solver["order"].get<int>() == 2 ? 1e4 : 1e7));  // nine steps, each half the one before, of order 2: 4^8
+    if (solver["adaptive"].get<bool>()) CHECK(errors.back() < 1e-10);
+  }
+  CHECK(contains(folder.read("out.svg"), "</svg>"));
+  CHECK(contains(folder.read("out.csv"), "solver,rtol,step,error,error_along,seconds"));
+}
+
+TEST_CASE("bench: the error is the difference from the motion itself") {
+  const Folder folder;
+  const Json found = document(folder, {"bench", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5"});
+  const Json run = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5", "--rtol", "1e-5", "--atol", "1e-8", "--no-error-estimate"});
+  const Json sharp = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "taylor", "--rtol", "1e-14", "--atol", "1e-15", "--no-error-estimate"});
+  for (const Json& row : found["rows"]) {
+    if (std::abs(row["rtol"].get<double>() / 1e-5 - 1) > 1e-9) continue;
+    const double difference = std::abs(run["final"]["theta"].get<double>() - sharp["final"]["theta"].get<double>());
+    CHECK(row["errors"]["theta"].get<double>() == doctest::Approx(difference).epsilon(1e-3));
+  }
+}
+
+TEST_CASE("bench: what has no reference is told, and so is a solver that does not exist") {
+  const Folder folder;
+  const auto refused = [&](const Words& words, const char* what) {
+    const auto result = expect(2, folder, words);
+    CHECK(contains(result.err, what));
+    CHECK(contains(result.err, "remedy: "));
+  };
+  refused({"bench", "bouncing_ball"}, "contacts and friction");
+  refused({"bench", "bilinear_oscillator"}, "crosses a kink");
+  refused({"bench", "P2_planar_pendulum", "--solver", "rk5"}, "there is no solver 'rk5'");
+}
