@@ -50,7 +50,9 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
     for (const std::uint32_t q : derived.mechanics.free) add(derive::differential_output(i, derived.model.coordinates[q].name));
     add(derive::differential_output(i, "t"));
   }
-  for (const system::Reaction& r : derived.candidates.front().reactions) add("reaction." + r.label);
+  for (const system::Output& output : derived.candidates.front().outputs) {
+    if (output.name.starts_with("reaction.")) add(output.name);
+  }
   for (const run::ContactOutputs& contact : contact_outputs(derived)) {
     for (const auto* list : {&contact.slip, &contact.phi}) std::for_each(list->begin(), list->end(), add);
     for (const std::vector<std::string>& slopes : contact.slopes) std::for_each(slopes.begin(), slopes.end(), add);

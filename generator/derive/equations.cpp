@@ -104,6 +104,7 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
     system::Contact result;
     result.name = contact.name;
     result.first = contact.first;
+    result.rolls = contact.rolls;
     result.reactions = contact.constraints;  // reactions stand in the order of the constraints
     for (const Ref g : contact.gram) result.gram.push_back(finish(g));
     if (contact.constraints.empty()) result.normal = finish(contact.normal);
@@ -153,6 +154,9 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
         sum = dag.add(sum, dag.mul(contact.directions[a][axis], phi(a)));
       }
       s.outputs.push_back({"friction." + contact.name + "." + std::to_string(axis + 1), sum});
+    }
+    if (contact.touch && m.model->constraints[*contact.touch].rolls_by_friction()) {
+      for (std::uint32_t a = 0; a < 2; ++a) s.outputs.push_back({"reaction." + contact.name + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a)});
     }
     add_slip_outputs(m, contact, s);
     const Ref slides = contact.width ? dag.one() : dag.symbol(system::slides_symbol(j));

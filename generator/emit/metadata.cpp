@@ -138,7 +138,7 @@ const char* state_name(const program::ContactInfo& contact, int digit) {
   if (contact.unilateral && digit >= 3) return "is apart";
   if (contact.dimensions == 0) return "touches";
   if (!contact.sticks || (contact.dimensions == 2 && digit % 3 == 1)) return "slides";
-  return digit % 3 == 0 ? "sticks" : digit % 3 == 1 ? "slides along" : "slides against";
+  return digit % 3 == 0 ? (contact.rolls ? "rolls" : "sticks") : digit % 3 == 1 ? "slides along" : "slides against";
 }
 
 /// The contacts, and the modes that they can be in: names, and the numbers that stand for them.

@@ -95,18 +95,38 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   }
 }
 
+// The point of contact stays on both surfaces, whatever moves.
+void check_touch(const Mechanics& m, Lowering& lower, const model::Constraint& constraint) {
+  const model::Touch& touch = *constraint.touch;
+  const auto refuse = [&](const std::string& what, const char* remedy) {
+    throw Error("mechanics", m.model->where(constraint.span), what, remedy);
+  };
+  const bool plane = touch.other_frame == 0;
+  for (std::size_t k = 0; k < touch.sinking.size(); ++k) {
+    if (vanishes(*m.dag, {lower.scalar(touch.sinking[k])})) continue;
+    const std::string& body = m.model->frames[k == 0 ? touch.frame : touch.other_frame].name;
+    if (plane) refuse("the point of contact of '" + constraint.name + "' leaves the plane as the body turns", "give in 'at' the point of the body that is nearest to the plane, or the shape");
+    refuse("the point of contact of '" + constraint.name + "' leaves '" + body + "' along the normal as they move",
+           "give the vectors to where they touch for all positions (of spheres along unit(A - B)), and in 'normal' the direction across both surfaces there");
+  }
+  if (plane) return;
+  const Vec3 beside = lower.vector(touch.beside);
+  if (!vanishes(*m.dag, {beside[0], beside[1], beside[2]})) {
+    refuse("'at' and 'at_b' of '" + constraint.name + "' lead to points that lie beside one another",
+           "give the vectors so that their points differ along the normal alone, for all positions");
+  }
+}
+
 }  // namespace
 
 void add_constraints(Mechanics& m, Lowering& lower) {
   for (const model::Constraint& constraint : m.model->constraints) {
-    if (constraint.sinking != model::no_node && !vanishes(*m.dag, {lower.scalar(constraint.sinking)})) {
-      throw Error("mechanics", m.model->where(constraint.span), "the point of contact of '" + constraint.name + "' leaves the plane as the body turns",
-                  "give in 'at' the point of the body that is nearest to the plane, or the shape");
-    }
+    if (constraint.touch) check_touch(m, lower, constraint);
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) {
       Constraint result;
       result.name = constraint.name;
-      result.label = constraint.psi.size() > 1 ? constraint.name + "." + std::to_string(k + 1) : constraint.name;
+      const std::size_t part = constraint.rolls_by_friction() ? 3 : k + 1;  // the normal comes third, as without friction
+      result.label = constraint.reactions() > 1 ? constraint.name + "." + std::to_string(part) : constraint.name;
       result.written = constraint.psi[k];
       result.unilateral = constraint.unilateral;
       const bool velocities = constraint.binds_velocities(k);

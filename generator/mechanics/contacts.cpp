@@ -30,7 +30,12 @@ class ContactReader {
     }
     contact_.unilateral = constraint.unilateral;
     contact_.restitution = constraint.restitution == model::no_node ? dag_.zero() : lower_.scalar(constraint.restitution);
+    if (constraint.touch) {
+      contact_.touch = static_cast<std::uint32_t>(&constraint - m_.model->constraints.data());
+      contact_.rolls = rolls(*constraint.touch);
+    }
     if (!constraint.friction) return add();
+    if (constraint.touch) return read_body(*constraint.touch, *constraint.friction);
     find_particle();
     find_tangents();
     const Vec3 v = lower_.ddt(lower_.position(contact_.place), constraint.friction->span);
@@ -55,6 +60,30 @@ class ContactReader {
   }
 
  private:
+  // The point of the body that touches has F . dv/dqdot_i, and what it touches the opposite: of the slip velocity v all at once.
+  void read_body(const model::Touch& touch, const model::Friction& law) {
+    contact_.place = touch.place;
+    contact_.gram = {dag_.one()};
+    Vec3 slip = lower_.vector(touch.slip);
+    if (law.surface_velocity != model::no_node) slip = lower_.subtract(slip, lower_.vector(law.surface_velocity));
+    for (std::uint32_t a = 0; a < 2; ++a) {
+      const Vec3 t = lower_.vector(touch.tangents[a]);
+      const Ref w = lower_.dot(t, slip);
+      std::vector<Ref> slopes;
+      for (std::uint32_t i = 0; i < m_.q.size(); ++i) slopes.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
+      contact_.directions.push_back(t);
+      contact_.numbers.push_back(a);
+      contact_.slip.push_back(w);
+      contact_.tangents.push_back(std::move(slopes));
+    }
+    finish(law);
+  }
+  bool rolls(const model::Touch& touch) {
+    if (touch.rolling) return true;
+    const Vec3 wandering = lower_.vector(touch.wandering);
+    return !vanishes(dag_, {wandering[0], wandering[1], wandering[2]});
+  }
+
   Ref tidy(Ref r) { return expand_.tidy(r); }
   Vec3 tidy(const Vec3& v) { return {tidy(v[0]), tidy(v[1]), tidy(v[2])}; }
   Vec3 gradient(std::uint32_t i) { return lower_.gradient(lower_.position(contact_.place), i); }
@@ -275,15 +304,22 @@ void check_determinate(const Mechanics& m) {
 
 }  // namespace
 
+Ref rolling_friction(const Mechanics& m, const Contact& contact, std::uint32_t tangent) {
+  const auto found = std::find(contact.numbers.begin(), contact.numbers.end(), tangent);
+  if (found == contact.numbers.end()) return m.dag->zero();
+  return m.dag->symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(found - contact.numbers.begin()), 0});
+}
+
 void drop_held_directions(Mechanics& m) {
   symbolic::Substitution imposed = impose(m);
   std::uint32_t first = 0;
   for (Contact& contact : m.contacts) {
     for (std::size_t a = contact.directions.size(); a-- > 0 && contact.directions.size() == 2;) {
-      if (!m.dag->is_zero(imposed(contact.slip[a]))) continue;
-      contact.directions.erase(contact.directions.begin() + static_cast<std::ptrdiff_t>(a));
-      contact.tangents.erase(contact.tangents.begin() + static_cast<std::ptrdiff_t>(a));
-      contact.slip.erase(contact.slip.begin() + static_cast<std::ptrdiff_t>(a));
+      const Ref slip = imposed(contact.slip[a]);
+      if (contact.touch ? !vanishes(*m.dag, {slip}) : !m.dag->is_zero(slip)) continue;  // a plane body has no slip across its plane
+      const auto drop = [a](auto& list) { list.erase(list.begin() + static_cast<std::ptrdiff_t>(a)); };
+      drop(contact.directions), drop(contact.tangents), drop(contact.slip);
+      if (contact.touch) drop(contact.numbers);
     }
     contact.first = first;
     first += static_cast<std::uint32_t>(contact.dimensions());

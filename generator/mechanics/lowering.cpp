@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mechanics/lowering.hpp"
 
+#include <algorithm>
+
 #include "symbolic/polynomial.hpp"
 
 namespace eomgen::mechanics {
@@ -110,10 +112,22 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
 // The multiplier of one equation of a constraint; Mechanics lists the equations of all constraints in one row.
 Ref Lowering::multiplier(const model::Node& node) {
   const model::Constraint& wanted = m_.model->constraints[node.index];
+  if (wanted.rolls_by_friction()) return rolling_reaction(node);
   for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
     if (m_.constraints[k].name == wanted.name) return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
   }
   throw Error("mechanics", m_.model->where(node.span), "this constraint has no force", "name a constraint that holds something");
+}
+
+// Friction along one of the tangents, 0 along one that is left out; or the multiplier of the normal.
+Ref Lowering::rolling_reaction(const model::Node& node) {
+  const auto same = [&](const auto& entry) { return entry.name == m_.model->constraints[node.index].name; };
+  if (node.order == 2) {
+    const auto constraint = std::find_if(m_.constraints.begin(), m_.constraints.end(), same);
+    return dag_.symbol({SymbolKind::multiplier, static_cast<std::uint32_t>(constraint - m_.constraints.begin()), 0});
+  }
+  const Contact& contact = *std::find_if(m_.contacts.begin(), m_.contacts.end(), same);
+  return rolling_friction(m_, contact, node.order);
 }
 
 Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {

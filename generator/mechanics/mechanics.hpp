@@ -85,8 +85,8 @@ struct Integral {
   Ref psi;
 };
 
-/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), or one coordinate with a given normal
-/// force. The friction force is sum_a phi_a t_a with the symbols phi_a = {SymbolKind::friction, first + a}. A unilateral constraint
+/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or another body, or one
+/// coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols phi_a = {SymbolKind::friction, first + a}. A unilateral constraint
 /// is a contact with or without friction.
 struct Contact {
   std::string name;                         // of the constraint or the force
@@ -97,12 +97,15 @@ struct Contact {
   std::vector<Ref> gram;                    // grad psi_k . grad psi_l at the particle, row-major
   Ref normal;                               // the given normal force
   std::vector<Vec3> directions;             // t_a, orthonormal; none where a coordinate rubs
-  std::vector<std::vector<Ref>> tangents;   // t_a . dr/dq_i per t_a, all coordinates
+  std::vector<std::uint32_t> numbers;       // of a body: which of its two tangents t_a are, 0 or 1
+  std::vector<std::vector<Ref>> tangents;   // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
   std::vector<Ref> slip;                    // t_a . (v - v_s)
   Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first none where there is a width
   std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
   bool unilateral = false;                      // its one constraint can be left
   Ref restitution;                              // of impacts then
+  std::optional<std::uint32_t> touch;           // of a body: index into Model::constraints
+  bool rolls = false;                           // sticking is rolling: the point of contact wanders over the body
 
   std::size_t dimensions() const { return tangents.size(); }
 };
@@ -149,6 +152,9 @@ struct Mechanics {
 /// Spells the model out on a Dag and classifies its constraints. Throws Error{stage "mechanics"}: a constraint or force
 /// that changes no equation, a coordinate without inertia that nothing determines.
 Mechanics build_mechanics(const model::Model& model);
+
+/// The friction of a body along tangent 0 or 1; 0 along one that is left out.
+Ref rolling_friction(const Mechanics& mechanics, const Contact& contact, std::uint32_t tangent);
 
 /// J v, and H = J w, along the axes of the spin.
 std::array<Ref, 3> times(Dag& dag, const Spin& spin, const std::array<Ref, 3>& v);

@@ -179,19 +179,36 @@ struct Force {
   Span span;
 };
 
+/// Where a body touches a plane or another body: rolling = { .. }, sliding = { .. }.
+struct Touch {
+  std::uint32_t place = 0, frame = 0;              // of the body
+  NodeId arm = no_node;                            // from its centre of mass to the point of contact
+  std::uint32_t other_place = 0, other_frame = 0;  // of the body that it touches; 0: a plane
+  NodeId other_arm = no_node;
+  std::array<NodeId, 2> tangents{no_node, no_node};  // t1, t2; vectors
+  NodeId slip = no_node;                           // vector: the velocity of its point there against what it touches
+  NodeId wandering = no_node;                      // vector: that of the point of contact over the body
+  std::vector<NodeId> sinking;                     // vanish if the point of contact is one, per body
+  NodeId beside = no_node;                         // vector: vanishes if the points of both bodies are over one another
+  bool rolling = false;                            // written as rolling
+};
+
 struct Constraint {
   std::string name;
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
   bool curve = false;       // holonomic = ["psi1", "psi2"]
   bool velocity = false;    // velocity = "..": psi binds velocities
-  bool rolling = false;     // of three equations the first two bind velocities, the third positions
-  NodeId sinking = no_node;  // of rolling and sliding: vanishes if the point of contact is one
+  bool rolling = false;     // without friction: of three equations the first two bind velocities, the third positions
+  std::optional<Touch> touch;  // of rolling and sliding
   bool unilateral = false;  // psi >= 0: it pushes and does not pull
   NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
   Span span;
 
   bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }
+  /// Rolls while friction holds it: one equation, and two components of friction as reactions before it.
+  bool rolls_by_friction() const { return touch && touch->rolling && friction; }
+  std::size_t reactions() const { return rolls_by_friction() ? 3 : psi.size(); }
 };
 
 struct Event {  // a change of sign of `when`

@@ -53,10 +53,9 @@ bool Reader::read_contact(Constraint& constraint, const Value& table) {
     source_.fail(key_span(table, other), fmt::format("the constraint '{}' is both '{}' and '{}'", constraint.name, kind.key, other),
                  "write one [[constraint]] for each");
   }
-  for (const char* later : {"friction", "holds", "restitution"}) {
-    if (const Entry* entry = table.entry(later)) not_yet(entry->span, fmt::format("'{}' of a {} body", later, kind.key));
-  }
-  read_rolling(constraint, kind.value, rolling != nullptr);
+  read_rolling(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
+  read_holds(constraint, table);
+  if (const Value* friction = table.find("friction")) read_friction(constraint, *friction);
   return true;
 }
 
@@ -72,6 +71,10 @@ void Reader::read_holds(Constraint& constraint, const Value& table) {
                    "write holds = \"bilateral\", or \"unilateral\" for one that can be left");
     }
     constraint.unilateral = holds->text == "unilateral";
+  }
+  if (constraint.unilateral && constraint.rolling) {
+    source_.fail(holds->span, fmt::format("{} can be left and has no friction, so that nothing says what a tangential impulse would be", what),
+                 "give it friction = { static = \"..\", dynamic = \"..\" }: where it lands the body slides, and rolls when slip has ended; or write sliding for a smooth one");
   }
   if (constraint.unilateral && (constraint.velocity || constraint.psi.size() > 1)) {
     source_.fail(holds->span,

@@ -65,6 +65,10 @@ void Reader::read_friction(Constraint& constraint, const Value& value) {
                  "friction belongs to one equation (a surface) or to two (a curve)");
   }
   Friction law = read_coefficients(value, what, dimension_of("m/s"));
+  if (law.width != no_node && constraint.touch && constraint.touch->rolling) {
+    source_.fail(value.span, fmt::format("under the smooth law '{}' creeps and never rolls", constraint.name),
+                 "write sliding = { .. } in place of rolling, or law = \"coulomb\"");
+  }
   if (const Value* velocity = value.find("surface_velocity")) {
     const Context context{fmt::format("the surface velocity of '{}'", constraint.name), on_motion, Shape::vector,
                           dimension_of("m/s"), "the velocity of a surface is made of coordinates, parameters and t"};

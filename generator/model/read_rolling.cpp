@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rolling = { .. } and sliding = { .. }: a body that touches a plane with a point at rest against it, or only touches it. Written out
-// as equations: of rolling the velocities along the two tangents and the position along the normal, eqs. (7.28), (7.38).
+// rolling = { .. } and sliding = { .. }: a body that touches a plane or another body with a point at rest against it, or only touches it.
+// Written out as equations: of rolling the velocities along the two tangents and the position along the normal, eqs. (7.28), (7.38). With
+// friction the one of the position is left, and the law sees to the others.
 #include <fmt/format.h>
 
 #include "model/reader.hpp"
@@ -22,8 +23,8 @@ std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
   const Typed zero = resolver_.meet(resolver_.number(0, span), span, position);
   if (on.is(Value::Kind::text)) {
     if (on.text != "ground") {
-      if (const Symbol* symbol = scope_.find(on.text); symbol != nullptr && symbol->frame > 0) not_yet(span, "contact of two bodies");
-      source_.fail(span, fmt::format("there is no ground {}", quote(on.text)), "write on = \"ground\", the plane E3.r = 0, or on = { point = .., normal = .. }");
+      source_.fail(span, fmt::format("there is no ground and no body {}", quote(on.text)),
+                   "write on = \"ground\", the plane E3.r = 0, on = { point = .., normal = .. }, or the name of another [[body]]");
     }
     return {{"o", zero}, {"V", zero}, {"n", basis(2)}, {"t1", basis(0)}, {"t2", basis(1)}};
   }
@@ -55,7 +56,7 @@ std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
 }
 
 // From the centre of mass to the point of contact.
-Typed Reader::contact_arm(const Value& table, const std::string& body, std::map<std::string, Typed> local) {
+Typed Reader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
     source_.fail(table.span, at == nullptr ? "this contact says not where the body is touched" : "this contact has both 'at' and 'shape'", form);
@@ -67,30 +68,87 @@ Typed Reader::contact_arm(const Value& table, const std::string& body, std::map<
   if (shape->entries.size() != 1) source_.fail(shape->span, fmt::format("a shape in contact is given in {} ways", shape->entries.size()), "write shape = { sphere = \"R\" } or { disk = \"R\" }");
   const Entry& entry = shape->entries[0];
   local["R"] = resolver_.value(entry.value, {"the radius of a contact", 0, Shape::scalar, dimension_of("m"), ""});
-  const std::string axis = body + ".e3";
-  return resolver_.text(entry.key == "sphere" ? "-R*n" : fmt::format("-R*(n - dot(n, {0})*{0})/sqrt(1 - dot(n, {0})^2)", axis), local, entry.value.span, arm);
+  return resolver_.text(entry.key == "sphere" ? "-R*n" : "-R*(n - dot(n, e3)*e3)/sqrt(1 - dot(n, e3)^2)", local, entry.value.span, arm);
 }
 
-void Reader::read_rolling(Constraint& constraint, const Value& table, bool rolling) {
+// Of a body: its centre of mass x, the velocity v of that, its angular velocity w, its axis e3. Equations are written in these, so that no
+// name of the model can be taken for another.
+void Reader::name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, Typed>& local) {
+  const Context vector{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
+  const std::map<std::string, Typed> body{{"x", resolver_.place(frame_sources_[frame].place, span)}};
+  local["x" + ending] = body.at("x");
+  local["v" + ending] = resolver_.text("ddt(x)", body, span, vector);
+  local["w" + ending] = resolver_.meet(resolver_.angular_velocity(frame, span), span, vector);
+  local["e3" + ending] = resolver_.own_axis(frame, 2, span);
+}
+
+// The direction that tangent 1 is nearest to, where the model names one.
+void Reader::tangent_of_contact(const Value& table, std::map<std::string, Typed>& local) {
+  const Value* value = table.find("tangent");
+  if (value == nullptr) return;
+  local["a"] = resolver_.value(*value, {"the tangent of a contact", on_motion, Shape::vector, std::nullopt, "it is made of axes, coordinates and t"});
+  const Context direction{"a tangent", on_motion, Shape::vector, std::nullopt, ""};
+  local["t1"] = resolver_.text("unit(a - dot(a, n)*n)", local, value->span, direction);
+  local["t2"] = resolver_.text("cross(n, t1)", local, value->span, direction);
+}
+
+// Where it touches, and how fast its point there moves against what it touches.
+void Reader::read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local) {
+  const std::string what = fmt::format("the constraint '{}'", constraint.name);
+  Touch& touch = *constraint.touch;
+  touch.arm = local.at("p").node;
+  touch.tangents = {local.at("t1").node, local.at("t2").node};
+  const auto read = [&](const std::string& text, Shape shape) {
+    return resolver_.text(text, local, table.span, {what, on_motion | on_velocity, shape, std::nullopt, ""}).node;
+  };
+  touch.slip = read("v + cross(w, p) - V", Shape::vector);
+  touch.wandering = read("ddt(p) - cross(w, p)", Shape::vector);
+  // What touches may move on the body, but not into what it touches: then it would not be the point of contact.
+  touch.sinking.push_back(read("dot(ddt(p) - cross(w, p), n)", Shape::scalar));
+  if (touch.other_frame == 0) return;
+  touch.other_arm = local.at("pb").node;
+  touch.sinking.push_back(read("dot(ddt(pb) - cross(wb, pb), n)", Shape::scalar));
+  touch.beside = read("x + p - o - dot(x + p - o, n)*n", Shape::vector);
+}
+
+void Reader::read_rolling(Constraint& constraint, const Value& table, bool rolling, bool rough) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   as(Value::Kind::table, table, what, form);
-  check_keys(table, {what, {"body", "on", "at", "shape"}, {"at_b"}});
+  check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}, {}});
   const Value& name = needed(table, "body", what, form);
   const std::uint32_t frame = frame_named(name, fmt::format("'body' of {}", what));
   if (frame == 0 || frame_sources_[frame].place == 0) source_.fail(name.span, fmt::format("{} needs a body, and this has no mass", what), "name a [[body]]");
-  std::map<std::string, Typed> local = plane_of_contact(needed(table, "on", what, "add on = \"ground\""));
-  local["p"] = contact_arm(table, name.text, local);
+  constraint.touch.emplace();
+  constraint.touch->frame = frame;
+  constraint.touch->place = frame_sources_[frame].place;
+  constraint.touch->rolling = rolling;
+  const Value& on = needed(table, "on", what, "add on = \"ground\"");
+  std::map<std::string, Typed> local;
+  std::string psi = "dot(x + p - o, n)";
+  if (touches_body(on)) {
+    name_motion(frame, "", table.span, local);
+    psi = between_bodies(*constraint.touch, table, local).value_or(psi);
+  } else {
+    for (const char* key : {"at_b", "shape_b", "normal"}) {
+      if (table.find(key) == nullptr) continue;
+      source_.fail(key_span(table, key), fmt::format("'{}' belongs to a contact of two bodies, and this is one with a plane", key),
+                   *key == 'n' ? "write on = { point = \"<vector>\", normal = \"<vector>\" }" : "remove it, or name the other body in 'on'");
+    }
+    local = plane_of_contact(on);
+    name_motion(frame, "", table.span, local);
+    local["p"] = contact_arm(table, local);
+  }
+  tangent_of_contact(table, local);
   const Context scalar{what, on_motion | on_velocity, Shape::scalar, std::nullopt, ""};
   const auto equation = [&](const std::string& text) { return resolver_.text(text, local, table.span, scalar); };
-  if (rolling) {
+  constraint.rolling = rolling && !rough;
+  if (constraint.rolling) {
     for (const char* tangent : {"t1", "t2"}) {
-      constraint.psi.push_back(equation(fmt::format("dot(velocity({0}) + cross(omega({0}), p) - V, {1})", name.text, tangent)).node);
+      constraint.psi.push_back(equation(fmt::format("dot(v + cross(w, p) - V, {})", tangent)).node);
     }
   }
-  constraint.psi.push_back(equation(fmt::format("dot({} + p - o, n)", name.text)).node);
-  constraint.rolling = rolling;
-  // What touches the plane may move on the body, but not into the plane: then it would not be the point of contact.
-  constraint.sinking = equation(fmt::format("dot(ddt(p) - cross(omega({}), p), n)", name.text)).node;
+  constraint.psi.push_back(equation(psi).node);
+  read_touch(constraint, table, local);
 }
 
 }  // namespace eomgen::model

@@ -152,9 +152,18 @@ private:
   void read_constraints();
   bool read_contact(Constraint& constraint, const Value& table);
   // read_rolling.cpp
-  void read_rolling(Constraint& constraint, const Value& table, bool rolling);
+  void read_rolling(Constraint& constraint, const Value& table, bool rolling, bool rough);
   std::map<std::string, Typed> plane_of_contact(const Value& on);
-  Typed contact_arm(const Value& table, const std::string& body, std::map<std::string, Typed> local);
+  void tangent_of_contact(const Value& table, std::map<std::string, Typed>& local);
+  void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, Typed>& local);
+  void read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local);
+  Typed contact_arm(const Value& table, std::map<std::string, Typed> local);
+  // read_contact_bodies.cpp
+  bool touches_body(const Value& on);
+  /// psi, where it is not that of two points and a normal.
+  std::optional<std::string> between_bodies(Touch& touch, const Value& table, std::map<std::string, Typed>& local);
+  void spheres_in_contact(const Value& table, std::map<std::string, Typed>& local);
+  void points_in_contact(const Value& table, std::map<std::string, Typed>& local);
   void read_equations(Constraint& constraint, const Value& value);
   // read_friction.cpp
   void read_friction(Constraint& constraint, const Value& value);

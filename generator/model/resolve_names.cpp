@@ -104,7 +104,7 @@ Typed Resolver::reaction(const SyntaxNode& node) {
                  hint.empty() ? "write reaction.NAME with the name of a constraint" : hint);
   }
   allow(on_reaction, node.span, fmt::format("'{}'", written));
-  const std::size_t count = model_.constraints[symbol->index].psi.size();
+  const std::size_t count = model_.constraints[symbol->index].reactions();
   const std::string part = node.parts.size() == 3 ? node.parts[2] : "";
   const std::size_t k = part.size() == 1 && part[0] > '0' && part[0] <= '9' ? static_cast<std::size_t>(part[0] - '0') : 0;
   if (count > 1 ? k < 1 || k > count : !part.empty()) {

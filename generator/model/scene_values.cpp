@@ -158,7 +158,7 @@ void Reader::check_output(const Value& value) {
   if (parts[0] == "reaction" && (parts.size() == 2 || parts.size() == 3)) {
     const Symbol* constraint = scope_.find(parts[1]);
     if (constraint != nullptr && constraint->kind == SymbolKind::constraint) {
-      const std::size_t count = model_.constraints[constraint->index].psi.size();
+      const std::size_t count = model_.constraints[constraint->index].reactions();
       if (parts.size() == 2) return;
       if (count > 1 && parts[2].size() == 1 && parts[2][0] >= '1' &&
           static_cast<std::size_t>(parts[2][0] - '0') <= count)

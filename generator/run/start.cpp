@@ -51,6 +51,15 @@ class StartSolver {
     leave(0);
     solve(0);
     leave(1);
+    if (add_rolling()) {
+      const std::vector<double> given = p_.qdot;
+      const std::vector<std::string> told = p_.solved;
+      newton(1, unknowns(1));
+      if (worst(1) <= start_tolerance) return;
+      p_.qdot = given;  // it slides
+      p_.solved = told;
+      drop_rolling();
+    }
     solve(1);
   }
 
@@ -77,11 +86,26 @@ class StartSolver {
     }
   }
 
+  // Of rolling with friction the rates that are not given follow from rolling, if those that are given allow it: slip 0 as more rows.
+  bool add_rolling() {
+    const std::size_t before = rows_[1].size();
+    for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
+      const std::optional<std::uint32_t> touch = p_.mechanics.contacts[j].touch;
+      if (!touch || !p_.mechanics.model->constraints[*touch].rolls_by_friction() || p_.apart[j]) continue;
+      if (s_.contacts[j].unilateral && std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end()) continue;
+      for (const Ref slip : s_.contacts[j].slip) add_rate(slip, 0);
+    }
+    return rows_[1].size() > before;
+  }
+  void drop_rolling() {
+    while (!rows_[1].empty() && rows_[1].back() >= m_ + 3 * p_.turns.size()) rows_[1].pop_back();
+  }
+
   // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their rates that
   // are not given are 0.
   void hold_angles() {
     const model::Model& model = *p_.mechanics.model;
-    const auto touches = [](const model::Constraint& c) { return c.sinking != model::no_node; };
+    const auto touches = [](const model::Constraint& c) { return c.touch.has_value(); };
     if (std::none_of(model.constraints.begin(), model.constraints.end(), touches)) return;
     for (std::uint32_t f = 1; f < model.frames.size(); ++f) {
       const auto given = [f](const StartProblem::Turn& turn) { return turn.frame == f; };
@@ -97,18 +121,20 @@ class StartSolver {
 
   // An angular velocity is linear in the rates: three more rows beside those of the constraints.
   void add_turn(const StartProblem::Turn& turn) {
-    symbolic::Dag& dag = *s_.dag;
     symbolic::Substitution imposed = derive::impose(p_.mechanics), written = derive::write_out(p_.mechanics);
+    for (std::size_t k = 0; k < 3; ++k) add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
+  }
+
+  // A row w = value, of w that is linear in the rates.
+  void add_rate(Ref w, double wanted) {
+    symbolic::Dag& dag = *s_.dag;
     std::map<Symbol, Ref> zero;
     for (const std::uint32_t i : s_.free) zero[{SymbolKind::coordinate, i, 1}] = dag.zero();
     symbolic::Substitution at_rest(dag, zero);
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Ref w = written(imposed(p_.mechanics.angular_velocity[turn.frame][k]));
-      rows_[1].push_back(b_.size());
-      for (const std::uint32_t i : s_.free) A_.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(w));
-      b_.push_back(at_rest(w));
-      target_.push_back(turn.value[k]);
-    }
+    rows_[1].push_back(b_.size());
+    for (const std::uint32_t i : s_.free) A_.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(w));
+    b_.push_back(at_rest(w));
+    target_.push_back(wanted);
   }
 
   double& value(StartProblem::Key key) { return (key.second == 0 ? p_.q : p_.qdot)[key.first]; }

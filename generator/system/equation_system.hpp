@@ -80,10 +80,11 @@ struct Contact {
   std::optional<Ref> width;                    // of the smooth law, which has no static coefficient
   std::optional<std::uint32_t> unilateral;     // which of the active constraints can be left
   Ref restitution;                             // of impacts then
+  bool rolls = false;                          // sticking is rolling
 
   bool sticks() const { return !slip.empty() && !width; }
   eom::ContactShape shape() const {
-    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), sticks()};
+    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), sticks(), rolls};
   }
 };
 

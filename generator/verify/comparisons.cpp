@@ -75,10 +75,11 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
   const std::size_t n = s.free.size();
   for (std::size_t k = 0; k < s.active.size(); ++k) {
     Residual rate;
-    Real length = 0, size = 0;
+    Real length = 0, size = 0, fastest = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const Real& slope = v.constraints.gradient[s.active[k]][s.free[i]];
       length = cln::max(length, cln::abs(slope));
+      fastest = cln::max(fastest, cln::abs(v.state.qdot[s.free[i]]));
       size = size + cln::abs(slope * v.state.q[s.free[i]]);
       rate.add(v.A[k * n + i] * v.state.qdot[s.free[i]]);
     }
@@ -87,6 +88,7 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
       largest = std::max(largest, relative(v.A[k * n + i] - slope, length));
     }
     rate.add(v.b[k]);
+    rate.add(Real(0), length * fastest);  // a rate that is 0 but for the rounding of slopes that cancel has no size of its own
     largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length),
                         relative(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
   }

@@ -295,11 +295,34 @@ void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<
       sums[friction.coordinate].add(-friction.force[0]);
       continue;
     }
+    if (friction.touch) {
+      subtract_contact(*model_.constraints[*friction.touch].touch, friction.force, now, sums);
+      continue;
+    }
     const Vector r = by_q.place(friction.place);
     for (std::size_t i = 0; i < sums.size(); ++i) {
       for (std::size_t k = 0; k < 3; ++k) sums[i].add(-friction.force[k] * r[k].slope(by_q.level(), i).real());
     }
   }
+}
+
+// A force where a body is touched: at its centre of mass, with its moment about that, F . dr/dq_i + (p x F) . dw/dqdot_i; what it
+// touches bears the opposite.
+void Judge::subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now, std::vector<Residual>& sums) const {
+  Interpreter& by_q = now.by_coordinates(false);
+  const auto act = [&](std::uint32_t place, std::uint32_t frame, model::NodeId arm, int sign) {
+    const Vector F{Jet(sign * force[0]), Jet(sign * force[1]), Jet(sign * force[2])};
+    const Vector r = by_q.place(place), moment = cross(now.vector(arm), F);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      const Vector turn = now.virtual_rotation(frame, i);
+      for (std::size_t k = 0; k < 3; ++k) {
+        sums[i].add(-F[k].real() * r[k].slope(by_q.level(), i).real());
+        sums[i].add(-moment[k].real() * turn[k].real());
+      }
+    }
+  };
+  act(touch.place, touch.frame, touch.arm, 1);
+  if (touch.other_frame > 0) act(touch.other_place, touch.other_frame, touch.other_arm, -1);
 }
 
 std::vector<Real> Judge::row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const {

@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,7 @@ struct FrictionForce {
   std::uint32_t place = 0;       // of the particle; 0 where a coordinate rubs
   std::uint32_t coordinate = 0;  // that rubs
   std::array<Real, 3> force{};   // on the particle; force[0] on the coordinate
+  std::optional<std::uint32_t> touch = {};  // on a body where this constraint of the model says that it touches
 };
 
 struct State {
@@ -94,6 +96,7 @@ class Judge {
   bool needs_derivatives(model::NodeId expression) const;
   Real integral_value(std::uint32_t integral, const State& state) const;
   void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;
+  void subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now, std::vector<Residual>& sums) const;
   std::vector<Real> row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const;
 
   const model::Model& model_;

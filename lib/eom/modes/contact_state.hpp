@@ -37,6 +37,7 @@ struct ContactShape {
   bool surface = false;        // its normal force has a sign
   bool unilateral = false;     // it can be left
   bool sticks = true;          // Coulomb's law; false: no friction, or a smooth law
+  bool rolls = false;          // sticking is rolling
 };
 
 /// Whether a contact of this shape can be in a state.

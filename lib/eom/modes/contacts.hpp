@@ -140,7 +140,7 @@ class Contacts {
     if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0) return failed(point, code);
     if (static_law_holds(j)) {
       const int code = contacts_[j].dimensions == 2 ? motion_.stick(point.t, point.x, sticking, j) : 0;
-      return code != 0 ? failed(point, code) : Transition{sticking, "stick", name};
+      return code != 0 ? failed(point, code) : Transition{sticking, contacts_[j].rolls ? "roll" : "stick", name};
     }
     if (contacts_[j].dimensions == 2) {
       const int code = motion_.slide(point.t, point.x, sticking, j);
@@ -230,7 +230,7 @@ class Contacts {
     }
     if (!apart && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
     if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
-    const char* state = apart ? " is apart" : contact.dimensions == 0 ? " touches" : !contact.sticks || digit % 3 != 0 ? " slides" : " sticks";
+    const char* state = apart ? " is apart" : contact.dimensions == 0 ? " touches" : !contact.sticks || digit % 3 != 0 ? " slides" : contact.rolls ? " rolls" : " sticks";
     mode.name += (mode.name.empty() ? "" : ", ") + contact.name + state;
   }
 
