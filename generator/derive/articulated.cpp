@@ -9,8 +9,12 @@
 namespace eomgen::derive {
 
 std::optional<system::EquationSystem> articulated(Mechanics& m, system::Approach approach) {
+  if (!m.spins.empty()) {
+    std::optional<system::EquationSystem> s = equations_of_bodies(m, approach, "articulated", body_accelerations);
+    if (s && !s->solution) s.reset();
+    return s;
+  }
   if (!m.active.empty() || !m.contacts.empty()) return std::nullopt;
-  if (!m.spins.empty()) return equations_of_bodies(m, approach, "articulated", body_accelerations);
   Dag& dag = *m.dag;
   const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
   if (!motion) return std::nullopt;

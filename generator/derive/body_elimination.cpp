@@ -32,7 +32,7 @@ class Elimination {
       eliminate(l);
       if (tree_.links[l].parent >= 0) pass(l);
     }
-    result_.qddot.resize(tree_.Q.size());
+    result_.qddot.assign(tree_.Q.size(), dag_.zero());
     for (std::size_t l = 0; l < count; ++l) accelerate(l);
     return std::move(result_);
   }
@@ -73,13 +73,8 @@ class Elimination {
     Vec3 moment{};
     if (link.absolute) moment = joint_moment(dag_, link, tree_.Q);
     for (std::size_t j = 0; j < link.freedoms.size(); ++j) {
-      Freedom freedom = link.freedoms[j];
-      Ref Q = tree_.Q[freedom.index];
-      if (link.absolute) {
-        freedom.turning = symbolic::zero_vector(dag_);
-        freedom.turning[j] = dag_.one();
-        Q = moment[j];
-      }
+      const Freedom& freedom = link.freedoms[j];
+      const Ref Q = link.absolute ? moment[j] : tree_.Q[freedom.index];
       const Vec3 &s = freedom.turning, &v = freedom.shifting;
       Eliminated e{s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
       e.F = symbolic::add(dag_, times(dag_, transposed(body.H), s), times(dag_, body.M, v));

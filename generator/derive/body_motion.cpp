@@ -18,7 +18,7 @@ struct Angles {
 
 std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
   const std::vector<Step>& steps = link.turn.steps;
-  if (steps.size() != 3 || link.freedoms.size() != 3) return std::nullopt;
+  if (steps.size() != 3 || link.angles.size() != 3) return std::nullopt;
   Angles angles;
   for (std::size_t k = 0; k < 3; ++k) {
     angles.axis[k] = axis_of(dag, steps[k].R);
@@ -33,7 +33,7 @@ std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
     s[angles.axis[k]] = dag.one();
     for (std::size_t later = k + 1; later < 3; ++later) s = times(dag, steps[later].R, s);
     std::size_t which = 3;
-    for (std::size_t f = 0; f < 3; ++f) which = link.freedoms[f].turning == s ? f : which;
+    for (std::size_t f = 0; f < 3; ++f) which = link.angles[f].turning == s ? f : which;
     if (which == 3) return std::nullopt;
     angles.freedom[k] = which;
   }
@@ -44,12 +44,12 @@ std::optional<Angles> euler_angles(Dag& dag, const BodyLink& link) {
 }
 
 Ref volume(Dag& dag, const BodyLink& link) {
-  return dot(dag, link.freedoms[0].turning, cross(dag, link.freedoms[1].turning, link.freedoms[2].turning));
+  return dot(dag, link.angles[0].turning, cross(dag, link.angles[1].turning, link.angles[2].turning));
 }
 
 /// The vector that is normal to the turning of the other two coordinates.
 Vec3 normal(Dag& dag, const BodyLink& link, std::size_t f) {
-  return cross(dag, link.freedoms[(f + 1) % 3].turning, link.freedoms[(f + 2) % 3].turning);
+  return cross(dag, link.angles[(f + 1) % 3].turning, link.angles[(f + 2) % 3].turning);
 }
 
 /// Of Euler angles one after the other, from the last step back to the first.
@@ -73,6 +73,30 @@ std::array<Ref, 3> angle_rates(Dag& dag, const BodyLink& link, const Angles& ang
   result[angles.freedom[1]] = left[angles.axis[1]];
   result[angles.freedom[2]] = dag.sub(dag.sub(own[last], parent[last]), along);
   return result;
+}
+
+/// Twice the dual basis along the own axes: e_dot = dual . w for parameters of unit length.
+std::array<Vec3, 4> twice_dual(Dag& dag, const BodyLink& link) {
+  const Vec3 e{link.parameters[1], link.parameters[2], link.parameters[3]};
+  std::array<Vec3, 4> result;
+  result[0] = symbolic::scale(dag, dag.integer(-1), e);
+  const Mat3 X = cross_matrix(dag, e);
+  for (std::size_t k = 0; k < 3; ++k) {
+    result[k + 1] = X[k];
+    result[k + 1][k] = link.parameters[0];
+  }
+  return result;
+}
+
+/// e_ddot = dual . alpha - |e_dot|^2 e, which keeps the length.
+void parameter_rates(Dag& dag, const BodyLink& link, const Vec3& alpha, std::vector<Ref>& result) {
+  const std::array<Vec3, 4> dual = twice_dual(dag, link);
+  const Vec3 half = symbolic::scale(dag, dag.constant(symbolic::Rational(1) / 2), alpha);
+  Ref squares = dag.zero();
+  for (std::size_t f = 4; f < 8; ++f) squares = dag.add(squares, dag.mul(link.parameters[f], link.parameters[f]));
+  for (std::size_t f = 0; f < 4; ++f) {
+    result[link.angles[f].index] = dag.sub(dot(dag, dual[f], half), dag.mul(squares, link.parameters[f]));
+  }
 }
 
 }  // namespace
@@ -121,9 +145,18 @@ Vec3 gyroscopic(Dag& dag, const Mat3& J, const Vec3& w) {
 
 Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
   Vec3 moment = symbolic::zero_vector(dag);
-  std::array<Ref, 3> own;
-  for (std::size_t f = 0; f < 3; ++f) own[f] = Q[link.freedoms[f].index];
-  if (is_zero(dag, own)) return moment;
+  std::vector<Ref> own;
+  bool idle = true;
+  for (const Freedom& f : link.angles) {
+    own.push_back(Q[f.index]);
+    idle = idle && dag.is_zero(own.back());
+  }
+  if (idle) return moment;
+  if (!link.parameters.empty()) {
+    const std::array<Vec3, 4> dual = twice_dual(dag, link);
+    for (std::size_t f = 0; f < 4; ++f) moment = symbolic::add(dag, moment, symbolic::scale(dag, own[f], dual[f]));
+    return symbolic::scale(dag, dag.constant(symbolic::Rational(1) / 2), moment);
+  }
   if (const std::optional<Angles> angles = euler_angles(dag, link)) {
     const Ref first = own[angles->freedom[0]], last = own[angles->freedom[2]];
     moment[angles->axis[1]] = own[angles->freedom[1]];
@@ -154,16 +187,20 @@ std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<
       continue;
     }
     alpha.push_back({u[link.freedoms[0].index], u[link.freedoms[1].index], u[link.freedoms[2].index]});
-    std::array<Ref, 3> rates;
     if (const std::optional<Angles> angles = euler_angles(dag, link)) {
-      rates = angle_rates(dag, link, *angles, parent, ground ? none : motion[static_cast<std::size_t>(link.parent)].w, alpha.back());
+      const Vec3 w = ground ? none : motion[static_cast<std::size_t>(link.parent)].w;
+      const std::array<Ref, 3> rates = angle_rates(dag, link, *angles, parent, w, alpha.back());
+      for (std::size_t f = 0; f < 3; ++f) result[link.angles[f].index] = rates[f];
       pivots.push_back({angles->divisor(), dag.one()});
-    } else {
-      const Vec3 left = symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.turn.to_own(dag, parent), motion[l].bias));
-      for (std::size_t f = 0; f < 3; ++f) rates[f] = dag.div(dot(dag, normal(dag, link, f), left), volume(dag, link));
-      pivots.push_back({volume(dag, link), dag.zero()});
+      continue;
     }
-    for (std::size_t f = 0; f < 3; ++f) result[link.freedoms[f].index] = rates[f];
+    const Vec3 left = symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.turn.to_own(dag, parent), motion[l].bias));
+    if (!link.parameters.empty()) {
+      parameter_rates(dag, link, left, result);
+      continue;
+    }
+    for (std::size_t f = 0; f < 3; ++f) result[link.angles[f].index] = dag.div(dot(dag, normal(dag, link, f), left), volume(dag, link));
+    pivots.push_back({volume(dag, link), dag.zero()});
   }
   return result;
 }

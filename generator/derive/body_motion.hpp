@@ -21,7 +21,7 @@ std::vector<LinkMotion> motion_of(Dag& dag, const BodyTree& tree);
 /// w x J w of a symmetric J.
 Vec3 gyroscopic(Dag& dag, const Mat3& J, const Vec3& w);
 
-/// The moment on an absolute link that does on its rates what the forces Q do on its three coordinates.
+/// The moment on an absolute link that does on its rates what the forces Q do on its coordinates.
 Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q);
 
 /// From the rates' derivatives u to those of the coordinates: the same but for absolute links, of which u is the angular acceleration

@@ -28,23 +28,13 @@ class Recursion {
     forces();
     composites();
     for (std::size_t l = 0; l < tree_.links.size(); ++l) {
-      for (const Freedom& freedom : freedoms(l)) column(l, freedom);
+      for (const Freedom& freedom : tree_.links[l].freedoms) column(l, freedom);
     }
     return std::move(result_);
   }
 
  private:
   static std::size_t place(int link) { return static_cast<std::size_t>(link); }
-
-  /// Of an absolute link the axes themselves.
-  std::vector<Freedom> freedoms(std::size_t l) const {
-    std::vector<Freedom> result = tree_.links[l].freedoms;
-    for (std::size_t k = 0; tree_.links[l].absolute && k < 3; ++k) {
-      result[k].turning = symbolic::zero_vector(dag_);
-      result[k].turning[k] = dag_.one();
-    }
-    return result;
-  }
 
   /// What the second rates at zero leave: forces and moments that each link needs, from the tips inwards.
   void forces() {
@@ -71,7 +61,7 @@ class Recursion {
         passed = joint_moment(dag_, link, tree_.Q);
         for (std::size_t k = 0; k < 3; ++k) result_.f[link.freedoms[k].index] = passed[k];
       }
-      for (const Freedom& f : freedoms(l)) {
+      for (const Freedom& f : link.freedoms) {
         const Ref needed = dag_.add(dot(dag_, f.turning, N[l]), dot(dag_, f.shifting, F[l]));
         result_.f[f.index] = dag_.sub(result_.f[f.index], needed);
       }
@@ -116,11 +106,11 @@ class Recursion {
     p.angular = symbolic::add(dag_, times(dag_, c.inertia, freedom.turning), cross(dag_, c.moment, freedom.shifting));
     const std::size_t n = tree_.Q.size();
     for (int inner = static_cast<int>(l); inner >= 0; inner = tree_.links[place(inner)].parent) {
-      for (const Freedom& other : freedoms(place(inner))) {
+      const BodyLink& link = tree_.links[place(inner)];
+      for (const Freedom& other : link.freedoms) {
         const Ref entry = dag_.add(dot(dag_, other.turning, p.angular), dot(dag_, other.shifting, p.linear));
         result_.M[freedom.index * n + other.index] = result_.M[other.index * n + freedom.index] = entry;
       }
-      const BodyLink& link = tree_.links[place(inner)];
       p.linear = link.turn.to_parent(dag_, p.linear);
       p.angular = link.carried() ? link.turn.to_parent(dag_, p.angular) : symbolic::zero_vector(dag_);
       p.angular = symbolic::add(dag_, p.angular, cross(dag_, link.offset, p.linear));

@@ -29,6 +29,9 @@ class Builder {
     for (const mechanics::PointMass& mass : m_.masses) {
       if (!add_mass(mass)) return std::nullopt;
     }
+    for (const Spinning& body : spinning_) {
+      if (!add_spinning(body)) return std::nullopt;
+    }
     if (!covers_coordinates()) return std::nullopt;
     Ref potential;
     tree_.gravity = take_gravity(m_, spelled_, potential);
@@ -37,28 +40,52 @@ class Builder {
   }
 
  private:
+  /// A body that turns about its centre of mass as far as its place is concerned.
+  struct Spinning {
+    const model::Body* body;
+    Anchor at;
+  };
+
   bool add_mass(const mechanics::PointMass& mass) {
     const Ref m = spelled_(mass.mass);
     if (!is_constant(m)) return false;
     const model::Body* body = nullptr;
     for (const model::Body& b : m_.model->bodies) body = b.place == mass.place ? &b : body;
-    std::optional<Anchor> at = anchor(mass.place);
-    if (at && body != nullptr) at = attached(*at, body->frame);
+    const std::optional<Anchor> at = anchor(mass.place);
     if (!at) return false;
+    const bool fixed = body != nullptr && frame_of(at->link) == body->frame;
+    if (body != nullptr && !fixed) spinning_.push_back({body, *at});
     if (at->link < 0) return true;  // at rest
-    BodyLink& link = tree_.links[static_cast<std::size_t>(at->link)];
+    BodyLink& link = tree_.links[place(at->link)];
     const Vec3 mr = symbolic::scale(dag_, m, at->offset);
     link.mass = dag_.add(link.mass, m);
     link.moment = symbolic::add(dag_, link.moment, mr);
+    if (fixed) add_inertia(link, *body);
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        Ref& entry = link.inertia[i][k];
-        if (body != nullptr) entry = dag_.add(entry, spelled_(lower_.scalar(body->inertia[i][k])));
-        entry = dag_.sub(entry, dag_.mul(mr[i], at->offset[k]));
-        if (i == k) entry = dag_.add(entry, dot(dag_, mr, at->offset));
-      }
+      for (std::size_t k = 0; k < 3; ++k) link.inertia[i][k] = dag_.sub(link.inertia[i][k], dag_.mul(mr[i], at->offset[k]));
+      link.inertia[i][i] = dag_.add(link.inertia[i][i], dot(dag_, mr, at->offset));
     }
     return true;
+  }
+
+  void add_inertia(BodyLink& link, const model::Body& body) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) link.inertia[i][k] = dag_.add(link.inertia[i][k], spelled_(lower_.scalar(body.inertia[i][k])));
+    }
+  }
+
+  /// Its inertia belongs to the link that has its axes, wherever that is.
+  bool add_spinning(const Spinning& spinning) {
+    Anchor from = spinning.at;
+    for (std::uint32_t frame = spinning.body->frame; frame != 0; frame = m_.model->frames[frame].parent) {
+      const auto link = std::find_if(tree_.links.begin(), tree_.links.end(), [&](const BodyLink& l) { return l.frame == frame; });
+      if (link == tree_.links.end()) continue;
+      from = {static_cast<int>(link - tree_.links.begin()), symbolic::zero_vector(dag_)};
+      break;
+    }
+    const std::optional<Anchor> own = attached(from, spinning.body->frame);
+    if (own) add_inertia(tree_.links[place(own->link)], *spinning.body);
+    return own.has_value();
   }
 
   /// The place in the tree; nothing where its position is not of the form that trees have.
@@ -176,6 +203,24 @@ class Builder {
       }
       if (!is_zero(dag_, s)) link.freedoms.push_back({i, s, symbolic::zero_vector(dag_)});
     }
+    if (m_.model->frames[link.frame].rotation == "euler_parameters") add_parameters(link);
+  }
+
+  /// The freedoms in the order of the four parameters, where all of them are free.
+  void add_parameters(BodyLink& link) {
+    std::vector<Freedom> sorted;
+    std::vector<Ref> rates;
+    for (const model::NodeId entry : m_.model->frames[link.frame].entries) {
+      const std::uint32_t i = m_.model->arena[entry].index;
+      for (const Freedom& f : link.freedoms) {
+        if (of_[f.index] == i) sorted.push_back(f);
+      }
+      link.parameters.push_back(m_.q[i]);
+      rates.push_back(m_.qdot[i]);
+    }
+    link.parameters.insert(link.parameters.end(), rates.begin(), rates.end());
+    if (sorted.size() == 4) link.freedoms = sorted;
+    else link.parameters.clear();
   }
 
   bool covers_coordinates() const {
@@ -190,7 +235,8 @@ class Builder {
     const std::vector<Symbol> symbols = dag_.symbols({r});
     return std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
   }
-  std::uint32_t frame_of(int link) const { return link < 0 ? 0 : tree_.links[static_cast<std::size_t>(link)].frame; }
+  static std::size_t place(int link) { return static_cast<std::size_t>(link); }
+  std::uint32_t frame_of(int link) const { return link < 0 ? 0 : tree_.links[place(link)].frame; }
   int depth(std::uint32_t frame) const {
     int count = 0;
     for (std::uint32_t f = frame; f != 0; f = m_.model->frames[f].parent) ++count;
@@ -204,6 +250,7 @@ class Builder {
   Spelled spelled_;
   symbolic::Derivation bias_;
   BodyTree tree_;
+  std::vector<Spinning> spinning_;
   std::map<std::uint32_t, std::optional<Anchor>> anchors_;
   std::map<std::tuple<int, Vec3, std::uint32_t>, int> known_;
 };
@@ -218,7 +265,17 @@ std::optional<BodyTree> body_tree(Mechanics& m, const std::vector<std::uint32_t>
 void use_angular_velocities(Dag& dag, BodyTree& tree) {
   for (BodyLink& link : tree.links) {
     const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(), [&](const Freedom& f) { return is_zero(dag, f.shifting); });
-    link.absolute = turns && link.freedoms.size() == 3;
+    link.absolute = turns && (link.freedoms.size() == 3 || (link.freedoms.size() == 4 && !link.parameters.empty()));
+    if (!link.absolute) continue;
+    link.angles = link.freedoms;
+    link.freedoms.resize(3);
+    for (Step& step : link.turn.steps) {  // w of parameters of unit length does not change with e_ddot = 0
+      if (!link.parameters.empty()) step.w_bias = symbolic::zero_vector(dag);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      link.freedoms[k].turning = symbolic::zero_vector(dag);
+      link.freedoms[k].turning[k] = dag.one();
+    }
   }
 }
 

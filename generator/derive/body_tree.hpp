@@ -24,8 +24,10 @@ struct BodyLink {
   Vec3 offset_rate, offset_bias;  // its rate, and that one's at zero second rates
   Turn turn;
   bool relative = true;   // turned against the parent; otherwise along E1, E2, E3 on a parent that turns
-  bool absolute = false;  // the angular velocity itself stands for the rates of the three coordinates that turn it
+  bool absolute = false;  // the angular velocity itself stands for the rates of the three (four) coordinates that turn it
   std::vector<Freedom> freedoms;
+  std::vector<Freedom> angles;      // of an absolute link: the coordinates, in place of which `freedoms` has the three axes
+  std::vector<Ref> parameters;      // Euler parameters and their rates: 4 and 4, in the order of `angles`; none otherwise
   Ref mass;
   Vec3 moment;   // sum of m r
   Mat3 inertia;  // about the origin
@@ -44,7 +46,8 @@ struct BodyTree {
 /// model has no bodies, where a coordinate moves no joint or several, where a mass varies, or kinetic energy is given.
 std::optional<BodyTree> body_tree(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
-/// Lets the angular velocity of each link that three coordinates turn stand for their rates.
+/// Lets the angular velocity of each link that three coordinates, or four Euler parameters, turn stand for their rates. With fewer
+/// angular velocities than coordinates some indices are left without a freedom.
 void use_angular_velocities(Dag& dag, BodyTree& tree);
 
 }  // namespace eomgen::derive

@@ -49,11 +49,19 @@ class Forces {
     return !mechanics::vanishes(dag_, {slope(mass, 0, i), slope(mass, 1, i), slope(mass, 2, i)});
   }
 
-  // F = J (J^T J)^-1 Q: the least F with F . dr/dq_i = Q_i.
+  bool turns(std::uint32_t i) {
+    symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, i, 1});
+    return std::any_of(m_.spins.begin(), m_.spins.end(), [&](const mechanics::Spin& spin) {
+      return !mechanics::vanishes(dag_, {by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
+    });
+  }
+
+  // F = J (J^T J)^-1 Q: the least F with F . dr/dq_i = Q_i. What turns a body needs moments too.
   std::optional<Vec3> on_particle(std::size_t p) {
     std::vector<std::uint32_t> own;
     for (std::uint32_t i = 0; i < Q_.size(); ++i) {
       if (!moves(i, p)) continue;
+      if (turns(i)) return std::nullopt;
       own.push_back(i);
       for (std::size_t other = 0; other < m_.masses.size(); ++other) {
         if (other != p && moves(i, other)) return std::nullopt;

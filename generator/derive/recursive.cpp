@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/recursive.hpp"
 
+#include <algorithm>
+
 #include "derive/body_equations.hpp"
 #include "derive/body_recursion.hpp"
 #include "derive/tree_equations.hpp"
@@ -8,11 +10,25 @@
 namespace eomgen::derive {
 namespace {
 
-/// The mass matrix of the whole, factorised.
+/// The mass matrix of the whole, factorised; without the rows that no freedom has.
 system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
-  BodyEquations equations = body_equations(dag, tree, motion);
-  const symbolic::Factorisation factors(dag, std::move(equations.M), equations.f.size(), symbolic::Ties::descending);
-  return {factors.backward(factors.forward(equations.f)), factors.pivots()};
+  const BodyEquations equations = body_equations(dag, tree, motion);
+  const std::size_t n = equations.f.size();
+  std::vector<std::size_t> used;
+  for (const BodyLink& link : tree.links) {
+    for (const Freedom& freedom : link.freedoms) used.push_back(freedom.index);
+  }
+  std::sort(used.begin(), used.end());
+  std::vector<Ref> M, f;
+  for (const std::size_t i : used) {
+    for (const std::size_t k : used) M.push_back(equations.M[i * n + k]);
+    f.push_back(equations.f[i]);
+  }
+  const symbolic::Factorisation factors(dag, std::move(M), used.size(), symbolic::Ties::descending);
+  const std::vector<Ref> u = factors.backward(factors.forward(f));
+  system::Solution result{std::vector<Ref>(n, dag.zero()), {}, factors.pivots()};
+  for (std::size_t i = 0; i < used.size(); ++i) result.qddot[used[i]] = u[i];
+  return result;
 }
 
 }  // namespace

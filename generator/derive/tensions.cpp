@@ -108,7 +108,7 @@ class Tensions {
   }
 
   system::Solution solve() {
-    system::Solution result{std::vector<Ref>(tree_.J.size()), {}};
+    system::Solution result{std::vector<Ref>(tree_.J.size()), {}, {}};
     const std::size_t n = carrying_.size();
     std::vector<Ref> S(n * n), b;
     for (std::size_t i = 0; i < n; ++i) {

@@ -63,7 +63,7 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   Dag& dag = *system_.dag;
   std::map<Symbol, Ref> solution;
   ties_ = ties;
-  if (system_.solution) qddot_ = system_.solution->qddot;
+  if (system_.solution) std::tie(qddot_, lambda_) = std::tie(system_.solution->qddot, system_.solution->lambda);
   else if (system_.contacts.empty()) std::tie(qddot_, lambda_) = solve().motion();
   else close_contacts(solution);
   for (std::size_t i = 0; i < n_; ++i) {

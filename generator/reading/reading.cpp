@@ -38,9 +38,13 @@ void add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
   const bool imposed = form.approach == system::Approach::two;
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   const auto read = [&](const Sum& sum) { return imposed ? simplify(bridge.substitute(sum, values)) : sum; };
-  form.spins = read_spins(m, bridge);
-  for (ReadSpin& spin : form.spins) {
-    for (Sum& w : spin.w) w = read(w);
+  try {
+    form.spins = read_spins(m, bridge);
+    for (ReadSpin& spin : form.spins) {
+      for (Sum& w : spin.w) w = read(w);
+    }
+  } catch (const TermBudget&) {  // angular velocities along a long chain of relative rotations
+    form.spins.clear();
   }
   if (!form.by_parts) form.translation = read(translational_energy(m, bridge));
 }

@@ -51,7 +51,8 @@ struct QuasiEquations {
 
 /// The equations solved by the route itself; nothing is left to factorise.
 struct Solution {
-  std::vector<Ref> qddot;  // n, without accelerations and multipliers
+  std::vector<Ref> qddot;   // n, without accelerations and multipliers
+  std::vector<Ref> lambda;  // m
   std::vector<symbolic::Pivot> pivots;
 };
 

@@ -29,6 +29,7 @@ void for_each_expression(System& system, Visit&& visit) {
   }
   if (system.solution) {
     all(system.solution->qddot, Part::motion);
+    all(system.solution->lambda, Part::motion);
     for (auto& pivot : system.solution->pivots) {
       visit(pivot.pivot, Part::motion);
       visit(pivot.scale, Part::motion);

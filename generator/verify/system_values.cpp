@@ -79,7 +79,10 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
   for (std::size_t i = 0; i < n; ++i) out.qddot.push_back(solution.x()[i]);
   for (std::size_t k = 0; k < m; ++k) out.lambda.push_back(-solution.x()[n + k]);
   // What the route solved itself counts, not what its matrix would give.
-  if (s.solution) out.qddot = symbolic::evaluate(*s.dag, s.solution->qddot, lookup, digits);
+  if (s.solution) {
+    out.qddot = symbolic::evaluate(*s.dag, s.solution->qddot, lookup, digits);
+    out.lambda = symbolic::evaluate(*s.dag, s.solution->lambda, lookup, digits);
+  }
   out.inverse.assign(solution.columns.begin() + 1, solution.columns.end());
   return out;
 }

@@ -33,7 +33,79 @@ struct Arm {
   }
 };
 
+/// Ex 6.2 by hand: Newton and Euler for shaft, axle A and payload, from the tip to the ground.
+struct PayloadArm {
+  static constexpr double L = 0.8, H = 0.6, b = 0.1, m = 4, g = 9.81, T = 2;
+  Eigen::Matrix3d axes;  // columns: the payload's
+  Vector3d g2, g3, position;
+  double psi_moment, theta_moment, phi_moment, power;
+
+  explicit PayloadArm(double t) {
+    const double k = 2 * M_PI / T, c = std::cos(k * t), s = std::sin(k * t);
+    const double psi = 0.8 * s, dpsi = 0.8 * k * c, ddpsi = -0.8 * k * k * s;
+    const double theta = 1 + 0.4 * c, dtheta = -0.4 * k * s, ddtheta = -0.4 * k * k * c;
+    const double phi = 0.9 * t * t / (T * T), dphi = 1.8 * t / (T * T), ddphi = 1.8 / (T * T);
+    const auto turn = [](double angle, const Vector3d& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); };
+    const Eigen::Matrix3d shaft = turn(psi, Vector3d::UnitZ()), A = shaft * turn(theta, Vector3d::UnitY());
+    axes = A * turn(phi, Vector3d::UnitZ());
+    g2 = shaft.col(1);
+    g3 = A.col(2);
+    const Vector3d E3 = Vector3d::UnitZ(), wS = dpsi * E3, aS = ddpsi * E3;
+    const Vector3d wA = wS + dtheta * g2, aA = aS + ddtheta * g2 + wS.cross(dtheta * g2);
+    const Vector3d w = wA + dphi * g3, a = aA + ddphi * g3 + wA.cross(dphi * g3);
+    const auto rate = [](const Eigen::Matrix3d& Q, const Eigen::Matrix3d& J, const Vector3d& turning, const Vector3d& second) {
+      const Eigen::Matrix3d now = Q * J * Q.transpose();
+      return Vector3d(now * second + turning.cross(now * turning));
+    };
+    Eigen::Matrix3d J;
+    J << 0.06, 0, 0.01, 0, 0.08, 0, 0.01, 0, 0.05;
+    const Vector3d out = H * g3, arm = out + b * axes.col(0);
+    position = L * E3 + arm;
+    // H g3 turns with axle A, b e1 with the payload.
+    const Vector3d acceleration = aA.cross(out) + wA.cross(wA.cross(out)) + a.cross(arm - out) + w.cross(w.cross(arm - out));
+    const Vector3d moment = arm.cross(m * (acceleration + g * E3)) + rate(axes, J, w, a);
+    const Vector3d on_A = moment + rate(A, Vector3d(0.02, 0.01, 0.03).asDiagonal(), wA, aA);
+    phi_moment = moment.dot(g3);
+    theta_moment = on_A.dot(g2);
+    psi_moment = on_A[2] + 0.04 * ddpsi;
+    power = psi_moment * dpsi + theta_moment * dtheta + phi_moment * dphi;
+  }
+};
+
 }  // namespace
+
+TEST_CASE("R9: the drives of the payload arm give the moments of Newton and Euler") {
+  const model::Model model = model::read_model(test::model_path("R9_payload_arm"));
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  const auto s = derive::lagrange(m, system::Approach::one);
+  std::vector<symbolic::Ref> roots;
+  for (const system::Reaction& r : s.reactions) roots.push_back(r.value);
+  for (const char* wanted : {"power", "payload.position1", "payload.position2", "payload.position3"}) {
+    for (const system::Output& o : s.outputs) {
+      if (o.name == wanted) roots.push_back(o.value);
+    }
+  }
+  REQUIRE(roots.size() == 7);
+  for (const double t : {0.0, 0.35, 1.1, 1.7}) {
+    CAPTURE(t);
+    const auto given = [&](const auto& self, const symbolic::Symbol& symbol) -> double {
+      if (symbol.kind == symbolic::SymbolKind::time) return t;
+      return symbolic::evaluate(*m.dag, {m.parameter_value[symbol.index]}, [&](const symbolic::Symbol& q) { return self(self, q); })[0];
+    };
+    const std::vector<double> found = symbolic::evaluate(*m.dag, roots, [&](const symbolic::Symbol& symbol) { return given(given, symbol); });
+    const PayloadArm arm(t);
+    CHECK(found[0] == doctest::Approx(arm.psi_moment).epsilon(1e-11));
+    CHECK(found[1] == doctest::Approx(arm.theta_moment).epsilon(1e-11));
+    CHECK(found[2] == doctest::Approx(arm.phi_moment).epsilon(1e-11));
+    CHECK(found[3] == doctest::Approx(arm.power).epsilon(1e-10));
+    for (int k = 0; k < 3; ++k) CHECK(found[static_cast<std::size_t>(4 + k)] == doctest::Approx(arm.position[k]).epsilon(1e-12));
+  }
+  // Part (d): back where it was, the payload has turned by phi(t1) - phi(t0) about g3(t0).
+  const PayloadArm start(0), end(PayloadArm::T);
+  const Eigen::AngleAxisd turned(Eigen::Matrix3d(end.axes * start.axes.transpose()));
+  CHECK(turned.angle() == doctest::Approx(0.9).epsilon(1e-12));
+  CHECK(turned.axis().dot(start.g3) == doctest::Approx(1).epsilon(1e-12));
+}
 
 TEST_CASE("R9: inverse dynamics gives the force (7.102) at the base and the moment (7.103), corrected, about it") {
   const model::Model model = model::read_model(test::model_path("R9_robot_arm"));
