@@ -101,7 +101,7 @@ TEST_CASE("R1: near the middle axis it tumbles: e2 turns over, and E and H are k
     greatest = std::max(greatest, run.rows.at(i, "B.omega2"));
     double length = 0;
     for (const char* e : {"e0", "e1", "e2", "e3"}) length += std::pow(run.rows.at(i, e), 2);
-    CHECK(std::abs(length - 1) < 1e-11);  // rows are read off the dense output; the steps are projected
+    CHECK(std::abs(length - 1) < 3e-11);  // rows are read off the dense output, good to some ten times rtol; the steps are projected
   }
   CHECK(greatest > 1.99);
   CHECK(least < -1.99);
