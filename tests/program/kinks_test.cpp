@@ -138,7 +138,7 @@ TEST_CASE("system: for_each_expression comes to every expression once") {
   s.M = some(), s.f = some(), s.psi = some(), s.A = some(), s.b = some(), s.gamma = some();
   s.integrals = {{0, next()}};
   s.quasi = system::QuasiEquations{{}, some(), some()};
-  s.solution = system::Solution{some(), {{next(), next()}}};
+  s.solution = system::Solution{some(), some(), {{next(), next()}}};
   system::Contact contact;
   contact.gram = some(), contact.slip = some(), contact.slip_rate = some();
   contact.normal = next(), contact.static_coefficient = next(), contact.dynamic_coefficient = next();
