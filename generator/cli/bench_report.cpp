@@ -30,11 +30,13 @@ Json BenchReport::json() const {
                     {"error_along", number(row.error_along)}, {"errors", errors}, {"seconds", row.seconds}, {"repeats", row.repeats},
                     {"steps", row.steps}, {"rejected", row.rejected}, {"rhs_evaluations", row.rhs_evaluations}, {"outcome", row.outcome}});
   }
+  Json end = Json::object();
+  for (std::size_t i = 0; i < states.size(); ++i) end[states[i]] = reference.x.back()[i];
   Json missing = Json::array();
   for (const auto& [solver, why] : left_out) missing.push_back({{"solver", solver}, {"why", why}});
   return {{"format", 1}, {"model", simulation.derived->model.id}, {"scene", scene.name}, {"t", {scene.t0, scene.t1}},
           {"reference", {{"method", reference.method}, {"digits", reference.digits}, {"digits_at_end", reference.digits_at_end},
-                         {"steps", reference.steps}, {"seconds", seconds_reference}}},
+                         {"steps", reference.steps}, {"seconds", seconds_reference}, {"end", end}}},
           {"rows", list}, {"left_out", missing},
           {"machine", {{"processor", machine.processor}, {"cores", machine.cores}, {"compiler", compiler}}},
           {"advice", bench::advice(rows)}};

@@ -75,7 +75,7 @@ TEST_CASE("taylor: from a start to an end and back, and through its own estimate
   options.rtol = options.atol = 1e-13;
   const auto there = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto back = eom::integrate("taylor", pendulum, 30, there.x, 0, options);
-  CHECK(problems::largest_difference(back.x, pendulum.start) < 1e-11);
+  CHECK(problems::largest_difference(back.x, pendulum.start) < 1e-10);  // the phase is off by the error of the energy times the time
   options.rtol = options.atol = 1e-6;
   const auto rough = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto estimate = eom::estimate_error("taylor", pendulum, 0, pendulum.start, rough, options);

@@ -4,8 +4,8 @@
 // Source: Jorba, Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
 // Experimental Mathematics 14 (2005): the length from the last two coefficients, an order that is worth its cost.
 //
-// An order p costs about (p + 5)^2 and allows the step h_p at which the last two terms are of the size of the tolerance: the
-// order goes where h_p / (p + 5)^2 is largest, by 1 from step to step. With fixed steps, or where a step is made anew with an end that
+// An order p costs about (p + 6)^2 and allows the step h_p at which the last two terms are of the size of the tolerance: the
+// order goes where h_p / (p + 6)^2 is largest, by 1 from step to step. With fixed steps, or where a step is made anew with an end that
 // others have chosen, the order rises until the last terms are below the tolerance.
 #pragma once
 
@@ -42,9 +42,9 @@ class Series {
         highest_(problem.highest_order),
         order_(options.series_order > 0 ? std::min(options.series_order, highest_) : first_order(x)),
         order_is_given_(options.series_order > 0),
-        work_(8 * n_ + 2 * s_ * (static_cast<std::size_t>(highest_) + 1)) {
+        work_(9 * n_ + 2 * s_ * (static_cast<std::size_t>(highest_) + 1)) {
     double* next = work_.data();
-    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_, &node_}) *vector = std::exchange(next, next + n_);
+    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_, &node_, &weight_}) *vector = std::exchange(next, next + n_);
     for (At* at : {&here_, &there_}) at->c = std::exchange(next, next + s_ * (static_cast<std::size_t>(highest_) + 1));
     std::copy(x.begin(), x.end(), x0_);
   }
@@ -63,31 +63,42 @@ class Series {
     ++counts_.rhs_evaluations;
     return problem_.f(problem_.self, t, x, dx);
   }
-  int evaluate_start(double t) { return fixed_ ? evaluate(t, x0_, f0_) : expand(t, x0_, f0_, here_, order_); }
+  int evaluate_start(double t) {
+    if (fixed_) return evaluate(t, x0_, f0_);
+    const int code = expand(t, x0_, f0_, here_, order_);
+    if (code == 0) measure(here_, x0_, 0);
+    return code;
+  }
   /// The series at the end too: it decides the length of the next step.
   int evaluate_end() { return fixed_ ? evaluate(t1_, x1_, f1_) : expand(t1_, x1_, f1_, there_, next_order()); }
 
-  double first_step() { return length(here_, x0_, 0); }
+  double first_step() { return length(here_); }
 
   /// Trial state at t1; a code of the right-hand side.
   int attempt(double t0, double t1) {
     t0_ = t0;
     h_ = t1 - t0;
     t1_ = t1;
-    if (here_.order == 0)
-      if (const int code = expand(t0, x0_, f0_, here_, order_); code != 0) return code;
-    const bool raised = fixed_ && !order_is_given_;
-    while (raised && here_.order < highest_ && last_terms(here_, std::abs(h_), x0_, h_) > 1)
-      if (const int code = expand(t0, x0_, f0_, here_, std::min(here_.order + 4, highest_)); code != 0) return code;
-    for (std::size_t i = 0; i < s_; ++i) advance(i, increment(i, h_));
+    for (int terms = order_; here_.order == 0 || (fixed_ && !order_is_given_ && here_.order < highest_ && error_norm(0, 0) > 1);
+         terms = std::min(terms + 4, highest_)) {
+      if (const int code = expand(t0, x0_, f0_, here_, terms); code != 0) return code;
+      measure(here_, x0_, h_);
+    }
+    increments(h_, node_);
+    for (std::size_t i = 0; i < s_; ++i) advance(i, node_[i]);
     return s_ < n_ ? quadratures() : 0;
   }
 
+  /// Of the terms as they were measured when the step was chosen.
   double error_norm(double, double) const {
-    return last_terms(here_, std::abs(h_), x0_, h_);
+    const double h = std::log2(std::abs(h_));
+    return std::exp2(std::max(here_.last + here_.order * h, here_.before + (here_.order - 1) * h));
   }
-  double after_accepted(double h, double) { return length(there_, x1_, h); }
-  double after_rejected(double h, double error) { return h * std::clamp(std::pow(0.5 / error, 1.0 / here_.order), 0.1, 0.95); }
+  double after_accepted(double h, double) {
+    measure(there_, x1_, h);
+    return length(there_);
+  }
+  double after_rejected(double h, double error) { return h * std::clamp(std::pow(aim / error, 1.0 / here_.order), 0.1, 0.95); }
   double after_failed(double h) { return 0.25 * h; }
 
   void accept(bool moved) {
@@ -105,7 +116,7 @@ class Series {
 
   void interpolate(double t, double* x) const {
     const double d = t - t0_, s = d / h_;
-    for (std::size_t i = 0; i < s_; ++i) x[i] = x0_[i] + increment(i, d);
+    interpolate_series(d, x);
     for (std::size_t i = s_; i < n_; ++i) {  // quadratures: the Hermite cubic
       const double d1 = x1_[i] - x0_[i], d2 = h_ * f0_[i] - d1, d3 = d1 - h_ * f1_[i] - d2;
       x[i] = x0_[i] + s * (d1 + (1 - s) * (d2 + s * d3));
@@ -115,13 +126,14 @@ class Series {
  private:
   struct At {
     double* c = nullptr;
-    int order = 0;  // 0: not computed
+    int order = 0;               // 0: not computed
+    double last = 0, before = 0; // log2 of the last two terms at h = 1, as far as they count for the error
   };
 
   static constexpr int lowest_order = 4;
-  static constexpr double aim = 0.5;       // of the tolerance that a step may use
-  static constexpr double tail = 0.2;      // what is left out, in units of the last terms: the next ones are shorter by h/radius
-  static constexpr double overhead = 5;    // an order p costs (p + overhead)^2
+  static constexpr double aim = 0.5, log2_aim = -1;  // of the tolerance that a step may use
+  static constexpr double tail = -2.3;     // log2 of what is left out, in units of the last terms: the next ones are shorter by h/radius
+  static constexpr double overhead = 6;    // an order p costs (p + overhead)^2, measured
 
   /// Where the terms of a series that loses e^-1.6 from one to the next reach the tolerance.
   int first_order(std::span<const double> x) const {
@@ -144,60 +156,56 @@ class Series {
     return code;
   }
 
-  /// Root mean square of the terms of one order, for h = 1, in units of the tolerance where x moves on by `move`.
-  double size_of_term(const At& at, int k, const double* x, double move) const {
+  /// log2 of the root mean square of the terms of order k at h = 1, in units of the tolerance.
+  double size_of_term(const At& at, int k) const {
     const double* term = at.c + static_cast<std::size_t>(k) * s_;
-    const double* slope = at.c + s_;
     double sum = 0;
     for (std::size_t i = 0; i < error_; ++i) {
-      if (term[i] == 0) continue;
-      const double scale = atol_ + rtol_ * (std::abs(x[i]) + 0.5 * std::abs(slope[i] * move));
-      const double part = term[i] / scale;
+      const double part = term[i] == 0 ? 0 : term[i] * weight_[i];
       sum += part * part;
     }
-    return std::sqrt(sum / static_cast<double>(error_));
+    return 0.5 * std::log2(sum / static_cast<double>(error_));
   }
 
-  double last_terms(const At& at, double h, const double* x, double move) const {
+  /// The last terms, for a state that moves on by about `move` times its rate; and whether the next series is worth another order.
+  void measure(At& at, const double* x, double move) {
+    const double* slope = at.c + s_;
+    for (std::size_t i = 0; i < error_; ++i) weight_[i] = 1 / (atol_ + rtol_ * (std::abs(x[i]) + 0.5 * std::abs(slope[i] * move)));
     const int p = at.order;
-    const double last = size_of_term(at, p, x, move) * std::pow(h, p);
-    const double before = p > 1 ? size_of_term(at, p - 1, x, move) * std::pow(h, p - 1) : 0;
-    return tail * std::max(last, tail * before);
+    at.last = tail + size_of_term(at, p);
+    at.before = 2 * tail + size_of_term(at, p - 1);
+    if (order_is_given_ || fixed_) return;
+    trend_ = 1;
+    if (p < lowest_order + 2) return;
+    const At lower{at.c, p - 2, tail + size_of_term(at, p - 2), 2 * tail + size_of_term(at, p - 3)};
+    const double gain = log2_length(at) - log2_length(lower) - 2 * std::log2((p + overhead) / (p - 2 + overhead));
+    trend_ = gain > 1e-3 ? 1 : gain < -1e-3 ? -1 : 0;
   }
 
-  /// The step at which the last terms of order p use what may be used of the tolerance.
-  double length(const At& at, int p, const double* x, double move) const {
-    const double last = tail * size_of_term(at, p, x, move) / aim;
-    const double before = p > 1 ? tail * tail * size_of_term(at, p - 1, x, move) / aim : 0;
-    const double steps = std::max(std::pow(last, 1.0 / p), p > 1 ? std::pow(before, 1.0 / (p - 1)) : 0.0);
-    return steps > 0 ? 1 / steps : std::numeric_limits<double>::max();
+  /// Of the step at which the last terms use what may be used of the tolerance.
+  static double log2_length(const At& at) {
+    return -std::max((at.last - log2_aim) / at.order, (at.before - log2_aim) / (at.order - 1));
   }
-
-  /// The length of the step from `at`; and whether the next series is worth another order.
-  double length(const At& at, const double* x, double move) {
-    const int p = at.order;
-    const double h = length(at, p, x, move);
-    trend_ = 0;
-    if (order_is_given_ || p < lowest_order + 2) {
-      if (!order_is_given_ && p < highest_) trend_ = 1;
-      return h;
-    }
-    const double shorter = length(at, p - 2, x, move);
-    const auto cost = [](double q) { return (q + overhead) * (q + overhead); };
-    const double gain = h * cost(p - 2) / (shorter * cost(p));
-    if (gain > 1 + 1e-3) trend_ = 1;
-    if (gain < 1 - 1e-3) trend_ = -1;
-    return h;
-  }
+  static double length(const At& at) { return std::min(std::exp2(log2_length(at)), std::numeric_limits<double>::max()); }
 
   int next_order() const {
     return order_is_given_ ? here_.order : std::clamp(here_.order + trend_, std::min(lowest_order, highest_), highest_);
   }
 
-  double increment(std::size_t i, double d) const {
-    double sum = 0;
-    for (int k = here_.order; k > 0; --k) sum = (sum + here_.c[static_cast<std::size_t>(k) * s_ + i]) * d;
-    return sum;
+  /// x(t0 + d) - x0 of the components with a series.
+  void increments(double d, double* out) const {
+    const double* term = here_.c + static_cast<std::size_t>(here_.order) * s_;
+    for (std::size_t i = 0; i < s_; ++i) out[i] = term[i] * d;
+    for (int k = here_.order - 1; k > 0; --k) {
+      term -= s_;
+      for (std::size_t i = 0; i < s_; ++i) out[i] = (out[i] + term[i]) * d;
+    }
+  }
+
+  void interpolate_series(double d, double* x) const {
+    increments(d, x);
+    for (std::size_t i = 0; i < s_; ++i) x[i] += x0_[i];
+    std::copy(x0_ + s_, x0_ + n_, x + s_);
   }
 
   void advance(std::size_t i, double step) {
@@ -212,7 +220,7 @@ class Series {
     std::fill(scratch_ + s_, scratch_ + n_, 0.0);
     for (std::size_t g = 0; g < Gauss::count; ++g) {
       const double d = gauss_.node[g] * h_;
-      for (std::size_t i = 0; i < n_; ++i) node_[i] = i < s_ ? x0_[i] + increment(i, d) : x0_[i];
+      interpolate_series(d, node_);
       if (const int code = evaluate(t0_ + d, node_, x1_node()); code != 0) return code;
       for (std::size_t i = s_; i < n_; ++i) scratch_[i] += gauss_.weight[g] * x1_node()[i];
     }
@@ -230,7 +238,7 @@ class Series {
   int trend_ = 0;
   Statistics counts_;
   std::vector<double> work_;
-  double *x0_, *x1_, *f0_, *f1_, *scratch_, *carry_, *new_carry_, *node_;
+  double *x0_, *x1_, *f0_, *f1_, *scratch_, *carry_, *new_carry_, *node_, *weight_;
   At here_, there_;
   Gauss gauss_;
   double t0_ = 0, t1_ = 0, h_ = 0;
