@@ -14,6 +14,7 @@ std::span<const Command> commands() {
       Command{"verify", "every derivation against an independent judge", declare_verify},
       Command{"emit", "C and C++ sources, or a LaTeX document", declare_emit},
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
+      Command{"equilibria", "equilibria and steady motions, and whether they are stable", declare_equilibria},
       Command{"linearize", "the equations linearised at a state, and their eigenvalues", declare_linearize},
       Command{"bench", "true error against run time, every fitting solver", declare_bench},
       Command{"inverse", "the forces that prescribed motions need", declare_inverse},

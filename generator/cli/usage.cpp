@@ -11,7 +11,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::string_view planned[] = {"stress", "equilibria"};
+constexpr std::string_view planned[] = {"stress"};
 
 template <typename Accept>
 CLI::Validator number(const char* what, Accept accept) {

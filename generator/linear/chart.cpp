@@ -12,6 +12,7 @@ using Places = std::vector<std::size_t>;
 
 constexpr std::size_t most_charts = 4000;
 constexpr double good_chart = 0.02;  // smallest pivot of the dependent columns, against 1
+constexpr double well_conditioned = 0.3;
 constexpr double reach = 0.07;       // of the points beside, relative
 constexpr int sample_points = 3;
 
@@ -52,18 +53,23 @@ void subsets(std::size_t n, std::size_t size, std::size_t from, Places& chosen, 
 }
 
 std::vector<Candidate> candidates(const Matrix<Precise>& block) {
-  const Elimination<Precise> whole(block, tiny<Precise>(40));
+  const Elimination<Precise> whole(block, tiny<Precise>(40), tiny<Precise>(60));
   Places pivots = whole.pivot_columns();
   std::sort(pivots.begin(), pivots.end());
   std::vector<Places> all;
   Places chosen;
   subsets(block.cols, pivots.size(), 0, chosen, all);
   if (all.size() > most_charts) all = {pivots};
-  const Matrix<double> A = rounded(block);
+  Matrix<double> A = rounded(block);
+  for (std::size_t i = 0; i < A.rows; ++i) {  // against the whole row, so that what all but vanishes there is no pivot
+    double size = 0;
+    for (std::size_t j = 0; j < A.cols; ++j) size = std::max(size, std::abs(A(i, j)));
+    for (std::size_t j = 0; j < A.cols && size > 0; ++j) A(i, j) /= size;
+  }
   std::vector<Candidate> result;
   Candidate best{pivots, 0};
   for (const Places& columns : all) {
-    const Elimination<double> e(columns_of(A, columns), 1e-9);
+    const Elimination<double> e(columns_of(A, columns), 1e-9, Elimination<double>::AsItIs{});
     const Candidate candidate{columns, e.rank() < columns.size() ? 0 : e.smallest_pivot()};
     if (candidate.quality >= good_chart) result.push_back(candidate);
     if (candidate.quality > best.quality) best = candidate;
@@ -162,8 +168,9 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
       try {
         const std::vector<bool> retained = retained_in<double>(rough, chart, 1e-9);
         const auto count = static_cast<std::size_t>(std::count(retained.begin(), retained.end(), true));
-        // Among equals those that name the speeds of the coordinates that stay, then the best conditioned (coarsely, so that rounding decides nothing).
-        const double quality = std::round(20 * std::min(a.quality, b.quality));
+        // Among equals those that name the speeds of the coordinates that stay, then the better conditioned (coarsely: rounding decides
+        // nothing), then those whose dependent ones come first in the model.
+        const double quality = std::round(20 * std::min({a.quality, b.quality, well_conditioned}));
         const std::tuple<std::size_t, std::size_t, double> score{count, without(a.columns, b.columns).size(), -quality};
         if (best && !(score < *best)) continue;
         best = score;
@@ -180,6 +187,14 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
 
 double random_number(std::uint64_t seed, std::uint64_t index) {
   return 2 * (static_cast<double>(mixed(mixed(seed) + index) >> 11) / 9007199254740992.0) - 1;
+}
+
+std::vector<std::size_t> ignored_positions(const Symmetry& s) {
+  Places result;
+  for (std::size_t k = 0; k < s.chart.positions; ++k) {
+    if (!s.retained[k]) result.push_back(s.chart.independent[k]);
+  }
+  return result;
 }
 
 template <class T>
@@ -216,7 +231,7 @@ std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, cons
   constexpr int most_steps = 60, exact = 120;
   for (int step = 0; step < most_steps; ++step) {
     const Field<Precise> field = flow.at(z, setting);
-    const Matrix<Precise> move = Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8)).solve(field.phi);
+    const Matrix<Precise> move = Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8), tiny<Precise>(14)).solve(field.phi);
     bool done = true;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       z[columns[i]] = z[columns[i]] - move(i, 0);

@@ -32,6 +32,9 @@ struct Symmetry {
   std::vector<std::size_t> constant;  // entries of z that a steady motion keeps: the retained ones and what they determine
 };
 
+/// Positions among the independent entries that nothing feels.
+std::vector<std::size_t> ignored_positions(const Symmetry& symmetry);
+
 /// A state on the constraints, by Newton's iteration in these entries of z; nothing where it finds none.
 std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
                                         const std::vector<std::size_t>& moving);

@@ -80,7 +80,16 @@ class Elimination {
     std::iota(row_.begin(), row_.end(), std::size_t{0});
     std::iota(col_.begin(), col_.end(), std::size_t{0});
     scale();
-    while (rank_ < std::min(a_.rows, a_.cols) && eliminate(cutoff)) ++rank_;
+    reduce(cutoff);
+  }
+  /// The same of a matrix that is scaled already.
+  struct AsItIs {};
+  Elimination(Matrix<T> A, const T& cutoff, AsItIs) : a_(std::move(A)), row_(a_.rows), col_(a_.cols), floor_(0) {
+    std::iota(row_.begin(), row_.end(), std::size_t{0});
+    std::iota(col_.begin(), col_.end(), std::size_t{0});
+    row_scale_.assign(a_.rows, T(1));
+    column_scale_.assign(a_.cols, T(1));
+    reduce(cutoff);
   }
 
   std::size_t rank() const { return rank_; }
@@ -143,6 +152,10 @@ class Elimination {
       for (std::size_t i = 0; i < a_.rows; ++i) a_(i, j) = a_(i, j) * factor;
       if (!is_zero(factor)) column_scale_[j] = factor;
     }
+  }
+
+  void reduce(const T& cutoff) {
+    while (rank_ < std::min(a_.rows, a_.cols) && eliminate(cutoff)) ++rank_;
   }
 
   bool eliminate(const T& cutoff) {

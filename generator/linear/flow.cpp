@@ -37,6 +37,8 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
     for (const std::uint32_t i : s.free) names_.push_back(m.model->coordinates[i].name + suffix);
   }
   directions_ = state_symbols(s);
+  symbols_.assign(directions_.begin(), directions_.end() - 1);
+  for (const Symbol& symbol : symbols_) entries_.push_back(dag.symbol(symbol));
   for (std::uint32_t i = 0; i < inputs_; ++i) directions_.push_back({SymbolKind::input, i, 0});
   std::vector<Ref> roots = s.M;
   for (const auto* list : {&s.f, &s.A, &s.gamma, &s.b}) roots.insert(roots.end(), list->begin(), list->end());

@@ -41,6 +41,8 @@ class Flow {
   std::size_t inputs() const { return inputs_; }
   std::size_t on_positions() const { return holonomic_.size() + leaf_.size(); }
   const std::vector<std::string>& names() const { return names_; }  // of z without t
+  Ref entry(std::size_t place) const { return entries_[place]; }                 // of z, as an expression
+  const std::vector<Symbol>& symbols() const { return symbols_; }                // of z without t
   bool uses_integrals() const { return uses_integrals_; }
 
   /// Throws std::domain_error where the field has no value or no slope.
@@ -70,6 +72,8 @@ class Flow {
   std::vector<Ref> leaf_;
   std::vector<Ref> phi_expressions_;
   std::vector<std::string> names_;
+  std::vector<Ref> entries_;
+  std::vector<Symbol> symbols_;
   std::vector<std::size_t> place_;      // of a coordinate of the model in z
   std::vector<Symbol> directions_;      // z, then inputs
   bool uses_integrals_ = false;

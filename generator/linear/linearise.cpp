@@ -18,15 +18,6 @@ void add(Equations& e, const Matrix<Precise>& value, const Matrix<Precise>& slop
   e.slope = stacked(std::move(e.slope), slope);
 }
 
-/// Positions that nothing feels.
-std::vector<std::size_t> ignored_positions(const Symmetry& s) {
-  std::vector<std::size_t> result;
-  for (std::size_t k = 0; k < s.chart.positions; ++k) {
-    if (!s.retained[k]) result.push_back(s.chart.independent[k]);
-  }
-  return result;
-}
-
 Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z, const State<Precise>& start,
                            const Setting<Precise>& setting, const Extra& extra) {
   const Field<Precise> field = flow.at(z, setting);
@@ -158,6 +149,9 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
         if (magnitude(result.z[flow.coordinates() + i]) > tiny<Precise>(60)) result.kind = Kind::steady;
       }
     }
+  }
+  for (Precise& x : result.z) {
+    if (magnitude(x) <= tiny<Precise>(100)) x = number<Precise>(Precise(0));
   }
   const Chart& chart = result.symmetry.chart;
   result.field = flow.at(result.z, setting);

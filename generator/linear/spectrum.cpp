@@ -12,7 +12,7 @@ namespace {
 using cln::cl_N;
 
 // Coefficients and roots below these parts of what they could be are 0; the points are known to some 150 digits.
-constexpr int zero_digits = 60, root_digits = 18, converged_digits = 26;
+constexpr int rounding_digits = 90, zero_digits = 60, root_digits = 18, converged_digits = 26;
 constexpr int most_rounds = 600;
 
 // To Hessenberg form by eliminations with row pivots, which keeps the eigenvalues.
@@ -35,40 +35,34 @@ void to_hessenberg(Matrix<Precise>& A) {
   }
 }
 
-// The scale of the eigenvalues: the largest sum of a row after rows and columns were balanced by powers of 2.
-Precise spectral_scale(Matrix<Precise> A) {
-  const std::size_t n = A.rows;
-  for (int round = 0; round < 30; ++round) {
-    for (std::size_t i = 0; i < n; ++i) {
-      Precise r(0), c(0);
-      for (std::size_t j = 0; j < n; ++j) {
-        if (j == i) continue;
-        r = r + magnitude(A(i, j));
-        c = c + magnitude(A(j, i));
-      }
-      if (is_zero(r) || is_zero(c)) continue;
-      const Precise f = cln::sqrt(c / r);
-      for (std::size_t j = 0; j < n; ++j) {
-        A(i, j) = A(i, j) * f;
-        A(j, i) = A(j, i) / f;
-      }
-    }
-  }
+Precise power(const Precise& x, std::size_t n) { return cln::expt(x, cln::cl_I(static_cast<unsigned long>(n))); }
+
+Precise largest_row(const Matrix<Precise>& A) {
   Precise largest(0);
-  for (std::size_t i = 0; i < n; ++i) {
+  for (std::size_t i = 0; i < A.rows; ++i) {
     Precise sum(0);
-    for (std::size_t j = 0; j < n; ++j) sum = sum + magnitude(A(i, j));
+    for (std::size_t j = 0; j < A.cols; ++j) sum = sum + magnitude(A(i, j));
     largest = std::max(largest, sum);
   }
   return largest;
 }
 
-std::size_t trailing_zeros(const std::vector<Precise>& c, const Precise& scale) {
+/// What cancels leaves a rounding of products of k entries; that is taken away. Returns the size of the largest root, but for a factor of
+/// twice the degree: the largest |c_k|^(1/k).
+double clean(std::vector<Precise>& c, const Matrix<Precise>& A) {
+  const Precise norm = largest_row(A);
+  double largest = 0;
+  for (std::size_t k = 1; k < c.size(); ++k) {
+    if (magnitude(c[k]) <= tiny<Precise>(rounding_digits) * power(norm, k)) c[k] = Precise(0);
+    else largest = std::max(largest, std::exp(to_double(cln::ln(magnitude(c[k]))) / static_cast<double>(k)));
+  }
+  return largest;
+}
+
+std::size_t trailing_zeros(const std::vector<Precise>& c, double scale) {
+  const auto vanishes = [&](std::size_t k) { return magnitude(c[k]) <= tiny<Precise>(zero_digits) * power(number<Precise>(Precise(scale)), k); };
   std::size_t zeros = 0;
-  Precise power(1);
-  std::vector<Precise> size{power};
-  for (std::size_t k = 1; k < c.size(); ++k) size.push_back(power = power * scale);
-  while (zeros + 1 < c.size() && !(magnitude(c[c.size() - 1 - zeros]) > tiny<Precise>(zero_digits) * size[c.size() - 1 - zeros])) ++zeros;
+  while (zeros + 1 < c.size() && vanishes(c.size() - 1 - zeros)) ++zeros;
   return zeros;
 }
 
@@ -158,19 +152,20 @@ std::vector<Precise> characteristic_polynomial(Matrix<Precise> H) {
 }
 
 std::size_t zero_eigenvalues(const Matrix<Precise>& A) {
-  const Precise scale = spectral_scale(A);
-  return is_zero(scale) ? A.rows : trailing_zeros(characteristic_polynomial(A), scale);
+  std::vector<Precise> c = characteristic_polynomial(A);
+  const double scale = clean(c, A);
+  return trailing_zeros(c, scale);
 }
 
 Spectrum spectrum(const Matrix<Precise>& A) {
   Spectrum result;
-  const Precise scale = spectral_scale(A);
   std::vector<Precise> c = characteristic_polynomial(A);
-  result.zeros = is_zero(scale) ? A.rows : trailing_zeros(c, scale);
+  const double scale = clean(c, A);
+  result.zeros = trailing_zeros(c, scale);
   c.resize(c.size() - result.zeros);
   std::vector<cl_N> z;
   if (c.size() > 1) {
-    z = guesses(A, result.zeros, to_double(scale));
+    z = guesses(A, result.zeros, scale);
     find_roots(c, z);
   }
   for (const cl_N& root : z) {

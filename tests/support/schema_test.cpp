@@ -75,6 +75,7 @@ const std::map<std::string, json>& right_documents() {
           {"power_balance", 1e-12},
           {"constraint_drift", 1e-14},
           {"events", {{{"t", 0.5}, {"kind", "stop"}, {"name", "floor"}}}}}},
+        {"equilibria", {{"format", 1}, {"points", json::array({{{"values", {{"q", 0.5}}}, {"eigenvalues", json::array({{{"re", -1}, {"im", 0}}})}, {"stable", true}}})}}},
         {"linearize", {{"format", 1}, {"states", {"q", "q_dot"}}, {"A", {{0, 1}, {-1, 0}}}, {"B", json::array({json::array(), json::array()})}, {"eigenvalues", json::array({{{"re", 0}, {"im", 1}}, {{"re", 0}, {"im", -1}}})}, {"structural_zeros", 0}}},
         {"inverse", {{"format", 1}, {"columns", {"t", "R", "R_dot", "force.R"}}, {"file", "P10_rocket_inverse.csv"}}},
     };

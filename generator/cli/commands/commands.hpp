@@ -14,6 +14,7 @@ Execute declare_derive(CLI::App& app);
 Execute declare_verify(CLI::App& app);
 Execute declare_emit(CLI::App& app);
 Execute declare_run(CLI::App& app);
+Execute declare_equilibria(CLI::App& app);
 Execute declare_linearize(CLI::App& app);
 Execute declare_inverse(CLI::App& app);
 Execute declare_sweep(CLI::App& app);

@@ -1,0 +1,121 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equilibria and steady motions of a model, and whether they are stable.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cli/commands/commands.hpp"
+#include "cli/decimal.hpp"
+#include "cli/output.hpp"
+#include "cli/steady_search.hpp"
+#include "cli/usage.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+struct Options {
+  std::string model, scene = "default";
+  std::vector<std::string> set, hold;
+  std::size_t starts = 300;
+};
+
+json to_json(const linear::Verdict& verdict) {
+  if (verdict.stability == linear::Stability::unknown) return "unknown";
+  return verdict.stability == linear::Stability::stable;
+}
+
+const char* to_text(const linear::Verdict& verdict) {
+  switch (verdict.stability) {
+    case linear::Stability::stable: return "stable";
+    case linear::Stability::unstable: return "unstable";
+    case linear::Stability::unknown: break;
+  }
+  return "stability unknown";
+}
+
+json to_json(const SteadyMotions& found, const Options& options) {
+  const std::vector<std::string>& names = found.problem.flow->names();
+  json points = json::array(), held = json::array();
+  for (const SteadyMotion& point : found.points) {
+    json values = json::object(), eigenvalues = json::array();
+    for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = linear::to_double(point.l.z[i]);
+    for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back({{"re", e.re}, {"im", e.im}});
+    points.push_back({{"kind", linear::name(point.l.kind)}, {"values", values}, {"eigenvalues", eigenvalues},
+                      {"structural_zeros", point.l.structural_zeros}, {"stable", to_json(point.verdict)}, {"reason", point.verdict.reason},
+                      {"family", point.family}});
+  }
+  for (const HeldValue& h : found.held) held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
+  return {{"format", 1},
+          {"points", points},
+          {"held", held},
+          {"held_in_vain", found.search.released},
+          {"starts", options.starts},
+          {"converged", found.search.converged},
+          {"certificate", found.problem.certificate}};
+}
+
+std::string text(const SteadyMotion& point, const std::vector<std::string>& names) {
+  std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), to_text(point.verdict), point.verdict.reason);
+  if (point.family > 0) out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (!linear::is_zero(point.l.z[i])) out += fmt::format("  {:<24} {:>24}\n", names[i], linear::to_double(point.l.z[i]));
+  }
+  out += "  eigenvalues";
+  for (std::size_t i = 0; i < point.l.spectrum.values.size(); ++i) {
+    const linear::Eigenvalue& e = point.l.spectrum.values[i];
+    if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;  // of a pair one is shown
+    out += e.im == 0 ? fmt::format("  {:.8g}", e.re) : fmt::format("  {:.8g} +- {:.8g}i", e.re, e.im);
+  }
+  return out + fmt::format("  and {} zeros, {} of them structural\n", point.l.spectrum.zeros, point.l.structural_zeros);
+}
+
+std::string text(const SteadyMotions& found, const Options& options) {
+  std::string out = fmt::format("{}, scene {}: {} found\n", found.problem.derived->model.id, found.problem.scene.name,
+                                found.points.empty() ? "no equilibrium and no steady motion" : fmt::format("{} equilibria and steady motions", found.points.size()));
+  for (const HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
+  for (const SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
+  return out + fmt::format("\nsearch            {} starts, of which {} led to one; what a coordinate system does not cover is not found\ncertificate       {}\n",
+                           options.starts, found.search.converged, found.problem.certificate);
+}
+
+int execute(const Options& options, const Common& common) {
+  SteadyRequest request;
+  request.model = options.model;
+  request.scene = options.scene;
+  request.overrides.parameters = parse_assignments("equilibria", options.set);
+  request.hold = parse_assignments("equilibria", options.hold);
+  request.starts = options.starts;
+  request.seed = common.seed;
+  bool shown = false;
+  if (isatty(STDERR_FILENO) != 0) {
+    request.progress = [&shown](double fraction) {
+      shown = true;
+      fmt::print(stderr, "\r{:5.1f} % of the starts ", 100 * fraction);
+    };
+  }
+  const SteadyMotions found = steady_motions(request);
+  if (shown) fmt::print(stderr, "\r{:40}\r", "");
+  if (common.json) {
+    print_document(to_json(found, options));
+  } else {
+    fmt::print("{}", text(found, options));
+  }
+  return 0;
+}
+
+}  // namespace
+
+Execute declare_equilibria(CLI::App& app) {
+  auto options = std::make_shared<Options>();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")->capture_default_str();
+  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  add_list(app, "--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
+  app.add_option("--starts", options->starts, "how many starts the search has")->check(whole_number(1, 100000))->capture_default_str();
+  return [options](const Common& common) { return execute(*options, common); };
+}
+
+}  // namespace eomgen::cli

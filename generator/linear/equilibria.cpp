@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/equilibria.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "linear/newton.hpp"
+
+namespace eomgen::linear {
+namespace {
+
+constexpr double same_point = 1e-8;
+
+class Search {
+ public:
+  Search(const SearchRequest& request, SearchResult& result)
+      : r_(request), flow_(request.flow), n_(flow_.coordinates()), result_(result), symmetry_(result.symmetry), held_(std::in_place, flow_, request.held) {
+    held_->targets = request.targets;
+    find_turns();
+    for (const EulerSet& set : r_.euler) regular_.push_back(flow_.tape({set.regular}));
+    const auto rounded = [](const std::vector<Precise>& list) {
+      std::vector<double> numbers;
+      for (const Precise& x : list) numbers.push_back(to_double(x));
+      return numbers;
+    };
+    rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals), rounded(r_.setting.leaf)};
+  }
+
+  void run() {
+    all_starts(Until::first_point);
+    hold_families();
+    result_.converged = 0;
+    if (result_.held.empty()) {
+      all_starts(Until::end);
+    } else {
+      const std::vector<FoundPoint> member = std::exchange(result_.points, {});
+      all_starts(Until::end);
+      result_.released = result_.points.empty();
+      if (result_.released) result_.points = member;
+    }
+    std::sort(result_.points.begin(), result_.points.end(), [this](const FoundPoint& a, const FoundPoint& b) { return before(a.z, b.z); });
+  }
+
+ private:
+  enum class Until { first_point, end };
+
+  void all_starts(Until until) {
+    std::vector<double> targets;
+    for (const Precise& t : held_->targets) targets.push_back(to_double(t));
+    std::vector<State<double>> seen;
+    for (std::size_t k = 0; k < r_.starts; ++k) {
+      if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
+      const auto rough = rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
+      if (!rough) continue;
+      ++result_.converged;
+      State<Precise> z;
+      for (const double x : *rough) z.push_back(number<Precise>(Precise(x)));
+      wrap(z);
+      const auto known = [&](const State<double>& s) { return is_same(s, z); };
+      if (std::any_of(seen.begin(), seen.end(), known)) continue;
+      seen.push_back(rounded(z));
+      polish(z);
+      if (until == Until::first_point && !result_.points.empty()) return;
+    }
+  }
+
+  static State<double> rounded(const State<Precise>& z) {
+    State<double> result;
+    for (const Precise& x : z) result.push_back(to_double(x));
+    return result;
+  }
+
+  std::optional<State<Precise>> steady(const State<Precise>& z) const {
+    return steady_state(flow_, symmetry_, z, r_.setting, [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
+      value = Matrix<Precise>(held_->targets.size(), 1);
+      slope = Matrix<Precise>(held_->targets.size(), at.size());
+      if (held_->targets.empty()) return;
+      const Sloped<Precise> s = held_->at(at, r_.setting);
+      for (std::size_t k = 0; k < held_->targets.size(); ++k) value(k, 0) = s.value[k] - held_->targets[k];
+      slope = s.slope;
+    });
+  }
+
+  void polish(State<Precise> rough) {
+    for (const std::size_t i : ignored_positions(symmetry_)) rough[i] = r_.start[i];
+    std::optional<State<Precise>> z = steady(rough);
+    if (!z) return;
+    normalise(*z);
+    for (std::size_t i = 0; i < n_; ++i) {
+      const double q = to_double((*z)[i]);
+      if (!(q > r_.ranges[i].lower && q < r_.ranges[i].upper)) return;
+    }
+    const auto known = [&](const FoundPoint& p) { return is_same(rounded(p.z), *z); };
+    if (std::any_of(result_.points.begin(), result_.points.end(), known)) return;
+    result_.points.push_back({*z, open_directions(*z).cols});
+  }
+
+  bool is_same(const State<double>& a, const State<Precise>& b) const {
+    constexpr double turn = 2 * 3.14159265358979323846;
+    for (std::size_t i = 0; i < 2 * n_; ++i) {
+      double distance = std::abs(a[i] - to_double(b[i]));
+      if (i < n_ && turns_[i]) distance = std::min(distance, std::abs(turn - distance));
+      if (distance > same_point * (1 + std::abs(a[i]))) return false;
+    }
+    return true;
+  }
+
+  // Coordinates that are back where they were after 2 pi: the flow and the constraints are the same there.
+  void find_turns() {
+    turns_.assign(n_, false);
+    const Precise turn = Precise(2) * cln::pi(precise_format());
+    for (std::size_t i = 0; i < n_; ++i) {
+      try {
+        Setting<Precise> setting = r_.setting;
+        const auto point = beside(flow_, r_.start, setting, 900 + r_.seed);
+        if (!point) return;
+        State<Precise> moved = *point;
+        moved[i] = moved[i] + turn;
+        const Field<Precise> a = flow_.at(*point, setting), b = flow_.at(moved, setting);
+        turns_[i] = equal(a.X, b.X) && equal(a.phi, b.phi) && equal(a.slope, b.slope);
+      } catch (const std::domain_error&) {
+        continue;
+      }
+    }
+    for (const std::size_t i : ignored_positions(symmetry_)) turns_[i] = false;  // they stay at the start
+  }
+
+  static bool equal(const Matrix<Precise>& A, const Matrix<Precise>& B) {
+    for (std::size_t i = 0; i < A.a.size(); ++i) {
+      if (magnitude(A.a[i] - B.a[i]) > tiny<Precise>(100) * (Precise(1) + magnitude(A.a[i]))) return false;
+    }
+    return true;
+  }
+
+  /// Angles into (-pi, pi].
+  void wrap(State<Precise>& z) const {
+    const Precise pi = cln::pi(precise_format()), turn = Precise(2) * pi, slack = tiny<Precise>(30);
+    for (std::size_t i = 0; i < n_; ++i) {
+      if (turns_[i]) z[i] = z[i] - turn * cln::ceiling1((z[i] - pi - slack) / turn);
+    }
+  }
+
+  void normalise(State<Precise>& z) const {
+    for (const auto& e : r_.parameters) {
+      const auto first = std::find_if(e.begin(), e.end(), [&](std::size_t i) { return magnitude(z[i]) > tiny<Precise>(30); });
+      if (first == e.end() || cln::plusp(z[*first])) continue;
+      State<Precise> other = z;
+      for (const std::size_t i : e) {
+        other[i] = -other[i];
+        other[n_ + i] = -other[n_ + i];
+      }
+      take_if_steady(z, other);
+    }
+    for (std::size_t k = 0; k < r_.euler.size(); ++k) {
+      const auto sign = [&](const State<Precise>& at) { return regular_[k].at<Precise>(flow_.lookup(at, r_.setting)).value[0]; };
+      if (!cln::minusp(sign(z))) continue;
+      const auto& [a, b, c] = r_.euler[k].places;
+      const Precise pi = cln::pi(precise_format());
+      for (const Precise& middle : {Precise(0), pi}) {
+        State<Precise> other = z;
+        other[a] = z[a] + pi;
+        other[b] = middle - z[b];
+        other[c] = z[c] + pi;
+        other[n_ + b] = -z[n_ + b];
+        if (!cln::plusp(sign(other))) continue;
+        for (const std::size_t i : ignored_positions(symmetry_)) other[i] = r_.start[i];
+        take_if_steady(z, other);
+        break;
+      }
+    }
+    wrap(z);
+  }
+
+  // A name of the same attitude; not where something that is held, or a force, tells the names apart.
+  void take_if_steady(State<Precise>& z, const State<Precise>& other) const {
+    const auto found = steady(other);
+    if (found && is_same(rounded(other), *found)) z = other;
+  }
+
+  /// Directions along which steady motions with what is held go on, as columns.
+  Matrix<Precise> open_directions(const State<Precise>& z) const {
+    const Field<Precise> field = flow_.at(z, r_.setting);
+    Matrix<Precise> J = stacked(field.phi_slope, rows_of(field.slope, symmetry_.constant));
+    J.cols = z.size();
+    for (const std::size_t i : ignored_positions(symmetry_)) {
+      Matrix<Precise> row(1, z.size());
+      row(0, i) = Precise(1);
+      J = stacked(J, row);
+    }
+    if (!r_.held.empty()) {
+      Matrix<Precise> held = held_->at(z, r_.setting).slope;
+      std::vector<std::size_t> own;
+      for (std::size_t k = 0; k < r_.targets.size(); ++k) own.push_back(k);
+      J = stacked(J, rows_of(held, own));
+    }
+    std::vector<std::size_t> columns;
+    for (std::size_t i = 0; i + 1 < z.size(); ++i) columns.push_back(i);
+    return Elimination<Precise>(columns_of(J, columns), tiny<Precise>(40), tiny<Precise>(60)).null_space();
+  }
+
+  // Positions that are retained, then speeds, one for each direction that is open at the first point, at their start values.
+  void hold_families() {
+    if (result_.points.empty()) return;
+    const Matrix<Precise> N = open_directions(result_.points.front().z);
+    if (N.cols == 0) return;
+    Matrix<Precise> chosen;
+    for (const std::size_t i : symmetry_.chart.independent) {
+      const Matrix<Precise> more = stacked(chosen, rows_of(N, {i}));
+      if (Elimination<Precise>(more, tiny<Precise>(30), tiny<Precise>(60)).rank() < more.rows) continue;
+      chosen = more;
+      result_.held.push_back(i);
+      if (chosen.rows == N.cols) break;
+    }
+    std::vector<Quantity> quantities = r_.held;
+    for (const std::size_t i : result_.held) {
+      quantities.push_back({flow_.names()[i], flow_.entry(i)});
+      held_->targets.push_back(r_.start[i]);
+    }
+    std::vector<Precise> targets = std::move(held_->targets);
+    held_.emplace(flow_, std::move(quantities));
+    held_->targets = std::move(targets);
+  }
+
+  bool before(const State<Precise>& a, const State<Precise>& b) const {
+    for (std::size_t i = 0; i < 2 * n_; ++i) {
+      const double difference = to_double(a[i] - b[i]);
+      if (std::abs(difference) > same_point) return difference < 0;
+    }
+    return false;
+  }
+
+  const SearchRequest& r_;
+  const Flow& flow_;
+  std::size_t n_;
+  SearchResult& result_;
+  const Symmetry& symmetry_;
+  std::optional<Held> held_;
+  Setting<double> rough_;
+  std::vector<bool> turns_;
+  std::vector<Tape> regular_;
+};
+
+}  // namespace
+
+SearchResult find_steady_motions(const SearchRequest& request) {
+  SearchResult result;
+  const auto start = projected(request.flow, request.start, request.setting);
+  require_domain(start.has_value(), "the start does not satisfy the constraints");
+  result.symmetry = find_symmetry(request.flow, *start, request.setting, request.seed);
+  if (result.symmetry.autonomous) Search(request, result).run();
+  return result;
+}
+
+}  // namespace eomgen::linear

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/newton.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+namespace eomgen::linear {
+namespace {
+
+constexpr int most_steps = 80;
+constexpr double longest_step = 0.7;  // of an entry, against 1 and its size
+constexpr double settled = 1e-11;
+constexpr double rank_tolerance = 1e-9;
+constexpr std::size_t plain_attitudes = 81;  // Euler parameters of -1, 0, 1
+
+struct Equations {
+  std::vector<double> value;
+  std::vector<std::vector<double>> slope;  // rows
+};
+
+void add(Equations& e, const Matrix<double>& value, const Matrix<double>& slope, std::size_t row) {
+  e.value.push_back(value(row, 0));
+  const auto begin = slope.a.begin() + static_cast<std::ptrdiff_t>(row * slope.cols);
+  e.slope.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(slope.cols) - 1);
+}
+
+Equations equations(const Flow& flow, const Symmetry& symmetry, const State<double>& z, const State<double>& start,
+                    const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
+  const Field<double> field = flow.at(z, setting);
+  Equations e;
+  for (std::size_t i = 0; i < field.phi.rows; ++i) add(e, field.phi, field.phi_slope, i);
+  for (const std::size_t i : symmetry.constant) add(e, field.X, field.slope, i);
+  for (const std::size_t i : ignored_positions(symmetry)) {
+    e.value.push_back(z[i] - start[i]);
+    e.slope.emplace_back(z.size() - 1, 0.0);
+    e.slope.back()[i] = 1;
+  }
+  if (targets.empty()) return e;
+  const Sloped<double> quantities = held.at(z, setting);
+  for (std::size_t k = 0; k < targets.size(); ++k) {
+    e.value.push_back(quantities.value[k] - targets[k]);
+    const auto begin = quantities.slope.a.begin() + static_cast<std::ptrdiff_t>(k * quantities.slope.cols);
+    e.slope.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(quantities.slope.cols) - 1);
+  }
+  return e;
+}
+
+/// The least step, with entries measured against 1 and their size, rows against their largest slope.
+std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z) {
+  const auto rows = static_cast<Eigen::Index>(e.value.size()), columns = static_cast<Eigen::Index>(z.size() - 1);
+  Eigen::MatrixXd J(rows, columns);
+  Eigen::VectorXd r(rows), scale(columns);
+  for (Eigen::Index j = 0; j < columns; ++j) scale(j) = 1 + std::abs(z[static_cast<std::size_t>(j)]);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    r(i) = e.value[static_cast<std::size_t>(i)];
+    for (Eigen::Index j = 0; j < columns; ++j) J(i, j) = e.slope[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * scale(j);
+    const double size = J.row(i).cwiseAbs().maxCoeff();
+    if (size > 0) {
+      J.row(i) /= size;
+      r(i) /= size;
+    }
+  }
+  if (!J.allFinite() || !r.allFinite()) return std::nullopt;
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(rank_tolerance);
+  solver.compute(J);
+  return solver.solve(r);
+}
+
+// All of -1, 0, 1 first: they hold the turns that carry axes into axes. Then random ones.
+void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>& e, std::size_t k, State<double>& z) {
+  std::size_t code = k;
+  bool any = false;
+  for (std::size_t j = 0; j < 4; ++j, code /= 3) {
+    z[e[j]] = static_cast<double>(code % 3) - 1;
+    any = any || code % 3 != 1;
+  }
+  if (code == 0 && any) return;
+  for (std::size_t j = 0; j < 4; ++j) z[e[j]] = random_number(request.seed + 60000, 64 * k + e[j]);
+}
+
+}  // namespace
+
+std::optional<State<double>> rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
+                                                const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
+  State<double> z = start;
+  try {
+    for (int k = 0; k < most_steps; ++k) {
+      const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z);
+      if (!move || !move->allFinite()) return std::nullopt;
+      const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
+      for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
+      if (size < settled) return z;
+    }
+  } catch (const std::domain_error&) {
+    return std::nullopt;
+  }
+  return std::nullopt;
+}
+
+State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns, std::size_t k) {
+  const std::size_t n = request.flow.coordinates();
+  State<double> z;
+  for (const Precise& x : request.start) z.push_back(to_double(x));
+  if (k == 0) return z;
+  double fastest = 1;
+  for (std::size_t i = n; i < 2 * n; ++i) fastest = std::max(fastest, std::abs(z[i]));
+  std::vector<bool> kept(2 * n, false), ignored(2 * n, false);
+  for (const std::size_t i : symmetry.constant) kept[i] = true;
+  for (const std::size_t i : ignored_positions(symmetry)) ignored[i] = true;
+  constexpr double pi = 3.14159265358979323846;
+  const bool attitudes_only = !request.parameters.empty() && k < plain_attitudes;
+  for (std::size_t i = 0; i < 2 * n; ++i) {
+    const double r = random_number(request.seed + 50000, 64 * k + i);
+    if (i >= n) {
+      // Rates of what a steady motion keeps are 0.
+      z[i] = kept[i - n] ? 0 : attitudes_only ? z[i] : std::abs(z[i]) > 0 ? z[i] * (1 + 1.5 * r) : fastest * r;
+      continue;
+    }
+    if (ignored[i] || attitudes_only) continue;
+    const Range& range = request.ranges[i];
+    const bool below = std::isfinite(range.lower), above = std::isfinite(range.upper);
+    if (below && above) z[i] = range.lower + (range.upper - range.lower) * (0.5 + 0.49 * r);
+    else if (turns[i]) z[i] = pi * r;
+    else if (below) z[i] = range.lower + (z[i] - range.lower) * std::exp(r);
+    else z[i] += (1 + std::abs(z[i])) * 2 * r;
+  }
+  for (const auto& e : request.parameters) set_attitude(request, e, k, z);
+  return z;
+}
+
+}  // namespace eomgen::linear

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The search of equilibria in binary64: one start, one Newton's iteration, and where starts are taken.
+#pragma once
+
+#include "linear/equilibria.hpp"
+
+namespace eomgen::linear {
+
+/// A steady motion in binary64; nothing where the iteration ends nowhere. Steps are the least ones, relative to the entries of z.
+std::optional<State<double>> rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
+                                                const Setting<double>& setting, const Held& held, const std::vector<double>& targets);
+
+/// The k-th start: entry 0 is the scene's, the others are spread over ranges, turns, and multiples of the scene's values.
+State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns, std::size_t k);
+
+}  // namespace eomgen::linear

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions of the state that are held, or conserved: their values and slopes along a flow.
+#pragma once
+
+#include "linear/linearise.hpp"
+
+namespace eomgen::linear {
+
+struct Quantity {
+  std::string name;
+  Ref expression;
+};
+
+/// Quantities with the values that they are to have.
+class Held {
+ public:
+  Held(const Flow& flow, std::vector<Quantity> quantities)
+      : flow_(flow), quantities_(std::move(quantities)), tape_(flow.tape(expressions())) {}
+
+  const std::vector<Quantity>& quantities() const { return quantities_; }
+  std::vector<Precise> targets;
+
+  template <class T>
+  Sloped<T> at(const State<T>& z, const Setting<T>& setting) const {
+    return tape_.at<T>(flow_.lookup(z, setting));
+  }
+
+ private:
+  std::vector<Ref> expressions() const {
+    std::vector<Ref> result;
+    for (const Quantity& q : quantities_) result.push_back(q.expression);
+    return result;
+  }
+  const Flow& flow_;
+  std::vector<Quantity> quantities_;
+  Tape tape_;
+};
+
+}  // namespace eomgen::linear

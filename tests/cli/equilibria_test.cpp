@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The command equilibria: its document, its text, and what it refuses. Its numbers are tested in tests/linear.
+#include <doctest/doctest.h>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+TEST_CASE("equilibria: points with values, eigenvalues and stability, the same for the same seed") {
+  const Folder folder;
+  const Json found = document(folder, {"equilibria", "S5_double_pendulum"});
+  REQUIRE(found["points"].size() == 4);
+  CHECK(found["points"][0]["stable"] == true);
+  CHECK(found["points"][3]["stable"] == false);
+  CHECK(found["points"][0]["eigenvalues"].size() == 4);
+  CHECK(found["points"][1]["values"]["theta2"].get<double>() == doctest::Approx(3.14159265358979));
+  CHECK(document(folder, {"equilibria", "S5_double_pendulum"}) == found);
+  CHECK(document(folder, {"equilibria", "S5_double_pendulum", "--seed", "7"})["points"].size() == 4);
+  const std::string text = expect(0, folder, {"equilibria", "S5_double_pendulum"}).out;
+  CHECK(contains(text, "4 equilibria and steady motions found"));
+  CHECK(contains(text, "equilibrium, stable: the second variation of 'energy'"));
+  CHECK(document(folder, {"equilibria", "R13_sleigh", "--scene", "straight"})["held"].size() == 2);
+  CHECK(document(folder, {"equilibria", "R6_rolling_disk"})["points"][0]["stable"] == "unknown");
+}
+
+TEST_CASE("equilibria: equations that depend on t, contacts, and what cannot be held are told with a remedy") {
+  const Folder folder;
+  CHECK(contains(expect(2, folder, {"equilibria", "P1_spherical_pendulum_varying"}).err, "eomgen linearize"));
+  CHECK(contains(expect(2, folder, {"equilibria", "bouncing_ball"}).err, "linearise a copy"));
+  CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "thta=1"}).err, "did you mean 'theta'?"));
+  CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "psi=1"}).err, "nothing feels it"));
+  CHECK(contains(expect(2, folder, {"equilibria", "S5_double_pendulum", "--hold", "reaction.rod1=1"}).err, "constraint forces"));
+  CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "theta"}).err, "theta"));
+  CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--starts", "0"}).err, "--starts"));
+}
