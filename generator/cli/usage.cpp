@@ -11,7 +11,6 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::string_view planned[] = {"stress"};
 
 template <typename Accept>
 CLI::Validator number(const char* what, Accept accept) {
@@ -87,9 +86,6 @@ void require_command(std::span<char* const> words, const std::vector<std::string
   if (words.size() < 2 || words[1][0] == '-') return;
   const std::string word = words[1];
   if (std::find(commands.begin(), commands.end(), word) != commands.end()) return;
-  if (std::find(std::begin(planned), std::end(planned), word) != std::end(planned)) {
-    throw Error("usage", {}, fmt::format("the command '{}' is not supported yet", word), "eomgen --help lists the commands");
-  }
   throw Error("usage", {}, fmt::format("there is no command {}", model::quote(word)), choice_of(word, commands));
 }
 

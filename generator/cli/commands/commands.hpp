@@ -20,5 +20,6 @@ Execute declare_inverse(CLI::App& app);
 Execute declare_sweep(CLI::App& app);
 Execute declare_report(CLI::App& app);
 Execute declare_bench(CLI::App& app);
+Execute declare_stress(CLI::App& app);
 
 }  // namespace eomgen::cli

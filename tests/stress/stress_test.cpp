@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The judge of stress: right results are kept, coarse ones told, and a run that is wrong and says it is right is silent.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "stress/stress.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+double rate = 1;  // of the oscillator that the functions below are of
+
+int rhs(double, const double* x, const double*, const double*, int, double* dx) {
+  dx[0] = x[1];
+  dx[1] = -rate * rate * x[0];
+  return std::isfinite(dx[1]) ? 0 : 5;
+}
+int outputs(double, const double* x, const double*, const double*, int, double* y) {
+  y[0] = x[0];
+  y[1] = x[1];
+  y[3] = x[1] * x[1] / 2;
+  y[4] = rate * rate * x[0] * x[0] / 2;
+  y[2] = y[3] + y[4];
+  return 0;
+}
+
+struct Oscillator {
+  Oscillator() {
+    rate = 1;
+    code.rhs = rhs;
+    code.outputs = outputs;
+    code.output_names = {"x", "x_dot", "energy", "kinetic", "potential"};
+    code.free = {0};
+    scene.t1 = 3;
+    scene.q = {1};
+    scene.qdot = {0};
+    scene.lower = {-std::numeric_limits<double>::infinity()};
+    scene.upper = {std::numeric_limits<double>::infinity()};
+    request.run = [this](const run::Scene& s) { return run::RunRequest{code, s, {"x", "x_dot"}, {}}; };
+    request.solvers = {"dopri5", "dop853", "radau5", "rk4"};
+    request.seconds_limit = 20;  // no row may depend on how busy the machine is
+  }
+
+  run::Code code;
+  run::Scene scene;
+  stress::Request request;
+  std::string why;
+};
+
+}  // namespace
+
+TEST_CASE("stress: a motion that is easy is kept by solvers that control their error, with the error that they have") {
+  Oscillator o;
+  const std::vector<stress::Row> rows = stress::judge({.name = "as it is"}, o.scene, o.request, o.why);
+  CHECK(o.why.empty());
+  REQUIRE(rows.size() == 4);
+  for (const stress::Row& row : rows) {
+    CAPTURE(row.solver);
+    CHECK(row.verdict == (row.solver == "rk4" ? stress::Verdict::told : stress::Verdict::kept));
+    CHECK(row.error < 1e-7);
+    CHECK(row.condition >= 1);
+    CHECK(row.condition < 10);  // an oscillator turns disturbances round and does not make them grow
+  }
+}
+
+TEST_CASE("stress: a result that is wrong and comes with a small estimate is silent") {
+  Oscillator o;
+  o.request.progress = [](const std::string&) { rate = 1.001; };  // from here on the runs, no longer what they are held against
+  for (const stress::Row& row : stress::judge({.name = "another motion"}, o.scene, o.request, o.why)) {
+    CAPTURE(row.solver);
+    CHECK(row.verdict == stress::Verdict::silent);
+    CHECK(row.error > 1e-4);
+    CHECK(row.estimate < 1e-5);
+  }
+}
+
+TEST_CASE("stress: where no motion exists an outcome other than done is told, and done is silent") {
+  Oscillator o;
+  const stress::Case test{.name = "no value", .without_value = true};
+  o.request.progress = [](const std::string&) { rate = std::numeric_limits<double>::quiet_NaN(); };
+  for (const stress::Row& row : stress::judge(test, o.scene, o.request, o.why)) CHECK(row.verdict == stress::Verdict::told);
+  o.request.progress = [](const std::string&) { rate = 1; };
+  for (const stress::Row& row : stress::judge(test, o.scene, o.request, o.why)) CHECK(row.verdict == stress::Verdict::silent);
+}
+
+TEST_CASE("stress: variations are those that a model has constants for") {
+  const model::Model model = model::read_model_text(
+      "format = 1\n[parameters]\nm = \"2 kg\"\nk = \"8 N/m\"\nL = \"1 m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
+      "[[force]]\nspring = { between = [\"origin\", \"P\"], stiffness = \"k\", length = \"L\" }\n[scene.default]\nt = [0, 1]\ninitial = { r = 1, theta_dot = 1 }\n",
+      "spring.toml");
+  const mechanics::Mechanics m = mechanics::build_mechanics(model);
+  run::Scene scene;
+  scene.parameters = {2, 8, 1};
+  scene.q = {1, 0};
+  scene.qdot = {0, 1};
+  scene.lower = {0, -std::numeric_limits<double>::infinity()};
+  scene.upper = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  const std::vector<stress::Case> all = stress::cases(m, scene, false);
+  const auto has = [&](const std::string& name) { return std::any_of(all.begin(), all.end(), [&](const stress::Case& c) { return c.name == name; }); };
+  for (const char* name : {"as it is", "m x 1e-09", "m x 1e+09", "k x 1e+12", "r at 0 + 1e-15", "speed x 1e+06", "rtol 1e-15", "span x 100", "from rest", "m = nan", "L = inf"}) {
+    CAPTURE(std::string(name));
+    CHECK(has(name));
+  }
+  CHECK_FALSE(has("L x 1e+06"));  // a length is neither stiff nor heavy
+  CHECK(stress::cases(m, scene, true).size() < all.size() / 2);
+}
