@@ -35,7 +35,6 @@ TEST_CASE("commands and options that are not there: the nearest one is told") {
   refuse({
       {{}, "a command is missing", "eomgen --help"},
       {{"dervie", P2}, "there is no command 'dervie'", "did you mean 'derive'?"},
-      {{"stress", P2}, "the command 'stress' is not supported yet", "eomgen --help"},
       {{"run"}, "MODEL is required", "eomgen run --help"},
       {{"emit", P2}, "-o is required", "eomgen emit --help"},
       {{"run", P2, "--rotl", "1e-3"}, "there is no option '--rotl'", "did you mean '--rtol'?"},

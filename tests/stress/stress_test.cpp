@@ -40,7 +40,7 @@ struct Oscillator {
     scene.qdot = {0};
     scene.lower = {-std::numeric_limits<double>::infinity()};
     scene.upper = {std::numeric_limits<double>::infinity()};
-    request.run = [this](const run::Scene& s) { return run::RunRequest{code, s, {"x", "x_dot"}, {}}; };
+    request.run = [this](const run::Scene& s) { return run::RunRequest{code, s, {"x", "x_dot"}, {}, {}, false, true, 0, {}, {}, nullptr}; };
     request.solvers = {"dopri5", "dop853", "radau5", "rk4"};
     request.seconds_limit = 20;  // no row may depend on how busy the machine is
   }
