@@ -11,7 +11,6 @@
 namespace eomgen::cli {
 namespace {
 
-
 template <typename Accept>
 CLI::Validator number(const char* what, Accept accept) {
   return {[what, accept](std::string& text) {

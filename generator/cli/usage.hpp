@@ -24,7 +24,7 @@ CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::s
 /// "did you mean 'x'?", or else "choose from: ...".
 std::string choice_of(const std::string& name, const std::vector<std::string>& known);
 
-/// Throws Error where the first word is no command: with the nearest one, or that it is still to come.
+/// Throws Error where the first word is no command: with the nearest one.
 void require_command(std::span<char* const> words, const std::vector<std::string>& commands);
 
 /// What CLI11 found wrong, in our words.
