@@ -220,8 +220,10 @@ class Closure {
       feedback = dag_.add(feedback, dag_.mul(dag_.mul(pressed, heading(j, a)), normal_[j][0].slope[c.first + a]));
     }
     if (dag_.is_zero(feedback)) return;
-    margin_[j] = by_touch(j, dag_.one(), by_mode(j, dag_.one(), dag_.sub(dag_.one(), absolute(feedback))));
     const Ref own = dag_.add(dag_.one(), dag_.mul(presses(j), feedback));
+    // A contact that can be left does not pull: p = 1 alone, and beside it leaving, which the law allows where x0 < 0.
+    const Ref single = c.unilateral ? own : dag_.sub(dag_.one(), absolute(feedback));
+    margin_[j] = by_touch(j, dag_.one(), by_mode(j, dag_.one(), single));
     add_codes(margin_[j], dag_.mul(dag_.mul(presses(j), normal_[j][0].value), own));
   }
 

@@ -233,7 +233,8 @@ void add_rotations(const model::Model& model, const State& state, Interpreter& n
       rest = rest - part;
       size = size + length(part);
     }
-    size = size + length(rest);
+    // The axes turn: what cancels in dH/dt is of the size of w x H, also where nothing is left of it.
+    size = size + length(rest) + length(H) * length(now.angular_velocity(body.frame));
     for (std::size_t i = 0; i < n; ++i) sums[i].add(dot(rate, turn[i]).real(), size * length(turn[i]));
   }
 }
