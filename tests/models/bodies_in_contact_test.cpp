@@ -80,7 +80,7 @@ TEST_CASE("bodies_in_contact: the sphere keeps its spin in every bounce, slides 
   CHECK(std::abs(events[1].t - first * (1 + 2 * e)) < by_hand);
   const double zeno = first * (1 + e) / (1 - e), slip = 3 + 10 * R, rolls = zeno + slip / (3.5 * mu * g), v = 3 - mu * g * (rolls - zeno);
   CHECK(events.back().kind == "roll");
-  CHECK(std::abs(events.back().t - rolls) < 1e-8);  // the bounces are cut at 1e-7 of the first
+  CHECK(std::abs(events.back().t - rolls) < 1e-7);  // the bounces are cut at 1e-7 of the first
   CHECK(std::abs(run.final("x_dot") - v) < 1e-8);
   CHECK(std::abs(run.final("theta_dot") * R - run.final("x_dot")) < 1e-13);
   for (std::size_t i = 0; i < run.rows.size() && run.rows.t[i] < zeno - 1e-3; ++i) CHECK(run.rows.at(i, "theta_dot") == -10);
