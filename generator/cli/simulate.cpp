@@ -51,7 +51,7 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
     add(derive::differential_output(i, "t"));
   }
   for (const system::Output& output : derived.candidates.front().outputs) {
-    if (output.name.starts_with("reaction.")) add(output.name);
+    if (output.name.starts_with("reaction.") || output.name.starts_with(system::watched_prefix)) add(output.name);
   }
   for (const run::ContactOutputs& contact : contact_outputs(derived)) {
     for (const auto* list : {&contact.slip, &contact.phi}) std::for_each(list->begin(), list->end(), add);

@@ -42,6 +42,17 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
   }
 }
 
+// What is not imposed, but holds where the active constraints do.
+void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (m.constraints[k].need != mechanics::Need::redundant) continue;
+    const Ref psi = finish.imposed(m.constraints[k].psi);
+    system::Watched watched{k, finish(psi), {}, finish(symbolic::explicit_time(*m.dag, m.model->functions.size())(psi))};
+    for (const std::uint32_t i : s.free) watched.A.push_back(finish(symbolic::partial(*m.dag, coordinate(i, 0))(psi)));
+    s.redundant.push_back(std::move(watched));
+  }
+}
+
 // The (b) equations: row c of M qddot - f = sum_k lambda_k dpsi_k/dq_c, from the last coordinate that was fixed to the
 // first; a constraint's gradient has only coordinates that were fixed with it or before it, so this is a back substitution.
 void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
@@ -60,6 +71,27 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     s.reactions.push_back({k, m.constraints[k].label, lambda[k]});
+  }
+}
+
+/// Multipliers; of joints the force on B and the moment about its point instead, as far as the motion determines them.
+void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
+  Dag& dag = *m.dag;
+  for (const system::Reaction& reaction : s.reactions) {
+    const auto of = [&](const mechanics::JointReaction& j) { return reaction.constraint >= j.first && reaction.constraint < j.first + j.equations(); };
+    if (std::none_of(m.joints.begin(), m.joints.end(), of)) s.outputs.push_back({"reaction." + reaction.label, reaction.value});
+  }
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const mechanics::JointReaction& joint = m.joints[i];
+    for (std::size_t j = 0; j < joint.along.size(); ++j) {
+      if (!joint.determined[j]) continue;
+      Ref sum = dag.zero();
+      for (std::size_t k = 0; k < joint.equations(); ++k) sum = dag.add(sum, dag.mul(joint.along[j][k], s.reactions[joint.first + k].value));
+      s.outputs.push_back({"reaction." + m.model->joints[i].name + "." + std::to_string(j + 1), sum});
+    }
+  }
+  for (const mechanics::Constraint& c : m.constraints) {
+    if (c.need == mechanics::Need::redundant) s.outputs.push_back({system::watched_prefix + c.label, c.psi});
   }
 }
 
@@ -83,7 +115,7 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
   for (std::size_t f = 1; f < m.angular_velocity.size(); ++f) {
     for (std::size_t k = 0; k < 3; ++k) add(m.model->frames[f].name + ".omega" + std::to_string(k + 1), m.angular_velocity[f][k]);
   }
-  for (const system::Reaction& reaction : s.reactions) add("reaction." + reaction.label, reaction.value);
+  add_reaction_outputs(m, s);
   for (std::size_t i = 0; i < m.model->definitions.size(); ++i) {
     const model::Definition& definition = m.model->definitions[i];
     if (!definition.vector) add(definition.name, m.scalar_definition[i]);
@@ -228,6 +260,7 @@ EquationSystem assemble(Mechanics& m, const FullEquations& full, const FullEquat
   for (system::Output& output : s.outputs) output.value = finish(output.value);
   for (system::Event& event : s.events) event.value = finish(event.value);
   add_constraints(m, s, finish);
+  add_redundant(m, s, finish);
   add_contacts(m, s, finish);
   return s;
 }

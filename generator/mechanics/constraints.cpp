@@ -135,10 +135,12 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       } else {
         add_position_form(m, lower, result);
       }
-      if (vanishes(*m.dag, result.gradient)) {
+      if (constraint.joint && !velocities && holds_identically(*m.dag, result.psi)) result.need = Need::identity;
+      if (result.need == Need::holds && vanishes(*m.dag, result.gradient)) {
         throw Error("mechanics", m.model->where(constraint.span),
                     "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
-                    velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
+                    constraint.joint ? "its bodies do not move against one another here: remove the joint, or give them coordinates"
+                    : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                                         : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
       m.constraints.push_back(std::move(result));
@@ -152,9 +154,13 @@ void eliminate_coordinates(Mechanics& m) {
   for (bool changed = true; changed;) {
     changed = false;
     for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral) continue;
+      if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || !m.holds(k)) continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
-      if (coordinates_in(*m.dag, reduced).empty()) refuse_repeated(m, m.constraints[k], reduced);
+      if (coordinates_in(*m.dag, reduced).empty()) {
+        if (of_model(m, m.constraints[k]).joint && holds_identically(*m.dag, reduced)) m.constraints[k].need = Need::redundant;
+        else refuse_repeated(m, m.constraints[k], reduced);
+        continue;
+      }
       FixedCoordinate fixed{};
       fixed.constraint = k;
       if (!solve_for_only_coordinate(m, reduced, fixed)) continue;
@@ -167,7 +173,7 @@ void eliminate_coordinates(Mechanics& m) {
     if (!m.is_eliminated(i)) m.free.push_back(i);
   }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!used[k]) m.active.push_back(k);
+    if (!used[k] && m.holds(k)) m.active.push_back(k);
   }
 }
 

@@ -109,10 +109,26 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
   }
 }
 
+// A component of the reaction of a joint.
+Ref Lowering::joint_force(const model::Node& node) {
+  const std::uint32_t index = *m_.model->constraints[node.index].joint;
+  const JointReaction& joint = m_.joints.at(index);
+  if (!joint.determined[node.order]) {
+    throw Error("mechanics", m_.model->where(node.span), "the motion does not determine this component of the joint '" + m_.model->joints[index].name + "'",
+                "`check` lists those that it determines");
+  }
+  Ref sum = dag_.zero();
+  for (std::uint32_t k = 0; k < joint.equations(); ++k) {
+    sum = dag_.add(sum, dag_.mul(joint.along[node.order][k], dag_.symbol({SymbolKind::multiplier, joint.first + k, 0})));
+  }
+  return sum;
+}
+
 // The multiplier of one equation of a constraint; Mechanics lists the equations of all constraints in one row.
 Ref Lowering::multiplier(const model::Node& node) {
   const model::Constraint& wanted = m_.model->constraints[node.index];
   if (wanted.rolls_by_friction()) return rolling_reaction(node);
+  if (wanted.joint) return joint_force(node);
   for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
     if (m_.constraints[k].name == wanted.name) return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
   }

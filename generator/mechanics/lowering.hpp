@@ -56,6 +56,7 @@ class Lowering {
   Value lower_leaf(const model::Node& node);
   Ref multiplier(const model::Node& node);
   Ref rolling_reaction(const model::Node& node);
+  Ref joint_force(const model::Node& node);
   Value lower_arithmetic(const model::Node& node);
   Value lower_vector(const model::Node& node);
   Value lower_derivative(const model::Node& node);

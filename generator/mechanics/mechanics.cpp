@@ -23,10 +23,17 @@ void add_symbols(Mechanics& m) {
   }
 }
 
-void add_values(Mechanics& m, Lowering& lower) {
-  for (const model::Event& event : m.model->events) m.event.push_back(lower.scalar(event.when));
+// Functions and parameters; loops of joints need them before all else that has a value.
+void add_known_values(Mechanics& m, Lowering& lower) {
+  m.function_value.clear();
+  m.parameter_value.clear();
   for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.is));
   for (const model::Parameter& parameter : m.model->parameters) m.parameter_value.push_back(lower.scalar(parameter.value));
+}
+
+void add_values(Mechanics& m, Lowering& lower) {
+  for (const model::Event& event : m.model->events) m.event.push_back(lower.scalar(event.when));
+  add_known_values(m, lower);
   for (std::uint32_t i = 0; i < m.model->places.size(); ++i) m.place_position.emplace_back(lower.position(i));
   for (const model::Definition& definition : m.model->definitions) {
     m.scalar_definition.push_back(definition.vector ? m.dag->zero() : lower.scalar(definition.is));
@@ -131,8 +138,13 @@ Mechanics build_mechanics(const model::Model& model) {
   add_bodies(m, lower);
   add_forces(m, lower);
   add_constraints(m, lower);
+  add_joints(m, lower);
   add_contacts(m, lower);
   eliminate_coordinates(m);
+  if (!m.joints.empty()) {
+    add_known_values(m, lower);
+    drop_redundant_joints(m, lower);
+  }
   drop_held_directions(m);
   add_values(m, lower);
   check_coefficients(m);

@@ -47,6 +47,11 @@ struct Load {
 
 enum class ConstraintKind { holonomic, velocity };
 
+/// Whether an equation of a joint is needed: not where psi is 0 whatever the coordinates are, nor where it is so wherever the other
+/// constraints hold. Such equations are neither imposed nor active and have no multiplier.
+enum class Need { holds, identity, redundant };
+const char* name(Need need);  // "holds", "identity", "redundant"
+
 /// One scalar equation: psi(q, t) = 0, or f . qdot + b = 0 with f(q, t), b(q, t). Either way the force on the system is
 /// lambda f, eqs. (2.31), (2.50), with f = d psi/d q of a holonomic one.
 struct Constraint {
@@ -58,6 +63,7 @@ struct Constraint {
   Ref rate;                   // b: d psi/d t at fixed q
   model::NodeId written = model::no_node;  // psi, or what is 0 of a velocity constraint, in the model
   bool unilateral = false;                 // psi >= 0: never eliminated
+  Need need = Need::holds;
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
 };
@@ -110,6 +116,17 @@ struct Contact {
   std::size_t dimensions() const { return tangents.size(); }
 };
 
+/// The force of a joint on B, then the moment about its point of B, along the axes of the model::Joint:
+/// component j is sum_k along[j][k] lambda_(first + k).
+struct JointReaction {
+  std::uint32_t first = 0;  // of its constraints
+  std::array<std::vector<Ref>, model::joint_components> along;
+  /// False where equations that are not needed leave a component open: the motion does not determine it.
+  std::array<bool, model::joint_components> determined{true, true, true, true, true, true};
+
+  std::size_t equations() const { return along[0].size(); }
+};
+
 struct Mechanics {
   const model::Model* model = nullptr;
   std::shared_ptr<Dag> dag;  // later stages add nodes to it
@@ -133,6 +150,7 @@ struct Mechanics {
 
   std::vector<Classification> classification;  // per constraint
   std::vector<Integral> integrals;
+  std::vector<JointReaction> joints;  // per Model::joints entry
   std::vector<Contact> contacts;  // constraints with friction or unilateral in the order of the model, then dry forces
 
   std::vector<Ref> event;                            // per Model::events entry: changes its sign there
@@ -145,6 +163,8 @@ struct Mechanics {
   bool is_eliminated(std::uint32_t coordinate) const;
   /// Degrees of freedom: coordinates that stay less constraints that always hold.
   long freedom() const;
+  /// Whether a constraint is imposed or has a multiplier.
+  bool holds(std::uint32_t constraint) const { return constraints[constraint].need == Need::holds; }
   /// f . qdot + b of a constraint.
   Ref velocity_form(const Constraint& constraint) const;
 };

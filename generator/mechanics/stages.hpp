@@ -13,6 +13,9 @@ void add_constraints(Mechanics& mechanics, Lowering& lower);   // psi and its gr
 void add_contacts(Mechanics& mechanics, Lowering& lower);      // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)
 void check_coefficients(const Mechanics& mechanics);           // of friction, where parameters alone tell them
 void eliminate_coordinates(Mechanics& mechanics);              // which constraints read q_c = d(t), eq. (2.96)
+void add_joints(Mechanics& mechanics, Lowering& lower);        // their reactions
+bool holds_identically(Dag& dag, Ref psi);                     // proven, or by numbers; an unknown is no
+void drop_redundant_joints(Mechanics& mechanics, Lowering& lower);  // equations of loops that follow from others
 void drop_held_directions(Mechanics& mechanics);               // of contacts, along which other constraints let nothing slide
 
 }  // namespace eomgen::mechanics

@@ -193,6 +193,8 @@ struct Touch {
   bool rolling = false;                            // written as rolling
 };
 
+inline constexpr std::size_t joint_components = 6;  // of reactions: three of the force on B, three of the moment
+
 struct Constraint {
   std::string name;
   std::vector<NodeId> psi;  // scalar equations psi = 0; more than one are NAME.1, NAME.2, ...
@@ -203,14 +205,27 @@ struct Constraint {
   bool unilateral = false;  // psi >= 0: it pushes and does not pull
   NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
+  std::optional<std::uint32_t> joint;  // whose equations these are
   Span span;
 
   bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }
   /// Rolls while friction holds it: one equation, and two components of friction as reactions before it.
   bool rolls_by_friction() const { return touch && touch->rolling && friction; }
-  std::size_t reactions() const { return rolls_by_friction() ? 3 : psi.size(); }
+  std::size_t reactions() const { return joint ? joint_components : rolls_by_friction() ? 3 : psi.size(); }
 };
 
+/// Between two bodies, or a body and the ground. Its equations are those of a Constraint of the same name.
+struct Joint {
+  std::string name;
+  std::string type;                    // name in joints::registry()
+  std::array<std::uint32_t, 2> frames{};  // of A and B; 0: the ground
+  std::array<NodeId, 2> points{no_node, no_node};  // of the joint in A and B
+  std::array<NodeId, 2> stray{no_node, no_node};   // vectors that vanish if these points are fixed in their bodies; no_node: they are
+  std::vector<NodeId> force, moment;   // per equation, vectors: what lambda = 1 is on B, the moment about its point; no_node: none
+  std::uint32_t axes = 0;              // frame along whose axes the reactions are given
+  std::uint32_t constraint = 0;        // index into Model::constraints
+  Span span;
+};
 struct Event {  // a change of sign of `when`
   enum class Direction { any, up, down };
   std::string name;
@@ -284,6 +299,7 @@ struct Model {
   Energy energy;
   std::vector<Force> forces;
   std::vector<Constraint> constraints;
+  std::vector<Joint> joints;
   std::vector<Event> events;
   std::vector<Scene> scenes;  // scenes[0] is "default" (made up if the file has none)
   std::vector<Warning> warnings;

@@ -43,8 +43,8 @@ Reader::Reader(const Source& source, const Value& root)
 Model Reader::read() {
   check_keys(root_, {"a model",
                      {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
-                      "energy", "particle", "body", "frame", "point", "chain", "force", "constraint", "event", "scene"},
-                     {"joint"}});
+                      "energy", "particle", "body", "frame", "point", "chain", "force", "constraint", "joint", "event", "scene"},
+                     {}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");
@@ -68,6 +68,7 @@ Model Reader::read() {
   declare_names();
   declare_places();
   declare_constraints();
+  declare_joints();
   declare_units();
   declare_forces();
   declare_events();
@@ -94,6 +95,7 @@ Model Reader::read() {
                  "name coordinates in a position or in [coordinates]");
   }
   read_scenes();
+  read_joints();
   warn_unused();
   return std::move(model_);
 }

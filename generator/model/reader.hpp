@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "coordinates/coordinate_system.hpp"
+#include "joints/joint.hpp"
+#include "model/at_start.hpp"
 #include "model/resolver.hpp"
 #include "rotations/rotation.hpp"
 
@@ -171,6 +173,24 @@ private:
   Friction read_coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed);
   Dry read_dry(const Value& table, const std::string& what);
   void read_energy();
+
+  // read_joints.cpp: [[joint]]
+  struct JointEnd {
+    std::uint32_t frame = 0;
+    std::string name;
+    Typed point;
+    std::array<Typed, 3> axis;  // a, a1, a2, fixed in this body
+  };
+  void declare_joints();
+  void read_joints();
+  void read_joint(Joint& joint, const Value& table);
+  std::array<JointEnd, 2> joint_ends(const Value& table, const std::string& what);
+  void joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Value& at, const std::string& what);
+  void joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table, const std::string& what);
+  std::array<Typed, 3> triad_about(const Value& axis, const JointEnd& end, const std::string& what);
+  void axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span, const std::string& what);
+  AtStart at_start(std::uint32_t constraint);
+  Typed carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span);
 
   // read_events.cpp: [[event]], `stop` of a scene
   void declare_events();

@@ -164,7 +164,9 @@ void Reader::check_output(const Value& value) {
           static_cast<std::size_t>(parts[2][0] - '0') <= count)
         return;
       source_.fail(
-          value.span, fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
+          value.span, model_.constraints[constraint->index].joint
+              ? fmt::format("the joint '{}' has no reaction {}", parts[1], quote(parts[2]))
+              : fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
           count == 1 ? fmt::format("write reaction.{}", parts[1])
                      : fmt::format("write reaction.{0} or reaction.{0}.1 to reaction.{0}.{1}", parts[1], count));
     }

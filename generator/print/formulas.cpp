@@ -267,6 +267,7 @@ Formula by_parts(const Mechanics& m, const Equation& equation) {
   right.push_back(reading::negative(reading::wrap(Form::partial, {mark("U"), q})));
   right.push_back(mark("Q", {q}));
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.holds(k)) continue;
     const Formula psi = mark("psi", {reading::number(k + 1)});
     const Formula slope = m.constraints[k].holonomic() ? reading::wrap(Form::partial, {psi, q})
                                                        : reading::wrap(Form::partial, {dotted(psi), coordinate(equation.coordinate, 1)});

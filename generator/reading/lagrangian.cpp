@@ -140,6 +140,7 @@ Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagran
   result.force = simplify(bridge.substitute(along_free(m, bridge, i, values, force), values));
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const mechanics::Constraint& c = m.constraints[k];
+    if (!m.holds(k)) continue;
     const auto gradient = [&](std::uint32_t j) {
       return c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(j, 0)) : simplify(bridge.sum(c.gradient[j]));
     };

@@ -15,6 +15,7 @@ using mechanics::Mechanics;
 
 void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.holds(k)) continue;
     ReadConstraint c;
     c.constraint = k;
     c.label = m.constraints[k].label;

@@ -36,6 +36,9 @@ class Watch {
     }
     for (const std::string& name : request.magnitudes) magnitudes_.push_back(name.empty() ? no_output : index_of(names, name));
     magnitudes_.resize(conserved_.size(), no_output);
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      if (names[i].starts_with(system::watched_prefix)) redundant_.push_back(i);
+    }
     const std::vector<double> x = integration.initial_state();
     between_.resize(x.size());
     see(request.scene.t0, x.data());
@@ -101,6 +104,7 @@ class Watch {
     const double work = request_.watch_power ? x[2 * request_.code.free.size() + request_.code.integrals] : 0;
     balance_.see(y_[energy_] - integration_.work - integration_.contact_work, work, magnitude);
     defect_ = std::max(defect_, integration_.constraint_defect(t, x));
+    for (const std::size_t i : redundant_) defect_ = std::max(defect_, std::abs(y_[i]));
   }
 
   // Every coordinate, eliminated ones too, comes first among the outputs, with its rate.
@@ -153,7 +157,7 @@ class Watch {
   std::vector<double> y_, between_;
   std::size_t kinetic_ = 0, potential_ = 0, energy_ = 0;
   static constexpr std::size_t no_output = static_cast<std::size_t>(-1);
-  std::vector<std::size_t> conserved_, magnitudes_;
+  std::vector<std::size_t> conserved_, magnitudes_, redundant_;
   std::vector<eom::Drift> drifts_;
   eom::PowerBalance balance_;
   double defect_ = 0;

@@ -361,6 +361,26 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   return result;
 }
 
+namespace {
+
+// A component of a joint's reaction, or all of them, that the motion does not determine.
+void refuse_undetermined(const Mechanics& m, const model::Named& want) {
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const std::string name = "reaction." + m.model->joints[i].name;
+    if (want.name != name && !want.name.starts_with(name + ".")) continue;
+    std::string known;
+    for (std::size_t j = 0; j < m.joints[i].determined.size(); ++j) {
+      if (m.joints[i].determined[j]) known += fmt::format("{}{}.{}", known.empty() ? "" : ", ", name, j + 1);
+    }
+    if (want.name.size() != name.size() + 2 || want.name.back() < '1' || want.name.back() > '6') return;
+    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{}, fmt::format("the motion does not determine '{}'", want.name),
+                fmt::format("it is left open by equations of the joint that hold identically or repeat others (`check` lists them): give the bodies coordinates "
+                            "that this equation binds, or a joint that leaves the motion free{}", known.empty() ? "" : "; determined are " + known));
+  }
+}
+
+}  // namespace
+
 std::vector<std::string> expand_outputs(const Mechanics& m, const system::EquationSystem& system,
                                         const std::vector<model::Named>& wanted) {
   std::set<std::string> coordinates;
@@ -378,16 +398,18 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     for (const system::Output& output : system.outputs) {
       const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
       const bool table = !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix) &&
-                         !output.name.starts_with(system::contact_prefix);
+                         !output.name.starts_with(system::contact_prefix) && !output.name.starts_with(system::watched_prefix);
       const bool of_all = want.name == "all" && table;
       if (!of_all && output.name != want.name && !part) continue;
       take(output.name);
       found = true;
     }
     if (!found) {
+      refuse_undetermined(m, want);
       std::string names;
       for (const system::Output& output : system.outputs) {
-        const bool hidden = output.name.starts_with(derive::magnitude_prefix) || output.name.starts_with(system::contact_prefix);
+        const bool hidden = output.name.starts_with(derive::magnitude_prefix) || output.name.starts_with(system::contact_prefix) ||
+                            output.name.starts_with(system::watched_prefix);
         if (!coordinates.contains(output.name) && !hidden) names += (names.empty() ? "" : ", ") + output.name;
       }
       const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};

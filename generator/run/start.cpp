@@ -36,10 +36,20 @@ class StartSolver {
       rows_[1].push_back(k);
     }
     A_ = s_.A;
+    psi_ = s_.psi;
     b_ = s_.b;
-    target_.assign(m_, 0);
+    for (const system::Watched& watched : s_.redundant) {
+      for (auto& rows : rows_) rows.push_back(b_.size());
+      A_.insert(A_.end(), watched.A.begin(), watched.A.end());
+      psi_.push_back(watched.psi);
+      b_.push_back(watched.b);
+    }
+    target_.assign(b_.size(), 0);
     for (const StartProblem::Turn& turn : p_.turns) add_turn(turn);
-    hold_angles();
+    const model::Model& model = *p_.mechanics.model;
+    const auto touches = [](const model::Constraint& c) { return c.touch.has_value(); };
+    if (std::any_of(model.constraints.begin(), model.constraints.end(), touches)) hold_angles(held_);
+    if (!model.joints.empty()) hold_angles(loose_);
   }
 
   void run() {
@@ -98,23 +108,21 @@ class StartSolver {
     return rows_[1].size() > before;
   }
   void drop_rolling() {
-    while (!rows_[1].empty() && rows_[1].back() >= m_ + 3 * p_.turns.size()) rows_[1].pop_back();
+    while (!rows_[1].empty() && rows_[1].back() >= m_ + s_.redundant.size() + 3 * p_.turns.size()) rows_[1].pop_back();
   }
 
   // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their rates that
-  // are not given are 0.
-  void hold_angles() {
+  // are not given are 0. So are those of bodies in joints, unless joints close a loop from which they follow.
+  void hold_angles(std::set<StartProblem::Key>& held) const {
     const model::Model& model = *p_.mechanics.model;
-    const auto touches = [](const model::Constraint& c) { return c.touch.has_value(); };
-    if (std::none_of(model.constraints.begin(), model.constraints.end(), touches)) return;
     for (std::uint32_t f = 1; f < model.frames.size(); ++f) {
       const auto given = [f](const StartProblem::Turn& turn) { return turn.frame == f; };
       const bool turns = std::any_of(p_.turns.begin(), p_.turns.end(), given);
       for (const model::NodeId entry : model.frames[f].entries) {
         const model::Node& node = model.arena[entry];
         if (node.op != model::Op::coordinate) continue;
-        if (!p_.guess.contains({node.index, 0})) held_.insert({node.index, 0});
-        if (!turns) held_.insert({node.index, 1});
+        if (!p_.guess.contains({node.index, 0})) held.insert({node.index, 0});
+        if (!turns && !p_.guess.contains({node.index, 1})) held.insert({node.index, 1});
       }
     }
   }
@@ -187,7 +195,7 @@ class StartSolver {
     std::vector<std::size_t> result;
     for (std::size_t i = 0; i < n_; ++i) {
       const StartProblem::Key key{s_.free[i], order};
-      if ((!p_.given.contains(key) && !held_.contains(key)) || may_move(key)) result.push_back(i);
+      if ((!p_.given.contains(key) && !held_.contains(key) && !loose_.contains(key)) || may_move(key)) result.push_back(i);
     }
     return result;
   }
@@ -195,7 +203,7 @@ class StartSolver {
   /// Residual of psi (order 0) or A qdot + b (order 1), and A.
   void linearise(std::uint8_t order, VectorXd& residual, MatrixXd& A) const {
     std::vector<Ref> refs = A_;
-    const std::vector<Ref>& constant = order == 0 ? s_.psi : b_;
+    const std::vector<Ref>& constant = order == 0 ? psi_ : b_;
     refs.insert(refs.end(), constant.begin(), constant.end());
     const std::vector<double> values = evaluate(refs);
     const std::vector<std::size_t>& bound = rows_[order];
@@ -244,12 +252,18 @@ class StartSolver {
 
   void solve(std::uint8_t order) {
     if (rows_[order].empty()) return;
-    const std::vector<std::size_t> free = unknowns(order);
+    std::vector<std::size_t> free = unknowns(order);
     for (const std::size_t i : free) {
       const auto guess = p_.guess.find({s_.free[i], order});
       if (guess != p_.guess.end()) value({s_.free[i], order}) = guess->second;
     }
     if (worst(order) > rounding) newton(order, free);
+    if (worst(order) > start_tolerance && !loose_.empty()) {
+      loose_.clear();
+      free = unknowns(order);
+      newton(order, free);
+      if (order == 0) hold_angles(loose_);
+    }
     Eigen::Index k = 0;
     if (worst(order, &k) > start_tolerance) refuse(order, static_cast<std::size_t>(k), free);
   }
@@ -315,8 +329,9 @@ class StartSolver {
     MatrixXd A;
     linearise(order, residual, A);
     const auto row = static_cast<Eigen::Index>(k);
-    if (rows_[order][k] >= m_) refuse_turn(p_.turns[(rows_[order][k] - m_) / 3], residual(row));
-    const mechanics::Constraint& constraint = p_.mechanics.constraints[s_.active[rows_[order][k]]];
+    const std::size_t bound = rows_[order][k], turns = m_ + s_.redundant.size();
+    if (bound >= turns) refuse_turn(p_.turns[(bound - turns) / 3], residual(row));
+    const mechanics::Constraint& constraint = p_.mechanics.constraints[bound < m_ ? s_.active[bound] : s_.redundant[bound - m_].constraint];
     std::string given, open;
     model::Span span = p_.scene.span;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -346,8 +361,9 @@ class StartSolver {
   StartProblem& p_;
   const system::EquationSystem& s_;
   std::size_t n_, m_;
-  std::set<StartProblem::Key> held_;  // not given, and 0
-  std::vector<Ref> A_, b_;      // of the constraints, then of given angular velocities
+  std::set<StartProblem::Key> held_;   // not given, and 0
+  std::set<StartProblem::Key> loose_;  // not given, and 0 if the constraints hold so
+  std::vector<Ref> A_, psi_, b_;  // of the active constraints, then of redundant ones, then of given angular velocities
   std::vector<double> target_;  // what A qdot + b is to be
   std::array<std::vector<std::size_t>, 2> rows_;  // constraints on positions (order 0), on velocities: all
 };

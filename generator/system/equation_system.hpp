@@ -101,6 +101,16 @@ std::string slip_slope_output(const std::string& slip, const std::string& coordi
 std::string phi_output(const std::string& slip);
 std::string restitution_output(const std::string& contact);
 
+/// An equation that the active constraints make hold; runs watch psi, and starts satisfy it too.
+struct Watched {
+  std::uint32_t constraint;  // index into Mechanics::constraints
+  Ref psi;
+  std::vector<Ref> A;  // n
+  Ref b;
+};
+/// The output that is psi of such an equation, which nobody asks for by name.
+inline constexpr const char* watched_prefix = "redundant.";
+
 struct EquationSystem {
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
@@ -118,6 +128,7 @@ struct EquationSystem {
   std::vector<Ref> A;      // m x n, row-major
   std::vector<Ref> b;      // m: A qdot + b = 0
   std::vector<Ref> gamma;  // m: A qddot + gamma = 0
+  std::vector<Watched> redundant;
   std::vector<Ref> apart;  // m, or none: 1 where the mode has left a constraint, whose row of A and gamma is 0 then
 
   std::optional<QuasiEquations> quasi;  // another way to M and f

@@ -61,7 +61,10 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   if (options.digits < least_digits || options.digits > most_digits)
     throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
-  const Judge judge(*mechanics.model, options.digits + guard_digits);
+  Judge judge(*mechanics.model, options.digits + guard_digits);
+  for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
+    if (!mechanics.holds(k)) judge.imply(k);
+  }
   Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed);
   Tally tally(options.digits);
   while (tally.points() < options.points) {

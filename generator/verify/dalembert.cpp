@@ -48,6 +48,8 @@ Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(dig
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.binds_velocities(k));
   }
+  // Projected states have zeros that are what Newton's last step left: their products count as 0.
+  cln::cl_inhibit_floating_point_underflow = true;
   constexpr int rounding = 5;  // digits that sums of many terms may lose
   if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
 }
@@ -282,9 +284,13 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   add_energies(model_, now, unaccelerated, sums);
   subtract_forces(model_, precision_, now, sums);
   subtract_friction(state, now, sums);
+  // A joint may keep a body from turning that nothing turns: then every term of an equation is rounding, which is 0 beside the others.
+  Real least = 0;
+  if (!model_.joints.empty())
+    for (const Real& force : lambda) least = cln::max(least, cln::abs(force) / 10000000000u);
   for (std::size_t k = 0; k < psi_.size(); ++k) {
     const std::vector<Real> f = row(k, now, sums.size());
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * f[i]);
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * f[i], cln::abs(lambda[k] * f[i]) + least * cln::abs(f[i]));
   }
   return sums;
 }

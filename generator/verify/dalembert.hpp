@@ -13,6 +13,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -71,6 +72,10 @@ class Judge {
   int digits() const { return digits_; }
   const std::vector<model::NodeId>& constraints() const { return psi_; }
   bool holonomic(std::size_t constraint) const { return holonomic_[constraint]; }
+  /// This constraint holds where the others do, and has no force: looked at, but not solved for.
+  void imply(std::size_t constraint) { implied_.insert(constraint); }
+  bool implied(std::size_t constraint) const { return implied_.contains(constraint); }
+  bool any_implied() const { return !implied_.empty(); }
 
   std::vector<Real> default_parameters() const;
   /// Every parameter, those that are expressions of others computed; `given` holds the independent ones.
@@ -104,6 +109,7 @@ class Judge {
   Precision precision_;
   std::vector<model::NodeId> psi_;
   std::vector<bool> holonomic_;
+  std::set<std::size_t> implied_;
   std::optional<GaussLegendre> quadrature_;  // where the model has integrals
 };
 

@@ -8,8 +8,12 @@ namespace eomgen::verify {
 Motion motion_at(const Judge& judge, const State& at) {
   Motion motion{at, {}, {}};
   State& s = motion.state;
-  const std::size_t n = s.q.size(), m = judge.constraints().size(), size = n + m;
-  const std::vector<Real> no_forces(m, Real(0));
+  std::vector<std::size_t> bound;  // constraints that do not follow from others
+  for (std::size_t k = 0; k < judge.constraints().size(); ++k) {
+    if (!judge.implied(k)) bound.push_back(k);
+  }
+  const std::size_t n = s.q.size(), m = bound.size(), size = n + m;
+  const std::vector<Real> no_forces(judge.constraints().size(), Real(0));
   s.qddot.assign(n, Real(0));
   const std::vector<Residual> rest = judge.dalembert(s, no_forces);
   const ConstraintValues c = judge.constraint_values(s);
@@ -22,10 +26,10 @@ Motion motion_at(const Judge& judge, const State& at) {
     right[j] = -rest[j].value;
   }
   for (std::size_t k = 0; k < m; ++k) {
-    right[n + k] = -c.psi_ddot[k];
+    right[n + k] = -c.psi_ddot[bound[k]];
     for (std::size_t i = 0; i < n; ++i) {
-      matrix[i * size + n + k] = -c.gradient[k][i];
-      matrix[(n + k) * size + i] = c.gradient[k][i];
+      matrix[i * size + n + k] = -c.gradient[bound[k]][i];
+      matrix[(n + k) * size + i] = c.gradient[bound[k]][i];
     }
   }
   std::vector<Real> row_scale;
@@ -39,11 +43,17 @@ Motion motion_at(const Judge& judge, const State& at) {
   const Solution solution = solve(std::move(matrix), std::move(columns));
   if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
-  for (std::size_t k = 0; k < m; ++k) motion.lambda.push_back(solution.x()[n + k]);
+  motion.lambda = no_forces;
+  for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
     for (std::size_t k = 0; k < size; ++k) scale = scale + cln::abs(solution.columns[k + 1][i]) * row_scale[k];
-    motion.scale.push_back(scale);
+    if (i < n) motion.scale.push_back(scale);
+  }
+  if (!judge.model().joints.empty()) {  // as of system_values
+    Real largest = 0;
+    for (const Real& scale : motion.scale) largest = cln::max(largest, scale);
+    for (Real& scale : motion.scale) scale = cln::max(scale, largest / 10000);
   }
   return motion;
 }

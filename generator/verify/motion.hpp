@@ -9,7 +9,7 @@ namespace eomgen::verify {
 struct Motion {
   State state;               // with qddot
   std::vector<Real> lambda;  // per scalar constraint
-  /// What errors of the size of the equations' terms do to qddot and lambda: what is far smaller is rounding.
+  /// What errors of the size of the equations' terms do to qddot: what is far smaller is rounding.
   std::vector<Real> scale;
 };
 

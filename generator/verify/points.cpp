@@ -167,8 +167,8 @@ std::vector<Real> Points::correction(const State& state, bool rates) const {
   ConstraintValues c = judge_.constraint_values(state);
   const std::size_t n = choices_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
-  for (std::size_t k = c.gradient.size(); k-- > 0 && !rates;) {
-    if (judge_.holonomic(k)) continue;  // binds no position
+  for (std::size_t k = c.gradient.size(); k-- > 0;) {
+    if ((rates || judge_.holonomic(k)) && !judge_.implied(k)) continue;  // binds no position, or follows
     c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
     defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
   }
@@ -218,6 +218,22 @@ void Points::project_velocities(State& s) const {
   for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
 }
 
+/// Relative to the size of the terms, as far as the digits of a projection go.
+void Points::require_implied(const State& s) const {
+  if (!judge_.any_implied()) return;
+  const ConstraintValues c = judge_.constraint_values(s);
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 15));
+  for (std::size_t k = 0; k < c.psi.size(); ++k) {
+    if (!judge_.implied(k)) continue;
+    Real size = 1, rate = 1;
+    for (std::size_t i = 0; i < s.q.size(); ++i) {
+      size = size + cln::abs(c.gradient[k][i] * s.q[i]);
+      rate = rate + cln::abs(c.gradient[k][i] * s.qdot[i]);
+    }
+    if (cln::abs(c.psi[k]) > small * size || cln::abs(c.psi_dot[k]) > small * rate) throw Unfit("a joint closes in another way");
+  }
+}
+
 void Points::require_inside(const State& s) const {
   for (std::size_t i = 0; i < choices_.size(); ++i) {
     const Choice& c = choices_[i];
@@ -241,6 +257,7 @@ State Points::next() {
       State s = draw();
       project_positions(s);
       project_velocities(s);
+      require_implied(s);
       require_inside(s);
       require_smooth(s);
       return s;

@@ -18,7 +18,8 @@ namespace eomgen::verify {
 
 class Points {
  public:
-  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point.
+  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the constraints;
+  /// implied ones have to hold there by themselves.
   Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {});
 
   /// A state with qddot = 0. Throws Error (Fault::check) once too many were rejected.
@@ -45,6 +46,7 @@ class Points {
   void project_positions(State& state) const;
   void project_velocities(State& state) const;
   std::vector<Real> correction(const State& state, bool rates) const;
+  void require_implied(const State& state) const;
   void require_inside(const State& state) const;
   void require_smooth(const State& state) const;
 

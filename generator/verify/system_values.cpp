@@ -5,6 +5,7 @@
 #include <cln/rational.h>
 #include <cln/real.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "symbolic/evaluate.hpp"
@@ -112,6 +113,20 @@ std::vector<double> propagate(const Solved& solved, const std::vector<double>& r
   return scale;
 }
 
+/// A joint may keep a body from turning that nothing turns: accelerations and multipliers that are 0 up to rounding are so beside the
+/// largest ones.
+void raise_least(std::vector<double>& scale, std::size_t accelerations) {
+  constexpr double share = 1e-4;
+  const auto raise = [&](auto begin, auto end) {
+    if (begin == end) return;
+    const double least = share * *std::max_element(begin, end);
+    for (auto at = begin; at != end; ++at) *at = std::max(*at, least);
+  };
+  const auto middle = scale.begin() + static_cast<std::ptrdiff_t>(accelerations);
+  raise(scale.begin(), middle);
+  raise(middle, scale.end());
+}
+
 void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Solved& solved, SystemValues& v) {
   const std::size_t n = s.free.size(), m = s.active.size(), all = v.state.q.size();
   std::vector<double> row_scale;
@@ -134,6 +149,7 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
     v.scale[fixed.coordinate] = std::fabs(cln::double_approx(v.state.qddot[fixed.coordinate]));
     v.scale[all + fixed.constraint] = cln::double_approx(v.rows[fixed.coordinate].scale) / slope;
   }
+  if (!mechanics.joints.empty()) raise_least(v.scale, all);
 }
 
 }  // namespace

@@ -32,6 +32,8 @@ json constraints_of(const mechanics::Mechanics& m) {
     for (const mechanics::FixedCoordinate& fixed : m.fixed) {
       if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
     }
+    if (c.need == mechanics::Need::identity) use = "holds identically, without a multiplier";
+    if (c.need == mechanics::Need::redundant) use = "follows from the others, without a multiplier; watched";
     // A holonomic constraint is its own integral; those that repeat others are refused before this.
     json of = json::array();
     json integral = c.holonomic() ? json(shown(m, c.psi) + " = 0") : json(nullptr);
@@ -41,8 +43,23 @@ json constraints_of(const mechanics::Mechanics& m) {
       for (const std::uint32_t part : i.of) of.push_back(m.constraints[part].label);
     }
     result.push_back({{"name", c.label}, {"kind", c.holonomic() ? "holonomic" : "velocity"},
-                      {"integrable", mechanics::name(found.integrable)}, {"integral", integral}, {"redundant", false},
+                      {"integrable", mechanics::name(found.integrable)}, {"integral", integral}, {"redundant", !m.holds(static_cast<std::uint32_t>(k))},
                       {"use", use}, {"reason", found.reason}, {"integral_of", of}});
+  }
+  return result;
+}
+
+json joints_of(const mechanics::Mechanics& m) {
+  json result = json::array();
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const model::Joint& joint = m.model->joints[i];
+    json determined = json::array(), open = json::array();
+    for (std::size_t j = 0; j < model::joint_components; ++j) {
+      (m.joints[i].determined[j] ? determined : open).push_back(fmt::format("reaction.{}.{}", joint.name, j + 1));
+    }
+    result.push_back({{"name", joint.name}, {"type", joint.type},
+                      {"bodies", {m.model->frames[joint.frames[0]].name, m.model->frames[joint.frames[1]].name}},
+                      {"axes", m.model->frames[joint.axes].name}, {"reactions", determined}, {"undetermined", open}});
   }
   return result;
 }
@@ -112,7 +129,7 @@ json examine(const model::Model& model) {
   }
   return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
           {"dof", m.freedom()}, {"parameters", parameters},
-          {"constraints", constraints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
+          {"constraints", constraints_of(m)}, {"joints", joints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
           {"singular", singular_of(m)},
           {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
 }
@@ -127,6 +144,16 @@ std::string from_others(const json& constraint) {
     if (name != constraint["name"]) others += (others.empty() ? "" : ", ") + text(name);
   }
   return others.empty() ? "" : "   (with " + others + ")";
+}
+
+void print_joints(const json& found) {
+  if (!found["joints"].empty()) fmt::print("\njoints\n");
+  for (const json& j : found["joints"]) {
+    std::string open;
+    for (const json& name : j["undetermined"]) open += (open.empty() ? "" : ", ") + text(name);
+    fmt::print("  {:<20} {} of {} and {}{}\n", text(j["name"]), text(j["type"]), text(j["bodies"][0]), text(j["bodies"][1]),
+               open.empty() ? "" : "; the motion does not determine " + open);
+  }
 }
 
 void print_readable(const json& found) {
@@ -147,6 +174,7 @@ void print_readable(const json& found) {
     fmt::print("  {:<20}   integrable: {} ({})\n", "", text(c["integrable"]), text(c["reason"]));
     if (!c["integral"].is_null()) fmt::print("  {:<20}   {}{}\n", "", text(c["integral"]), from_others(c));
   }
+  print_joints(found);
   if (!found["forces"].empty()) heading("forces");
   for (const json& f : found["forces"]) {
     fmt::print("  {:<20} conservative: {}", text(f["name"]), text(f["conservative"]));

@@ -9,6 +9,7 @@
 #include "derive/routes.hpp"
 #include "emit/targets.hpp"
 #include "eom/ode.hpp"
+#include "joints/joint.hpp"
 #include "rotations/rotation.hpp"
 
 namespace eomgen::cli {
@@ -42,6 +43,9 @@ json registries() {
   }
   result["rotations"] = rotations;
   result["joints"] = json::array();
+  for (const joints::Joint& joint : joints::registry()) {
+    result["joints"].push_back({{"name", joint.name}, {"title", joint.title}, {"equations", joint.equations.size()}});
+  }
   result["solvers"] = solvers;
   result["targets"] = targets;
   result["routes"] = routes;

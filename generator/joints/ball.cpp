@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "joints/kinds.hpp"
+
+namespace eomgen::joints {
+
+Joint ball() { return {"ball", "a point in common", Axes::none, same_point()}; }
+
+}  // namespace eomgen::joints

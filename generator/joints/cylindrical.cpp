@@ -1,0 +1,8 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "joints/kinds.hpp"
+
+namespace eomgen::joints {
+
+Joint cylindrical() { return {"cylindrical", "slides along an axis and turns about it", Axes::line, together({on_the_axis(), same_axis()})}; }
+
+}  // namespace eomgen::joints

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// With u fixed in A and v in B the rate of u.v is (w_B - w_A).(v x u): lambda (v x u) is the moment on B.
+#include "joints/kinds.hpp"
+
+namespace eomgen::joints {
+
+std::vector<Equation> same_point() { return {{"dot(d, E1)", "E1", ""}, {"dot(d, E2)", "E2", ""}, {"dot(d, E3)", "E3", ""}}; }
+
+std::vector<Equation> on_the_axis() { return {{"dot(d, a1)", "a1", ""}, {"dot(d, a2)", "a2", ""}}; }
+
+std::vector<Equation> same_axis() { return {{"dot(a1, b)", "", "cross(b, a1)"}, {"dot(a2, b)", "", "cross(b, a2)"}}; }
+
+Equation no_turn_about_the_axis() { return {"dot(a1, b2)", "", "cross(b2, a1)"}; }
+
+std::vector<Equation> together(std::vector<std::vector<Equation>> groups) {
+  std::vector<Equation> all;
+  for (const std::vector<Equation>& group : groups) all.insert(all.end(), group.begin(), group.end());
+  return all;
+}
+
+}  // namespace eomgen::joints

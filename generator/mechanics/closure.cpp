@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mechanics/closure.hpp"
+
+#include <cln/float.h>
+#include <cln/rational.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <stdexcept>
+
+#include "mechanics/imposition.hpp"
+#include "mechanics/pfaffian.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using cln::cl_R;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+constexpr int digits = 50;
+constexpr int steps = 120;               // Newton's steps halve the distance where rows become dependent, until that is `dependent`
+constexpr int closed_digits = 38;        // |psi| of a configuration
+constexpr double longest_step = 0.7;     // of a coordinate, in units of its scale: angles of 40 degrees
+constexpr double other_values = 0.04;    // how far parameters are varied, relative
+
+cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
+cl_R exact(double value) { return cln::cl_float(cl_R(cln::rational(cl_R(value))), cln::float_format(digits)); }
+
+cl_R dot(const Row& a, const Row& b) {
+  cl_R sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum = sum + a[i] * b[i];
+  return sum;
+}
+
+bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
+
+/// Sizes of the coordinates: those of one unit have one; angles 1.
+std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
+  std::vector<double> result;
+  for (const model::Coordinate& c : m.model->coordinates) {
+    double size = 0;
+    for (std::size_t k = 0; k < q.size(); ++k) {
+      if (m.model->coordinates[k].unit.text == c.unit.text) size = std::max(size, std::abs(cln::double_approx(q[k])));
+    }
+    result.push_back(is_angle(c.unit) || size == 0 ? 1 : size);
+  }
+  return result;
+}
+
+}  // namespace
+
+Selection select_independent(const std::vector<Row>& rows, const std::vector<bool>& first, const cl_R& tolerance) {
+  // A row that only the last step towards the constraints keeps from being 0.
+  const cl_R vanishing = small(25);
+  std::vector<Row> left = rows;
+  std::vector<cl_R> length;
+  for (const Row& row : rows) length.push_back(cln::sqrt(dot(row, row)));
+  std::vector<bool> used(rows.size(), false);
+  Selection result;
+  for (const bool turn : {true, false}) {
+    for (;;) {
+      std::optional<std::size_t> best;
+      cl_R largest = tolerance;
+      for (std::size_t k = 0; k < rows.size(); ++k) {
+        if (used[k] || first[k] != turn || length[k] < vanishing) continue;
+        const cl_R part = cln::sqrt(dot(left[k], left[k])) / length[k];
+        // Equal parts of different rows differ by rounding: the first of them wins by a hair.
+        if (part > largest * cl_R(cln::cl_RA(1000001) / 1000000)) largest = part, best = k;
+      }
+      if (!best) break;
+      used[*best] = true;
+      const Row chosen = left[*best];
+      const cl_R square = dot(chosen, chosen);
+      for (Row& row : left) {
+        const cl_R factor = dot(row, chosen) / square;
+        for (std::size_t i = 0; i < row.size(); ++i) row[i] = row[i] - factor * chosen[i];
+      }
+    }
+  }
+  for (std::size_t k = 0; k < rows.size(); ++k) (used[k] ? result.kept : result.rest).push_back(k);
+  return result;
+}
+
+Closure::Closure(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
+  cln::cl_inhibit_floating_point_underflow = true;  // of products of what Newton's last step left of zeros
+  symbolic::Substitution written = write_out(m);
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    const Constraint& c = m.constraints[k];
+    for (const Ref slope : c.gradient) all_.push_back(written(slope));
+    if (!c.holonomic() || c.unilateral || c.need == Need::identity) continue;
+    bound_.push_back(k);
+    psi_.push_back(written(c.psi));
+    gradient_.insert(gradient_.end(), all_.end() - static_cast<std::ptrdiff_t>(m.q.size()), all_.end());
+  }
+}
+
+std::vector<cl_R> Closure::values(const std::vector<Ref>& expressions, const Configuration& at) const {
+  const auto lookup = [&](const Symbol& s) -> cl_R {
+    switch (s.kind) {
+      case SymbolKind::parameter: return at.parameters.at(s.index);
+      case SymbolKind::coordinate:
+        if (s.order > 0) throw std::domain_error("a velocity");
+        return at.q.at(s.index);
+      case SymbolKind::time: return at.t;
+      case SymbolKind::integral: return exact(0);  // counts from the start
+      default: throw std::domain_error("no value");
+    }
+  };
+  return symbolic::evaluate(*m_.dag, expressions, lookup, digits);
+}
+
+std::vector<Row> Closure::rows(const Configuration& at) const {
+  const std::vector<cl_R> entries = values(all_, at);
+  std::vector<Row> result;
+  for (std::size_t k = 0; k < m_.constraints.size(); ++k) {
+    const auto begin = entries.begin() + static_cast<std::ptrdiff_t>(k * m_.q.size());
+    result.emplace_back(begin, begin + static_cast<std::ptrdiff_t>(m_.q.size()));
+  }
+  return result;
+}
+
+double Closure::uniform(std::uint64_t& state) const {  // in (-1, 1)
+  state = state * 6364136223846793005u + 1442695040888963407u;
+  return static_cast<double>(state >> 11) / 4503599627370496.0 - 1;
+}
+
+// As the file gives them and the default scene sets them; with a seed, independent ones varied.
+void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
+  const model::Model& model = *m_.model;
+  std::vector<Ref> value = m_.parameter_value;
+  std::vector<bool> known(value.size(), false);
+  for (const auto& [index, node] : model.scenes.front().parameters) value[index] = lower_.scalar(node);
+  at.parameters.assign(value.size(), exact(0));
+  const std::function<void(std::uint32_t)> settle_one = [&](std::uint32_t i) {
+    if (known[i]) return;
+    known[i] = true;
+    const std::vector<Symbol> others = m_.dag->symbols({value[i]});
+    for (const Symbol& other : others) {
+      if (other.kind == SymbolKind::parameter) settle_one(other.index);
+    }
+    at.parameters[i] = values({value[i]}, at)[0];
+    if (!others.empty() || seed == 0 || model.parameters[i].start_of || model.start_time == i) return;
+    std::uint64_t state = seed * 977 + i;
+    uniform(state);
+    at.parameters[i] = at.parameters[i] * exact(1 + other_values * uniform(state));
+  };
+  for (std::uint32_t i = 0; i < value.size(); ++i) settle_one(i);
+}
+
+std::optional<Configuration> Closure::start() {
+  const model::Scene& scene = m_.model->scenes.front();
+  Configuration at;
+  at.q.assign(m_.q.size(), exact(0));
+  std::vector<bool> open(m_.q.size(), true), all(m_.q.size(), true);
+  gap_ = 0;
+  try {
+    set_parameters(at, 0);
+    at.t = values({lower_.scalar(scene.t0)}, at)[0];
+    symbolic::Substitution written = write_out(m_);
+    for (const auto* list : {&scene.guess, &scene.initial}) {
+      for (const model::InitialValue& given : *list) {
+        if (given.order > 0) continue;
+        at.q[given.coordinate] = values({written(lower_.scalar(given.value))}, at)[0];
+        if (list == &scene.initial) open[given.coordinate] = false;
+      }
+    }
+    for (std::uint32_t i = 0; i < at.parameters.size(); ++i) {
+      if (const auto& q = m_.model->parameters[i].start_of) at.parameters[i] = at.q[*q];
+    }
+    // Where coordinates that are not given have no slope at 0, a point beside it.
+    Configuration found = at;
+    if (settle(found, open)) return found;
+    const double gap = gap_;
+    const std::uint32_t gap_at = gap_at_;
+    found = at;
+    if (settle(found, all)) return found;
+    if (gap > 0) gap_ = gap, gap_at_ = gap_at;
+  } catch (const std::exception&) {  // outside the domain of a function
+  }
+  return std::nullopt;
+}
+
+std::optional<Configuration> Closure::near(const Configuration& from, std::uint64_t seed, bool other_parameters) {
+  const std::vector<double> scale = scales(m_, from.q);
+  const std::vector<bool> all(m_.q.size(), true);
+  gap_ = 0;
+  for (double spread : {0.2, 0.1, 0.05, 0.02}) {
+    Configuration at = from;
+    std::uint64_t state = seed;
+    try {
+      if (other_parameters) set_parameters(at, seed);
+      for (std::size_t i = 0; i < at.q.size(); ++i) at.q[i] = at.q[i] + exact(spread * scale[i] * uniform(state));
+      if (settle(at, all)) return at;
+    } catch (const std::exception&) {  // outside the domain of a function
+    }
+  }
+  return std::nullopt;
+}
+
+// Newton's method with the least change of the coordinates, on rows that are clearly independent here. What looks dependent has to
+// hold by itself in the end.
+bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
+  const std::size_t n = m_.q.size(), count = psi_.size();
+  const std::vector<double> scale = scales(m_, at.q);
+  const std::vector<bool> none(count, false);
+  const cl_R dependent = small(6);
+  std::vector<Ref> roots = psi_;
+  roots.insert(roots.end(), gradient_.begin(), gradient_.end());
+  for (int step = 0; step < steps; ++step) {
+    const std::vector<cl_R> v = values(roots, at);
+    std::vector<Row> rows(count, Row(n, exact(0)));
+    for (std::size_t k = 0; k < count; ++k) {
+      for (std::size_t i = 0; i < n; ++i) {
+        if (moves[i]) rows[k][i] = v[count + k * n + i] * exact(scale[i]);
+      }
+    }
+    const Selection chosen = select_independent(rows, none, dependent);
+    cl_R size = 0, rest = 0;
+    for (const std::size_t k : chosen.kept) size = cln::max(size, cln::abs(v[k]));
+    for (const std::size_t k : chosen.rest) {
+      if (cln::abs(v[k]) > rest) rest = cln::abs(v[k]), gap_at_ = bound_[k];
+    }
+    if (size < small(closed_digits)) {
+      gap_ = rest > small(closed_digits - 8) ? cln::double_approx(rest) : 0;
+      return gap_ == 0;
+    }
+    const std::size_t r = chosen.kept.size();
+    std::vector<std::vector<cl_R>> gram(r, std::vector<cl_R>(r));
+    std::vector<cl_R> right, y;
+    for (std::size_t a = 0; a < r; ++a) {
+      for (std::size_t b = 0; b < r; ++b) gram[a][b] = dot(rows[chosen.kept[a]], rows[chosen.kept[b]]);
+      right.push_back(v[chosen.kept[a]]);
+    }
+    if (!solve_small(gram, right, y)) return false;
+    Row move(n, exact(0));
+    cl_R longest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t a = 0; a < r; ++a) move[i] = move[i] - rows[chosen.kept[a]][i] * y[a];
+      longest = cln::max(longest, cln::abs(move[i]));
+    }
+    const cl_R shorten = longest > exact(longest_step) ? exact(longest_step) / longest : exact(1);
+    for (std::size_t i = 0; i < n; ++i) at.q[i] = at.q[i] + shorten * move[i] * exact(scale[i]);
+  }
+  return false;
+}
+
+}  // namespace eomgen::mechanics
