@@ -30,6 +30,18 @@ bool is_final(const Simulation& simulation, const std::string& name) {
   return name == "energy" || name.starts_with("reaction.") || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
+/// Components of joints that the motion leaves open, and so are not in `final`.
+std::vector<std::string> undetermined(const Simulation& simulation) {
+  const mechanics::Mechanics& m = simulation.derived->mechanics;
+  std::vector<std::string> names;
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    for (std::size_t j = 0; j < m.joints[i].determined.size(); ++j) {
+      if (!m.joints[i].determined[j]) names.push_back(fmt::format("reaction.{}.{}", m.model->joints[i].name, j + 1));
+    }
+  }
+  return names;
+}
+
 std::string final_values(const Simulation& simulation) {
   const run::RunResult& result = simulation.result;
   std::string out;
@@ -114,6 +126,7 @@ nlohmann::ordered_json RunReport::json() const {
       {"events", events},
       {"kinks", kinks},
       {"solved", scene.solved},
+      {"undetermined", undetermined(simulation)},
       {"route", program.route},
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
@@ -154,6 +167,7 @@ std::string RunReport::text() const {
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
   if (run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
+  if (const auto open = undetermined(simulation); !open.empty()) out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
   out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}",
                                      seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
                                      compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate));

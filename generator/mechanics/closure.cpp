@@ -145,7 +145,8 @@ void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
     if (!others.empty() || seed == 0 || model.parameters[i].start_of || model.start_time == i) return;
     std::uint64_t state = seed * 977 + i;
     uniform(state);
-    at.parameters[i] = at.parameters[i] * exact(1 + other_values * uniform(state));
+    const double by = other_values * uniform(state);  // of what is switched off by a 0 too
+    at.parameters[i] = cln::zerop(at.parameters[i]) ? exact(by) : at.parameters[i] * exact(1 + by);
   };
   for (std::uint32_t i = 0; i < value.size(); ++i) settle_one(i);
 }
