@@ -20,6 +20,15 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
       holonomic_(program.holonomic) {
   if (program.taylor) taylor_order_ = static_cast<int>(program::taylor_order(*program.taylor));
   for (const program::ContactInfo& contact : program.contacts) contacts_.push_back({contact, contact.name, 0});
+  for (const program::Program& second : program.second) {
+    own_outputs_.push_back({second.in_charts, {}});
+    for (const program::Function& function : second.functions) {
+      if (function.name != "outputs") continue;
+      for (std::uint32_t i = 0; i < outputs_.size(); ++i) {
+        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end()) own_outputs_.back().outputs.push_back(i);
+      }
+    }
+  }
 }
 
 verify::CompiledForm CompiledCode::form() const {
@@ -49,6 +58,10 @@ run::Code CompiledCode::for_run() const {
   code.kinks = kinks_;
   code.contacts = contacts_;
   code.first_kink_bit = program::first_kink_bit;
+  code.chart = model.chart;
+  code.mass_in = model.mass_in;
+  code.constraints_in = model.constraints_in;
+  code.own_outputs = own_outputs_;
   return code;
 }
 

@@ -26,6 +26,7 @@ class CompiledCode {
   std::size_t active_;
   std::vector<bool> holonomic_;
   std::vector<eom::Contact> contacts_;
+  std::vector<run::OwnOutputs> own_outputs_;
 };
 
 /// Emits C with `context` and compiles it (cached by content).

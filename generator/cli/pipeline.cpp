@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <eom/modes/chart_state.hpp>
 
 #include "cli/locate.hpp"
 #include "derive/routes.hpp"
@@ -109,7 +111,7 @@ std::optional<emit::TestVector> test_vector(const program::Program& program, con
   constexpr int digits = 40;
   emit::TestVector vector;
   vector.t = context.start_time + 0.125 * k;
-  vector.mode = mode;
+  vector.mode = mode | program.in_charts;
   for (std::size_t i = 0; i < context.start.size(); ++i) {
     // Dyadic offsets: exact in binary64, different for every component.
     vector.x.push_back(context.start[i] + k * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
@@ -136,7 +138,20 @@ std::optional<emit::TestVector> test_vector(const program::Program& program, con
   return vector;
 }
 
-/// Three points in mode 0; of contacts one in every other mode, the first ones.
+/// A state of second charts at which rounding says nothing about the code.
+bool far_from_failing(const program::Program& program, int in_charts, const std::vector<double>& x) {
+  constexpr double far = 0.3;
+  bool result = true;
+  for (std::size_t j = 0; j < program.charts.size(); ++j) {
+    const program::ChartInfo& chart = program.charts[j];
+    const double angle = x[chart.guarded];
+    if ((eom::charts_of(in_charts) >> j & 1) != 0) result = result && std::abs(chart.second_at_sine ? std::sin(angle) : std::cos(angle)) > far;
+  }
+  return result;
+}
+
+}  // namespace
+
 std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context) {
   constexpr std::size_t most_modes = 12;
   std::vector<emit::TestVector> result;
@@ -148,10 +163,17 @@ std::vector<emit::TestVector> test_vectors(const program::Program& program, cons
   for (const int mode : eom::contact_modes(shapes, most_modes)) {
     if (mode != 0) add(1, mode);
   }
+  for (const program::Program& other : program.second) {
+    std::size_t count = 0;
+    for (int k = 1; k < 9 && count < 2; ++k) {
+      std::optional<emit::TestVector> vector = test_vector(other, context, k, 0);
+      if (!vector || !far_from_failing(program, other.in_charts, vector->x)) continue;
+      result.push_back(std::move(*vector));
+      ++count;
+    }
+  }
   return result;
 }
-
-}  // namespace
 
 ApproachChoice approach_choice(const std::string& text) {
   if (text == "auto") return ApproachChoice::automatic;
@@ -171,10 +193,18 @@ FormChoice form_choice(const std::string& text) {
 }
 
 std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach, FormChoice form) {
+  Stopwatch watch;
+  model::Model model = load_model(name);
+  const double seconds = watch.lap();
+  auto derived = derive_model(std::move(model), approach, form);
+  derived->seconds.read = seconds;
+  return derived;
+}
+
+std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approach, FormChoice form) {
   auto derived = std::make_unique<Derived>();
   Stopwatch watch;
-  derived->model = load_model(name);
-  derived->seconds.read = watch.lap();
+  derived->model = std::move(model);
   derived->mechanics = mechanics::build_mechanics(derived->model);
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {

@@ -41,6 +41,9 @@ struct Derived {
 /// Reads, builds, derives. On the heap, since Mechanics points to its Model.
 std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice approach, FormChoice form = std::nullopt);
 
+/// The same of a model that is there already.
+std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approach, FormChoice form = std::nullopt);
+
 /// The cheapest program of the candidates; counts its time.
 program::Program make_program(Derived& derived, const program::Request& request);
 
@@ -61,6 +64,9 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
 /// What the sources say about the model; start and parameters of the default scene.
 emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
                                        const verify::Certificate& certificate);
+
+/// For the self test: three points in mode 0, of contacts one in every other mode, the first ones, two in second charts.
+std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context);
 
 /// How many points are checked each time that code is emitted; `verify` checks more.
 inline constexpr std::size_t emission_points = 5;

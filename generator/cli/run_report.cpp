@@ -88,7 +88,7 @@ std::string watched(const Simulation& simulation) {
 }  // namespace
 
 nlohmann::ordered_json RunReport::json() const {
-  const auto& [derived_model, scene, program, certificate, code, result] = simulation;
+  const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
   const Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
   const Timings& seconds = derived.seconds;
@@ -115,7 +115,8 @@ nlohmann::ordered_json RunReport::json() const {
       {"rhs_evaluations", result.statistics.rhs_evaluations},
       {"seconds",
        {{"derive", seconds.read + seconds.derive}, {"emit", seconds.optimise + seconds.verify + seconds.print},
-        {"compile", compiled.seconds}, {"integrate", result.seconds_integrate}, {"estimate", result.seconds_estimate}}},
+        {"compile", compiled.seconds}, {"integrate", result.seconds_integrate}, {"estimate", result.seconds_estimate},
+        {"charts", charts ? charts->seconds() : 0.0}}},
       {"compiled", compiled.cached ? "from the cache" : "now"},
       {"final", final},
       {"invariants", invariants},
@@ -147,7 +148,7 @@ nlohmann::ordered_json RunReport::json() const {
 }
 
 std::string RunReport::text() const {
-  const auto& [derived_model, scene, program, certificate, code, result] = simulation;
+  const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
   const Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
   const Timings& seconds = derived.seconds;
@@ -168,9 +169,10 @@ std::string RunReport::text() const {
   if (run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   if (const auto open = undetermined(simulation); !open.empty()) out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
-  out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}",
+  out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
                                      seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
-                                     compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate));
+                                     compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
+                                     charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   return out;
 }
 

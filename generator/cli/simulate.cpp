@@ -104,13 +104,36 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
   return run;
 }
 
+namespace {
+
+/// Lets the run exchange what the library can.
+void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& library) {
+  if (!library) return;
+  for (const model::SwitchedChart& chart : library->charts()) {
+    run::ExchangedChart exchanged{chart.of, {}, chart.angles, chart.guarded, chart.at_sine, true};
+    exchanged.second_at_sine = chart.kind == model::SwitchedChart::Kind::position || !chart.at_sine;
+    for (const std::uint32_t angle : chart.angles) {
+      const auto place = std::find(run.code.free.begin(), run.code.free.end(), angle);
+      exchanged.angles.push_back(static_cast<std::size_t>(place - run.code.free.begin()));
+    }
+    run.charts.push_back(std::move(exchanged));
+  }
+  run.in_charts = [library](unsigned charts) -> const run::Code& { return library->in(charts); };
+}
+
+}  // namespace
+
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
   const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
   const system::EquationSystem& system = derived->candidates.front();
-  run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), request.overrides);
+  const bool possible = request.charts && !exchangeable(charts_of(mechanics)).empty();
+  run::Overrides overrides = request.overrides, none;
+  overrides.exchanges_charts = none.exchanges_charts = possible;
+  run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
   const std::string solver = run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
+  const bool exchanges = possible && !run::method_named(solver).series;
 
   const bool watch_power = !energy_is_conserved(*derived);
   program::Request wanted;
@@ -129,12 +152,18 @@ Simulation simulate(const SimulationRequest& request) {
   verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
   require_pass(certificate, derived->model);
   // The sources carry the default scene, so that every scene runs the same library.
-  const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), {});
+  const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), none);
   if (request.ready) request.ready();
-  CompiledCode code = compile(program, emission_context(*derived, program, defaults, certificate));
+  emit::EmissionContext context = emission_context(*derived, program, defaults, certificate);
+  CompiledCode code = compile(program, context);
+  std::shared_ptr<ChartLibrary> charts;
+  if (exchanges) {
+    charts = std::make_shared<ChartLibrary>(*derived, program, std::move(context), ChartRequest{wanted, request.approach, request.form, request.seed});
+  }
 
   const run::Code functions = code.for_run();
   run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
+  allow_charts(run, charts);
   if (request.begin) {
     run.every = request.rows ? (scene.t1 - scene.t0) / *request.rows : scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
     request.begin(*derived, scene, functions.output_names);
@@ -143,15 +172,21 @@ Simulation simulate(const SimulationRequest& request) {
   run.progress = request.progress;
   run.interrupt = request.interrupt;
   run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
-  return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result)};
+  if (possible && !exchanges) result.reason += "; its series is that of the model's own coordinates, which are kept where they fail";
+  if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
+  return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result), std::move(charts)};
 }
 
 run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
   Derived& derived = *simulation.derived;
+  run::Overrides allowed = overrides;
+  allowed.exchanges_charts = simulation.charts != nullptr;
   const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
-                                              derived.model.scene(simulation.scene.name), overrides);
+                                              derived.model.scene(simulation.scene.name), allowed);
   const run::Code code = simulation.code.for_run();
-  return run::integrate_scene(run_request(derived, scene, code, estimate));
+  run::RunRequest run = run_request(derived, scene, code, estimate);
+  allow_charts(run, simulation.charts);
+  return run::integrate_scene(run);
 }
 
 }  // namespace eomgen::cli

@@ -8,6 +8,7 @@
 #include <optional>
 #include <span>
 
+#include "cli/charts.hpp"
 #include "cli/code.hpp"
 #include "cli/pipeline.hpp"
 #include "run/runner.hpp"
@@ -22,6 +23,7 @@ struct SimulationRequest {
   bool estimate = true;
   bool integrate = true;            // false: everything but the run; `result` stays empty
   std::vector<std::string> with;    // further functions of the code
+  bool charts = true;  // where angles fail the run may go to second ones
   std::uint64_t seed = 1;
   /// Called once the model is derived: may add outputs to every candidate, and returns those that the code is to have.
   std::function<std::vector<std::string>(Derived&)> prepare;
@@ -43,6 +45,7 @@ struct Simulation {
   verify::Certificate certificate;
   CompiledCode code;
   run::RunResult result;
+  std::shared_ptr<ChartLibrary> charts;  // where there are charts that can be exchanged
 };
 
 /// Rows of a file or plot where no interval is given.

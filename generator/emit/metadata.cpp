@@ -4,8 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <eom/modes/chart_state.hpp>
 #include <nlohmann/json.hpp>
+#include <set>
 
+#include "emit/file_parts.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
 #include "program/kinks.hpp"
@@ -103,6 +106,12 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
     lines.push_back(fmt::format("taylor      {} once, {} at each order, and {} sums of products", operations_text(program.taylor->start.operations),
                                 operations_text(program.taylor->next.operations), program.taylor->products));
   }
+  for (const program::Program& other : program.second) {
+    for (const program::Function& function : other.functions) {
+      lines.push_back(fmt::format("{:11} {} in {}", function.name == "rhs_prepared" ? "rhs after" : function.name, operations_text(function.operations),
+                                  chart_title(program, other.in_charts)));
+    }
+  }
   const std::vector<std::string> gone = eliminated(program, context);
   if (!gone.empty()) lines.push_back("eliminated  " + joined(gone));
   lines.push_back("");
@@ -167,6 +176,36 @@ void add_modes(const program::Program& program, json& info) {
   }
 }
 
+/// The charts that can be exchanged, and what `mode` may say of them.
+void add_charts(const program::Program& program, const EmissionContext& context, json& info) {
+  const std::vector<Quantity> state = states(program, context);
+  for (std::size_t j = 0; j < program.charts.size(); ++j) {
+    const program::ChartInfo& chart = program.charts[j];
+    json angles = json::array();
+    for (const std::uint32_t angle : chart.angles) angles.push_back(state[angle].name);
+    info["charts"].push_back({{"of", chart.of}, {"own", chart.own}, {"second", chart.second}, {"angles", angles},
+                              {"fails", chart.regular + " = 0"}, {"bit", eom::first_chart_bit + j}});
+  }
+  if (program.charts.empty()) return;
+  info["chart_modes"] = {0};
+  for (const program::Program& other : program.second) {
+    info["chart_modes"].push_back(other.in_charts);
+    json operations = json::object();
+    std::set<std::uint32_t> given;
+    for (const program::Function& function : other.functions) {
+      const program::Operations& o = function.operations;
+      operations[function.name] = {{"add", o.add}, {"mul", o.mul}, {"div", o.div}, {"sqrt", o.sqrt}, {"trig", o.trig}, {"other", o.other}};
+      if (function.name == "outputs") given.insert(function.places.begin(), function.places.end());
+    }
+    info["chart_operations"].push_back(operations);
+    json own = json::array();
+    for (std::uint32_t i = 0; i < program.outputs.size(); ++i) {
+      if (!given.contains(i)) own.push_back(program.outputs[i]);
+    }
+    info["own_outputs"].push_back(own);
+  }
+}
+
 }  // namespace
 
 std::string info_json(const program::Program& program, const EmissionContext& context) {
@@ -208,6 +247,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["prepared"] = program.prepared_count();
   if (program.taylor) info["taylor_order"] = program::taylor_order(*program.taylor);
   add_modes(program, info);
+  add_charts(program, context, info);
   info["units"] = units;
   info["defaults"] = {{"t", context.start_time}, {"x", context.start}, {"p", values(context.parameters)}, {"u", values(context.inputs)}};
   json dependent = json::object();

@@ -17,6 +17,11 @@ std::vector<Argument> arguments(const std::string& function, const FunctionText&
     for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
     return list;
   }
+  if (function == "to_second" || function == "to_own") {
+    list.push_back({Kind::input, Slot::state, names.x});
+    for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
+    return list;
+  }
   const bool of_state = function != "prepare";
   if (of_state) list.push_back({Kind::number, Slot::time, names.arguments_t});
   if (of_state) list.push_back({Kind::input, Slot::state, names.x});
@@ -30,10 +35,19 @@ std::vector<Argument> arguments(const std::string& function, const FunctionText&
   return list;
 }
 
-std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
-                          const ModelNames& names, const std::string& real) {
+ModelNames abi_names() {
+  ModelNames names;
+  names.x = "x";
+  names.p = "p";
+  names.w = "w";
+  names.u = "u";
+  names.mode = "mode";
+  return names;
+}
+
+std::string argument_list(const std::vector<Argument>& arguments, const std::string& real) {
   std::string list;
-  for (const Argument& argument : arguments(function.name, text, names)) {
+  for (const Argument& argument : arguments) {
     if (!list.empty()) list += ", ";
     switch (argument.kind) {
       case Argument::Kind::number: list += fmt::format("{} {}", real, argument.name); break;
@@ -42,7 +56,12 @@ std::string function_head(const std::string& name, const program::Function& func
       case Argument::Kind::result: list += fmt::format("{}* {}", real, argument.name); break;
     }
   }
-  return wrapped(fmt::format("int {}({})", name, list), std::string(name.size() + 5, ' '));
+  return list;
+}
+
+std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
+                          const ModelNames& names, const std::string& real) {
+  return wrapped(fmt::format("int {}({})", name, argument_list(arguments(function.name, text, names), real)), std::string(name.size() + 5, ' '));
 }
 
 std::string argument_names(const program::Function& function, const FunctionText& text, const ModelNames& names) {

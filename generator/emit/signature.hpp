@@ -18,6 +18,12 @@ struct Argument {
 /// With the names that `text` and `names` give to them.
 std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names);
 
+/// The names of docs/abi.md, whatever the model's own names are.
+ModelNames abi_names();
+
+/// "double t, const double* x".
+std::string argument_list(const std::vector<Argument>& arguments, const std::string& real);
+
 /// "int NAME(double t, const double* x, ...)".
 std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
                           const ModelNames& names, const std::string& real);

@@ -208,7 +208,8 @@ class Printer {
         continue;
       }
       for (std::size_t i = 0; i < entries.size(); ++i) {
-        line(fmt::format("{}[{}] = {};", text_.results[r], i, expressions_.signed_value(entries[i]).text) + remark(r, i));
+        const std::size_t place = r > 0 || function_.places.empty() ? i : function_.places[i];
+        line(fmt::format("{}[{}] = {};", text_.results[r], place, expressions_.signed_value(entries[i]).text) + remark(r, place));
       }
     }
     if (!is_rhs()) {

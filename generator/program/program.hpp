@@ -54,6 +54,7 @@ inline constexpr double pivot_tolerance = 1e-13;
 struct Function {
   std::string name;  // of the ABI: "rhs", "prepare", "mass", ...
   std::vector<std::pair<std::string, std::vector<Operand>>> results;  // argument name, its entries (column-major)
+  std::vector<std::uint32_t> places;  // where the entries of the first result go; none: one after the other
   std::vector<symbolic::Rational> constants;
   std::vector<Instruction> code;
   std::vector<PivotTest> pivots;
@@ -87,6 +88,15 @@ struct ContactInfo : eom::ContactShape {
   std::string name;
 };
 
+/// A chart that can be left for a second one: a bit of `mode` from eom::first_chart_bit on.
+struct ChartInfo {
+  std::string of, own, second, regular;  // "B", "313", "312", "sin(theta)"
+  std::vector<std::uint32_t> angles;     // places in x
+  std::uint32_t guarded = 0;             // that of the angle in `regular`
+  bool second_at_sine = true;            // where the second chart fails: the sine of that one is 0; else the cosine
+  Function to, back;                     // y, the state in the other chart, of x
+};
+
 struct Program {
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
@@ -97,7 +107,11 @@ struct Program {
     }
     return 0;
   }
-  std::size_t prepared_count() const { return entries("prepare"); }  // of the array w
+  std::size_t prepared_count() const {  // of the array w: one chart after the other
+    std::size_t count = entries("prepare");
+    for (const Program& other : second) count += count > 0 ? other.entries("prepare") : 0;
+    return count;
+  }
   std::size_t event_count() const { return entries("events"); }      // of the array g
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
@@ -113,6 +127,9 @@ struct Program {
   std::vector<ContactInfo> contacts;
   std::optional<Taylor> taylor;        // where it was asked for
   std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only
+  std::vector<ChartInfo> charts;       // that can be exchanged; none where the code has one chart only
+  std::vector<Program> second;         // the same functions with second charts
+  int in_charts = 0;                   // of such a program: its bits of `mode`
 };
 
 }  // namespace eomgen::program

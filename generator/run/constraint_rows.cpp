@@ -19,7 +19,7 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(found - names.begin());
 }
 
-ConstraintRows::ConstraintRows(const RunRequest& request) : request_(request), n_(request.code.free.size()) {
+ConstraintRows::ConstraintRows(const RunRequest& request) : request_(request), code_(&request.code), n_(request.code.free.size()) {
   const Code& code = request.code;
   for (const bool positions : {true, false}) {
     for (std::size_t k = 0; k < code.active_constraints; ++k) {
@@ -68,11 +68,17 @@ std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
   return order_.size() + integrals_.size() + static_cast<std::size_t>(found - slips_.begin());
 }
 
+int ConstraintRows::constraints(double t, const double* x) {
+  const double* p = request_.scene.parameters.data();
+  if (charts_ == 0) return code_->constraints(t, x, p, psi_.data(), A_.data(), b_.data());
+  return code_->constraints_in(t, x, p, charts_, psi_.data(), A_.data(), b_.data());
+}
+
 int ConstraintRows::operator()(double t, const double* x, const double* u, double* psi, double* A, double* b) {
   const double* p = request_.scene.parameters.data();
   const std::size_t m = order_.size(), rows = size();
   if (m > 0) {
-    if (const int code = request_.code.constraints(t, x, p, psi_.data(), A_.data(), b_.data()); code != 0) return code;
+    if (const int code = constraints(t, x); code != 0) return code;
   }
   for (std::size_t k = 0; k < m; ++k) {
     const std::size_t row = k < holonomic_ ? k : k + integrals_.size();
@@ -146,7 +152,7 @@ double ConstraintRows::defect(double t, const double* x) {
   if (psi_.empty()) return 0;
   const Code& code = request_.code;
   // Where psi has no value the drift is infinite, not what it was a step ago.
-  if (code.constraints(t, x, request_.scene.parameters.data(), psi_.data(), A_.data(), b_.data()) != 0) return HUGE_VAL;
+  if (constraints(t, x) != 0) return HUGE_VAL;
   double largest = 0;
   for (std::size_t k = 0; k < psi_.size(); ++k) {
     if (is_apart(k)) continue;

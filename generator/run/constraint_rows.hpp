@@ -19,6 +19,8 @@ class ConstraintRows {
   int operator()(double t, const double* x, const double* u, double* psi, double* A, double* b);
   /// The mode of the contacts, with all others that touch sliding in slide_all().
   void mode(int contacts) { mode_ = contacts, all_slide_ = false; }
+  /// The charts that states are in from here on.
+  void charts(const Code& code, int bits) { code_ = &code, charts_ = bits; }
   void slide_all(int contacts) { mode_ = contacts, all_slide_ = true; }
   /// A row is to have this value in place of 0.
   void target(std::size_t row, double value) { targets_.at(row) = value; }
@@ -45,10 +47,13 @@ class ConstraintRows {
   };
 
   bool is_apart(std::size_t active_constraint) const;
+  int constraints(double t, const double* x);
   void fill_integrals(const double* x, double* psi, double* A, double* b) const;
   void fill_slips(const double* x, double* psi, double* A, double* b) const;
 
   const RunRequest& request_;
+  const Code* code_;
+  int charts_ = 0;
   std::size_t n_, holonomic_ = 0;
   int mode_ = 0;
   bool all_slide_ = false;

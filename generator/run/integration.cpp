@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/modes/chart_state.hpp>
 
 namespace eomgen::run {
 
@@ -16,7 +17,7 @@ constexpr double beyond_rounding = 1e-6;
 
 Integration::Integration(const RunRequest& request, std::string solver)
     : request_(request),
-      code_(request.code),
+      charts_(request),
       solver_(std::move(solver)),
       n_(request.code.free.size()),
       energy_(index_of(request.code.output_names, "energy")),
@@ -26,19 +27,19 @@ Integration::Integration(const RunRequest& request, std::string solver)
       projection_(n_, rows_.size(), rows_.on_positions()) {
   // Before the first piece starts: just inside it, so that a table gives its value right of t0.
   side_ = std::nextafter(request.scene.t0, request.scene.t1);
-  // A code of prepare is told by rhs, which is asked then.
-  if (code_.prepare != nullptr) w_.resize(code_.prepared);
-  if (code_.prepare != nullptr && code_.prepare(request.scene.parameters.data(), w_.data()) != 0) w_.clear();
-  g_.resize(first_contact() + eom::contact_values * code_.contacts.size());
+  prepare();
+  start_ = own_start();
+  g_.resize(first_contact() + eom::contact_values * compiled().contacts.size());
   g_size_.resize(request.code.kinks.size());
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
-  if (code_.contacts.empty()) return;
+  start_charts(request.scene.t0, start_);
+  if (compiled().contacts.empty()) return;
   const auto in_mode = [this](int contacts) { return (mode_ & ~eom::contact_bits) | contacts; };
   contacts_ = std::make_unique<ContactModes>(
       request, rows_, initial_state().size(), [this](double t) { return inputs(t); },
       [this, in_mode](double t, const double* x, int contacts, double* dx) { return motion(t, x, inputs(t), in_mode(contacts), dx); },
       [this, in_mode](double t, const double* x, int contacts, double* g) {
-        const int code = code_.events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
+        const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
         std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()), g_.end(), g);
         return code;
       },
@@ -52,20 +53,47 @@ Integration::Integration(const RunRequest& request, std::string solver)
   start_contacts(request.scene.t0, x);  // who looks at the start sees its mode
 }
 
+void Integration::prepare() {
+  w_.assign(compiled().prepare != nullptr ? compiled().prepared : 0, 0.0);
+  // A code of prepare is told by rhs, which is asked then.
+  if (compiled().prepare != nullptr && compiled().prepare(request_.scene.parameters.data(), w_.data()) != 0) w_.clear();
+}
+
+std::vector<std::string> Integration::start_charts(double t, std::span<double> x) {
+  mode_ &= ~eom::chart_bits;
+  if (!charts_.any() || !charts_.start(t, x.data())) return {};
+  return exchange_charts(t, x);
+}
+
+std::vector<std::string> Integration::exchange_charts(double t, std::span<double> x) {
+  const Code* const before = &compiled();
+  std::vector<std::string> told = charts_.exchange(t, x);
+  if (before != &compiled()) prepare();
+  mode_ = (mode_ & ~eom::chart_bits) | charts_.mode();
+  rows_.charts(compiled(), charts_.mode());
+  return told;
+}
+
+std::vector<double> Integration::own_state(const eom::Result& end) const {
+  std::vector<double> x = end.x;
+  charts_.own(end.t, end.x.data(), std::span(x).first(2 * n_ + compiled().integrals));
+  return x;
+}
+
 std::vector<eom::ModeEvent> Integration::start_contacts(double t, std::span<double> x) {
   if (!contacts_) return {};
   contact_work = 0;
-  mode_ = 0;
+  mode_ = 0;  // a model with contacts keeps its charts
   std::vector<eom::ModeEvent> told = contacts_->start(t, x);
   mode_ = contacts_->mode();
   return told;
 }
 
-std::vector<double> Integration::initial_state() const {
+std::vector<double> Integration::own_start() const {
   std::vector<double> x;
-  for (const std::uint32_t i : code_.free) x.push_back(request_.scene.q[i]);
-  for (const std::uint32_t i : code_.free) x.push_back(request_.scene.qdot[i]);
-  x.insert(x.end(), code_.integrals, 0.0);
+  for (const std::uint32_t i : compiled().free) x.push_back(request_.scene.q[i]);
+  for (const std::uint32_t i : compiled().free) x.push_back(request_.scene.qdot[i]);
+  x.insert(x.end(), compiled().integrals, 0.0);
   if (request_.watch_power) x.push_back(0);  // the work done since the start
   return x;
 }
@@ -76,21 +104,24 @@ const double* Integration::inputs(double t) const {
 }
 
 int Integration::rhs(double t, const double* x, double* dx) {
+  if (charts_.any()) {
+    if (const int code = charts_.admits(x); code != 0) return code;
+  }
   const double* u = inputs(t);
   const int code = motion(t, x, u, mode_, dx);
   // A branch that is held beyond its surface may have no value there (a root); what the surface separates always has.
-  const int live = mode_ & eom::contact_bits;
+  const int live = mode_ & (eom::contact_bits | eom::chart_bits);
   return code != 0 && mode_ != live ? motion(t, x, u, live, dx) : code;
 }
 
 /// Of the states without the work, which is a quadrature; partial, with the inputs held: df/dt along them is not told.
 int Integration::jacobian(double t, const double* x, double* dfdx, double* dfdt) {
-  if (code_.jac == nullptr) return eom::no_jacobian_here;
+  if (compiled().jac == nullptr) return eom::no_jacobian_here;
   const double* p = request_.scene.parameters.data();
   const double* u = inputs(t);
-  const int live = mode_ & eom::contact_bits;
-  int code = code_.jac(t, x, p, u, mode_, dfdx, dfdt);
-  if (code != 0 && mode_ != live) code = code_.jac(t, x, p, u, live, dfdx, dfdt);
+  const int live = mode_ & (eom::contact_bits | eom::chart_bits);
+  int code = compiled().jac(t, x, p, u, mode_, dfdx, dfdt);
+  if (code != 0 && mode_ != live) code = compiled().jac(t, x, p, u, live, dfdx, dfdt);
   return code == 0 && !request_.scene.inputs.empty() ? eom::no_time_derivative_here : code;
 }
 
@@ -98,9 +129,9 @@ int Integration::jacobian(double t, const double* x, double* dfdx, double* dfdt)
 int Integration::taylor(double t, const double* x, int order, double* coefficients) {
   const double* p = request_.scene.parameters.data();
   const double* u = inputs(t);
-  const int live = mode_ & eom::contact_bits;
-  const int code = code_.taylor(t, x, p, u, mode_, order, coefficients);
-  return code != 0 && mode_ != live ? code_.taylor(t, x, p, u, live, order, coefficients) : code;
+  const int live = mode_ & (eom::contact_bits | eom::chart_bits);
+  const int code = compiled().taylor(t, x, p, u, mode_, order, coefficients);
+  return code != 0 && mode_ != live ? compiled().taylor(t, x, p, u, live, order, coefficients) : code;
 }
 
 /// The right-hand side with its derivatives as methods take them.
@@ -109,25 +140,41 @@ struct MotionOf {
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const { return of.jacobian(t, x, dfdx, dfdt); }
   int taylor(double t, const double* x, int order, double* coefficients) const { return of.taylor(t, x, order, coefficients); }
-  int taylor_order() const { return of.code_.taylor_order; }
-  std::size_t taylor_states() const { return 2 * of.n_ + of.code_.integrals; }
+  int taylor_order() const { return of.compiled().taylor_order; }
+  std::size_t taylor_states() const { return 2 * of.n_ + of.compiled().integrals; }
 };
 
 int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
   const double* p = request_.scene.parameters.data();
-  const int code = w_.empty() ? code_.rhs(t, x, p, u, mode, dx) : code_.rhs_prepared(t, x, p, w_.data(), u, mode, dx);
+  const int code = w_.empty() ? compiled().rhs(t, x, p, u, mode, dx) : compiled().rhs_prepared(t, x, p, w_.data(), u, mode, dx);
   if (code != 0 || !request_.watch_power) return code;
-  const int watched = code_.outputs(t, x, p, u, mode, y_.data());
-  dx[2 * n_ + code_.integrals] = y_[power_];
+  const int watched = compiled().outputs(t, x, p, u, mode, y_.data());
+  dx[2 * n_ + compiled().integrals] = y_[power_];
   return watched;
 }
 
 int Integration::outputs(double t, const double* x, std::span<double> y) const {
-  return code_.outputs(t, x, request_.scene.parameters.data(), inputs(t), mode_, y.data());
+  const int result = compiled().outputs(t, x, request_.scene.parameters.data(), inputs(t), mode_, y.data());
+  if (charts_.second() != 0) own_values(t, x, y);
+  return result;
+}
+
+/// What second charts do not give: the coordinates, and what is conserved or defined in the own charts only.
+void Integration::own_values(double t, const double* x, std::span<double> y) const {
+  own_x_.resize(2 * n_ + compiled().integrals);
+  charts_.own(t, x, own_x_);
+  for (std::size_t i = 0; i < n_; ++i) {
+    y[2 * compiled().free[i]] = own_x_[i];
+    y[2 * compiled().free[i] + 1] = own_x_[n_ + i];
+  }
+  if (charts_.own_outputs().empty()) return;
+  own_y_.resize(y.size());
+  const int code = compiled().outputs(t, own_x_.data(), request_.scene.parameters.data(), inputs(t), mode_ & ~eom::chart_bits, own_y_.data());
+  for (const std::uint32_t i : charts_.own_outputs()) y[i] = code == 0 ? own_y_[i] : std::nan("");
 }
 
 int Integration::events(double t, const double* x, double* g) {
-  const int code = code_.events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+  const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
   if (code == 0 && contacts_) contacts_->adjust(g + first_contact());
   return code;
 }
@@ -143,14 +190,14 @@ std::vector<eom::EventFunction> Integration::watched() const {
 
 /// Holds each kink on the side where the state is; where it is on the surface itself its branch follows the state.
 void Integration::hold_sides(double t, const double* x, bool anew) {
-  if (code_.kinks.empty()) return;
-  if (anew) mode_ &= eom::contact_bits;
+  if (compiled().kinks.empty()) return;
+  if (anew) mode_ &= eom::contact_bits | eom::chart_bits;
   bool all = !anew;
-  for (std::size_t k = 0; k < code_.kinks.size(); ++k) all = all && (mode_ >> (code_.first_kink_bit + 2 * k) & 3) != 0;
+  for (std::size_t k = 0; k < compiled().kinks.size(); ++k) all = all && (mode_ >> (compiled().first_kink_bit + 2 * k) & 3) != 0;
   if (all || events(t, x, g_.data()) != 0) return;
-  for (std::size_t k = 0; k < code_.kinks.size(); ++k) {
+  for (std::size_t k = 0; k < compiled().kinks.size(); ++k) {
     const double g = g_[request_.events.size() + k];
-    const std::size_t bit = code_.first_kink_bit + 2 * k;
+    const std::size_t bit = compiled().first_kink_bit + 2 * k;
     if (std::isfinite(g)) g_size_[k] = std::max(g_size_[k], std::abs(g));
     // What is small beside former values may be rounding, and the side another than the locator of events will find.
     if ((mode_ >> bit & 3) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * g_size_[k]))) continue;
@@ -164,6 +211,7 @@ eom::AtEvent Integration::at_event(const eom::EventPoint& point, const OnEvent& 
   if (i < request_.events.size()) {
     const WatchedEvent& watched = request_.events[i];
     if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
+    stopped_ = stopped_ || watched.stop;
     return eom::AtEvent::stop;
   }
   cross_kink(point, i - request_.events.size());
@@ -171,7 +219,7 @@ eom::AtEvent Integration::at_event(const eom::EventPoint& point, const OnEvent& 
 }
 
 void Integration::cross_kink(const eom::EventPoint& point, std::size_t k) {
-  const std::size_t bit = code_.first_kink_bit + 2 * k;
+  const std::size_t bit = compiled().first_kink_bit + 2 * k;
   ++kink_crossings[k];
   kink_ = k;
   kink_at_ = point.t;
@@ -204,7 +252,9 @@ int Integration::project(double t, double* x) {
       [&](double at, const double* state, double* psi, double* A, double* b) {
         return rows_(at, state, inputs(at), psi, A, b);
       },
-      [&](double at, const double* state, double* M, double* h) { return code_.mass(at, state, p, M, h); });
+      [&](double at, const double* state, double* M, double* h) {
+        return charts_.second() != 0 ? compiled().mass_in(at, state, p, mode_, M, h) : compiled().mass(at, state, p, M, h);
+      });
   if (moved.code != 0) return moved.code;
   outputs(t, x, y_);
   position_correction = std::max(position_correction, moved.position_correction);
@@ -233,42 +283,32 @@ void Integration::tell_friction(eom::Result& end) {
   if (!contacts_ || events(end.t, end.x.data(), g_.data()) != 0) return;
   std::size_t worst = 0;
   const auto margin = [&](std::size_t j) { return g_[first_contact() + eom::contact_values * j + 4]; };
-  for (std::size_t j = 1; j < code_.contacts.size(); ++j) {
+  for (std::size_t j = 1; j < compiled().contacts.size(); ++j) {
     if (margin(j) < margin(worst)) worst = j;
   }
   end.detail = fmt::format("just after t = {:.17g} the law of friction at '{}' has {}: friction changes its own normal force by more than that force (Painleve)",
-                           end.t, code_.contacts[worst].name, none ? "no solution" : "several solutions");
+                           end.t, compiled().contacts[worst].name, none ? "no solution" : "several solutions");
 }
 
-eom::Result Integration::run(const eom::Options& options, const Observer& observer, const OnEvent& event) {
-  position_correction = velocity_correction = work = 0;
-  kink_at_ = std::nan("");
-  kink_crossings.assign(code_.kinks.size(), 0);
-  projected_.clear();
-  eom::Options piece = options;
-  // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
-  piece.quadratures = request_.watch_power && code_.contacts.empty() ? 1 : 0;
-  eom::Result total;
-  total.x = initial_state();
-  total.t = request_.scene.t0;
-  rows_.start(total.t, total.x.data(), inputs(total.t));
-  for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
-    if (event) event({told.t, told.kind, told.name}, total.x);
-  }
+/// One piece of the inputs: its end, or why the run ends before; exchanges of charts on the way.
+void Integration::integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total) {
   const MotionOf f{*this};
   const auto watch = [&](const eom::StepView& step) {
     accept(step);
+    last_step_ = step.t1 - step.t0;
+    exchange_due_ = charts_.any() && charts_.follow(step);
     const bool go_on = !observer || observer(step);
     hold_sides(step.t1, step.x1.data(), false);
     if (contacts_) contacts_->hold(step.t1, step.x1.data());
-    return go_on;
+    exchange_due_ = exchange_due_ && go_on;
+    return go_on && !exchange_due_;
   };
   const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
   const auto after = [this](double t, double* x) { return rows_.size() == 0 ? 0 : project(t, x); };
-  for (const double end : restarts()) {
-    side_ = (total.t + end) / 2;
+  while (true) {
     hold_sides(total.t, total.x.data(), true);
+    exchange_due_ = false;
     const eom::Result part =
         eom::integrate_events(solver_, f, total.t, total.x, end, piece, g, watched(), at, watch, after);
     total.outcome = part.outcome;
@@ -276,16 +316,58 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
     total.t = part.t;
     total.x = part.x;
     total.statistics += part.statistics;
-    if (part.outcome == eom::Outcome::step_too_small && kink_at_ == part.t) {
-      total.detail = fmt::format(
-          "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "
-          "a constraint with friction, or a smooth law", code_.kinks[kink_], part.t);
+    if (!exchange_due_ || stopped_ || part.outcome != eom::Outcome::stopped_by_event) return;
+    for (const std::string& whose : exchange_charts(total.t, total.x)) {
+      if (event) event({total.t, "chart", whose}, total.x);
     }
-    if (contacts_ && contacts_->ended()) {
-      total.outcome = *contacts_->ended();
-      total.detail = contacts_->detail();
-    }
-    tell_friction(total);
+    total.outcome = eom::Outcome::done;
+    total.detail.clear();
+    if (total.t == end) return;
+    piece.initial_step = std::abs(last_step_);
+    piece.max_steps -= std::min(piece.max_steps, part.statistics.steps + part.statistics.rejected);
+  }
+}
+
+/// Why a run ended, where the outcome alone does not say it.
+void Integration::explain(eom::Result& end) {
+  if (end.outcome == eom::Outcome::step_too_small && kink_at_ == end.t) {
+    end.detail = fmt::format(
+        "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "
+        "a constraint with friction, or a smooth law", compiled().kinks[kink_], end.t);
+  }
+  if (contacts_ && contacts_->ended()) {
+    end.outcome = *contacts_->ended();
+    end.detail = contacts_->detail();
+  }
+  if (end.outcome == eom::Outcome::chart_left && charts_.any()) {
+    end.detail = fmt::format("a step just after t = {:.17g} leads past where the coordinates fail: choose a shorter one", end.t);
+  }
+  tell_friction(end);
+}
+
+eom::Result Integration::run(const eom::Options& options, const Observer& observer, const OnEvent& event) {
+  position_correction = velocity_correction = work = 0;
+  kink_at_ = std::nan("");
+  kink_crossings.assign(compiled().kinks.size(), 0);
+  projected_.clear();
+  stopped_ = false;
+  eom::Options piece = options;
+  // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
+  piece.quadratures = request_.watch_power && compiled().contacts.empty() ? 1 : 0;
+  eom::Result total;
+  total.x = own_start();
+  total.t = request_.scene.t0;
+  for (const std::string& whose : start_charts(total.t, total.x)) {
+    if (event) event({total.t, "chart", whose}, total.x);
+  }
+  rows_.start(total.t, total.x.data(), inputs(total.t));
+  for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
+    if (event) event({told.t, told.kind, told.name}, total.x);
+  }
+  for (const double end : restarts()) {
+    side_ = (total.t + end) / 2;
+    integrate_until(end, piece, observer, event, total);
+    explain(total);
     if (total.outcome != eom::Outcome::done) break;
   }
   return total;

@@ -6,6 +6,7 @@
 #include <eom/constraints/projection.hpp>
 #include <eom/events/integrate.hpp>
 
+#include "run/chart_switch.hpp"
 #include "run/contact_modes.hpp"
 
 namespace eomgen::run {
@@ -21,7 +22,11 @@ class Integration {
   using OnEvent = std::function<void(const RunEvent& event, std::span<const double> x)>;
   eom::Result run(const eom::Options& options, const Observer& observer, const OnEvent& event = {});
 
-  std::vector<double> initial_state() const;
+  /// Of a start near where a chart fails: in the second one.
+  const std::vector<double>& initial_state() const { return start_; }
+  /// The state at the end of a run in the model's own charts.
+  std::vector<double> own_state(const eom::Result& end) const;
+  const ChartSwitch& charts() const { return charts_; }
   int outputs(double t, const double* x, std::span<double> y) const;
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows_.defect(t, x); }
@@ -40,18 +45,26 @@ class Integration {
   std::vector<eom::EventFunction> watched() const;
   void hold_sides(double t, const double* x, bool anew);
   std::vector<eom::ModeEvent> start_contacts(double t, std::span<double> x);
+  std::vector<std::string> start_charts(double t, std::span<double> x);
+  std::vector<std::string> exchange_charts(double t, std::span<double> x);
+  void prepare();
+  std::vector<double> own_start() const;
+  void own_values(double t, const double* x, std::span<double> y) const;
   void cross_kink(const eom::EventPoint& point, std::size_t kink);
   eom::AtEvent change_contact(const eom::EventPoint& point, const OnEvent& event);
   void tell_friction(eom::Result& end);
   std::vector<double> restarts() const;
-  std::size_t first_contact() const { return request_.events.size() + code_.kinks.size(); }
+  void integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total);
+  void explain(eom::Result& end);
+  std::size_t first_contact() const { return request_.events.size() + request_.code.kinks.size(); }
+  const Code& compiled() const { return charts_.code(); }  // knows all charts that the run is or was in
   void accept(const eom::StepView& step);
   eom::AtEvent at_event(const eom::EventPoint& point, const OnEvent& event);
   int project(double t, double* x);
   const double* inputs(double t) const;
 
   const RunRequest& request_;
-  const Code& code_;
+  ChartSwitch charts_;
   std::string solver_;
   std::size_t n_;
   std::size_t power_ = 0, energy_ = 0;
@@ -60,9 +73,13 @@ class Integration {
   int mode_ = 0;     // of the step that is being made: contacts, sides of kinks
   std::vector<double> g_, g_size_;  // event functions; largest |g| seen of each kink
   std::vector<std::pair<double, double>> projected_;  // time, work of projections since the last accepted step
+  bool stopped_ = false, exchange_due_ = false;
+  double last_step_ = 0;
+  std::vector<double> start_;
+  mutable std::vector<double> own_x_, own_y_;
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
   mutable std::vector<double> u_;
-  std::vector<double> w_;  // of code_.prepare
+  std::vector<double> w_;  // of Code::prepare
   std::vector<double> y_;
   ConstraintRows rows_;
   eom::Projection projection_;

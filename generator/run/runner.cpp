@@ -9,6 +9,7 @@
 #include <eom/error_estimate.hpp>
 #include <eom/watch/drift.hpp>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 
 #include "model/names.hpp"
@@ -97,7 +98,10 @@ class Watch {
   void see(double t, const double* x) {
     integration_.outputs(t, x, y_);
     const double magnitude = std::abs(y_[kinetic_]) + std::abs(y_[potential_]);
+    const std::vector<std::uint32_t>& own = integration_.charts().own_outputs();
     for (std::size_t i = 0; i < conserved_.size(); ++i) {
+      // Near where the own chart fails its formulas say little.
+      if (std::find(own.begin(), own.end(), conserved_[i]) != own.end()) continue;
       const double terms = magnitudes_[i] == no_output ? 0 : y_[magnitudes_[i]];
       drifts_[i].see(y_[conserved_[i]], conserved_[i] == energy_ ? magnitude : terms);
     }
@@ -112,6 +116,7 @@ class Watch {
     const Scene& scene = request_.scene;
     for (std::size_t i = 0; i < scene.lower.size(); ++i) {
       const double q = y_[2 * i];
+      if (integration_.charts().has_exchanged(static_cast<std::uint32_t>(i))) continue;
       if (q > scene.lower[i] && q < scene.upper[i]) continue;
       left_ = request_.code.output_names[2 * i];
       return true;
@@ -170,6 +175,15 @@ class Watch {
   double last_row_ = std::nan("");
 };
 
+/// Whole turns between two runs are no difference where the angles were read off another chart.
+void align(const RunRequest& request, const std::vector<double>& first, std::vector<double>& other) {
+  constexpr double turn = 2 * std::numbers::pi;
+  for (const ExchangedChart& chart : request.charts) {
+    for (const std::size_t angle : chart.angles) other[angle] += turn * std::round((first[angle] - other[angle]) / turn);
+  }
+}
+
+/// `first`: in the model's own charts.
 void estimate_error(const RunRequest& request, const eom::Result& first, const eom::Options& options, RunResult& result) {
   const Clock::time_point start = Clock::now();
   const int order = method_named(result.solver).order;
@@ -179,6 +193,10 @@ void estimate_error(const RunRequest& request, const eom::Result& first, const e
   const eom::ErrorEstimate estimate =
       eom::estimate_error(order, request.scene.t0, first, options, [&](const eom::Options& tighter) {
         eom::Result other = again.run(tighter, {});
+        if (other.outcome == first.outcome) {
+          other.x = again.own_state(other);
+          align(request, first.x, other.x);
+        }
         same_end = same_end && other.outcome == first.outcome;
         stop = std::max(stop, std::abs(other.t - first.t));
         return other;
@@ -297,7 +315,11 @@ RunResult integrate_scene(const RunRequest& request) {
     if (std::find(sizes.begin(), sizes.end(), name) == sizes.end()) result.final.emplace_back(name, y[i]);
   }
   const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
-  if (request.estimate && ended) estimate_error(request, end, options, result);
+  if (request.estimate && ended) {
+    eom::Result own = end;
+    own.x = integration.own_state(end);
+    estimate_error(request, own, options, result);
+  }
   return result;
 }
 

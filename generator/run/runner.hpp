@@ -16,6 +16,12 @@
 
 namespace eomgen::run {
 
+/// Outputs that code in these charts does not give: they belong to the own ones.
+struct OwnOutputs {
+  int in_charts = 0;  // bits of mode
+  std::vector<std::uint32_t> outputs;
+};
+
 /// The functions of the C ABI that a run calls (docs/abi.md); mass and constraints only where there are multipliers.
 struct Code {
   int (*rhs)(double, const double*, const double*, const double*, int, double*) = nullptr;
@@ -40,6 +46,11 @@ struct Code {
   // Only where the solver taylor was asked for, up to its highest order.
   int (*taylor)(double, const double*, const double*, const double*, int, int, double*) = nullptr;
   int taylor_order = 0;
+  // Only of code that knows several charts.
+  int (*chart)(const double*, int, int, double*) = nullptr;
+  int (*mass_in)(double, const double*, const double*, int, double*, double*) = nullptr;
+  int (*constraints_in)(double, const double*, const double*, int, double*, double*, double*) = nullptr;
+  std::vector<OwnOutputs> own_outputs = {};
 };
 
 struct Invariant {
@@ -97,6 +108,15 @@ struct ContactOutputs {
   std::string restitution;      // of one that can be left
 };
 
+/// A chart that the run leaves near where it fails, and comes back to.
+struct ExchangedChart {
+  std::string of;
+  std::vector<std::size_t> angles;  // places in the state
+  std::vector<std::uint32_t> coordinates;  // of the model
+  std::size_t guarded = 0;          // which of them tells how far the chart is from failing
+  bool at_sine = true, second_at_sine = true;  // by its sine or cosine, in the own and in the second chart
+};
+
 struct RunRequest {
   const Code& code;
   const Scene& scene;
@@ -112,6 +132,8 @@ struct RunRequest {
   std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
   std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
+  std::vector<ExchangedChart> charts = {};   // none: the run keeps to the coordinates that it has
+  std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those asked for before
 };
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.

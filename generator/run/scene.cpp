@@ -350,7 +350,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.apart = problem.apart;
   for (const model::Event& event : m.model->events) result.stops.push_back(event.stop);
   for (const std::uint32_t i : scene.stop) result.stops[i] = true;
-  require_regular(m, system, scene, result);
+  if (!overrides.exchanges_charts) require_regular(m, system, scene, result);
 
   std::vector<model::Named> wanted = scene.outputs;
   if (!overrides.outputs.empty()) {

@@ -24,7 +24,7 @@ const fs::path root = EOMGEN_SOURCE_DIR;
 const std::vector<std::pair<std::string, std::string>> products = {
     {"model", "model/expression.hpp"},        {"model", "model/model.hpp"},
     {"mechanics", "mechanics/mechanics.hpp"}, {"system", "system/equation_system.hpp"},
-    {"system", "system/expressions.hpp"},
+    {"system", "system/expressions.hpp"},      {"system", "system/chart_change.hpp"},
     {"program", "program/program.hpp"},
 };
 const std::vector<std::string> data_flow = {"model",  "coordinates", "symbolic", "mechanics", "derive",

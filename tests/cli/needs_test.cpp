@@ -128,3 +128,22 @@ TEST_CASE("needs: a kernel for sines comes with two angles, not with one") {
   CHECK(contains(two.source, "S6_chain_2_sincos("));
   CHECK(contains(one.function("rhs"), " sin("));
 }
+
+TEST_CASE("needs: second charts are in the code only where they are asked for, and a model that cannot exchange any has none") {
+  const Emitted own = emitted("R1_free_body"), both = emitted("R1_free_body", {"--with", "charts"});
+  CHECK_FALSE(contains(own.source, "chart"));
+  CHECK(both.functions == with(own.functions, {"chart"}));
+  CHECK(both.report["operations"] == own.report["operations"]);  // of the own chart: nothing is added to it
+  CHECK(contains(both.source, "own_rhs("));
+  CHECK(contains(both.source, "chart1_rhs("));
+  const std::string kernel = "static inline void R1_free_body_sincos_lanes(";
+  CHECK(both.source.find(kernel) == both.source.rfind(kernel));  // of which both make use
+  const Emitted mass = emitted("R1_free_body", {"--with", "charts,mass"});
+  CHECK(mass.functions == with(both.functions, {"mass", "mass_in"}));
+  const Folder folder;
+  const ChildResult refused = eomgen::test::eomgen(folder, {"emit", "R14_sliding_cylinder", "-o", ".", "--with", "charts"});
+  CHECK(refused.status == 2);
+  CHECK(contains(refused.err, "the coordinate 'psi' is named by constraint 'level'"));
+  CHECK(contains(refused.err, "this model has no chart that can be exchanged"));
+  CHECK_FALSE(contains(emitted("R14_sliding_cylinder").source, "chart"));
+}

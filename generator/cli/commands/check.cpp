@@ -3,6 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cli/charts.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/examination.hpp"
 #include "cli/decimal.hpp"
@@ -99,6 +100,17 @@ json singular_of(const mechanics::Mechanics& m) {
   return result;
 }
 
+json charts_of_model(const mechanics::Mechanics& m) {
+  json result = json::array();
+  for (const model::SwitchedChart& chart : charts_of(m)) {
+    json angles = json::array();
+    for (const std::uint32_t q : chart.angles) angles.push_back(m.model->coordinates[q].name);
+    result.push_back({{"of", chart.of}, {"own", chart.own}, {"second", chart.second}, {"angles", angles},
+                      {"exchanged", chart.refusal.empty()}, {"reason", chart.refusal}});
+  }
+  return result;
+}
+
 // A number as a decimal; what other parameters determine as their expression.
 std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
   return m.dag->is_constant(value) ? decimal_text(m.dag->value(value)) : shown(m, value);
@@ -130,7 +142,7 @@ json examine(const model::Model& model) {
   return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
           {"dof", m.freedom()}, {"parameters", parameters},
           {"constraints", constraints_of(m)}, {"joints", joints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
-          {"singular", singular_of(m)},
+          {"singular", singular_of(m)}, {"charts", charts_of_model(m)},
           {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
 }
 
@@ -197,6 +209,12 @@ void print_readable(const json& found) {
   }
   if (!found["singular"].empty()) heading("singular sets");
   for (const json& s : found["singular"]) fmt::print("  {:<20} (approach {})\n", text(s["set"]), text(s["approach"]));
+  if (!found["charts"].empty()) heading("charts");
+  for (const json& c : found["charts"]) {
+    const bool exchanged = c["exchanged"].get<bool>();
+    fmt::print("  {:<20} {}{}\n", text(c["of"]), text(c["own"]),
+               exchanged ? fmt::format(", and {} near where it fails", text(c["second"])) : " everywhere: " + text(c["reason"]));
+  }
   fmt::print("\nunits: {}\n", text(found["units"]));
 }
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/charts.hpp"
 #include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/operations.hpp"
@@ -37,7 +38,7 @@ program::Request request_of(const Options& options, Derived& derived, const run:
         fmt::print(stderr, "warning: the default scene asks for no outputs, so there is no function for them\n"
                            "  remedy: name them: --output energy,..\n");
       }
-    } else {
+    } else if (name != "charts") {
       request.with.push_back(name);
     }
   }
@@ -66,7 +67,7 @@ program::Request request_of(const Options& options, Derived& derived, const run:
 }
 
 void require_with(const std::vector<std::string>& with) {
-  const std::vector<std::string> known{"jac", "jac_p", "mass", "constraints", "reactions", "outputs", "events", "energy", "taylor"};
+  const std::vector<std::string> known{"jac", "jac_p", "mass", "constraints", "reactions", "outputs", "events", "energy", "taylor", "charts"};
   for (const std::string& name : with) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const bool later = name == "rhs_batch";
@@ -102,6 +103,21 @@ int emit_document(const Options& options, const Common& common) {
   return 0;
 }
 
+/// All second charts and what can be combined of them; warns of what cannot be exchanged.
+void add_all_charts(Derived& derived, program::Program& program, const ChartRequest& request) {
+  const std::vector<model::SwitchedChart> all = charts_of(derived.mechanics);
+  for (const model::SwitchedChart& chart : all) {
+    if (chart.refusal.empty()) continue;
+    fmt::print(stderr, "warning: '{}' keeps its chart {}: {}\n  remedy: where that fails use other coordinates, such as euler_parameters or cartesian ones\n",
+               chart.of, chart.own, chart.refusal);
+  }
+  const std::vector<model::SwitchedChart> charts = exchangeable(all);
+  if (charts.empty()) {
+    throw Error("emit", Where{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged", "leave charts out of --with; eomgen check tells the charts");
+  }
+  for (unsigned mask = 1; mask < 1u << charts.size(); ++mask) add_second_charts(derived, program, charts, mask, request);
+}
+
 /// What is computed once for the parameters, and the right-hand side that is left; null where it is not split.
 json hoisted(const program::Program& program) {
   if (program.prepared_count() == 0) return nullptr;
@@ -123,7 +139,13 @@ int execute(const Options& options, const Common& common) {
   const run::Scene scene =
       run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
   const program::Request request = request_of(options, *derived, scene);
-  const program::Program program = make_program(*derived, request);
+  program::Program program = make_program(*derived, request);
+  if (std::find(options.with.begin(), options.with.end(), "charts") != options.with.end()) {
+    if (std::find(options.with.begin(), options.with.end(), "taylor") != options.with.end()) {
+      throw Error("emit", {}, "the function taylor has the series of one chart only", "leave taylor or charts out of --with");
+    }
+    add_all_charts(*derived, program, {request, approach, form, common.seed});
+  }
   const verify::Certificate certificate =
       certify(*derived, program, {50, emission_points, common.seed, nullptr, request.fix});
   require_pass(certificate, derived->model);
@@ -167,7 +189,7 @@ Execute declare_emit(CLI::App& app) {
   app.add_option("-o", options->folder, "the folder for the sources; it is made if need be")->required();
   app.add_option("--target", options->target, "cpp, c, python, or latex for a document")->capture_default_str();
   add_list(app, "--with", options->with,
-           "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, taylor");
+           "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, taylor; charts: second ones");
   add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin: how constraints that stay are solved")

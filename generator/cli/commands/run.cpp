@@ -24,7 +24,7 @@ struct Options {
   std::vector<std::string> set, outputs;
   std::optional<double> rtol, atol, step, t_end, every;
   std::optional<std::string> solver;
-  bool no_error_estimate = false;
+  bool no_error_estimate = false, no_charts = false;
 };
 
 run::Overrides overrides_of(const Options& options) {
@@ -154,6 +154,7 @@ int execute(const Options& options, const Common& common) {
   request.approach = approach_choice(options.approach);
   request.form = form_choice(options.form);
   request.estimate = !options.no_error_estimate;
+  request.charts = !options.no_charts;
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
@@ -201,6 +202,7 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
+  app.add_flag("--no-charts", options->no_charts, "keep to the model's angles where they fail");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

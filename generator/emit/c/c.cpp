@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include "emit/file_parts.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
@@ -25,34 +26,34 @@ Dialect c_dialect() {
   return dialect;
 }
 
+std::string head_of(const std::string& name, const std::string& arguments) {
+  return wrapped(fmt::format("int {}({})", name, arguments), std::string(name.size() + 5, ' '));
+}
+
 /// The prototype with the argument names of docs/abi.md, whatever the model's own names are.
-std::string prototype(const std::string& name, const program::Function& function) {
+std::string prototype(const std::string& name, const FilePart& part) {
+  if (part.function == nullptr) return head_of(name, part.arguments);
   FunctionText text;
-  for (const auto& result : function.results) {
+  for (const auto& result : part.function->results) {
     if (!program::is_code(result.first)) text.results.push_back(result.first);
   }
-  ModelNames names;
-  names.x = "x";
-  names.p = "p";
-  names.w = "w";
-  names.u = "u";
-  names.mode = "mode";
-  return function_head(fmt::format("{}_{}", name, function.name), function, text, names, "double");
+  return function_head(name, *part.function, text, abi_names(), "double");
 }
 
 /// The function; where it tries near angles first, what it is made of and the one for far angles before it.
 std::string definition(const std::string& name, const program::Function& function, const FunctionText& text,
-                       const ModelNames& names) {
+                       const ModelNames& names, bool internal) {
+  const char* linkage = internal ? "static " : "";
   const auto head = [&](const std::string& what) { return function_head(what, function, text, names, "double"); };
-  if (!text.near_first) return fmt::format("{}\n{{\n{}}}\n", head(name), text.body);
+  if (!text.near_first) return fmt::format("{}{}\n{{\n{}}}\n", linkage, head(name), text.body);
   const std::string arguments = argument_names(function, text, names);
   std::string inner = head(name + "_from");
   inner.insert(inner.find('(') + 1, fmt::format("int {}, ", text.guarded));
   return fmt::format("/* -1: not guarded, and an angle is too far for that. */\n"
                      "#if defined(__GNUC__)\n__attribute__((always_inline))\n#endif\nstatic inline {}\n{{\n{}}}\n\n"
                      "#if defined(__GNUC__)\n__attribute__((cold, noinline))\n#endif\nstatic {}\n{{\n  return {}_from(1, {});\n}}\n\n"
-                     "{}\n{{\n  const int code = {}_from(0, {});\n  return code >= 0 ? code : {}_far({});\n}}\n",
-                     inner, text.body, head(name + "_far"), name, arguments, head(name), name, arguments, name, arguments);
+                     "{}{}\n{{\n  const int code = {}_from(0, {});\n  return code >= 0 ? code : {}_far({});\n}}\n",
+                     inner, text.body, head(name + "_far"), name, arguments, linkage, head(name), name, arguments, name, arguments);
 }
 
 std::string sizes(const std::string& name, const program::Program& program, const EmissionContext& context) {
@@ -76,18 +77,26 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   dialect.kernels = name + "_";
   dialect.near_first = true;
   const ModelNames names = model_names(program, context);
-  std::vector<std::vector<std::pair<std::string, std::string>>> functions;
+  std::vector<std::vector<std::pair<std::string, std::string>>> functions, declared;
   bool packs = false;
-  for (const program::Function& function : program.functions) {
-    const FunctionText text = print_function(function, names, context, dialect);
-    packs = packs || text.packs > 0;
-    functions.push_back({{"purpose", purpose(function.name)},
-                         {"prototype", prototype(name, function)},
-                         {"definition", definition(fmt::format("{}_{}", name, function.name), function, text, names)}});
+  for (const FilePart& part : file_parts(program, name + "_", "double")) {
+    const std::string full = fmt::format("{}_{}", name, part.name);
+    std::string text;
+    if (part.function == nullptr) {
+      text = fmt::format("{}\n{{\n{}}}\n", head_of(full, part.arguments), part.body);
+    } else {
+      const FunctionText printed = print_function(*part.function, names, context, dialect);
+      packs = packs || printed.packs > 0;
+      text = definition(full, *part.function, printed, names, part.internal);
+    }
+    if (part.internal) text = fmt::format("/* {} */\n", comment_text(part.purpose)) + text;
+    functions.push_back({{"definition", text}});
+    if (!part.internal) declared.push_back({{"purpose", part.purpose}, {"prototype", prototype(full, part)}});
   }
   if (program.taylor) {
     const TaylorText text = print_taylor(program, names, context, dialect, name + "_");
-    functions.push_back({{"purpose", purpose("taylor")}, {"prototype", text.head}, {"definition", text.definition}});
+    functions.push_back({{"definition", text.definition}});
+    declared.push_back({{"purpose", purpose("taylor")}, {"prototype", text.head}});
   }
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
@@ -99,7 +108,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
       {"defaults", defaults_body(program, context, dialect)},
       {"selftest", selftest_body(program, context, [&name](const std::string& f) { return name + "_" + f; }, "0", dialect)}};
   return {{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
-          {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, functions)}};
+          {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, declared)}};
 }
 
 }  // namespace eomgen::emit

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "emit/c/c.hpp"
+#include "emit/file_parts.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
@@ -113,12 +114,18 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
   bool packs = false;
   std::string taylor;
-  for (const program::Function& function : program.functions) {
-    const FunctionText text = print_function(function, names, context, dialect);
-    packs = packs || text.packs > 0;
-    functions.push_back({{"purpose", purpose(function.name)},
-                         {"head", function_head(function.name, function, text, names, "Real")},
-                         {"body", text.body}});
+  for (const FilePart& part : file_parts(program, "", "Real")) {
+    std::vector<std::pair<std::string, std::string>> entry{{"purpose", part.purpose}};
+    if (part.function == nullptr) {
+      entry.emplace_back("head", wrapped(fmt::format("int {}({})", part.name, part.arguments), std::string(part.name.size() + 5, ' ')));
+      entry.emplace_back("body", part.body);
+    } else {
+      const FunctionText text = print_function(*part.function, names, context, dialect);
+      packs = packs || text.packs > 0;
+      entry.emplace_back("head", function_head(part.name, *part.function, text, names, "Real"));
+      entry.emplace_back("body", text.body);
+    }
+    functions.push_back(std::move(entry));
   }
   if (program.taylor) {
     const TaylorText text = print_taylor(program, names, context, dialect, "");

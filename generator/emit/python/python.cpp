@@ -13,6 +13,9 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   if (!program.contacts.empty()) {
     throw Error("emit", {}, "the Python target does not know modes of friction yet", "use the target c or cpp");
   }
+  if (!program.charts.empty()) {
+    throw Error("emit", {}, "the Python target does not know charts yet", "use the target c or cpp, or leave --with charts out");
+  }
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
   files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, {{"name", name}}, {})});

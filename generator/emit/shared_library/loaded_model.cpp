@@ -47,6 +47,9 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   find(handle_, name + "_reactions", reactions);
   find(handle_, name + "_outputs", outputs);
   find(handle_, name + "_events", events);
+  find(handle_, name + "_chart", chart);
+  find(handle_, name + "_mass_in", mass_in);
+  find(handle_, name + "_constraints_in", constraints_in);
   std::string wrong;
   if (abi == nullptr || selftest == nullptr || information == nullptr || defaults == nullptr || rhs == nullptr) {
     wrong = "compiled code lacks functions of the C ABI: " + path;
@@ -80,6 +83,9 @@ LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
   taylor = other.taylor;
   mass = other.mass;
   constraints = other.constraints;
+  chart = other.chart;
+  mass_in = other.mass_in;
+  constraints_in = other.constraints_in;
   defaults = other.defaults;
   info = std::move(other.info);
   std::swap(handle_, other.handle_);

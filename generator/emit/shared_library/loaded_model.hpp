@@ -17,6 +17,9 @@ using JacobianFunction = int (*)(double t, const double* x, const double* p, con
 using TaylorFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, int order,
                                double* coefficients);
 using MassFunction = int (*)(double t, const double* x, const double* p, double* M, double* h);
+using MassInFunction = int (*)(double t, const double* x, const double* p, int mode, double* M, double* h);
+using ConstraintInFunction = int (*)(double t, const double* x, const double* p, int mode, double* psi, double* A, double* b);
+using ChartFunction = int (*)(const double* x, int mode, int to, double* y);
 using ConstraintFunction = int (*)(double t, const double* x, const double* p, double* psi, double* A, double* b);
 
 /// The functions of the C ABI (docs/abi.md); null where a function was not asked for. Unloads the library at the end.
@@ -42,6 +45,10 @@ class LoadedModel {
   TaylorFunction taylor = nullptr;
   MassFunction mass = nullptr;
   ConstraintFunction constraints = nullptr;
+  // Only of code that knows several charts.
+  ChartFunction chart = nullptr;
+  MassInFunction mass_in = nullptr;
+  ConstraintInFunction constraints_in = nullptr;
   void (*defaults)(double* x, double* p) = nullptr;
   std::string info;  // JSON
 

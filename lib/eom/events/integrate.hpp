@@ -171,9 +171,9 @@ class Run {
     const bool go_on = refine(cut_t_, cut_x_, h, crossing, total_.x, [this](const StepView& view) { return observer_(view); });
     const double progress = std::abs(crossing.t - total_.t);
     total_.t = crossing.t;
-    if (!go_on) return end(Outcome::stopped_by_event, "stopped by the observer");
     crowded_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : crowded_ + 1;
     const AtEvent answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
+    if (!go_on) return end(Outcome::stopped_by_event, answer == AtEvent::stop ? "" : "stopped by the observer");
     if (answer == AtEvent::stop) return end(Outcome::stopped_by_event, "");
     if (crowded_ >= events_without_progress)
       return end(Outcome::step_too_small, "events follow one another without time going on");
@@ -217,7 +217,7 @@ class Run {
 
 /// integrate() with event functions: g(t, x, values) -> int gives as many values as there are `functions`;
 /// handler(EventPoint) -> AtEvent. Passing events are told before the observer sees the step that holds them, a
-/// breaking one after the observer saw the step that ends there. What is thrown is what integrate() throws.
+/// breaking one after the observer saw the step that ends there, also where that ends the run. What is thrown is what integrate() throws.
 template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,

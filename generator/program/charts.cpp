@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/charts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <eom/modes/chart_state.hpp>
+
+#include "error.hpp"
+#include "program/from_dag.hpp"
+
+namespace eomgen::program {
+namespace {
+
+/// y = the whole state, of which the angles and their rates change.
+Function exchange(const symbolic::Dag& dag, const std::string& name, const Program& program, const system::ChartChange& change,
+                  const std::vector<Ref>& formulas) {
+  // Symbols exist in the graph already where a formula uses them; the others are made in a copy.
+  symbolic::Dag graph = dag;
+  WantedFunction wanted{name, {{"y", {}}}, {}, {}};
+  std::vector<system::IntegralState> integrals;
+  for (std::uint8_t order = 0; order < 2; ++order) {
+    for (const std::uint32_t q : program.free) {
+      const auto angle = std::find(change.angles.begin(), change.angles.end(), q);
+      const std::size_t place = static_cast<std::size_t>(angle - change.angles.begin()) + order * change.angles.size();
+      wanted.results[0].second.push_back(angle == change.angles.end() ? graph.symbol({symbolic::SymbolKind::coordinate, q, order})
+                                                                      : formulas[place]);
+    }
+  }
+  for (const std::uint32_t i : program.integrals) {
+    wanted.results[0].second.push_back(graph.symbol({symbolic::SymbolKind::integral, i, 0}));
+    integrals.push_back({i, graph.zero()});
+  }
+  const Polynomials result = flatten(from_dag(graph, wanted, program.free, integrals), false);
+  return schedule(result, wanted.name, {{"y", wanted.results[0].second.size()}});
+}
+
+}  // namespace
+
+std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& known,
+                                          const std::vector<std::string>& exchanged) {
+  std::vector<std::uint32_t> result;
+  for (std::uint32_t i = 0; i < outputs.size(); ++i) {
+    const bool momentum = std::any_of(exchanged.begin(), exchanged.end(), [&](const std::string& angle) {
+      return outputs[i] == "momentum." + angle || outputs[i] == "magnitude.momentum." + angle;
+    });
+    if (!momentum && std::find(known.begin(), known.end(), outputs[i]) != known.end()) result.push_back(i);
+  }
+  return result;
+}
+
+void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes) {
+  if (program.kinks.size() > most_kinks_with_charts) {
+    throw Error("program", {}, fmt::format("{} kinks leave no room in `mode` for charts", program.kinks.size()),
+                fmt::format("at most {} can be held beside them: leave the charts or the events out", most_kinks_with_charts));
+  }
+  for (const system::ChartChange& change : changes) {
+    ChartInfo info{change.of, change.own, change.second, change.regular, {}, 0, change.second_at_sine, {}, {}};
+    for (const std::uint32_t angle : change.angles) {
+      const auto found = std::find(program.free.begin(), program.free.end(), angle);
+      if (found == program.free.end()) throw std::logic_error("an angle that can be exchanged is not free");
+      info.angles.push_back(static_cast<std::uint32_t>(found - program.free.begin()));
+    }
+    info.guarded = info.angles.at(change.guarded);
+    info.to = exchange(dag, "to_second", program, change, change.to);
+    info.back = exchange(dag, "to_own", program, change, change.back);
+    program.charts.push_back(std::move(info));
+  }
+}
+
+void add_second(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places) {
+  const bool fits = second.free == program.free && second.integrals == program.integrals && second.holonomic == program.holonomic &&
+                    second.active_constraints == program.active_constraints && second.reactions == program.reactions &&
+                    second.kinks.size() == program.kinks.size() && second.event_count() == program.event_count();
+  if (!fits) {
+    throw Error("program", {}, "in its second charts this model keeps other coordinates, constraints or kinks",
+                "this is a defect of eomgen: please report it with the model; --no-charts leaves the second charts out");
+  }
+  second.in_charts = eom::mode_of_charts(charts);
+  for (Function& function : second.functions) {
+    if (function.name == "outputs") function.places = places;
+  }
+  program.second.push_back(std::move(second));
+}
+
+}  // namespace eomgen::program
