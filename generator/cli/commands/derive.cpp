@@ -37,7 +37,7 @@ void require_keys(const std::vector<std::string>& show) {
                   choice_of(key, show_keys()));
     }
     if (key == "linear") {
-      throw Error("derive", {}, "the linearised equations are not supported yet", "leave 'linear' out of --show");
+      throw Error("derive", {}, "the linearised equations are not supported yet", "eomgen linearize gives A and B at a state; leave 'linear' out of --show");
     }
   }
 }
