@@ -55,14 +55,15 @@ bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std
   return residual <= screening * length;
 }
 
-/// force . y is nothing beside its terms.
+/// force . y is nothing beside what it could be.
 bool does_no_work(const double* force, const std::vector<double>& y) {
-  double sum = 0, size = 0;
+  double sum = 0, forces = 0, longest = 0;
   for (std::size_t i = 0; i < y.size(); ++i) {
     sum += force[i] * y[i];
-    size += std::abs(force[i] * y[i]);
+    forces += std::abs(force[i]);
+    longest = std::max(longest, std::abs(y[i]));
   }
-  return std::abs(sum) <= screening * size;
+  return std::abs(sum) <= screening * forces * longest;  // a y_i that should be 0 is rounding of the longest
 }
 
 class Search {

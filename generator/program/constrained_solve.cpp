@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/constrained_solve.hpp"
 
+#include <cln/real.h>
+
 #include <algorithm>
+#include <stdexcept>
 
 #include "error.hpp"
+#include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -63,6 +68,20 @@ std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::ve
   return result;
 }
 
+/// Whether r is 0 in many digits wherever it is looked at: a determinant whose terms cancel, which in binary64 leaves a trace.
+bool is_rounding(const Dag& dag, Ref r) {
+  const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
+  for (std::uint64_t point = 1; point <= 4; ++point) {
+    try {
+      const auto at = [point](const symbolic::Symbol& s) -> cln::cl_R { return symbolic::sample(s, point); };
+      if (cln::abs(symbolic::evaluate(dag, {r}, at, 40)[0]) > small) return false;
+    } catch (const std::domain_error&) {
+      continue;  // outside the domain of a function there
+    }
+  }
+  return true;
+}
+
 /// The choice of dependent columns whose determinant never vanishes, or else is the shortest that is not always zero.
 std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows, const Columns& columns) {
   if (rows.size() > most_rows || columns.size() > most_columns || columns.size() < rows.size()) return std::nullopt;
@@ -76,7 +95,7 @@ std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std:
     block.determinant = determinant(dag, A, n, rows, block.dependent);
     if (dag.is_zero(block.determinant) || is_singular_everywhere(dag, {dag.power(block.determinant, 2)}, 1)) continue;
     const std::size_t size = never_vanishes(dag, block.determinant) ? 0 : dag.reachable({block.determinant}).size();
-    if (best && size >= best_size) continue;
+    if ((best && size >= best_size) || (size > 0 && is_rounding(dag, block.determinant))) continue;
     best = std::move(block);
     best_size = size;
   } while (std::prev_permutation(chosen.begin(), chosen.end()));

@@ -207,6 +207,8 @@ class Contacts {
       const int digit = contact_digit(mode, j);
       const double* g = g_.data() + contact_values * j;
       if (contacts_[j].unilateral && digit == 3) continue;
+      // With a margin below 0 it would be driven back at once: neither obeys the law, which the right-hand side tells.
+      if (contacts_[j].unilateral && g[3] < 0 && contacts_[j].dimensions > 0 && g[4] < 0) continue;
       if (contacts_[j].unilateral && g[3] < 0) return with_contact_digit(mode, j, 3);
       if (contacts_[j].surface && g[3] < 0) return with_contact_digit(mode, j, (digit + 3) % 6);
       if (digit % 3 != 0 || !contacts_[j].sticks || static_law_holds(j)) continue;
