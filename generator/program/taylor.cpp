@@ -10,6 +10,7 @@
 #include <tuple>
 
 #include "error.hpp"
+#include "program/series_parts.hpp"
 
 namespace eomgen::program {
 namespace {
@@ -21,41 +22,6 @@ constexpr std::size_t stack_budget = std::size_t{1} << 21;  // bytes of the seri
 
 // Operands of `next` whose place in w is known at the end: sum i is {input, i}, these are {side, 0}, {side, 1}.
 constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{Slot::time, 0};
-
-Operand minus(Operand operand) {
-  operand.negated = !operand.negated;
-  return operand;
-}
-
-/// A value of the right-hand side: `zero` in `start`; in `next` its coefficient of order k, where it moves at all.
-struct Series {
-  bool moves = false;
-  Operand zero, next;
-};
-Series minus(Series series) { return {series.moves, minus(series.zero), minus(series.next)}; }
-
-using Key = std::tuple<Slot, std::uint32_t, bool>;
-Key key(const Operand& o) { return {o.slot, o.index, o.negated}; }
-using Keys = std::pair<Key, Key>;
-Keys keys(const Series& s) { return {key(s.zero), key(s.next)}; }
-
-Operand constant(Function& function, const Rational& value) {
-  auto& list = function.constants;
-  const auto found = std::find(list.begin(), list.end(), value);
-  const auto index = static_cast<std::uint32_t>(found - list.begin());
-  if (found == list.end()) list.push_back(value);
-  return {Slot::constant, index, false};
-}
-
-Operand push(Function& function, Op op, std::vector<Operand> operands, std::string name = {}) {
-  if (operands.size() == 1 && (op == Op::add || op == Op::mul)) return operands[0];
-  Instruction instruction;
-  instruction.op = op;
-  instruction.operands = std::move(operands);
-  instruction.name = std::move(name);
-  function.code.push_back(std::move(instruction));
-  return {Slot::value, static_cast<std::uint32_t>(function.code.size() - 1), false};
-}
 
 class Recurrences {
  public:

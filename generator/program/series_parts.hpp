@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values of a right-hand side as power series: what the recurrences are written in.
+#pragma once
+
+#include <algorithm>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "program/program.hpp"
+
+namespace eomgen::program {
+
+inline Operand minus(Operand operand) {
+  operand.negated = !operand.negated;
+  return operand;
+}
+
+/// A value of the right-hand side: `zero` in `start`; in `next` its coefficient of order k, where it moves at all.
+struct Series {
+  bool moves = false;
+  Operand zero, next;
+};
+inline Series minus(Series series) { return {series.moves, minus(series.zero), minus(series.next)}; }
+
+using Key = std::tuple<Slot, std::uint32_t, bool>;
+inline Key key(const Operand& o) { return {o.slot, o.index, o.negated}; }
+using Keys = std::pair<Key, Key>;
+inline Keys keys(const Series& s) { return {key(s.zero), key(s.next)}; }
+
+inline Operand constant(Function& function, const symbolic::Rational& value) {
+  auto& list = function.constants;
+  const auto found = std::find(list.begin(), list.end(), value);
+  const auto index = static_cast<std::uint32_t>(found - list.begin());
+  if (found == list.end()) list.push_back(value);
+  return {Slot::constant, index, false};
+}
+
+inline Operand push(Function& function, symbolic::Op op, std::vector<Operand> operands, std::string name = {}) {
+  if (operands.size() == 1 && (op == symbolic::Op::add || op == symbolic::Op::mul)) return operands[0];
+  Instruction instruction;
+  instruction.op = op;
+  instruction.operands = std::move(operands);
+  instruction.name = std::move(name);
+  function.code.push_back(std::move(instruction));
+  return {Slot::value, static_cast<std::uint32_t>(function.code.size() - 1), false};
+}
+
+}  // namespace eomgen::program
