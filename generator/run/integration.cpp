@@ -366,6 +366,7 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   }
   for (const double end : restarts()) {
     side_ = (total.t + end) / 2;
+    piece.max_steps = options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
     integrate_until(end, piece, observer, event, total);
     explain(total);
     if (total.outcome != eom::Outcome::done) break;

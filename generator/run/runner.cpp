@@ -10,10 +10,13 @@
 #include <eom/watch/drift.hpp>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <stdexcept>
+#include <utility>
 
 #include "model/names.hpp"
 #include "run/integration.hpp"
+#include "run/resolution.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -183,16 +186,35 @@ void align(const RunRequest& request, const std::vector<double>& first, std::vec
   }
 }
 
-/// `first`: in the model's own charts.
-void estimate_error(const RunRequest& request, const eom::Result& first, const eom::Options& options, RunResult& result) {
+/// Where fixed steps do not resolve the motion the ends say little: the differences on the way are the estimate then.
+void tell_unresolved(const Resolution& resolution, RunResult& result) {
+  if (!(resolution.largest() > Resolution::unresolved)) return;
+  double& all = result.error_estimate.back().second;
+  for (std::size_t i = 0; i < resolution.differences().size() && i + 1 < result.error_estimate.size(); ++i) {
+    double& estimate = result.error_estimate[i].second;
+    estimate = std::max(estimate, resolution.differences()[i]);
+    all = std::max(all, estimate);
+  }
+  if (!result.estimate_note.empty()) return;
+  result.estimate_note = fmt::format("steps of this size do not resolve the motion: halving them moves states on the way by {:.2g} of their size; take shorter ones, or a solver "
+                                     "that chooses its steps", resolution.largest());
+}
+
+/// `first`: in the model's own charts; resolution: of fixed steps, else null.
+void estimate_error(const RunRequest& request, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result) {
   const Clock::time_point start = Clock::now();
   const int order = method_named(result.solver).order;
   Integration again(request, result.solver);
-  bool same_end = true;
+  bool same_end = true, compared = false;
   double stop = std::numeric_limits<double>::epsilon() * std::abs(first.t);
   const eom::ErrorEstimate estimate =
       eom::estimate_error(order, request.scene.t0, first, options, [&](const eom::Options& tighter) {
-        eom::Result other = again.run(tighter, {});
+        const Integration::Observer compare = [&](const eom::StepView& step) {
+          if (again.charts().second() == 0) resolution->compare(step, [&](const auto& one, auto& two) { align(request, one, two); });
+          return true;
+        };
+        const bool on_the_way = resolution != nullptr && !std::exchange(compared, true);
+        eom::Result other = again.run(tighter, on_the_way ? compare : Integration::Observer{});
         if (other.outcome == first.outcome) {
           other.x = again.own_state(other);
           align(request, first.x, other.x);
@@ -215,6 +237,7 @@ void estimate_error(const RunRequest& request, const eom::Result& first, const e
   if (!same_end && result.estimate_note.empty()) {
     result.estimate_note = "a tighter run did not stop at the event: the ends that are compared are not of the same time";
   }
+  if (resolution != nullptr) tell_unresolved(*resolution, result);
   result.seconds_estimate = seconds_since(start);
 }
 
@@ -224,6 +247,7 @@ eom::Options options_of(const RunRequest& request) {
   options.atol = request.scene.atol;
   options.fixed_step = request.scene.step;
   options.interrupt = request.interrupt;
+  options.max_steps = request.max_steps;
   return options;
 }
 
@@ -290,7 +314,14 @@ RunResult integrate_scene(const RunRequest& request) {
   Integration integration(request, result.solver);
   Watch watch(request, integration);
   const Clock::time_point start = Clock::now();
-  eom::Result end = integration.run(options, [&](const eom::StepView& view) { return watch.step(view); },
+  std::optional<Resolution> resolution;
+  // Beside an impact states of two runs differ however short the steps.
+  if (request.estimate && options.fixed_step > 0 && request.code.contacts.empty()) resolution.emplace();
+  const auto see = [&](const eom::StepView& view) {
+    if (resolution && integration.charts().second() == 0) resolution->see(view);
+    return watch.step(view);
+  };
+  eom::Result end = integration.run(options, see,
                                     [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); });
   result.seconds_integrate = seconds_since(start);
   watch.cut(end);
@@ -318,7 +349,7 @@ RunResult integrate_scene(const RunRequest& request) {
   if (request.estimate && ended) {
     eom::Result own = end;
     own.x = integration.own_state(end);
-    estimate_error(request, own, options, result);
+    estimate_error(request, own, options, resolution ? &*resolution : nullptr, result);
   }
   return result;
 }

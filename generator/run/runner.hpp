@@ -134,6 +134,7 @@ struct RunRequest {
   std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
   std::vector<ExchangedChart> charts = {};   // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those asked for before
+  std::size_t max_steps = eom::Options{}.max_steps;  // accepted and rejected together
 };
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.

@@ -47,7 +47,8 @@ struct Row {
 struct Request {
   std::function<run::RunRequest(const run::Scene&)> run;  // of compiled code, for a scene that outlives it
   std::vector<std::string> solvers;
-  double seconds_limit = 2;                               // of one run
+  std::size_t steps_limit = 20000;                        // of one run, accepted and rejected: what verdicts depend on
+  double seconds_limit = 60;                              // a guard: a run that hits it is told, a tight one leaves its case unjudged
   std::function<void(const std::string&)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;
 };

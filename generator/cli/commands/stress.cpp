@@ -29,7 +29,8 @@ struct Options {
   std::string model, scene = "default";
   std::vector<std::string> set, solvers;
   std::optional<double> t_end;
-  double seconds = 2;
+  double seconds = 60;
+  std::size_t steps = 20000;
   bool quick = false;
 };
 
@@ -166,6 +167,7 @@ int execute(const Options& options, const Common& common) {
   request.run = [&](const run::Scene& scene) { return run_request(*simulation.derived, scene, code, true); };
   request.solvers = solvers;
   request.seconds_limit = options.seconds;
+  request.steps_limit = options.steps;
   request.interrupt = &Interrupt::flag();
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) request.progress = [](const std::string& what) { fmt::print(stderr, "\r{:60}\r{}", "", what); };
@@ -203,7 +205,8 @@ Execute declare_stress(CLI::App& app) {
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   add_list(app, "--solver", options->solvers, "only these solvers");
-  app.add_option("--seconds", options->seconds, "what takes longer is interrupted, and told")->check(positive_number())->capture_default_str();
+  app.add_option("--steps", options->steps, "what takes more is ended, and told")->check(CLI::Range(std::size_t{100}, std::size_t{1000000000}))->capture_default_str();
+  app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")->check(positive_number())->capture_default_str();
   app.add_flag("--quick", options->quick, "a few variations of each kind");
   return [options](const Common& common) { return execute(*options, common); };
 }

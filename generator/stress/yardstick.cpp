@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stress/yardstick.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace eomgen::stress {
+namespace {
+
+struct TightSolver {
+  const char* name;
+  double rtol;
+};
+constexpr std::array<TightSolver, 4> tight_solvers{{{"dop853", 1e-14}, {"taylor", 1e-15}, {"radau5", 1e-12}, {"rodas", 1e-11}}};
+
+constexpr double disturbance = 1e-7;  // of the start: large against rounding, small against what bends
+constexpr double disturbed_rtol = 1e-13;
+constexpr double most_uncertain = 1e-6;
+constexpr double shorter = 0.5;       // than what could be followed
+constexpr double smallest_scale = 1e-9;  // of the largest component
+
+constexpr const char* by_the_clock = "not judged: a tight run takes longer than the limit of time";
+
+}  // namespace
+
+bool fits(const std::string& solver, const run::Scene& scene, const run::Code& code) {
+  return run::unfit(solver, scene).empty() && (!run::method_named(solver).series || code.taylor != nullptr);
+}
+
+double distance(const State& a, const State& b, const State& scale) {
+  double largest = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i) {
+    const double d = std::abs(a[i] - b[i]) / scale[i];
+    largest = std::isnan(d) ? std::numeric_limits<double>::infinity() : std::max(largest, d);
+  }
+  return largest;
+}
+
+Yardstick::Yardstick(const run::Scene& scene, const Request& request) : scene_(scene), request_(request), run_(request.run(scene)) {
+  run_.estimate = false;
+  run_.watch_power = false;
+}
+
+std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
+  const double span = scene_.t1 - scene_.t0;
+  Truth truth;
+  State second;
+  std::vector<double> reached;
+  for (const TightSolver& solver : tight_solvers) {
+    if (!fits(solver.name, scene_, run_.code) || !second.empty()) continue;
+    State scale;
+    Tight run = tight(solver.name, solver.rtol, nullptr, &scale);
+    if (run.late) {  // another machine might have come to the end: nothing is concluded
+      why = by_the_clock;
+      next_span = 0;
+      return std::nullopt;
+    }
+    reached.push_back(run.reached);
+    if (run.x.empty()) continue;
+    if (!truth.x.empty()) {
+      second = std::move(run.x);
+      continue;
+    }
+    truth.x = std::move(run.x);
+    truth.scale = std::move(scale);
+    solver_ = solver.name;
+    rtol_ = solver.rtol;
+  }
+  if (second.empty()) {
+    std::sort(reached.rbegin(), reached.rend());
+    why = fmt::format("no two solvers come to the end at a tight tolerance in {} steps", request_.steps_limit);
+    next_span = reached.size() > 1 ? shorter * std::min(1.0, reached[1]) * span : 0;
+    return std::nullopt;
+  }
+  next_span = shorter * span;
+  const std::optional<double> known = condition(truth);
+  if (!known) {
+    why = late_ ? by_the_clock : "a start that is a little disturbed does not come to the end";
+    if (late_) next_span = 0;
+    return std::nullopt;
+  }
+  truth.condition = *known;
+  // The start and every sum on the way are rounded to binary64, whatever two runs agree in.
+  truth.uncertainty = distance(truth.x, second, truth.scale) + unit * truth.condition;
+  if (truth.condition <= most_condition && truth.uncertainty < most_uncertain) return truth;
+  why = fmt::format("the end depends on the start by a factor of {:.1e}, and is known to {:.1e}", truth.condition, truth.uncertainty);
+  return std::nullopt;
+}
+
+Yardstick::Tight Yardstick::tight(const std::string& solver, double rtol, const State* start, State* scale) const {
+  run::Scene scene = start != nullptr ? started(*start) : scene_;
+  run::RunRequest request = request_.run(scene);
+  request.estimate = request.watch_power = false;
+  run::Integration integration(request, solver);
+  eom::Options options;
+  options.rtol = rtol;
+  options.atol = rtol * 1e-3;
+  options.max_steps = request_.steps_limit;
+  Clock clock(request_.seconds_limit, request_.interrupt);
+  const State x0 = integration.initial_state();
+  if (scale != nullptr) scale->assign(x0.size(), 0);
+  const eom::Result end = integration.run(options, [&](const eom::StepView& view) {
+    for (std::size_t i = 0; scale != nullptr && i < view.x1.size(); ++i) (*scale)[i] = std::max((*scale)[i], std::abs(view.x1[i]));
+    return !clock.late();
+  });
+  Tight result;
+  result.late = clock.was_late();
+  result.reached = (end.t - scene.t0) / (scene.t1 - scene.t0);
+  if (end.outcome != eom::Outcome::done || result.late) return result;
+  if (scale != nullptr) level(*scale, x0);
+  result.x.assign(end.x.begin(), end.x.begin() + static_cast<std::ptrdiff_t>(run_.state_names.size()));
+  return result;
+}
+
+// A component that stays 0 beside others of its kind is 0 to their rounding.
+void Yardstick::level(State& scale, const State& x0) const {
+  scale.resize(run_.state_names.size());
+  double largest = 0;
+  for (std::size_t i = 0; i < scale.size(); ++i) largest = std::max(largest, scale[i] = std::max(scale[i], std::abs(x0[i])));
+  for (double& s : scale) s = std::max({s, smallest_scale * largest, std::numeric_limits<double>::min()});
+}
+
+run::Scene Yardstick::started(const State& x) const {
+  run::Scene scene = scene_;
+  const std::vector<std::uint32_t>& free = run_.code.free;
+  for (std::size_t i = 0; i < free.size(); ++i) {
+    scene.q[free[i]] = x[i];
+    scene.qdot[free[i]] = x[free.size() + i];
+  }
+  return scene;
+}
+
+/// Of disturbances along and against, the one that moves the end most; nothing where one of them cannot be followed.
+std::optional<double> Yardstick::condition(const Truth& truth) {
+  double largest = 1;
+  const State x0 = run::Integration(run_, solver_).initial_state();
+  for (const int pattern : {0, 1, 2}) {
+    std::optional<double> by = moved(truth, x0, pattern, 1);
+    if (!by && !late_) by = moved(truth, x0, pattern, -1);  // the other way may lie beyond where coordinates end
+    if (!by) return std::nullopt;
+    largest = std::max(largest, *by);
+  }
+  return largest;
+}
+
+std::optional<double> Yardstick::moved(const Truth& truth, const State& x0, int pattern, double sign) {
+  State x = x0;
+  for (std::size_t i = 0; i < 2 * run_.code.free.size(); ++i) {
+    const bool against = pattern > 0 && ((i >> (pattern - 1)) & 1) != 0;
+    x[i] += (against ? -sign : sign) * disturbance * truth.scale[i];
+  }
+  const Tight end = tight(solver_, std::max(rtol_, disturbed_rtol), &x, nullptr);
+  late_ = late_ || end.late;
+  if (end.x.empty()) return std::nullopt;
+  return distance(end.x, truth.x, truth.scale) / disturbance;
+}
+
+}  // namespace eomgen::stress

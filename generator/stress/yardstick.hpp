@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a scene's motion ends in, and how well that is known: tight runs by solvers that have nothing in common but the right-hand
+// side. All budgets are steps, so that a slower machine comes to the same verdict; the clock is a guard, and its hitting is told.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "run/integration.hpp"
+#include "stress/stress.hpp"
+
+namespace eomgen::stress {
+
+/// Whether a run takes longer than is allowed.
+class Clock {
+ public:
+  using Steady = std::chrono::steady_clock;
+  Clock(double seconds, const std::atomic<bool>* interrupt)
+      : start_(Steady::now()), limit_(seconds), interrupt_(interrupt) {}
+  double seconds() const { return std::chrono::duration<double>(Steady::now() - start_).count(); }
+  bool late() { return late_ = late_ || seconds() > limit_ || (interrupt_ != nullptr && *interrupt_); }
+  bool was_late() const { return late_; }
+
+ private:
+  Steady::time_point start_;
+  double limit_;
+  const std::atomic<bool>* interrupt_;
+  bool late_ = false;
+};
+
+using State = std::vector<double>;
+
+struct Truth {
+  State x;
+  State scale;             // largest value of each component along the motion
+  double uncertainty = 0;  // relative to it
+  double condition = 1;    // by how much more than the start the end moves, both relative
+};
+
+inline constexpr double unit = std::numeric_limits<double>::epsilon();
+inline constexpr double most_condition = 1.6e5;  // e^12: beyond twelve Lyapunov times only invariants say anything
+
+class Yardstick {
+ public:
+  Yardstick(const run::Scene& scene, const Request& request);
+
+  /// Nothing where no two solvers come to the end, or not to the same; `why` says so, and the span to try next (0: none).
+  std::optional<Truth> truth(std::string& why, double& next_span);
+
+ private:
+  struct Tight {
+    State x;                 // empty: the run did not come to the end
+    double reached = 0;      // the part of the span that it covered
+    bool late = false;
+  };
+  Tight tight(const std::string& solver, double rtol, const State* start, State* scale) const;
+  void level(State& scale, const State& x0) const;
+  run::Scene started(const State& x) const;
+  std::optional<double> condition(const Truth& truth);
+  std::optional<double> moved(const Truth& truth, const State& x0, int pattern, double sign);
+
+  const run::Scene& scene_;
+  const Request& request_;
+  run::RunRequest run_;
+  std::string solver_;   // of the first tight run
+  double rtol_ = 0;
+  bool late_ = false;
+};
+
+/// Whether a solver can integrate the scene with this code.
+bool fits(const std::string& solver, const run::Scene& scene, const run::Code& code);
+
+/// Largest |a - b| / scale; infinite where one of them is no number.
+double distance(const State& a, const State& b, const State& scale);
+
+}  // namespace eomgen::stress
