@@ -144,6 +144,7 @@ Solution solve(const Problem& problem, Settings first, Settings second) {
   }
   constexpr double nothing = -66;  // log2: what is 1e-20 of the largest component is rounding
   for (double& s : scale) s = std::max(s, largest + nothing);
+  solution.end = b.back();
   solution.digits = std::min(first.digits, second.digits);
   for (std::size_t j = 0; j < b.size(); ++j) solution.digits = std::min(solution.digits, agreement(a[j], b[j], scale));
   solution.digits_at_end = std::min({first.digits, second.digits, agreement(a.back(), b.back(), scale)});

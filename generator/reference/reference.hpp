@@ -3,6 +3,8 @@
 // two agree in is what the reference claims. Parameters, starts and times are the binary64 numbers, exactly.
 #pragma once
 
+#include <cln/float.h>
+
 #include <atomic>
 #include <functional>
 #include <string>
@@ -36,6 +38,7 @@ inline constexpr Settings coarse{38, 40}, fine{46, 50};
 
 struct Solution {
   std::vector<std::vector<double>> x;  // per time, the finer run rounded
+  std::vector<cln::cl_F> end;          // of it, not rounded
   int digits = 0, digits_at_end = 0;   // that agree, relative to the largest value of each component
   std::size_t steps = 0;               // of the finer run
   std::string method;

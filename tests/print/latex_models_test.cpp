@@ -36,9 +36,10 @@ bool is_installed() {
   return false;
 }
 
-// Chains of several bodies in space: brackets within their equations are wider than a line, and are not broken yet.
+// Chains of several bodies in space: brackets within their equations are wider than a line, and are not broken yet; nor is a long root.
 bool is_too_wide(const std::string& model) {
-  return model.starts_with("R15_") || model == "R9_payload_arm" || model == "R16_sphere_on_sphere" || model == "six_bar_spatial" || model == "spatial_chain_3";
+  return model.starts_with("R15_") || model == "R9_payload_arm" || model == "R16_sphere_on_sphere" || model == "six_bar_spatial" || model == "andrews_squeezer" ||
+          model == "spatial_chain_3";
 }
 
 struct Typeset {
