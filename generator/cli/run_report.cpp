@@ -55,6 +55,8 @@ std::string final_values(const Simulation& simulation) {
   return out;
 }
 
+constexpr std::size_t most_changes_told = 6;
+
 std::string implicit_cost(const eom::Statistics& cost) {
   std::string text = fmt::format("df/dx {} times, {} factorisations", cost.jacobians, cost.factorisations);
   if (cost.newton_iterations > 0) text += fmt::format(", {} iterations, {} attempts given up", cost.newton_iterations, cost.newton_failures);
@@ -100,6 +102,8 @@ nlohmann::ordered_json RunReport::json() const {
     invariants[i.name] = {{"initial", number(i.initial)}, {"max_relative_drift", number(i.max_relative_drift)}};
   }
   for (const run::RunEvent& e : result.events) events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
+  Json changes = Json::array();
+  for (const run::SolverChange& c : result.solver_changes) changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", c.reason}});
   for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.of}, {"crossings", k.count}});
   Json document{
       {"format", 1},
@@ -107,6 +111,7 @@ nlohmann::ordered_json RunReport::json() const {
       {"scene", scene.name},
       {"solver", result.solver},
       {"solver_reason", result.reason},
+      {"solver_changes", changes},
       {"outcome", eom::name(result.outcome)},
       {"detail", result.detail},
       {"t", result.t},
@@ -132,7 +137,7 @@ nlohmann::ordered_json RunReport::json() const {
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
       {"certificate", certificate.summary()}};
-  if (run::method_named(result.solver).implicit) {
+  if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit) {
     const eom::Statistics& cost = result.statistics;
     document["implicit"] = {{"jacobians", cost.jacobians}, {"difference_evaluations", cost.difference_evaluations},
                             {"factorisations", cost.factorisations}, {"newton_iterations", cost.newton_iterations},
@@ -162,11 +167,19 @@ std::string RunReport::text() const {
   out += line("solver", fmt::format("{} ({}), {}", result.solver, result.reason, accuracy));
   out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
                                      result.detail.empty() ? "" : ": ", result.detail));
+  for (std::size_t k = 0; k < result.solver_changes.size(); ++k) {
+    const run::SolverChange& c = result.solver_changes[k];
+    if (k == most_changes_told) {
+      out += line("solver change", fmt::format("and {} more", result.solver_changes.size() - k));
+      break;
+    }
+    out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, c.reason));
+  }
   for (const run::RunEvent& e : result.events) out += line("event", fmt::format("{} at t = {}: {}", e.kind, e.t, e.name));
   for (const run::KinkCrossings& k : result.kinks) out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
-  if (run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
+  if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   if (const auto open = undetermined(simulation); !open.empty()) out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
   out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",

@@ -10,8 +10,8 @@
 namespace eomgen::model {
 namespace {
 
-constexpr std::array<std::string_view, 8> solvers{"auto", "rk4", "dopri5", "tsit5", "dop853", "radau5", "rodas", "midpoint"};
-constexpr std::array<std::string_view, 3> later_solvers{"taylor", "variational2", "variational4"};
+constexpr std::array<std::string_view, 9> solvers{"auto", "rk4", "dopri5", "tsit5", "dop853", "radau5", "rodas", "midpoint", "taylor"};
+constexpr std::array<std::string_view, 2> later_solvers{"variational2", "variational4"};
 constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
 
 std::vector<std::string> split_at_dots(const std::string& text) {

@@ -351,7 +351,9 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   kink_crossings.assign(compiled().kinks.size(), 0);
   projected_.clear();
   stopped_ = false;
+  choice = {};
   eom::Options piece = options;
+  piece.choice = &choice;
   // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
   piece.quadratures = request_.watch_power && compiled().contacts.empty() ? 1 : 0;
   eom::Result total;

@@ -31,6 +31,7 @@ class Integration {
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows_.defect(t, x); }
 
+  eom::Choice choice;  // of the solver auto, and its changes in the run
   std::vector<std::size_t> kink_crossings;  // of the run, per kink
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
   double contact_work = 0;  // of impacts, and where sliding in two directions starts or ends

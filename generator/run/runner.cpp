@@ -201,10 +201,10 @@ void tell_unresolved(const Resolution& resolution, RunResult& result) {
 }
 
 /// `first`: in the model's own charts; resolution: of fixed steps, else null.
-void estimate_error(const RunRequest& request, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result) {
+void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result) {
   const Clock::time_point start = Clock::now();
-  const int order = method_named(result.solver).order;
-  Integration again(request, result.solver);
+  const int order = method_named(solver).order;
+  Integration again(request, solver);
   bool same_end = true, compared = false;
   double stop = std::numeric_limits<double>::epsilon() * std::abs(first.t);
   const eom::ErrorEstimate estimate =
@@ -254,6 +254,8 @@ eom::Options options_of(const RunRequest& request) {
 }  // namespace
 
 const eom::MethodInfo& method_named(const std::string& name) {
+  static constexpr eom::MethodInfo automatic{eom::Automatic::name, eom::Automatic::order, 4, true};
+  if (name == automatic.name) return automatic;
   for (const eom::MethodInfo& method : eom::methods()) {
     if (name == method.name) return method;
   }
@@ -297,8 +299,22 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
                 (hint.empty() ? "" : hint + " ") + "choose from: " + names + "auto");
   }
   if (scene.step > 0) return {"rk4", "a fixed step is given"};
-  if (scene.rtol > 1e-6) return {"dopri5", "rtol is above 1e-6, where order 5 needs the fewest evaluations"};
-  return {"dop853", "rtol is 1e-6 or below, where order 8 needs the fewest evaluations"};
+  return {eom::Automatic::name, scene.rtol > 1e-6 ? "rtol is above 1e-6, where order 5 needs the fewest evaluations"
+                                                  : "rtol is 1e-6 or below, where order 8 needs the fewest evaluations"};
+}
+
+/// What `auto` did: the method that it ended with, the changes, where df/dx came from.
+static void tell_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
+  if (choice.method != nullptr) result.solver = choice.method;
+  for (const eom::MethodChange& change : choice.changes) {
+    result.solver_changes.push_back({change.t, change.from, change.to, change.why});
+  }
+  if (choice.changes.empty()) return;
+  const eom::MethodChange& first = choice.changes.front();
+  result.reason = fmt::format("{} until t = {:.6g}, since {}; then {}: {}", first.from, first.t, result.reason, first.to, first.why);
+  if (choice.changes.size() > 1) result.reason += fmt::format("; {} changes in all", choice.changes.size());
+  if (result.statistics.jacobians == 0) return;
+  result.reason += request.code.jac != nullptr ? "; df/dx from the equations" : "; df/dx by differences, since it was not compiled (solver radau5 has it compiled)";
 }
 
 RunResult integrate_scene(const RunRequest& request) {
@@ -324,6 +340,7 @@ RunResult integrate_scene(const RunRequest& request) {
   eom::Result end = integration.run(options, see,
                                     [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); });
   result.seconds_integrate = seconds_since(start);
+  const std::string asked = result.solver;
   watch.cut(end);
   watch.finish(end.t, end.x.data());
   watch.report(result);
@@ -331,6 +348,7 @@ RunResult integrate_scene(const RunRequest& request) {
   result.detail = end.detail;
   result.t = end.t;
   result.statistics = end.statistics;
+  if (asked == eom::Automatic::name) tell_choice(request, integration.choice, result);
   for (std::size_t k = 0; k < request.code.kinks.size(); ++k) {
     result.kinks.push_back({request.code.kinks[k], integration.kink_crossings[k]});
   }
@@ -349,7 +367,7 @@ RunResult integrate_scene(const RunRequest& request) {
   if (request.estimate && ended) {
     eom::Result own = end;
     own.x = integration.own_state(end);
-    estimate_error(request, own, options, resolution ? &*resolution : nullptr, result);
+    estimate_error(request, asked, own, options, resolution ? &*resolution : nullptr, result);
   }
   return result;
 }

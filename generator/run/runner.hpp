@@ -73,8 +73,15 @@ struct KinkCrossings {
   std::size_t count = 0;
 };
 
+/// One change of method on the way (of `auto` only).
+struct SolverChange {
+  double t;
+  std::string from, to, reason;
+};
+
 struct RunResult {
-  std::string solver, reason;
+  std::string solver, reason;             // the method that ended the run, and why it was taken
+  std::vector<SolverChange> solver_changes;
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail;
   double t = 0;
@@ -146,7 +153,7 @@ const eom::MethodInfo& method_named(const std::string& name);
 /// Why a solver cannot integrate the scene, or "" where it can.
 std::string unfit(const std::string& solver, const Scene& scene);
 
-/// The solver that `auto` stands for, and why.
+/// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the way.
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);
 
 }  // namespace eomgen::run

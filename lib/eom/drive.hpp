@@ -9,6 +9,7 @@
 //   error_norm(rtol, atol)                                        of it: 1 is just allowed
 //   after_accepted(h, error), after_rejected(h, error), after_failed(h)   the next step's size
 //   accept(moved)                                                 the end becomes the start
+//   end_known(), starting_order()                                 instead of error_uses_end and order where they change
 //   first_step()                                                  left out: from the derivatives at the start
 //   statistics()                                                  but for steps and rejected
 #pragma once
@@ -91,6 +92,19 @@ class Run {
     return accept(t_next, error, moved);
   }
 
+  bool end_known() const {
+    if constexpr (requires { stepper_.end_known(); })
+      return stepper_.end_known();
+    else
+      return Method::error_uses_end;
+  }
+  int starting_order() const {
+    if constexpr (requires { stepper_.starting_order(); })
+      return stepper_.starting_order();
+    else
+      return Method::order;
+  }
+
   bool adaptive() const { return options_.fixed_step <= 0; }
 
   /// Where the next step ends: t_end exactly for the last one, which may be stretched by 1 %; what is left for two
@@ -115,7 +129,7 @@ class Run {
       moved = !std::equal(x1, x1 + stepper_.size(), stepper_.scratch());
       if (moved && !all_finite(x1)) return code_not_finite;
     }
-    if (moved || !Method::error_uses_end) {
+    if (moved || !end_known()) {
       const int code = stepper_.evaluate_end();
       if (code != 0) return code;
     }
@@ -178,7 +192,7 @@ class Run {
     if (stepper_.evaluate(t_ + direction_ * h0, x_euler, f1) != 0 || !all_finite(f1)) return 0.01 * h0;
     const double size_change = norm(n, [&](std::size_t i) { return f1[i] - f0[i]; }) / h0;
     const double largest = std::max(size_f, size_change);
-    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 1.0 / Method::order);
+    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h0) : std::pow(0.01 / largest, 1.0 / starting_order());
     return std::min(100 * h0, h1);
   }
 

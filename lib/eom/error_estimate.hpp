@@ -64,6 +64,7 @@ inline Repetition repetition(const Options& first, double span, std::size_t step
 inline constexpr double rounding_suspected = 1e-10;
 
 inline int order_of(std::string_view method) {
+  if (method == Automatic::name) return Automatic::order;
   for (const MethodInfo& info : methods())
     if (method == info.name) return info.order;
   throw_unknown(method);

@@ -12,6 +12,7 @@
 #include <tuple>
 #include <utility>
 
+#include "eom/automatic.hpp"
 #include "eom/drive.hpp"
 #include "eom/explicit_rk/method.hpp"
 #include "eom/explicit_rk/registry.hpp"
@@ -22,7 +23,7 @@
 
 namespace eom {
 
-/// Every method that integrate() knows, in the registry's order.
+/// Every method that integrate() knows, in the registry's order; beside them there is `auto` (automatic.hpp), which chooses.
 inline std::span<const MethodInfo> methods() {
   static constexpr auto table = []<class... T, class... I, class... S>(std::tuple<T...>*, std::tuple<I...>*, std::tuple<S...>*) {
     return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(S)>{
@@ -51,8 +52,8 @@ inline void check_problem(double t0, std::span<const double> x0, double t1, cons
 }
 
 [[noreturn]] inline void throw_unknown(std::string_view method) {
-  std::string known;
-  for (const MethodInfo& info : methods()) known += std::string(known.empty() ? "" : ", ") + info.name;
+  std::string known = Automatic::name;
+  for (const MethodInfo& info : methods()) known += std::string(", ") + info.name;
   throw std::invalid_argument("eom::integrate: no method is called '" + std::string(method) + "'; there are " + known);
 }
 
@@ -106,6 +107,7 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
     return true;
   };
   Result result;
+  if (method == Automatic::name) return detail::run_once<Automatic>(implicit::problem_of(rhs), t0, x0, t1, options, observer, after_step);
   const bool known_explicit = [&]<class... T>(std::tuple<T...>*) {
     return ((asked(T::name, !T::error.empty()) &&
              (result = detail::run_explicit<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);

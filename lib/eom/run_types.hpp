@@ -18,6 +18,21 @@ namespace eom {
 /// dx = f(t, x), returning a code of the C ABI (0: fine). The convenience form; integrate() takes any such callable.
 using Rhs = std::function<int(double t, const double* x, double* dx)>;
 
+/// One change of method by `auto`.
+struct MethodChange {
+  double t;
+  const char *from, *to;
+  std::string why;
+};
+
+/// What `auto` (automatic.hpp) integrates with, and how it came to that.
+struct Choice {
+  static constexpr int least_patience = 15;
+  const char* method = nullptr;     // null: not chosen yet
+  int patience = least_patience;    // so many stiff steps are asked for before the next change
+  std::vector<MethodChange> changes;
+};
+
 struct Options {
   double rtol = 1e-9;       // error allowed per step and component: atol + rtol |x|
   double atol = 1e-12;
@@ -28,6 +43,7 @@ struct Options {
   std::size_t max_steps = 50'000'000;               // accepted and rejected together
   std::size_t quadratures = 0;                      // trailing components of x kept out of the error norm
   const std::atomic<bool>* interrupt = nullptr;     // looked at once per step
+  Choice* choice = nullptr;                         // of `auto`: written, and what the next run begins with
 };
 
 struct Statistics {

@@ -22,7 +22,7 @@ void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tenth of a period") {
   const problems::KeplerSeries kepler;
-  for (const eom::MethodInfo& method : eom::methods()) {
+  const auto check = [&](const eom::MethodInfo& method) {
     CAPTURE(std::string(method.name));
     eom::Options options;
     if (!method.adaptive) options.fixed_step = 0.01;
@@ -41,5 +41,7 @@ TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tent
     const std::size_t of_short_run = count(0.6);
     CHECK(of_short_run > 0);
     CHECK(count(600) == of_short_run);
-  }
+  };
+  for (const eom::MethodInfo& method : eom::methods()) check(method);
+  check({eom::Automatic::name, eom::Automatic::order, 4, true});
 }

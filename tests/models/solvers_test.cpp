@@ -64,6 +64,29 @@ TEST_CASE("solvers: an implicit one on code that was compiled without df/dx take
   CHECK(std::abs(test::value_of(again.final, "theta") - first.final("theta")) < 1e-6);
 }
 
+TEST_CASE("solvers: auto hands a stiff spring to radau5 and says when, why, and where df/dx is from") {
+  const auto stiff = [](double rtol) {
+    return test::run_model("elastic_pendulum", [&](cli::SimulationRequest& request) {
+      request.scene = "stiff";
+      request.overrides.solver = "auto";
+      request.overrides.rtol = request.overrides.atol = rtol;
+      request.estimate = true;
+    });
+  };
+  for (const double rtol : {1e-5, 1e-8}) {
+    const test::Finished found = stiff(rtol);
+    const run::RunResult& result = found.simulation.result;
+    CHECK(result.outcome == eom::Outcome::done);
+    CHECK(result.solver == "radau5");
+    REQUIRE(!result.solver_changes.empty());
+    CHECK(result.solver_changes.back().to == "radau5");
+    CHECK(result.solver_changes.back().reason.find("stiff") != std::string::npos);
+    CHECK(result.reason.find("df/dx by differences") != std::string::npos);
+    CHECK(result.statistics.steps < 4000);  // dop853: 40000 and more
+    CHECK(test::value_of(result.error_estimate, "theta") < 1e3 * rtol);
+  }
+}
+
 TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, kinks, friction, impacts and rolling") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
                             "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian", "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {

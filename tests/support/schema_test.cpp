@@ -64,6 +64,7 @@ const std::map<std::string, json>& right_documents() {
         {"run",
          {{"format", 1},
           {"solver", "dop853"},
+          {"solver_changes", json::array({{{"t", 0.5}, {"from", "radau5"}, {"to", "dop853"}, {"reason", "no longer stiff"}}})},
           {"outcome", "done"},
           {"steps", 100},
           {"rejected", 3},

@@ -93,6 +93,7 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
 std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, std::vector<std::pair<std::string, std::string>>& left_out) {
   std::vector<std::string> known, chosen;
   for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
+  if (!options.solvers.empty()) known.emplace_back(eom::Automatic::name);  // it is one of the others most of the time: only where it is asked for
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error("bench", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));

@@ -134,6 +134,7 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
 std::vector<std::string> chosen_solvers(const Options& options) {
   std::vector<std::string> known;
   for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
+  if (!options.solvers.empty()) known.emplace_back(eom::Automatic::name);  // it is one of the others most of the time: only where it is asked for
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end()) throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
   }

@@ -117,6 +117,7 @@ class Run {
     one.rtol = options_.rtol;
     one.atol = options_.atol;
     one.quadratures = options_.quadratures;
+    one.choice = options_.choice;
     const std::size_t i = crossing.function;
     const double limit = std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
     double t = crossing.t, before = 0, value_before = 0;
@@ -223,9 +224,12 @@ Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<c
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,
                         Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
+  Choice choice;  // of `auto`, which goes on after an event with what it went by before
+  Options kept = options;
+  if (kept.choice == nullptr) kept.choice = &choice;
   return events::Run<std::remove_reference_t<F>, std::remove_reference_t<G>, std::remove_reference_t<Handler>,
                      std::remove_reference_t<Observer>, std::remove_reference_t<AfterStep>>(
-             method, rhs, g, std::move(functions), t0, x0, t1, options, handler, observer, after_step)
+             method, rhs, g, std::move(functions), t0, x0, t1, kept, handler, observer, after_step)
       .run();
 }
 

@@ -54,6 +54,8 @@ class Stepper {
   }
 
   int evaluate_start(double t) { return evaluate(t, x0_, k_); }
+  /// Instead of evaluate_start, where the derivative at x0 is known.
+  void start_with_derivative(const double* f) { std::copy_n(f, n_, k_); }
   int evaluate_end() { return evaluate(t1_, x1_, k_ + T::stages * n_); }
 
   /// Trial state at t1 from (t0, x0) and the derivative there; returns the first code that is not 0.
@@ -88,6 +90,18 @@ class Stepper {
       }
       return std::abs(h_) * std::sqrt(sum / count);
     }
+  }
+
+  /// |h lambda| of what the stages stir up: the change of the derivative between the last stage and the end, both at t1, by
+  /// that of the state (HW II, section IV.2). Before accept(), for methods whose last stage is at t1.
+  double stiffness() const {
+    static_assert(T::c[T::stages - 1] == 1);
+    double change = 0, distance = 0;
+    for (std::size_t i = 0; i < n_error_; ++i) {
+      change += square(derivative1()[i] - k_[(T::stages - 1) * n_ + i]);
+      distance += square(x1_[i] - (x0_[i] + h_ * stage_sum<T::stages - 1>(i)));
+    }
+    return distance > 0 ? std::abs(h_) * std::sqrt(change / distance) : 0;
   }
 
   /// Makes the end of the accepted step the start of the next. moved: x1 is no longer what attempt() gave.

@@ -46,6 +46,9 @@ class Base {
     return problem_.f(problem_.self, t, x, dx);
   }
   int evaluate_start(double t) { return evaluate(t, x0_, f0_); }
+  /// Instead of evaluate_start, where the derivative at x0 is known.
+  void start_with_derivative(const double* f) { std::copy_n(f, n_, f0_); }
+  const Jacobian& jacobian() const { return jacobian_; }
   int evaluate_end() { return evaluate(t1_, x1_, f1_); }
 
  protected:

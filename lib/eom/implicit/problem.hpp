@@ -14,6 +14,7 @@ struct Problem {
   void* self;
   int (*f)(void* self, double t, const double* x, double* dx);
   int (*jacobian)(void* self, double t, const double* x, double* dfdx, double* dfdt) = nullptr;
+  int operator()(double t, const double* x, double* dx) const { return f(self, t, x, dx); }
 };
 
 /// The address of a callable, of a function too, and back.

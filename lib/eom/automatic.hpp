@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: MIT
+// The method `auto`: dopri5 for rtol above 1e-6, else dop853; radau5 where the motion turns out to be stiff, and back where it
+// no longer is. What was chosen, when and why is in Options::choice.
+//
+// Explicit methods: after each step |h lambda| of what the stages stir up, from the last stage and the end, both at t1 (Hairer,
+// Wanner, Solving Ordinary Differential Equations II, section IV.2), averaged. Beyond the limit of stability in 15 steps, with no six
+// in a row below it: stiff. That of dop853 is 5.96 along vibrations and 6.39 along decay; that of dopri5 3.3 along decay but 1.0 along
+// vibrations: 50 steps in a row near it lead to dop853 first.
+// Where tolerances are tight, rounding keeps the fast part of a stiff motion alive, and steps end below the limit: 50 of dop853 in a
+// row with three times the |h lambda| that it would have if the motion itself were that fast are a reason too.
+// radau5: h rho(df/dx) by power iteration; 15 steps in a row with half of that lead back. Where that happens soon, twice as many
+// stiff steps are asked for before the next change.
+// With fixed steps the method stays what it is.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eom/explicit_rk/dop853.hpp"
+#include "eom/explicit_rk/dopri5.hpp"
+#include "eom/explicit_rk/method.hpp"
+#include "eom/implicit/radau5.hpp"
+
+namespace eom {
+
+class Automatic {
+  enum class Active { dopri5, dop853, radau5 };
+  using Dopri5 = explicit_rk::Method<explicit_rk::Dopri5, implicit::Problem>;
+  using Dop853 = explicit_rk::Method<explicit_rk::Dop853, implicit::Problem>;
+
+  template <class Do>
+  decltype(auto) with(Do&& act) {
+    switch (active_) {
+      case Active::dopri5: return act(*dopri5_);
+      case Active::dop853: return act(*dop853_);
+      default: return act(*radau5_);
+    }
+  }
+
+ public:
+  static constexpr const char* name = "auto";
+  static constexpr bool adaptive = true;
+  static constexpr int order = 5;  // at least
+
+  Automatic(implicit::Problem& problem, std::span<const double> x, const Options& options)
+      : problem_(problem), options_(options), choice_(options.choice != nullptr ? *options.choice : own_), direction_(x.size()) {
+    if (choice_.method == nullptr) choice_.method = explicit_name();
+    active_ = choice_.method == std::string_view(implicit::Radau5::name)          ? Active::radau5
+              : choice_.method == std::string_view(explicit_rk::Dopri5::name) ? Active::dopri5
+                                                                                    : Active::dop853;
+    make(x);
+  }
+
+  std::size_t size() const { return direction_.size(); }
+  double* x0() { return with([](auto& m) { return m.x0(); }); }
+  double* x1() { return with([](auto& m) { return m.x1(); }); }
+  const double* derivative0() { return with([](auto& m) { return m.derivative0(); }); }
+  const double* derivative1() { return with([](auto& m) { return m.derivative1(); }); }
+  double* scratch() { return with([](auto& m) { return m.scratch(); }); }
+  int evaluate(double t, const double* x, double* dx) { return with([&](auto& m) { return m.evaluate(t, x, dx); }); }
+  int evaluate_start(double t) { return with([&](auto& m) { return m.evaluate_start(t); }); }
+  int evaluate_end() { return with([](auto& m) { return m.evaluate_end(); }); }
+  bool end_known() const { return active_ == Active::dopri5; }
+  int starting_order() const { return active_ == Active::dop853 ? explicit_rk::Dop853::order : order; }
+
+  int attempt(double t0, double t1) {
+    t1_ = t1;
+    return with([&](auto& m) { return m.attempt(t0, t1); });
+  }
+  double error_norm(double rtol, double atol) { return with([&](auto& m) { return m.error_norm(rtol, atol); }); }
+  double after_rejected(double h, double error) { return with([&](auto& m) { return m.after_rejected(h, error); }); }
+  double after_failed(double h) { return with([&](auto& m) { return m.after_failed(h); }); }
+
+  double after_accepted(double h, double error) {
+    const double next = with([&](auto& m) { return m.after_accepted(h, error); });
+    h_ = h;
+    active_ == Active::radau5 ? look_back() : look_for_stiffness();
+    return next_.has_value() ? std::min(h, next) : next;
+  }
+
+  void accept(bool moved) {
+    with([&](auto& m) { m.accept(moved); });
+    if (next_.has_value()) change();
+  }
+
+  static void interpolate(const void* method, double t, double* x) {
+    const Automatic& self = *static_cast<const Automatic*>(method);
+    switch (self.active_) {
+      case Active::dopri5: return self.dopri5_->interpolate(t, x);
+      case Active::dop853: return self.dop853_->interpolate(t, x);
+      case Active::radau5: return self.radau5_->interpolate(t, x);
+    }
+  }
+
+  Statistics statistics() {
+    Statistics sum = past_;
+    return sum += with([](auto& m) -> Statistics { return m.statistics(); });
+  }
+
+ private:
+  static constexpr double rtol_of_dopri5 = 1e-6;  // above it
+  static constexpr double limit_of_dopri5 = 3.25, limit_of_dop853 = 5.7;
+  static constexpr double vibration_from = 0.75;  // of dopri5
+  static constexpr int in_a_row = 50;
+  static constexpr double smoothing = 0.2;  // of the logarithm: along a vibration the estimate goes as the tangent of its phase
+  static constexpr int calm = 6;            // steps in a row that are not stiff: those before do not count
+  static constexpr int patience = Choice::least_patience;
+  static constexpr int soon = 4 * patience;
+
+  const char* explicit_name() const { return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name; }
+  /// |h lambda| at which it is worth to go back, well below what leads to radau5.
+  double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_from : 0.5 * far_beyond(); }
+
+  void make(std::span<const double> x) {
+    switch (active_) {
+      case Active::dopri5: dopri5_.emplace(problem_, x, options_); return;
+      case Active::dop853: dop853_.emplace(problem_, x, options_); return;
+      case Active::radau5: radau5_.emplace(problem_, x, options_); return;
+    }
+  }
+
+  double tolerance() const { return std::max(options_.rtol, options_.atol); }
+  /// The same for dopri5: about 4 tol^(1/5). Half more near the limit along vibrations is worth dop853, which has a wider one.
+  double vibrates_beyond() const { return std::max(vibration_from, 1.5 * 4 * std::pow(tolerance(), 0.2)); }
+  /// A motion that is as fast as lambda says, and of the size of the state, is followed by dop853 with |h lambda| about 6 tol^(1/8).
+  double far_beyond() const { return std::min(limit_of_dop853, 3 * 6 * std::pow(tolerance(), 0.125)); }
+
+  void look_for_stiffness() {
+    const bool fifth = active_ == Active::dopri5;
+    const double seen = fifth ? dopri5_->stiffness() : dop853_->stiffness();
+    if (seen > 0 && std::isfinite(seen)) level_ += (std::log(seen) - level_) * (level_ == 0 ? 1 : smoothing);
+    const double value = std::exp(level_);
+    const double limit = fifth ? limit_of_dopri5 : limit_of_dop853;
+    if (value > limit) {
+      calm_ = 0;
+      if (++stiff_ >= choice_.patience)
+        plan(Active::radau5, "|h lambda| was beyond %.1f in %.0f steps, the limit of stability of %s: stiff", limit, stiff_, choice_.method);
+    } else if (++calm_ == calm) {
+      stiff_ = 0;
+    }
+    far_ = !fifth && value > far_beyond() ? far_ + 1 : 0;
+    if (far_ >= in_a_row * choice_.patience / patience && !next_.has_value())
+      plan(Active::radau5, "|h lambda| was above %.1f in %.0f steps in a row, which a motion that fast would not allow %s for its accuracy: stiff", far_beyond(), far_, choice_.method);
+    vibrates_ = fifth && value > vibrates_beyond() ? vibrates_ + 1 : 0;
+    if (vibrates_ >= in_a_row && !next_.has_value())
+      plan(Active::dop853, "|h lambda| was above %.1f in %.0f steps in a row, near the limit of stability of %s along vibrations", vibrates_beyond(), vibrates_, choice_.method);
+  }
+
+  void look_back() {
+    ++implicit_steps_;
+    const double value = h_ * spectral_radius();
+    calm_ = value < explicit_limit() ? calm_ + 1 : 0;
+    if (calm_ < patience) return;
+    choice_.patience = implicit_steps_ < soon ? 2 * choice_.patience : patience;
+    plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853,
+         "h rho(df/dx) was below %.1f for %.0f steps in a row, which %s can take: no longer stiff", explicit_limit(), calm_, explicit_name());
+  }
+
+  /// sqrt(|J J v| / |v|), which is right at once where J J v = -omega^2 v; v turns towards the fastest motion from step to step.
+  double spectral_radius() {
+    const implicit::Jacobian& J = radau5_->jacobian();
+    const std::size_t m = size() - options_.quadratures;
+    double* turned = scratch();
+    const auto apply = [&](const std::vector<double>& from, double* to) {
+      double sum = 0;
+      for (std::size_t i = 0; i < m; ++i) {
+        to[i] = 0;
+        for (std::size_t j = 0; j < m; ++j) to[i] += J(i, j) * from[j];
+        sum += to[i] * to[i];
+      }
+      return std::sqrt(sum);
+    };
+    const auto scale = [&](double by) {
+      for (std::size_t i = 0; i < m; ++i) direction_[i] = turned[i] / by;
+    };
+    const double first = apply(direction_, turned);
+    if (!(first > 0) || !std::isfinite(first)) return start_direction(), std::isnan(first) ? first : 0;
+    scale(first);
+    const double second = apply(direction_, turned);
+    if (!(second > 0) || !std::isfinite(second)) return start_direction(), 0;
+    scale(second);
+    return std::sqrt(first * second);
+  }
+
+  void start_direction() {
+    const std::size_t m = size() - options_.quadratures;
+    for (std::size_t i = 0; i < m; ++i) direction_[i] = (1 + 0.5 * static_cast<double>(i % 3)) / std::sqrt(static_cast<double>(m));
+  }
+
+  void plan(Active next, const char* why, double limit, int steps, const char* method) {
+    char text[200];
+    std::snprintf(text, sizeof text, why, limit, static_cast<double>(steps), method);
+    why_ = text;
+    next_ = next;
+  }
+
+  void change() {
+    past_ = statistics();
+    const std::vector<double> x(x0(), x0() + size()), f(derivative0(), derivative0() + size());
+    const char* const before = choice_.method;
+    active_ = *next_;
+    next_.reset();
+    choice_.method = active_ == Active::radau5 ? implicit::Radau5::name : active_ == Active::dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
+    make(x);
+    with([&](auto& m) { m.start_with_derivative(f.data()); });
+    choice_.changes.push_back({t1_, before, choice_.method, why_});
+    stiff_ = far_ = calm_ = vibrates_ = implicit_steps_ = 0;
+    level_ = 0;
+    start_direction();
+  }
+
+  implicit::Problem& problem_;
+  const Options& options_;
+  Choice own_;
+  Choice& choice_;
+  std::vector<double> direction_;
+  Active active_;
+  std::optional<Dopri5> dopri5_;
+  std::optional<Dop853> dop853_;
+  std::optional<implicit::Radau5> radau5_;
+  std::optional<Active> next_;
+  std::string why_;
+  Statistics past_;
+  double t1_ = 0, h_ = 0, level_ = 0;
+  int stiff_ = 0, far_ = 0, calm_ = 0, vibrates_ = 0, implicit_steps_ = 0;
+};
+
+}  // namespace eom

@@ -1,0 +1,154 @@
+// `auto`: what it chooses, when it changes to the method for stiff systems and back, what it says of that, and that events,
+// projections and restarts go on with what was chosen.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "eom/error_estimate.hpp"
+#include "eom/events/integrate.hpp"
+#include "lib/problems.hpp"
+
+namespace {
+
+using eom::Choice;
+using eom::Options;
+using eom::Result;
+using problems::State;
+
+/// x' = -1e5 (x - cos t) - sin t: cos t, along which everything else decays fast.
+struct Decay {
+  int operator()(double t, const double* x, double* dx) const {
+    dx[0] = -1e5 * (x[0] - std::cos(t)) - std::sin(t);
+    return 0;
+  }
+  int jacobian(double, const double*, double* dfdx, double* dfdt) const {
+    dfdx[0] = -1e5;
+    dfdt[0] = 0;
+    return 0;
+  }
+};
+
+/// A pendulum on a spring of 1e8 N/m, in polar coordinates, on its smooth solution but for 1e-7 m/s.
+int elastic_pendulum(double, const double* x, double* dx) {
+  dx[0] = x[2];
+  dx[1] = x[3];
+  dx[2] = x[0] * x[3] * x[3] + 9.81 * std::cos(x[1]) - 1e8 * (x[0] - 1);
+  dx[3] = (-9.81 * std::sin(x[1]) - 2 * x[2] * x[3]) / x[0];
+  return 0;
+}
+const State hanging{1 + 9.81e-8 * std::cos(1.0), 1, 0, 0};
+
+/// Van der Pol's equation with epsilon = 1e-4: stiff but for two jumps in 0 <= t <= 2.
+int van_der_pol(double, const double* x, double* dx) {
+  dx[0] = x[1];
+  dx[1] = ((1 - x[0] * x[0]) * x[1] - x[0]) / 1e-4;
+  return 0;
+}
+
+Options options_for(double tolerance, Choice& choice) {
+  Options options;
+  options.rtol = options.atol = tolerance;
+  options.choice = &choice;
+  return options;
+}
+
+}  // namespace
+
+TEST_CASE("auto: where nothing is stiff it is dopri5 or dop853 to the last bit, in both directions of time, and says so") {
+  const problems::Kepler kepler(0.9);
+  for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13})
+    for (const double end : {40.0, -40.0}) {
+      CAPTURE(tolerance);
+      Choice choice;
+      const Result found = eom::integrate("auto", kepler, 0, kepler.start, end, options_for(tolerance, choice));
+      const char* name = tolerance > 1e-6 ? "dopri5" : "dop853";
+      const Result plain = eom::integrate(name, kepler, 0, kepler.start, end, options_for(tolerance, choice));
+      CHECK(choice.method == std::string(name));
+      CHECK(choice.changes.empty());
+      CHECK(found.x == plain.x);
+      CHECK(found.statistics.steps == plain.statistics.steps);
+      CHECK(found.statistics.rhs_evaluations == plain.statistics.rhs_evaluations);
+    }
+}
+
+TEST_CASE("auto: a decay a hundred thousand times faster than the motion is handed to radau5, with the reason") {
+  for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
+    CAPTURE(tolerance);
+    Choice choice;
+    const Result found = eom::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
+    CHECK(found.outcome == eom::Outcome::done);
+    CHECK(choice.method == std::string("radau5"));
+    REQUIRE(choice.changes.size() == 1);
+    CHECK(choice.changes[0].to == std::string("radau5"));
+    CHECK(choice.changes[0].t < 5e-3);
+    CHECK(choice.changes[0].why.find("stiff") != std::string::npos);
+    CHECK(found.statistics.steps < 400);  // 80000 and more for stability alone
+    CHECK(found.statistics.jacobians > 0);
+    CHECK(found.statistics.difference_evaluations == 0);  // the right-hand side has df/dx
+    CHECK(std::abs(found.x[0] - std::cos(5.0)) < 5 * std::pow(tolerance, 2.0 / 3));  // of radau5 where all is stiff (docs/runtime.md)
+  }
+}
+
+TEST_CASE("auto: vibrations that are not part of the motion are stiff as well") {
+  for (const double tolerance : {1e-5, 1e-8}) {
+    CAPTURE(tolerance);
+    Choice choice, of_reference;
+    const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice));
+    const Result reference = eom::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
+    CHECK(choice.method == std::string("radau5"));
+    CHECK(found.statistics.steps < reference.statistics.steps / 10);
+    CHECK(std::abs(found.x[1] - reference.x[1]) < 100 * tolerance);
+  }
+}
+
+TEST_CASE("auto: it goes back where the motion is fast itself, and over again") {
+  for (const double tolerance : {1e-5, 1e-8}) {
+    CAPTURE(tolerance);
+    Choice choice;
+    const Options options = options_for(tolerance, choice);
+    const Result found = eom::integrate("auto", van_der_pol, 0, State{2, 0}, 2, options);
+    CHECK(choice.changes.size() >= 5);
+    CHECK(choice.changes.size() <= 8);
+    CHECK(found.statistics.steps < 600);  // dop853: 6000
+    // of dop853 at 1e-13
+    CHECK(std::abs(found.x[0] - 1.71858720802) < 20 * tolerance);
+    const auto estimate = eom::estimate_error("auto", van_der_pol, 0, State{2, 0}, found, options);
+    CHECK(estimate.x[0] > 0.1 * std::abs(found.x[0] - 1.71858720802));
+  }
+}
+
+TEST_CASE("auto: dense output and events go through changes; what was chosen is kept after an event") {
+  Choice choice;
+  double worst = 0;
+  State x(1);
+  std::vector<double> times;
+  const auto see = [&](const eom::StepView& view) {
+    for (const double part : {0.25, 0.75}) {
+      const double t = view.t0 + part * (view.t1 - view.t0);
+      view.interpolate(t, x);
+      worst = std::max(worst, std::abs(x[0] - std::cos(t)));
+    }
+    return true;
+  };
+  const auto g = [](double, const double* at, double* values) { return values[0] = at[0], 0; };
+  const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::AtEvent::restart; };
+  Options options = options_for(1e-9, choice);
+  options.max_step = 0.1;  // radau5 interpolates by a cubic what is stiff
+  const Result found = eom::integrate_events("auto", Decay{}, 0, State{1}, 10, options, g,
+                                             {{eom::Direction::any, eom::Watch::breaking}}, handler, see);
+  CHECK(found.outcome == eom::Outcome::done);
+  REQUIRE(times.size() == 3);
+  for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(times[k] - std::numbers::pi * (static_cast<double>(k) + 0.5)) < 1e-7);
+  CHECK(choice.changes.size() == 1);  // without memory: once more after each event
+  CHECK(worst < 1e-6);
+}
+
+TEST_CASE("auto: fixed steps are those of the method chosen; an unknown name is told with auto among the known ones") {
+  const problems::Kepler kepler;
+  Options options;
+  options.fixed_step = 0.05;
+  CHECK(eom::integrate("auto", kepler, 0, kepler.start, 3, options).x == eom::integrate("dop853", kepler, 0, kepler.start, 3, options).x);
+  CHECK_THROWS_WITH_AS(eom::integrate("automatic", kepler, 0, kepler.start, 1), doctest::Contains("there are auto, rk4"), std::invalid_argument);
+}
