@@ -13,7 +13,8 @@ using mechanics::Mechanics;
 using reading::Formula;
 using reading::ReadingForm;
 
-constexpr std::size_t column_width = 60, page_width = 125;  // printed characters
+constexpr std::size_t column_width = 57, page_width = 125;  // printed characters
+constexpr std::ptrdiff_t longest_cell = 30;  // lines, of a cell that still fits on a page beside others
 
 constexpr const char* preamble = R"(\documentclass[10pt,a4paper,landscape]{article}
 \usepackage{amsmath}
@@ -76,7 +77,16 @@ class Document {
     return wide(reading::symbol({kind, static_cast<std::uint32_t>(index), 0}));
   }
   void heading(const char* title) { text_ += std::string("\n\\subsection*{") + title + "}\n"; }
-  void display(const Formula& f) { text_ += "\\[\n" + wide(f) + "\n\\]\n"; }
+  /// A formula of several lines may be continued on the next page.
+  void display(const Formula& f) {
+    static const std::string begin = "\\begin{aligned}[t]\n", end = "\n\\end{aligned}";
+    const std::string text = wide(f);
+    if (!text.starts_with(begin)) {
+      text_ += "\\[\n" + text + "\n\\]\n";
+    } else {
+      text_ += "\\begin{align*}\n" + text.substr(begin.size(), text.size() - begin.size() - end.size()) + "\n\\end{align*}\n";
+    }
+  }
 
   std::string value(model::NodeId node) const {
     const std::optional<Formula> written = reading::as_written(model_, node);
@@ -138,11 +148,33 @@ class Document {
     return "---";
   }
 
+  /// A row of the table cannot be continued on the next page.
+  bool is_long(const std::vector<Statement>& statements) const {
+    return std::any_of(statements.begin(), statements.end(), [this](const Statement& s) {
+      const std::string text = s.key == "equations" || s.key == "explicit" ? narrow(s.formula) : "";
+      return std::count(text.begin(), text.end(), '\n') > longest_cell;
+    });
+  }
+  void listed(const char* title, const std::vector<Statement>& statements) {
+    text_ += std::string("\n\\subsubsection*{") + title + "}\n";
+    for (const char* key : {"equations", "explicit"}) {
+      if (std::string(key) == "explicit") text_ += "\\emph{The same, written out}\n";
+      for (const Statement& s : statements) {
+        if (s.key == key) display(s.formula);
+      }
+    }
+  }
+
   void equations(const ReadingForm& one, const ReadingForm& two) {
     std::vector<Statement> left, right;
     add_equations(m_, one, left);
     add_equations(m_, two, right);
     heading("Lagrange's equations");
+    if (is_long(left) || is_long(right)) {
+      listed("Approach I: all coordinates, constraints imposed afterwards", left);
+      listed("Approach II: constraints imposed first", right);
+      return;
+    }
     text_ += "\\begin{longtable}{@{}p{0.06\\linewidth}p{0.45\\linewidth}p{0.45\\linewidth}@{}}\n"
              " & \\textbf{Approach I}: all coordinates, constraints imposed afterwards"
              " & \\textbf{Approach II}: constraints imposed first \\\\[4pt]\n\\endhead\n";

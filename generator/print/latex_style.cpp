@@ -142,7 +142,7 @@ class LatexStyle final : public Style {
   std::string equals() const override { return " = "; }
   std::string at_least() const override { return " \\ge "; }
   std::string comma() const override { return ",\\quad "; }
-  std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
+  std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>& starts) const override {
     std::size_t total = 0;
     for (const std::string& piece : pieces) total += visible(piece);
     std::string result;
@@ -152,11 +152,13 @@ class LatexStyle final : public Style {
     }
     std::size_t width = 0;
     bool broken = false;
-    for (const std::string& piece : pieces) {
+    for (std::size_t i = 0; i < pieces.size(); ++i) {
+      const std::string& piece = pieces[i];
       const std::size_t more = visible(piece);
-      if (width > 0 && width + more > line_width_) {
-        result += " \\\\\n&\\quad{}";
-        width = 4;
+      const bool apart = starts[i] == Start::abbreviation;
+      if (apart || (width > 0 && width + more > line_width_)) {
+        result += apart ? " \\\\\n&" : " \\\\\n&\\quad{}";
+        width = apart ? 0 : 4;
         broken = true;
       }
       result += piece;
@@ -164,6 +166,9 @@ class LatexStyle final : public Style {
     }
     return broken ? "\\begin{aligned}[t]\n&" + result + "\n\\end{aligned}" : result;
   }
+  bool fits(const std::string& text) const override { return visible(text) <= line_width_; }
+  std::string open_bracket() const override { return "\\bigl("; }
+  std::string close_bracket() const override { return "\\bigr)"; }
   std::string open_rate() const override { return "\\frac{d}{dt}\\Bigl("; }
   std::string close_rate() const override { return "\\Bigr)"; }
 

@@ -113,7 +113,7 @@ class MathmlStyle final : public Style {
   std::string equals() const override { return op("="); }
   std::string at_least() const override { return op("≥"); }
   std::string comma() const override { return op(",") + "<mspace width=\"1em\"/>"; }
-  std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
+  std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>&) const override {
     static const std::string open = "<math displaystyle=\"true\">", close = "</math>";
     std::string result;
     const bool split = pieces.size() > kept_together;

@@ -2,6 +2,9 @@
 #include "print/printer.hpp"
 
 #include <algorithm>
+#include <functional>
+
+#include "print/shorten.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -41,22 +44,31 @@ class Walk {
     return relation.word == reading::at_least ? style_.at_least() : style_.equals();
   }
 
-  /// Top-level terms of all sides of a relation, with their signs and the equals signs.
+  /// Top-level terms of all sides of a relation, with their signs and the equals signs; after them what abbreviations mean.
   std::string whole(const Formula& f) const {
     std::vector<std::string> all;
-    std::vector<bool> starts;
-    const std::vector<Formula> sides = f.form == Form::relation ? f.args : std::vector<Formula>{f};
-    for (std::size_t side = 0; side < sides.size(); ++side) {
-      std::vector<std::string> terms = broken_terms(sides[side]);
-      if (side > 0) terms.front() = between(f) + terms.front();
-      if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" does not stand on a line of its own
-        all.back() += terms.front();
-        continue;
-      }
+    std::vector<Start> starts;
+    const auto add = [&](std::vector<std::string> terms, const std::string& before, Start start) {
+      terms.front() = before + terms.front();
       for (std::size_t i = 0; i < terms.size(); ++i) {
         all.push_back(std::move(terms[i]));
-        starts.push_back(i == 0);
+        starts.push_back(i == 0 ? start : Start::no);
       }
+    };
+    Shortener shorten([this](const Formula& term) { return at_least(term, Piece::product); },
+                      [this](const std::string& text) { return style_.fits(text); });
+    const std::vector<Formula> sides = f.form == Form::relation ? f.args : std::vector<Formula>{f};
+    for (std::size_t side = 0; side < sides.size(); ++side) {
+      if (side > 0 && reading::is_zero(sides[side])) {  // "= 0" does not stand on a line of its own
+        all.back() += between(f) + (*this)(sides[side]).text;
+      } else {
+        add(broken_terms(sides[side], shorten), side > 0 ? between(f) : "", Start::side);
+      }
+    }
+    for (std::size_t i = 0; i < shorten.meanings().size(); ++i) {
+      all.back() += style_.comma();
+      const Formula meaning = shorten.meanings()[i];
+      add(broken_terms(meaning, shorten), (*this)(Shortener::abbreviation(i)).text + style_.equals(), Start::abbreviation);
     }
     return style_.whole(all, starts);
   }
@@ -111,15 +123,48 @@ class Walk {
     }
     return style_.product(factors);
   }
+  static void add_signed(const Formula& sum, const std::function<void(const Formula&, bool)>& add) {
+    for (const Formula& term : sum.form == Form::sum ? sum.args : std::vector<Formula>{sum}) {
+      const bool minus = term.form == Form::negative;
+      add(minus ? term.args[0] : term, minus);
+    }
+  }
+  std::string sign(bool minus, bool leads) const {
+    return leads ? minus ? style_.leading_minus() : "" : minus ? style_.minus() : style_.plus();
+  }
   std::vector<std::string> signed_terms(const Formula& f) const {
     std::vector<std::string> result;
-    const std::vector<Formula> terms = f.form == Form::sum ? f.args : std::vector<Formula>{f};
-    for (const Formula& term : terms) {
-      const bool minus = term.form == Form::negative;
-      const std::string text = at_least(minus ? term.args[0] : term, Piece::product);
-      if (result.empty()) result.push_back((minus ? style_.leading_minus() : "") + text);
-      else result.push_back((minus ? style_.minus() : style_.plus()) + text);
+    add_signed(f, [&](const Formula& term, bool minus) {
+      result.push_back(sign(minus, result.empty()) + at_least(term, Piece::product));
+    });
+    return result;
+  }
+  /// Pieces between which a line may be broken: terms, and the terms of a bracket that is too long for a line.
+  std::vector<std::string> line_pieces(const Formula& f, Shortener& shorten, bool leads = true) const {
+    std::vector<std::string> result;
+    add_signed(f, [&](const Formula& term, bool minus) {
+      std::vector<std::string> pieces = shorten.fits(term) ? std::vector<std::string>{} : bracket_pieces(term, shorten);
+      if (pieces.empty()) pieces = {at_least(shorten(term), Piece::product)};
+      pieces.front() = sign(minus, leads && result.empty()) + pieces.front();
+      result.insert(result.end(), pieces.begin(), pieces.end());
+    });
+    return result;
+  }
+  /// Of a product with one sum as a factor, which is broken where the sum is; empty for all others.
+  std::vector<std::string> bracket_pieces(const Formula& term, Shortener& shorten) const {
+    const auto is_sum = [](const Formula& f) { return f.form == Form::sum; };
+    if (term.form != Form::product || std::count_if(term.args.begin(), term.args.end(), is_sum) != 1) return {};
+    const auto at = static_cast<std::size_t>(std::find_if(term.args.begin(), term.args.end(), is_sum) - term.args.begin());
+    const std::string place = "\x1a";  // no printed text has this character
+    std::vector<Piece> factors = pieces(term.args);
+    for (Piece& factor : factors) {
+      if (factor.binding < Piece::product) factor = {style_.bracket(factor.text), Piece::atom};
     }
+    factors[at] = {place, Piece::atom};
+    const std::string around = style_.product(factors).text;
+    std::vector<std::string> result = line_pieces(term.args[at], shorten);
+    result.front() = around.substr(0, around.find(place)) + style_.open_bracket() + result.front();
+    result.back() += style_.close_bracket() + around.substr(around.find(place) + place.size());
     return result;
   }
   static std::string joined(const std::vector<std::string>& terms) {
@@ -128,18 +173,19 @@ class Walk {
     return result;
   }
   // d/dt of a long sum may be broken inside.
-  std::vector<std::string> broken_terms(const Formula& side) const {
-    std::vector<std::string> result;
-    const std::vector<Formula> terms = side.form == Form::sum ? side.args : std::vector<Formula>{side};
-    if (terms[0].form != Form::rate || terms[0].args[0].form != Form::sum || terms[0].args[0].args.size() < 2) {
-      return side.form == Form::relation || side.form == Form::list ? std::vector<std::string>{(*this)(side).text} : signed_terms(side);
+  std::vector<std::string> broken_terms(const Formula& side, Shortener& shorten) const {
+    if (side.form == Form::relation || side.form == Form::list) return {(*this)(side).text};
+    const Formula& first = side.form == Form::sum ? side.args[0] : side;
+    if (first.form != Form::rate || first.args[0].form != Form::sum || first.args[0].args.size() < 2) {
+      return line_pieces(side, shorten);
     }
-    result = signed_terms(terms[0].args[0]);
+    std::vector<std::string> result = line_pieces(first.args[0], shorten);
     result.front() = style_.open_rate() + result.front();
     result.back() += style_.close_rate();
-    if (terms.size() == 1) return result;
-    std::vector<std::string> rest = signed_terms(side);
-    result.insert(result.end(), rest.begin() + 1, rest.end());
+    if (side.form != Form::sum) return result;
+    for (std::size_t i = 1; i < side.args.size(); ++i) {
+      for (std::string& piece : line_pieces(side.args[i], shorten, false)) result.push_back(std::move(piece));
+    }
     return result;
   }
 

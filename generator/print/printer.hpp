@@ -26,6 +26,9 @@ struct Piece {
   Binding binding = atom;
 };
 
+/// What a piece of a whole formula begins: a side of a relation, or what an abbreviation stands for.
+enum class Start { no, side, abbreviation };
+
 /// One format. Every operation gets operands that already have the brackets that they need, unless it says otherwise.
 class Style {
  public:
@@ -53,9 +56,14 @@ class Style {
   virtual std::string equals() const = 0;
   virtual std::string at_least() const = 0;
   virtual std::string comma() const = 0;
-  /// A whole formula from its top-level pieces, broken into lines or elements where it is long. `starts[i]`: piece i
-  /// begins a side of a relation.
-  virtual std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>& starts) const = 0;
+  /// A whole formula from its top-level pieces, broken into lines or elements where it is long. `starts[i]`: what
+  /// piece i begins.
+  virtual std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>& starts) const = 0;
+  /// Whether a term is short enough for a line of its own.
+  virtual bool fits(const std::string&) const { return true; }
+  /// Of a bracket that is broken over lines.
+  virtual std::string open_bracket() const { return "("; }
+  virtual std::string close_bracket() const { return ")"; }
   /// Opening and closing of a derivative whose inside is broken over lines.
   virtual std::string open_rate() const = 0;
   virtual std::string close_rate() const = 0;

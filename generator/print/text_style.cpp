@@ -101,7 +101,7 @@ class TextStyle final : public Style {
   std::string equals() const override { return " = "; }
   std::string at_least() const override { return " >= "; }
   std::string comma() const override { return ", "; }
-  std::string whole(const std::vector<std::string>& pieces, const std::vector<bool>&) const override {
+  std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>&) const override {
     return joined(pieces, "");
   }
   std::string open_rate() const override { return language_ ? "ddt(" : "d/dt("; }

@@ -47,11 +47,12 @@ bool well_formed(const std::string& xml) {
   return open.empty();
 }
 
-std::string expression(const std::string& is, print::Format format) {
+template <class Form>  // a format or a style
+std::string expression(const std::string& is, const Form& form) {
   const model::Model model = model::read_model_text("format = 1\n[parameters]\na = 1\nb = 2\nc = 3\n[coordinates]\nx = {}\ny = {}\n"
                                                     "[definitions]\ne = \"" + is + "\"\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\n", "text");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
-  return print::print(reading::arrange(reading::read(m, m.scalar_definition[0])), print::Notation(m), format);
+  return print::print(reading::arrange(reading::read(m, m.scalar_definition[0])), print::Notation(m), form);
 }
 
 }  // namespace
@@ -117,6 +118,15 @@ TEST_CASE("brackets stand where they are needed, and only there") {
   CHECK(expression("abs(x)*min(x, y)", Format::latex) == "\\left|x\\right| \\min(x, y)");
   CHECK(expression("if(x < y, x, -y)", Format::language) == "if(x < y, x, -y)");
   CHECK(expression("(x + y)^(a/b)", Format::language) == "(x + y)^(a/b)");
+}
+
+TEST_CASE("lines are broken in brackets, and what cannot be broken is named") {
+  const auto narrow = print::latex_style(10);
+  CHECK(expression("a*(b*x + c*y)", *narrow) == "a (b x + c y)");
+  CHECK(expression("x*y*(b*x*a*c - c*y + a)", *narrow) ==
+        "\\begin{aligned}[t]\n&x y \\bigl(a b c x \\\\\n&\\quad{} - c y \\\\\n&\\quad{} + a\\bigr)\n\\end{aligned}");
+  CHECK(expression("a/sqrt(b*x + a*y + c) - sqrt(b*x + a*y + c)", *narrow) ==
+        "\\begin{aligned}[t]\n&\\sqrt{\\mathcal{S}_{1}},\\quad \\\\\n&\\mathcal{S}_{1} = b x \\\\\n&\\quad{} + a y + c\n\\end{aligned}");
 }
 
 TEST_CASE("the language of model files can be pasted back") {

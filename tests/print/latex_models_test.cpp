@@ -36,12 +36,6 @@ bool is_installed() {
   return false;
 }
 
-// Chains of several bodies in space: brackets within their equations are wider than a line, and are not broken yet; nor is a long root.
-bool is_too_wide(const std::string& model) {
-  return model.starts_with("R15_") || model == "R9_payload_arm" || model == "R16_sphere_on_sphere" || model == "six_bar_spatial" || model == "andrews_squeezer" ||
-          model == "spatial_chain_3";
-}
-
 struct Typeset {
   bool done = false;
   std::vector<std::string> overruns;  // what stands in the lines, by the comment before them
@@ -93,7 +87,6 @@ TEST_CASE("all that derive shows of every model fits on a page, in both approach
                      "\\setlength{\\parindent}{0pt}\n\\allowdisplaybreaks\n\\begin{document}\n";
   for (const fs::path& path : shipped_models()) {
     const model::Model model = model::read_model(path.string());
-    if (is_too_wide(model.id)) continue;
     const mechanics::Mechanics m = mechanics::build_mechanics(model);
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       const std::string which = approach == system::Approach::one ? "I" : "II";
@@ -113,7 +106,6 @@ TEST_CASE("the document of every model fits on its pages") {
   std::string text;
   for (const fs::path& path : shipped_models()) {
     const model::Model model = model::read_model(path.string());
-    if (is_too_wide(model.id)) continue;
     const mechanics::Mechanics m = mechanics::build_mechanics(model);
     const std::string one =
         print::latex_document(m, reading::derive_reading(m, system::Approach::one), reading::derive_reading(m, system::Approach::two));
