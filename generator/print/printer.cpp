@@ -66,7 +66,7 @@ class Walk {
       }
     }
     for (std::size_t i = 0; i < shorten.meanings().size(); ++i) {
-      all.back() += style_.comma();
+      all.back() += ",";
       const Formula meaning = shorten.meanings()[i];
       add(broken_terms(meaning, shorten), (*this)(Shortener::abbreviation(i)).text + style_.equals(), Start::abbreviation);
     }

@@ -122,11 +122,15 @@ TEST_CASE("brackets stand where they are needed, and only there") {
 
 TEST_CASE("lines are broken in brackets, and what cannot be broken is named") {
   const auto narrow = print::latex_style(10);
-  CHECK(expression("a*(b*x + c*y)", *narrow) == "a (b x + c y)");
-  CHECK(expression("x*y*(b*x*a*c - c*y + a)", *narrow) ==
-        "\\begin{aligned}[t]\n&x y \\bigl(a b c x \\\\\n&\\quad{} - c y \\\\\n&\\quad{} + a\\bigr)\n\\end{aligned}");
-  CHECK(expression("a/sqrt(b*x + a*y + c) - sqrt(b*x + a*y + c)", *narrow) ==
-        "\\begin{aligned}[t]\n&\\sqrt{\\mathcal{S}_{1}},\\quad \\\\\n&\\mathcal{S}_{1} = b x \\\\\n&\\quad{} + a y + c\n\\end{aligned}");
+  const model::Model model = model::read_model_text("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n", "text");
+  const mechanics::Mechanics m = mechanics::build_mechanics(model);
+  const auto f = [](const char* word) { return reading::mark(word); };
+  const auto shown = [&](const reading::Formula& formula) { return print::print(formula, print::Notation(m), *narrow); };
+  CHECK(shown(reading::product({f("p"), reading::sum({f("b"), f("c")})})) == "p (b + c)");
+  CHECK(shown(reading::product({f("p"), reading::sum({f("b"), reading::negative(f("c")), f("d"), f("f")}), f("q")})) ==
+        "\\begin{aligned}[t]\n&p \\bigl(b - c + d \\\\\n&\\quad{} + f\\bigr) q\n\\end{aligned}");
+  CHECK(expression("a/sqrt(b*x + a*y + c)", *narrow) ==
+        "\\begin{aligned}[t]\n&\\frac{a}{\\sqrt{\\mathcal{S}_{1}}}, \\\\\n&\\mathcal{S}_{1} = b x + a y \\\\\n&\\quad{} + c\n\\end{aligned}");
 }
 
 TEST_CASE("the language of model files can be pasted back") {
