@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "bench/bench.hpp"
+#include "bench/repeat.hpp"
 #include "run/integration.hpp"
 
 namespace eomgen::bench {
@@ -14,16 +15,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr int tightest = 13;              // rtol from 1e-3 to 1e-13
 constexpr int step_sizes = 9;             // of solvers with fixed steps, halved from one to the next
-constexpr std::size_t most_repeats = 31, fewest_repeats = 3;
-constexpr double seconds_of_repeats = 0.15;
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t n = values.size();
-  return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
-}
 
 class Measurement {
  public:
@@ -104,15 +97,9 @@ class Measurement {
   }
 
   static void time(run::Integration& integration, const eom::Options& options, Row& row) {
-    std::vector<double> seconds;
-    const Clock::time_point start = Clock::now();
-    while (seconds.size() < fewest_repeats || (seconds.size() < most_repeats && seconds_since(start) < seconds_of_repeats)) {
-      const Clock::time_point from = Clock::now();
-      integration.run(options, {});
-      seconds.push_back(seconds_since(from));
-    }
-    row.repeats = seconds.size();
-    row.seconds = median(std::move(seconds));
+    const Median median = median_time([&] { integration.run(options, {}); });
+    row.repeats = median.repeats;
+    row.seconds = median.seconds;
   }
 
   const Request& request_;
@@ -155,7 +142,7 @@ std::vector<Row> measure(const Request& request) {
     if (request.progress) request.progress(other.name);
     for (int k = 0; k < tightest - 2 && !interrupted(); ++k) {
       rows.push_back(measurement.other(other, std::pow(10.0, -3 - k)));
-      if (rows.back().seconds > request.seconds_limit) break;
+      if (rows.back().outcome == "interrupted" || rows.back().outcome == "failed (-1)") break;
     }
   }
   return rows;

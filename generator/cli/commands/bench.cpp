@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "bench/bench.hpp"
+#include "bench/libraries.hpp"
 #include "cli/bench_report.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
@@ -31,6 +32,7 @@ struct Options {
   std::vector<std::string> set, solvers;
   std::optional<double> t_end;
   double seconds = 10;
+  bool no_libraries = false;
 };
 
 [[noreturn]] void unsupported(const std::string& what, const std::string& remedy) {
@@ -154,6 +156,12 @@ int execute(const Options& options, const Common& common) {
   std::vector<std::pair<std::string, std::string>> left_out;
   bench::Request measured{request, reference, times, solvers_for(options, scene, left_out)};
   measured.seconds_limit = options.seconds;
+  if (!options.no_libraries && options.solvers.empty()) {
+    status.show("compiling what calls other libraries");
+    bench::LibrariesFound found = bench::find_libraries(request, problem.x, options.seconds);
+    measured.others = std::move(found.others);
+    left_out.insert(left_out.end(), found.left_out.begin(), found.left_out.end());
+  }
   measured.progress = [&status](const std::string& solver) { status.show(solver); };
   const std::vector<bench::Row> rows = bench::measure(measured);
   status.show("");
@@ -181,6 +189,7 @@ Execute declare_bench(CLI::App& app) {
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   add_list(app, "--solver", options->solvers, "only these solvers");
   app.add_option("--seconds", options->seconds, "what takes longer is interrupted")->check(positive_number())->capture_default_str();
+  app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
   app.add_option("--csv", options->csv, "the table as a CSV file");
   app.add_option("--svg", options->svg, "error over run time as an SVG plot");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();

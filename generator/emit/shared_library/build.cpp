@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The cache: KEY/ holds the library and its checksum. A key's folder is made beside and renamed, so that it is there
+// whole or not at all, whoever else is at it; what is in it is believed only if the checksum is right.
+#include "emit/shared_library/build.hpp"
+
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "emit/shared_library/checksum.hpp"
+#include "emit/shared_library/process.hpp"
+#include "error.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string environment(const char* name) {
+  const char* value = std::getenv(name);
+  return value == nullptr ? "" : value;
+}
+
+fs::path cache_folder() {
+  if (const std::string own = environment("EOMGEN_CACHE_DIR"); !own.empty()) return own;
+  if (const std::string xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) return fs::path(xdg) / "eomgen";
+  if (const std::string home = environment("HOME"); !home.empty()) return fs::path(home) / ".cache" / "eomgen";
+  return fs::temp_directory_path() / ("eomgen-" + std::to_string(::getuid()));
+}
+
+[[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("compile", {}, what, remedy, Fault::tool); }
+
+struct Compiler {
+  std::vector<std::string> command;  // the program and what it is always given ("ccache gcc")
+  std::string name, version;
+};
+
+std::vector<std::string> words(const std::string& text) {
+  std::istringstream in(text);
+  std::vector<std::string> result;
+  for (std::string word; in >> word;) result.push_back(word);
+  return result;
+}
+
+bool runs(const std::vector<std::string>& command, std::string& version) {
+  if (command.empty()) return false;
+  std::vector<std::string> question = command;
+  question.push_back("--version");
+  const Finished finished = run_process(question);
+  version = finished.output;
+  return finished.started && finished.status == 0;
+}
+
+Compiler find_compiler(const Recipe& recipe) {
+  std::vector<std::string> candidates;
+  std::string asked;
+  for (const std::string& name : recipe.variables) {
+    asked = environment(name.c_str());
+    if (!asked.empty()) {
+      candidates = {asked};
+      break;
+    }
+  }
+  if (candidates.empty()) candidates = recipe.compilers;
+  for (const std::string& candidate : candidates) {
+    for (const std::vector<std::string>& command : {std::vector<std::string>{candidate}, words(candidate)}) {
+      std::string version;
+      if (runs(command, version)) return {command, candidate, version};
+    }
+  }
+  std::string unset;
+  for (const std::string& name : recipe.variables) unset += (unset.empty() ? "" : " and ") + name;
+  fail(asked.empty() ? "there is no " + recipe.language + " compiler" : "the " + recipe.language + " compiler `" + asked + "` does not run",
+       "sudo apt-get install " + recipe.package + (asked.empty() ? "" : ", or unset " + unset));
+}
+
+std::optional<std::string> read_file(const fs::path& path) {
+  std::ifstream in(path, std::ios::binary);
+  if (!in) return std::nullopt;
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+void write_file(const fs::path& path, const std::string& text) {
+  std::ofstream out(path, std::ios::binary);
+  out << text;
+  out.close();
+  if (!out) fail("cannot write " + path.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to, with space left");
+}
+
+/// The library of a cache entry that is whole.
+bool is_whole(const fs::path& entry, const std::string& name) {
+  const auto library = read_file(entry / (name + ".so"));
+  const auto sum = read_file(entry / "checksum");
+  return library && sum && checksum(*library) == *sum;
+}
+
+/// A folder that is removed again unless it is handed on.
+struct Workplace {
+  fs::path path;
+  ~Workplace() {
+    std::error_code ignored;
+    fs::remove_all(path, ignored);
+  }
+};
+
+void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe& recipe) {
+  for (const auto& [name, text] : recipe.files) write_file(folder / name, text);
+  const fs::path library = folder / (recipe.name + ".so");
+  std::vector<std::string> command = compiler.command;
+  command.insert(command.end(), recipe.flags.begin(), recipe.flags.end());
+  for (const std::string& argument : {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()}) command.push_back(argument);
+  command.insert(command.end(), recipe.libraries.begin(), recipe.libraries.end());
+  const Finished finished = run_process(command);
+  if (!finished.started || finished.status != 0) {
+    constexpr std::size_t shown = 4000;
+    fail("`" + compiler.name + "` failed on " + recipe.what + ":\n" + finished.output.substr(0, shown), recipe.remedy);
+  }
+  write_file(folder / "checksum", checksum(read_file(library).value_or("")));
+}
+
+/// Puts `made` in the place of `entry`; another process that was faster has made the same.
+void put_in_place(const fs::path& made, const fs::path& entry, const std::string& name) {
+  std::error_code failed;
+  fs::rename(made, entry, failed);
+  if (!failed || is_whole(entry, name)) return;
+  // What is there is broken: out of the way, then again.
+  fs::path broken = made;
+  broken += ".broken";
+  std::error_code ignored;
+  fs::rename(entry, broken, ignored);
+  fs::remove_all(broken, ignored);
+  fs::rename(made, entry, failed);
+  if (failed && !is_whole(entry, name)) {
+    fail("cannot put compiled code into " + entry.string() + ": " + failed.message(),
+         "set EOMGEN_CACHE_DIR to a folder that you may write to");
+  }
+}
+
+}  // namespace
+
+Built build_library(const Recipe& recipe, const std::function<void(const std::string& path)>& examine) {
+  const Compiler compiler = find_compiler(recipe);
+  std::string key;
+  for (const auto& [name, text] : recipe.files) key += text + '\0';
+  key += compiler.name + '\0' + compiler.version;
+  for (const std::string& flag : recipe.flags) key += '\0' + flag;
+  for (const std::string& library : recipe.libraries) key += '\0' + library;
+  const fs::path folder = cache_folder();
+  const fs::path entry = folder / checksum(key);
+  const std::string file = recipe.name + ".so";
+  const std::string library = (entry / file).string();
+
+  if (is_whole(entry, recipe.name)) return {library, true, 0};
+  std::error_code failed;
+  fs::create_directories(folder, failed);
+  std::string place = (folder / "make-XXXXXX").string();
+  if (failed || ::mkdtemp(place.data()) == nullptr) {
+    fail("cannot use the cache folder " + folder.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to");
+  }
+  const Workplace workplace{place};
+  const auto begin = std::chrono::steady_clock::now();
+  compile_into(workplace.path, compiler, recipe);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  if (examine) examine((workplace.path / file).string());
+  put_in_place(workplace.path, entry, recipe.name);
+  return {library, false, seconds};
+}
+
+}  // namespace eomgen::emit
