@@ -259,12 +259,48 @@ Problem elastic(const std::string& scene, const std::string& k) {
   return problem;
 }
 
+// --- The pendulum and the N-four-bar mechanism: one angle each ----------------------------------------------------------
+Problem pendulum() {
+  Problem problem{"iftomm_pendulum", "default", "nothing; the closed form is in the test", {{"g", "9.81"}, {"L", "1"}}, {}, {}, {}, {}, "10", {}};
+  problem.start = [](const Values&) { return Values{{"x", -1}, {"y", 0}, {"x_dot", 0}, {"y_dot", 0}}; };
+  problem.begin = [](const Values&, const Values& s) { return State{atan2q(at(s, "x"), -at(s, "y")), 0}; };  // from rest
+  problem.rhs = [](const Values& p, Quad, const State& x, State& dx) { dx = {x[1], -at(p, "g") / at(p, "L") * sinq(x[0])}; };
+  problem.end = [](const Values& p, const State& x) {
+    const Quad L = at(p, "L");
+    return Values{{"x", L * sinq(x[0])}, {"y", -L * cosq(x[0])}, {"x_dot", L * x[1] * cosq(x[0])}, {"y_dot", L * x[1] * sinq(x[0])}};
+  };
+  return problem;
+}
+
+/// All cranks turn alike, and couplers keep level: (N/3 + 1/3 + N) L a'' = (N/2 + 1/2 + N) g sin(a).
+Problem four_bars(int windows, const std::string& t1, bool beyond) {
+  Problem problem{"n_four_bar_" + std::to_string(windows), "default", "nothing", {{"g", "9.81"}, {"L", "1"}}, {}, {}, {}, {}, t1, {}};
+  problem.start_is_binary64 = true;
+  problem.by_hand_alone = beyond;
+  const auto all = [windows](Quad a, Quad a1) {
+    Values values;
+    for (int i = 0; i <= windows; ++i) {
+      values["a" + std::to_string(i)] = a;
+      values["a" + std::to_string(i) + "_dot"] = a1;
+      if (i > 0) values["b" + std::to_string(i)] = values["b" + std::to_string(i) + "_dot"] = 0;
+    }
+    return values;
+  };
+  problem.start = [all](const Values&) { return all(0, -1); };
+  problem.begin = [](const Values&, const Values& s) { return State{at(s, "a0"), at(s, "a0_dot")}; };
+  problem.rhs = [N = static_cast<Quad>(windows)](const Values& p, Quad, const State& x, State& dx) {
+    dx = {x[1], (3 * N + 1) / 2 / ((4 * N + 1) / 3) * at(p, "g") / at(p, "L") * sinq(x[0])};
+  };
+  problem.end = [all](const Values&, const State& x) { return all(x[0], x[1]); };
+  return problem;
+}
+
 }  // namespace
 
 const std::vector<Problem>& problems() {
   static const std::vector<Problem> list{
       kepler("default", "0.9", "2 pi", "the start, after one period"), kepler("e99", "0.99", "2 pi", "the start, after one period"),
-      kepler("detest_d5", "0.9", "20", "Kepler's equation; published in DETEST, problem D5"), heavy_top(), andrews(), car_axis(),
+      kepler("detest_d5", "0.9", "20", "Kepler's equation; published in DETEST, problem D5"), heavy_top(), andrews(), car_axis(), pendulum(), four_bars(2, "1", false), four_bars(2, "10", true), four_bars(40, "10", true),
       elastic("k4", "1e4"), elastic("k6", "1e6"), elastic("k8", "1e8"), elastic("default", "1e10"), elastic("k12", "1e12")};
   return list;
 }

@@ -25,6 +25,8 @@ struct Problem {
   std::string t1;                                           // decimal, or "2 pi"
   std::vector<std::pair<std::string, std::string>> values;  // of the literature at t1; those not given are not published
   std::function<Values(const Values& p, const Values& start, Quad t)> closed_form = {};  // in place of rhs
+  bool start_is_binary64 = false;                           // that start is taken, not what a run solves for
+  bool by_hand_alone = false;
 };
 
 const std::vector<Problem>& problems();

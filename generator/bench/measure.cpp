@@ -125,9 +125,12 @@ std::vector<Row> measure(const Request& request) {
   const auto interrupted = [&] { return request.run.interrupt != nullptr && *request.run.interrupt; };
   const run::Scene& scene = request.run.scene;
   const double span = std::abs(scene.t1 - scene.t0);
-  // As many steps as an adaptive solver of order 5 takes for 1e-3, so that step sizes have to do with the motion.
-  const Row rough = measurement.row("dopri5", 1e-3, 0);
-  const double first_step = span / static_cast<double>(std::max<std::size_t>(rough.steps, 10));
+  double first_step = 16 * scene.step;  // around the one that the scene states
+  if (first_step == 0) {
+    // As many steps as an adaptive solver of order 5 takes for 1e-3, so that step sizes have to do with the motion.
+    const Row rough = measurement.row("dopri5", 1e-3, 0);
+    first_step = span / static_cast<double>(std::max<std::size_t>(rough.steps, 10));
+  }
   for (const std::string& solver : request.solvers) {
     if (request.progress) request.progress(solver);
     const bool adaptive = run::method_named(solver).adaptive;

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <eom/ode.hpp>
 #include <eom/output/svg_plot.hpp>
 #include <fstream>
 #include <thread>
@@ -9,6 +10,26 @@
 #include "bench/bench.hpp"
 
 namespace eomgen::bench {
+
+namespace {
+
+/// Where stability alone makes explicit solvers take many more steps than the motion asks for; or "".
+std::string stiffness(const std::vector<Row>& rows) {
+  constexpr std::size_t many = 20;  // times as many; a motion that has to be resolved costs all of them alike
+  const Row* fewest[2] = {nullptr, nullptr};  // explicit, implicit; of those that are right to a percent
+  for (const Row& row : rows) {
+    for (const eom::MethodInfo& method : eom::methods()) {
+      if (row.solver != method.name || !method.adaptive || row.outcome != "done" || !(row.error_along <= 0.01)) continue;
+      const Row*& least = fewest[method.implicit ? 1 : 0];
+      if (least == nullptr || row.steps < least->steps) least = &row;
+    }
+  }
+  if (fewest[0] == nullptr || fewest[1] == nullptr || fewest[0]->steps < many * fewest[1]->steps) return "";
+  return fmt::format(" The motion is stiff: explicit solvers are unfit, stability asks of them for {} steps and more ({}), where {} takes {}.",
+                     fewest[0]->steps, fewest[0]->solver, fewest[1]->solver, fewest[1]->steps);
+}
+
+}  // namespace
 
 std::string advice(const std::vector<Row>& rows) {
   std::string text, last;
@@ -26,7 +47,7 @@ std::string advice(const std::vector<Row>& rows) {
     const std::string how = best->step > 0 ? fmt::format("step {:.2g}", best->step) : fmt::format("rtol {:.0e}", best->rtol);
     text += fmt::format("{} {} for {} ({}, {:.3g} ms)", text.empty() ? "" : ",", best->solver, what, how, 1e3 * best->seconds);
   }
-  return "For true errors along the whole run take" + text + ".";
+  return "For true errors along the whole run take" + text + "." + stiffness(rows);
 }
 
 std::string diagram(const std::vector<Row>& rows, const std::string& title) {

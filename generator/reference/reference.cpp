@@ -11,6 +11,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "reference/consistent.hpp"
 #include "reference/expansion.hpp"
 
 namespace eomgen::reference {
@@ -43,6 +44,9 @@ class Run {
   Run(const Problem& problem, const program::Taylor& taylor, Settings settings)
       : problem_(problem), settings_(settings), expand_(taylor, settings.digits), t_(expand_.number(problem.t0)) {
     for (const double x : problem.x) x_.push_back(expand_.number(x));
+    if (problem.constraints != nullptr) {
+      x_ = consistent(*problem.constraints, problem.coordinates, t_, std::move(x_), problem.p, settings.digits);
+    }
   }
 
   States run() {

@@ -3,11 +3,19 @@
 // quadruple precision (bench/published_equations.cpp) and by the reference route, which agree in 23 digits and more.
 #include <doctest/doctest.h>
 
+#include <cln/dfloat.h>
+#include <cln/real.h>
+
+#include <algorithm>
 #include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "bench/bench.hpp"
+#include "program/interpret.hpp"
+#include "reference/consistent.hpp"
+#include "support/elliptic.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -138,8 +146,82 @@ TEST_CASE("published: the car axis") {
   CHECK(run.final("reaction.chassis") * 1e-4 == doctest::Approx(-0.001104680411345730).epsilon(1e-6));
 }
 
-TEST_CASE("published: the elastic pendulum of k = 1e4 on its smooth solution") {
-  const Values smooth{{"s", 7.2540613167445481505278e-4}, {"theta", 0.91821441020506344195360}, {"s_dot", -2.6839916839492663749500e-3},
-                      {"theta_dot", 1.1454141217483031969358}};
-  check("elastic_pendulum_smooth", "k4", "taylor", smooth, 1e-11);
+TEST_CASE("published: the stiff elastic pendulum on its smooth solution: radau5 and rodas to 1e-8 in fewer than 2000 steps") {
+  const Values k4{{"s", 7.2540613167445481505278e-4}, {"theta", 0.91821441020506344195360}, {"s_dot", -2.6839916839492663749500e-3},
+                  {"theta_dot", 1.1454141217483031969358}};
+  check("elastic_pendulum_smooth", "k4", "taylor", k4, 1e-11);
+  const Values k10{{"s", 7.20996328660383e-10}, {"theta", 0.9207938245963407927995921}, {"s_dot", -2.64346480206845e-9}, {"theta_dot", 1.128301874649872064922251}};
+  for (const char* solver : {"radau5", "rodas"}) {
+    CAPTURE(std::string(solver));
+    const test::Finished run = motion("elastic_pendulum_smooth", "default", solver, 1e-11);
+    const std::size_t steps = run.simulation.result.statistics.steps;
+    CHECK(steps < 2000);
+    for (const auto& [name, value] : k10) CHECK(std::abs(run.final(name) - value) < 1e-8);
+    CHECK(run.final("s") == doctest::Approx(7.20996328660383e-10).epsilon(1e-6));  // no spring's oscillation
+  }
+}
+
+TEST_CASE("published: bench tells that explicit solvers are unfit for the stiff pendulum, and of no other") {
+  const auto row = [](const char* solver, std::size_t steps) {
+    bench::Row result;
+    result.solver = solver;
+    result.steps = steps;
+    result.rtol = result.error = result.error_along = 1e-7;
+    result.seconds = 1e-3;
+    result.outcome = "done";
+    return result;
+  };
+  const std::string stiff = bench::advice({row("dop853", 40000), row("taylor", 69000), row("radau5", 128)});
+  CHECK(stiff.ends_with("The motion is stiff: explicit solvers are unfit, stability asks of them for 40000 steps and more (dop853), where radau5 takes 128."));
+  CHECK(bench::advice({row("dop853", 120), row("radau5", 128)}).find("stiff") == std::string::npos);
+}
+
+TEST_CASE("published: the IFToMM pendulum follows its closed form") {
+  const Values end{{"x", -0.2750874625761168600543914}, {"y", -0.96141920509912506426513507}, {"x_dot", 4.1755981009517288364605195}, {"y_dot", -1.194749054560475271647513}};
+  const test::Finished run = check("iftomm_pendulum", "default", "dop853", end, 1e-11);
+  const test::Swing swing = test::pendulum_from_rest(std::acos(-1.0) / 2, std::sqrt(9.81), 10);  // from the other side
+  CHECK(run.final("x") == doctest::Approx(-std::sin(swing.angle)).epsilon(1e-10));
+  CHECK(run.final("y") == doctest::Approx(-std::cos(swing.angle)).epsilon(1e-10));
+  // 2 lambda (x, y) is the force of the rod, 3 m g cos(angle) from rest at the horizontal.
+  CHECK(run.final("reaction.rod") * 2 == doctest::Approx(-3 * 9.81 * std::cos(swing.angle)).epsilon(1e-10));
+}
+
+TEST_CASE("published: the N-four-bar mechanism of two windows passes the flat place, where its loops lose their rank, ten times") {
+  const test::Finished run = test::run_model("n_four_bar_2");  // rk4, as the scene says
+  CHECK(run.simulation.result.outcome == eom::Outcome::done);
+  CHECK(run.simulation.derived->mechanics.freedom() == 1);
+  for (const char* name : {"a0", "a1", "a2"}) CHECK(run.final(name) == doctest::Approx(-31.750597186986101817).epsilon(1e-10));
+  CHECK(run.final("a0_dot") == doctest::Approx(-1.5066421808418294699).epsilon(1e-9));
+  for (const char* name : {"b1", "b2"}) CHECK(std::abs(run.final(name)) < 1e-9);  // couplers stay level
+  CHECK(run.drift("energy") < 1e-10);
+}
+
+TEST_CASE("published: the reference starts where the constraints hold in all digits") {
+  cli::SimulationRequest request;
+  request.model = test::model_path("andrews_squeezer");
+  request.overrides.solver = "dop853";
+  request.integrate = false;
+  const cli::Simulation simulation = cli::simulate(request);
+  const auto& functions = simulation.program.functions;
+  const auto constraints = std::find_if(functions.begin(), functions.end(), [](const program::Function& f) { return f.name == "constraints"; });
+  REQUIRE(constraints != functions.end());
+  constexpr int digits = 40;
+  std::vector<cln::cl_F> x;
+  for (const auto& part : {simulation.scene.q, simulation.scene.qdot})
+    for (const double value : part) x.push_back(cln::cl_float(cln::cl_DF(value), cln::float_format(digits)));
+  const cln::cl_F t = cln::cl_float(0, cln::float_format(digits));
+  const auto off = [&](const std::vector<cln::cl_F>& at) {
+    program::Arguments<cln::cl_R> arguments;
+    arguments.t = t;
+    arguments.x.assign(at.begin(), at.end());
+    for (const double p : simulation.scene.parameters) arguments.p.emplace_back(cln::cl_DF(p));
+    double largest = 0;
+    const auto results = program::interpret(*constraints, arguments, digits).results;
+    for (const cln::cl_R& psi : results[0]) largest = std::max(largest, std::abs(cln::double_approx(psi)));
+    return largest;
+  };
+  const std::vector<cln::cl_F> moved = reference::consistent(*constraints, 7, t, x, simulation.scene.parameters, digits);
+  CHECK(off(x) > 1e-20);      // rounded
+  CHECK(off(moved) < 1e-38);
+  for (std::size_t i = 0; i < x.size(); ++i) CHECK(std::abs(cln::double_approx(moved[i] - x[i])) < 1e-14);
 }

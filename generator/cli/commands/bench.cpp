@@ -57,8 +57,10 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   for (const run::Signal& signal : simulation.scene.inputs) {
     if (signal.moves()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
   }
-  run::Integration trial(request, "dop853");
+  // A scene that states a step has a reason: adaptive ones may not get through.
+  run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
   eom::Options options;
+  options.fixed_step = simulation.scene.step;
   options.interrupt = request.interrupt;
   const eom::Result end = trial.run(options, {});
   for (const std::size_t crossings : trial.kink_crossings) {
@@ -72,7 +74,12 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
 reference::Problem problem_of(const Simulation& simulation, const run::RunRequest& request, const std::vector<double>& times) {
   const run::Scene& scene = simulation.scene;
   reference::Problem problem{simulation.program.functions.front(), run::Integration(request, "dop853").initial_state(), scene.parameters,
-                             scene.t0, {}, times, request.interrupt};
+                             scene.t0, {}, times};
+  problem.interrupt = request.interrupt;
+  problem.coordinates = simulation.program.free.size();
+  for (const program::Function& function : simulation.program.functions) {
+    if (function.name == "constraints") problem.constraints = &function;
+  }
   std::vector<double> ends;
   const double direction = scene.t1 < scene.t0 ? -1 : 1;
   for (const run::Signal& signal : scene.inputs) {
@@ -122,7 +129,6 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
   request.overrides.parameters = parse_assignments("bench", options.set);
   request.overrides.t_end = options.t_end;
   request.overrides.solver = "dop853";
-  request.overrides.step = 0;
   request.approach = approach_choice(options.approach);
   request.form = form_choice(options.form);
   request.with = {"taylor", "jac"};
