@@ -158,6 +158,11 @@ TEST_CASE("published: the stiff elastic pendulum on its smooth solution: radau5 
     CHECK(steps < 2000);
     for (const auto& [name, value] : k10) CHECK(std::abs(run.final(name) - value) < 1e-8);
     CHECK(run.final("s") == doctest::Approx(7.20996328660383e-10).epsilon(1e-6));  // no spring's oscillation
+    // The values for k = 1e6, 1e8, 1e10 extrapolated in 1/k.
+    const test::Finished stiffer = motion("elastic_pendulum_smooth", "k12", solver, 1e-11);
+    CHECK(stiffer.simulation.result.statistics.steps < 2000);
+    CHECK(std::abs(stiffer.final("theta") - 0.92079382713038) < 1e-9);
+    CHECK(std::abs(stiffer.final("theta_dot") - 1.12830185767316) < 1e-9);
   }
 }
 
