@@ -143,6 +143,7 @@ nlohmann::ordered_json RunReport::json() const {
                             {"factorisations", cost.factorisations}, {"newton_iterations", cost.newton_iterations},
                             {"newton_failures", cost.newton_failures}};
   }
+  if (sensitivities) document["sensitivities"] = json_of(*sensitivities, state_names(derived));
   if (!estimate_wanted) return document;
   Json estimate = nullptr;
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
@@ -186,6 +187,7 @@ std::string RunReport::text() const {
                                      seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
                                      compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
                                      charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
+  if (sensitivities) out += text_of(*sensitivities, state_names(derived));
   return out;
 }
 

@@ -62,6 +62,13 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
   return names;
 }
 
+bool energy_is_conserved(const Derived& derived) {
+  return std::any_of(derived.conserved.begin(), derived.conserved.end(),
+                     [](const derive::Conserved& c) { return c.name == "energy"; });
+}
+
+}  // namespace
+
 std::vector<std::string> state_names(const Derived& derived) {
   std::vector<std::string> names;
   for (const char* suffix : {"", "_dot"}) {
@@ -72,13 +79,6 @@ std::vector<std::string> state_names(const Derived& derived) {
   }
   return names;
 }
-
-bool energy_is_conserved(const Derived& derived) {
-  return std::any_of(derived.conserved.begin(), derived.conserved.end(),
-                     [](const derive::Conserved& c) { return c.name == "energy"; });
-}
-
-}  // namespace
 
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};

@@ -53,6 +53,9 @@ inline constexpr double default_rows = 500;
 
 Simulation simulate(const SimulationRequest& request);
 
+/// Of the state: free coordinates, their rates, integrals over time.
+std::vector<std::string> state_names(const Derived& derived);
+
 /// What the runner is asked for with compiled code: no rows.
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate);
 

@@ -51,6 +51,7 @@ struct Code {
   int (*mass_in)(double, const double*, const double*, int, double*, double*) = nullptr;
   int (*constraints_in)(double, const double*, const double*, int, double*, double*, double*) = nullptr;
   std::vector<OwnOutputs> own_outputs = {};
+  int (*jac_p)(double, const double*, const double*, const double*, int, double*) = nullptr;  // only where sensitivities were asked for
 };
 
 struct Invariant {

@@ -13,6 +13,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/output.hpp"
 #include "cli/run_report.hpp"
+#include "cli/sensitivities.hpp"
 #include "cli/simulate.hpp"
 #include "cli/usage.hpp"
 
@@ -21,7 +22,7 @@ namespace {
 
 struct Options {
   std::string model, scene = "default", out, plot, approach = "auto", form = "auto";
-  std::vector<std::string> set, outputs;
+  std::vector<std::string> set, outputs, sensitivity;
   std::optional<double> rtol, atol, step, t_end, every;
   std::optional<std::string> solver;
   bool no_error_estimate = false, no_charts = false;
@@ -154,7 +155,8 @@ int execute(const Options& options, const Common& common) {
   request.approach = approach_choice(options.approach);
   request.form = form_choice(options.form);
   request.estimate = !options.no_error_estimate;
-  request.charts = !options.no_charts;
+  request.charts = !options.no_charts && options.sensitivity.empty();  // derivatives are those of the model's own coordinates
+  if (!options.sensitivity.empty()) request.with.assign(std::begin(sensitivity_functions), std::end(sensitivity_functions));
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
@@ -173,14 +175,16 @@ int execute(const Options& options, const Common& common) {
   const model::Model& model = simulation.derived->model;
   if (rows) rows->finish(simulation.result.outcome);
   if (!options.plot.empty()) rows->plot(options.plot, model.title.empty() ? model.id : model.title);
-  const RunReport report{simulation, request.estimate};
+  const eom::Outcome outcome = simulation.result.outcome;
+  const bool ended = outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event;
+  RunReport report{simulation, request.estimate, {}};
+  if (!options.sensitivity.empty() && ended) report.sensitivities = sensitivities(simulation, request, options.sensitivity);
   if (common.json) {
     print_document(report.json());
   } else {
     fmt::print("{}", report.text());
   }
-  const eom::Outcome outcome = simulation.result.outcome;
-  return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
+  return ended && (!report.sensitivities || report.sensitivities->outcome == eom::Outcome::done) ? 0 : 3;
 }
 
 }  // namespace
@@ -198,6 +202,7 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
   app.add_option("--out", options->out, "a CSV file");
   app.add_option("--plot", options->plot, "an SVG plot of the coordinates over time");
+  add_list(app, "--sensitivity", options->sensitivity, "derivatives of the end by these parameters and values of the start");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();

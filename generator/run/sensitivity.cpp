@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/sensitivity.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/error_estimate.hpp>
+#include <eom/ode.hpp>
+
+namespace eomgen::run {
+namespace {
+
+/// x and, one after the other, each s times its scale.
+class Variational {
+ public:
+  Variational(const RunRequest& request, const std::vector<Direction>& directions)
+      : code_(request.code), scene_(request.scene), directions_(directions), n_(request.state_names.size()),
+        w_(code_.prepare != nullptr ? code_.prepared : 0), u_(std::max<std::size_t>(1, scene_.inputs.size())),
+        dfdx_(n_ * n_), dfdt_(n_), dfdp_(n_ * scene_.parameters.size()) {
+    prepared_ = code_.prepare != nullptr && code_.prepare(scene_.parameters.data(), w_.data()) == 0;
+  }
+
+  std::vector<double> start() const {
+    std::vector<double> x;
+    for (const std::uint32_t i : code_.free) x.push_back(scene_.q[i]);
+    for (const std::uint32_t i : code_.free) x.push_back(scene_.qdot[i]);
+    x.resize(n_);
+    for (const Direction& d : directions_) {
+      for (const double dx : d.dx) x.push_back(d.scale * dx);
+    }
+    return x;
+  }
+
+  int operator()(double t, const double* x, double* dx) {
+    for (std::size_t i = 0; i < scene_.inputs.size(); ++i) u_[i] = scene_.inputs[i](t, side);
+    const double* p = scene_.parameters.data();
+    // dx may be x: what is read of x comes first.
+    if (const int code = code_.jac(t, x, p, u_.data(), 0, dfdx_.data(), dfdt_.data()); code != 0) return code;
+    if (const int code = code_.jac_p(t, x, p, u_.data(), 0, dfdp_.data()); code != 0) return code;
+    slopes_.assign(n_ * directions_.size(), 0.0);
+    for (std::size_t d = 0; d < directions_.size(); ++d) {
+      double* slope = slopes_.data() + d * n_;
+      const double* s = x + (d + 1) * n_;
+      for (std::size_t j = 0; j < n_; ++j) {
+        for (std::size_t i = 0; i < n_; ++i) slope[i] += dfdx_[i + n_ * j] * s[j];
+      }
+      for (std::size_t k = 0; k < directions_[d].dp.size(); ++k) {
+        const double change = directions_[d].scale * directions_[d].dp[k];
+        if (change == 0) continue;
+        for (std::size_t i = 0; i < n_; ++i) slope[i] += dfdp_[i + n_ * k] * change;
+      }
+    }
+    const int code = prepared_ ? code_.rhs_prepared(t, x, p, w_.data(), u_.data(), 0, dx) : code_.rhs(t, x, p, u_.data(), 0, dx);
+    if (code == 0) std::copy(slopes_.begin(), slopes_.end(), dx + n_);
+    return code;
+  }
+
+  double side = 0;  // of jumps of inputs: a time inside the piece that is being integrated
+
+ private:
+  const Code& code_;
+  const Scene& scene_;
+  const std::vector<Direction>& directions_;
+  std::size_t n_;
+  std::vector<double> w_, u_, dfdx_, dfdt_, dfdp_, slopes_;
+  bool prepared_ = false;
+};
+
+/// Ends of the pieces between jumps of the inputs.
+std::vector<double> pieces(const Scene& scene, double t_end) {
+  std::vector<double> ends;
+  const double direction = t_end < scene.t0 ? -1 : 1;
+  for (const Signal& signal : scene.inputs) {
+    for (const double t : signal.jumps()) {
+      if ((t - scene.t0) * direction > 0 && (t_end - t) * direction > 0) ends.push_back(t);
+    }
+  }
+  std::sort(ends.begin(), ends.end(), [direction](double a, double b) { return a * direction < b * direction; });
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  ends.push_back(t_end);
+  return ends;
+}
+
+eom::Result run(const RunRequest& request, const std::string& solver, double t_end, const std::vector<Direction>& directions,
+                const eom::Options& options) {
+  Variational f(request, directions);
+  eom::Result total;
+  total.t = request.scene.t0;
+  total.x = f.start();
+  for (const double end : pieces(request.scene, t_end)) {
+    f.side = (total.t + end) / 2;
+    eom::Result piece = eom::integrate(solver, f, total.t, total.x, end, options);
+    piece.statistics += total.statistics;
+    total = std::move(piece);
+    if (total.outcome != eom::Outcome::done) break;
+  }
+  return total;
+}
+
+/// The method that ran, or, where it needs a series, one of as high an order that does not.
+std::string fitting(const std::string& solver) {
+  return method_named(solver).series ? "dop853" : solver;
+}
+
+void require_smooth(const RunRequest& request) {
+  if (request.code.contacts.empty()) return;
+  throw Error("run", {}, "contacts and friction change the equations on the way, and derivatives of the end jump there",
+              "compare runs with changed parameters (--set), or sweep over them");
+}
+
+}  // namespace
+
+Sensitivities integrate_sensitivities(const RunRequest& request, const std::string& solver, double t_end,
+                                      const std::vector<Direction>& directions, bool estimate) {
+  require_smooth(request);
+  Sensitivities result;
+  result.solver = fitting(solver);
+  eom::Options options;
+  options.rtol = request.scene.rtol;
+  options.atol = request.scene.atol;
+  options.fixed_step = method_named(result.solver).adaptive ? 0 : request.scene.step;
+  options.interrupt = request.interrupt;
+  options.max_steps = request.max_steps;
+  const eom::Result end = run(request, result.solver, t_end, directions, options);
+  result.outcome = end.outcome;
+  result.t = end.t;
+  result.statistics = end.statistics;
+  const std::size_t n = request.state_names.size();
+  for (std::size_t d = 0; d < directions.size(); ++d) {
+    result.list.push_back({directions[d].name, {}, {}});
+    for (std::size_t i = 0; i < n; ++i) result.list.back().value.push_back(end.x[(d + 1) * n + i] / directions[d].scale);
+  }
+  if (!estimate || end.outcome != eom::Outcome::done) return result;
+  const eom::ErrorEstimate error = eom::estimate_error(method_named(result.solver).order, request.scene.t0, end, options,
+      [&](const eom::Options& tighter) { return run(request, result.solver, t_end, directions, tighter); });
+  for (std::size_t d = 0; d < directions.size(); ++d) {
+    for (std::size_t i = 0; i < n; ++i) result.list[d].error.push_back(error.x[(d + 1) * n + i] / directions[d].scale);
+  }
+  if (error.outcome != eom::Outcome::done)
+    result.estimate_note = fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(error.outcome));
+  return result;
+}
+
+}  // namespace eomgen::run
