@@ -41,7 +41,7 @@ Integration::Integration(const RunRequest& request, std::string solver)
       [this, in_mode](double t, const double* x, int contacts, double* g) {
         const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
         std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()), g_.end(), g);
-        return code;
+        return code != 0 ? code : contact_code(g);
       },
       [this](double t, std::span<const double> before, std::span<const double> after) {
         outputs(t, before.data(), y_);
@@ -175,8 +175,16 @@ void Integration::own_values(double t, const double* x, std::span<double> y) con
 
 int Integration::events(double t, const double* x, double* g) {
   const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
-  if (code == 0 && contacts_) contacts_->adjust(g + first_contact());
-  return code;
+  if (code != 0 || !contacts_) return code;
+  if (const int bad = contact_code(g + first_contact()); bad != 0) return bad;
+  contacts_->adjust(g + first_contact());
+  return 0;
+}
+
+/// What is not a number is neither within a law nor beyond it.
+int Integration::contact_code(const double* g) const {
+  const std::size_t count = eom::contact_values * compiled().contacts.size();
+  return std::any_of(g, g + count, [](double value) { return std::isnan(value); }) ? eom::code_not_finite : 0;
 }
 
 std::vector<eom::EventFunction> Integration::watched() const {

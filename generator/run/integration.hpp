@@ -28,6 +28,10 @@ class Integration {
   std::vector<double> own_state(const eom::Result& end) const;
   const ChartSwitch& charts() const { return charts_; }
   int outputs(double t, const double* x, std::span<double> y) const;
+  /// Of contacts, where the run is.
+  int contact_mode() const { return mode_ & eom::contact_bits; }
+  /// dx/dt in the mode of the start; a code.
+  int derivative(double t, const double* x, double* dx) { return rhs(t, x, dx); }
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows_.defect(t, x); }
 
@@ -43,6 +47,7 @@ class Integration {
   int taylor(double t, const double* x, int order, double* coefficients);
   int motion(double t, const double* x, const double* u, int mode, double* dx);
   int events(double t, const double* x, double* g);
+  int contact_code(const double* g) const;
   std::vector<eom::EventFunction> watched() const;
   void hold_sides(double t, const double* x, bool anew);
   std::vector<eom::ModeEvent> start_contacts(double t, std::span<double> x);

@@ -13,9 +13,10 @@ void Resolution::see(const eom::StepView& step) {
   if (++steps_ % stride_ != 0) return;
   seen_.push_back({step.t1, {step.x1.begin(), step.x1.end()}});
   if (seen_.size() < most) return;
-  for (std::size_t i = 0; 2 * i + 1 < seen_.size(); ++i) std::swap(seen_[i], seen_[2 * i + 1]);  // every other one stays
-  seen_.resize(seen_.size() / 2);
-  stride_ *= 2;
+  // Every third one stays: of every other one a state that changes its sign with each step would show nothing.
+  for (std::size_t i = 0; 3 * i + 2 < seen_.size(); ++i) std::swap(seen_[i], seen_[3 * i + 2]);
+  seen_.resize(seen_.size() / 3);
+  stride_ *= 3;
 }
 
 void Resolution::compare(const eom::StepView& step, const Align& align) {
@@ -26,7 +27,12 @@ void Resolution::compare(const eom::StepView& step, const Align& align) {
     if (seen.t == step.t1) x_.assign(step.x1.begin(), step.x1.end());
     else step.interpolate(seen.t, x_);
     align(seen.x, x_);
-    for (std::size_t i = 0; i < x_.size(); ++i) difference_[i] = std::max(difference_[i], std::abs(x_[i] - seen.x[i]));
+    before_.resize(x_.size());
+    for (std::size_t i = 0; i < x_.size(); ++i) {
+      const double now = std::abs(x_[i] - seen.x[i]);
+      difference_[i] = std::max(difference_[i], impacts_ ? std::min(now, before_[i]) : now);
+      before_[i] = now;
+    }
   }
 }
 

@@ -11,6 +11,9 @@ namespace eomgen::run {
 
 class Resolution {
  public:
+  /// impacts: differences count as far as two states in a row have them, since one alone may lie between two times of the same impact.
+  explicit Resolution(bool impacts) : impacts_(impacts) {}
+
   /// Of the run itself: some of its states.
   void see(const eom::StepView& step);
 
@@ -26,14 +29,15 @@ class Resolution {
   static constexpr double unresolved = 0.1;
 
  private:
-  static constexpr std::size_t most = 512;  // states kept
+  static constexpr std::size_t most = 729;  // states kept
   struct Seen {
     double t;
     std::vector<double> x;
   };
+  bool impacts_;
   std::vector<Seen> seen_;
   std::size_t stride_ = 1, steps_ = 0, next_ = 0;
-  std::vector<double> size_, difference_, x_;
+  std::vector<double> size_, difference_, before_, x_;
 };
 
 }  // namespace eomgen::run

@@ -238,7 +238,18 @@ void estimate_error(const RunRequest& request, const std::string& solver, const 
     result.estimate_note = "a tighter run did not stop at the event: the ends that are compared are not of the same time";
   }
   if (resolution != nullptr) tell_unresolved(*resolution, result);
+  if (!estimate.converging && result.estimate_note.empty()) {
+    result.estimate_note = "steps of this size are too long for the method's order to show: shorter ones change the end by as much again; the estimate is not to be trusted";
+  }
   result.seconds_estimate = seconds_since(start);
+}
+
+/// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is false then).
+void tell_parameters(const Scene& scene, RunResult& result) {
+  if (result.outcome != eom::Outcome::done && result.outcome != eom::Outcome::stopped_by_event) return;
+  if (std::all_of(scene.parameters.begin(), scene.parameters.end(), [](double value) { return std::isfinite(value); })) return;
+  result.outcome = eom::Outcome::not_finite;
+  result.detail = "a parameter is infinite or not a number";
 }
 
 eom::Options options_of(const RunRequest& request) {
@@ -331,8 +342,9 @@ RunResult integrate_scene(const RunRequest& request) {
   Watch watch(request, integration);
   const Clock::time_point start = Clock::now();
   std::optional<Resolution> resolution;
-  // Beside an impact states of two runs differ however short the steps.
-  if (request.estimate && options.fixed_step > 0 && request.code.contacts.empty()) resolution.emplace();
+  const auto& contacts = request.code.contacts;
+  const bool impacts = std::any_of(contacts.begin(), contacts.end(), [](const eom::Contact& contact) { return contact.unilateral; });
+  if (request.estimate && options.fixed_step > 0) resolution.emplace(impacts);
   const auto see = [&](const eom::StepView& view) {
     if (resolution && integration.charts().second() == 0) resolution->see(view);
     return watch.step(view);
@@ -363,10 +375,12 @@ RunResult integrate_scene(const RunRequest& request) {
     const auto& sizes = request.magnitudes;
     if (std::find(sizes.begin(), sizes.end(), name) == sizes.end()) result.final.emplace_back(name, y[i]);
   }
+  result.state = integration.own_state(end);
+  tell_parameters(request.scene, result);
   const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
   if (request.estimate && ended) {
     eom::Result own = end;
-    own.x = integration.own_state(end);
+    own.x = result.state;
     estimate_error(request, asked, own, options, resolution ? &*resolution : nullptr, result);
   }
   return result;

@@ -89,6 +89,7 @@ struct RunResult {
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;
   std::vector<std::pair<std::string, double>> final;
+  std::vector<double> state;                                   // at the end, in the model's own charts: also what is no output
   std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not asked for
   std::size_t estimate_rhs_evaluations = 0;
   std::string estimate_note;  // where the estimate itself could not be made as told

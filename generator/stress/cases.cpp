@@ -13,6 +13,8 @@ namespace {
 using Exponents = std::array<int, 3>;  // of m, kg, s; rad is 1
 constexpr Exponents mass{0, 1, 0}, inertia{2, 1, 0}, stiffness{0, 1, -2}, torsion{2, 1, -2}, damping{0, 1, -1};
 
+constexpr double denormal = 1e-310;
+
 class Cases {
  public:
   Cases(const mechanics::Mechanics& m, const run::Scene& scene, bool quick) : m_(m), scene_(scene), quick_(quick) {}
@@ -25,8 +27,10 @@ class Cases {
     for (const double rtol : chosen({1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15}, {1e-3, 1e-12})) {
       result_.push_back({.name = fmt::format("rtol {:g}", rtol), .rtol = rtol});
     }
-    for (const double span : chosen({0.1, 10, 100}, {10})) result_.push_back({.name = fmt::format("span x {:g}", span), .span = span});
-    if (std::any_of(scene_.qdot.begin(), scene_.qdot.end(), [](double v) { return v != 0; })) result_.push_back({.name = "from rest", .speed = 0});
+    for (const double part : chosen({0.5, 0.9, 1.1}, {0.9, 1.1})) result_.push_back({.name = fmt::format("{:g} of the stable step", part), .of_limit = part});
+    for (const double span : chosen({0.1, 10, 100, 1000}, {10})) result_.push_back({.name = fmt::format("span x {:g}", span), .span = span});
+    if (std::any_of(scene_.qdot.begin(), scene_.qdot.end(), [](double v) { return v != 0; })) slow();
+    zeros();
     return std::move(result_);
   }
 
@@ -47,6 +51,7 @@ class Cases {
         for (const double factor : chosen({1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9}, {1e-6, 1e6})) scaled(p, factor);
       }
       if (!parameter.used) continue;
+      if (!quick_) result_.push_back({.name = fmt::format("{} = {:g}", parameter.name, denormal), .value = {{p, denormal}}});
       const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
       for (const double value : chosen({nan, infinite, -infinite}, {nan})) {
         result_.push_back({.name = fmt::format("{} = {}", parameter.name, value), .value = {{p, value}}, .without_value = true});
@@ -73,14 +78,34 @@ class Cases {
       model::NodeId node = model::no_node;
       if (const auto* spring = std::get_if<model::Spring>(&force.kind)) node = spring->stiffness;
       if (const auto* spring = std::get_if<model::Torsion>(&force.kind)) node = spring->stiffness;
-      if (node != model::no_node && m_.model->arena[node].op == model::Op::parameter && m_.model->arena[node].index == p) return true;
+      if (mentions(node, p)) return true;
     }
     return false;
+  }
+
+  bool mentions(model::NodeId node, std::uint32_t p) const {
+    if (node == model::no_node) return false;
+    const model::Node& n = m_.model->arena[node];
+    if (n.op == model::Op::parameter) return n.index == p;
+    return std::any_of(n.args.begin(), n.args.end(), [&](model::NodeId child) { return mentions(child, p); });
   }
 
   void speeds(double factor) {
     if (std::all_of(scene_.qdot.begin(), scene_.qdot.end(), [](double v) { return v == 0; })) return;
     result_.push_back({.name = fmt::format("speed x {:g}", factor), .speed = factor});
+  }
+
+  // Friction where slip vanishes, or all but does.
+  void slow() {
+    result_.push_back({.name = "from rest", .speed = 0});
+    if (m_.contacts.empty()) return;
+    for (const double factor : chosen({1e-3, 1e-6, 1e-9, 1e-12, 1e-15}, {1e-9})) speeds(factor);
+  }
+
+  void zeros() {
+    bool any = false;
+    for (const std::uint32_t i : m_.free) any = any || scene_.q[i] == 0 || scene_.qdot[i] == 0;
+    if (any) result_.push_back({.name = fmt::format("zeros of the start {:g}", denormal), .zeros = denormal});
   }
 
   void charts() {
@@ -104,7 +129,7 @@ class Cases {
 
   void near(std::uint32_t i, double bound, double offset) {
     result_.push_back({.name = fmt::format("{} at {:g} {} {:g}", m_.model->coordinates[i].name, bound, offset < 0 ? '-' : '+', std::abs(offset)),
-                       .start = {{i, bound + offset}}});
+                       .start = {{i, bound + offset}}, .nearness = std::abs(offset)});
   }
 
   const mechanics::Mechanics& m_;

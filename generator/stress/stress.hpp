@@ -22,11 +22,14 @@ struct Case {
   double speed = 1;                                              // all start velocities times this; the span is divided by it
   double span = 1;                                               // the span times this
   std::optional<double> rtol = std::nullopt;                     // atol in proportion
+  std::optional<double> of_limit = std::nullopt;                 // fixed steps, of those at which rk4 stops being stable at the start
+  std::optional<double> zeros = std::nullopt;                    // what starts at 0 starts here
+  double nearness = 1;                                           // of the start to where coordinates fail
   bool without_value = false;                                    // no motion exists: any number that is called done is wrong
 };
 
 /// What fits this model and scene: stiffnesses, masses and inertias by factors; speeds; starts near the bounds of charts; tolerances;
-/// rest; values that are no numbers. `quick`: a few of each.
+/// steps at the limit of stability; rest, and slip that all but vanishes; long spans; values that are no numbers, or denormal. `quick`: a few of each.
 std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick);
 
 /// The scene with its constants and its start changed; nothing where the start would break a constraint.
@@ -44,6 +47,12 @@ struct Row {
   std::string outcome, note;
 };
 
+struct Sample {
+  double t;
+  std::vector<double> x;
+  int mode;  // of contacts
+};
+
 struct Request {
   std::function<run::RunRequest(const run::Scene&)> run;  // of compiled code, for a scene that outlives it
   std::vector<std::string> solvers;
@@ -51,6 +60,8 @@ struct Request {
   double seconds_limit = 60;                              // a guard: a run that hits it is told, a tight one leaves its case unjudged
   std::function<void(const std::string&)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;
+  /// States of a motion that is known: its start, and 32 on the way.
+  std::function<void(const Case&, const run::Scene&, const std::vector<Sample>&)> seen = {};
 };
 
 /// One row for each solver that fits; none where no motion to compare with could be had, with the reason in `left_out`.

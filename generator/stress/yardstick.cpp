@@ -18,7 +18,10 @@ struct TightSolver {
 constexpr std::array<TightSolver, 4> tight_solvers{{{"dop853", 1e-14}, {"taylor", 1e-15}, {"radau5", 1e-12}, {"rodas", 1e-11}}};
 
 constexpr double disturbance = 1e-7;  // of the start: large against rounding, small against what bends
+constexpr double bends_within = 1e-2;  // of the way to where coordinates fail
 constexpr double disturbed_rtol = 1e-13;
+constexpr std::size_t sample_count = 32, early_samples = 2;
+constexpr double doubt = 3;  // each of two runs may be off by more than they differ
 constexpr double most_uncertain = 1e-6;
 constexpr double shorter = 0.5;       // than what could be followed
 constexpr double smallest_scale = 1e-9;  // of the largest component
@@ -40,7 +43,8 @@ double distance(const State& a, const State& b, const State& scale) {
   return largest;
 }
 
-Yardstick::Yardstick(const run::Scene& scene, const Request& request) : scene_(scene), request_(request), run_(request.run(scene)) {
+Yardstick::Yardstick(const run::Scene& scene, double whole, double nearness, const Request& request)
+    : scene_(scene), whole_(whole), disturbance_(std::clamp(bends_within * nearness, 4 * unit, disturbance)), request_(request), run_(request.run(scene)) {
   run_.estimate = false;
   run_.watch_power = false;
 }
@@ -67,6 +71,7 @@ std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
     }
     truth.x = std::move(run.x);
     truth.scale = std::move(scale);
+    truth.samples = std::move(run.samples);
     solver_ = solver.name;
     rtol_ = solver.rtol;
   }
@@ -77,17 +82,19 @@ std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
     return std::nullopt;
   }
   next_span = shorter * span;
-  const std::optional<double> known = condition(truth);
-  if (!known) {
+  if (!condition(truth)) {
     why = late_ ? by_the_clock : "a start that is a little disturbed does not come to the end";
     if (late_) next_span = 0;
     return std::nullopt;
   }
-  truth.condition = *known;
   // The start and every sum on the way are rounded to binary64, whatever two runs agree in.
-  truth.uncertainty = distance(truth.x, second, truth.scale) + unit * truth.condition;
-  if (truth.condition <= most_condition && truth.uncertainty < most_uncertain) return truth;
-  why = fmt::format("the end depends on the start by a factor of {:.1e}, and is known to {:.1e}", truth.condition, truth.uncertainty);
+  truth.uncertainty = doubt * distance(truth.x, second, truth.scale) + unit * truth.condition;
+  if (truth.growth <= most_condition && truth.uncertainty < most_uncertain) {
+    const run::Integration start(run_, solver_);
+    truth.samples.insert(truth.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
+    return truth;
+  }
+  why = fmt::format("disturbances of the start grow by a factor of {:.1e}, and the end is known to {:.1e}", truth.growth, truth.uncertainty);
   return std::nullopt;
 }
 
@@ -103,11 +110,12 @@ Yardstick::Tight Yardstick::tight(const std::string& solver, double rtol, const 
   Clock clock(request_.seconds_limit, request_.interrupt);
   const State x0 = integration.initial_state();
   if (scale != nullptr) scale->assign(x0.size(), 0);
+  Tight result;
   const eom::Result end = integration.run(options, [&](const eom::StepView& view) {
+    sample(view, integration.contact_mode(), result.samples);
     for (std::size_t i = 0; scale != nullptr && i < view.x1.size(); ++i) (*scale)[i] = std::max((*scale)[i], std::abs(view.x1[i]));
     return !clock.late();
   });
-  Tight result;
   result.late = clock.was_late();
   result.reached = (end.t - scene.t0) / (scene.t1 - scene.t0);
   if (end.outcome != eom::Outcome::done || result.late) return result;
@@ -116,12 +124,25 @@ Yardstick::Tight Yardstick::tight(const std::string& solver, double rtol, const 
   return result;
 }
 
+void Yardstick::sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const {
+  while (samples.size() < sample_count) {
+    const double part = static_cast<double>(samples.size() + 1) / static_cast<double>(sample_count);
+    const double t = samples.size() + 1 == sample_count ? scene_.t1 : scene_.t0 + part * (scene_.t1 - scene_.t0);
+    if (t > view.t1) return;
+    Sample next{t, State(view.x1.begin(), view.x1.end()), mode};
+    if (t < view.t1) view.interpolate(t, next.x);
+    samples.push_back(std::move(next));
+  }
+}
+
 // A component that stays 0 beside others of its kind is 0 to their rounding.
 void Yardstick::level(State& scale, const State& x0) const {
   scale.resize(run_.state_names.size());
   double largest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i) largest = std::max(largest, scale[i] = std::max(scale[i], std::abs(x0[i])));
   for (double& s : scale) s = std::max({s, smallest_scale * largest, std::numeric_limits<double>::min()});
+  const std::size_t n = run_.code.free.size();
+  for (std::size_t i = 0; i < n; ++i) scale[n + i] = std::max(scale[n + i], scale[i] / whole_);
 }
 
 run::Scene Yardstick::started(const State& x) const {
@@ -134,29 +155,31 @@ run::Scene Yardstick::started(const State& x) const {
   return scene;
 }
 
-/// Of disturbances along and against, the one that moves the end most; nothing where one of them cannot be followed.
-std::optional<double> Yardstick::condition(const Truth& truth) {
-  double largest = 1;
+/// Of disturbances along and against, the one that moves the end most; false where one of them cannot be followed.
+bool Yardstick::condition(Truth& truth) {
   const State x0 = run::Integration(run_, solver_).initial_state();
   for (const int pattern : {0, 1, 2}) {
-    std::optional<double> by = moved(truth, x0, pattern, 1);
-    if (!by && !late_) by = moved(truth, x0, pattern, -1);  // the other way may lie beyond where coordinates end
-    if (!by) return std::nullopt;
-    largest = std::max(largest, *by);
+    // The other way may lie beyond where coordinates end.
+    if (!moved(truth, x0, pattern, 1) && (late_ || !moved(truth, x0, pattern, -1))) return false;
   }
-  return largest;
+  return true;
 }
 
-std::optional<double> Yardstick::moved(const Truth& truth, const State& x0, int pattern, double sign) {
+bool Yardstick::moved(Truth& truth, const State& x0, int pattern, double sign) {
   State x = x0;
   for (std::size_t i = 0; i < 2 * run_.code.free.size(); ++i) {
     const bool against = pattern > 0 && ((i >> (pattern - 1)) & 1) != 0;
-    x[i] += (against ? -sign : sign) * disturbance * truth.scale[i];
+    x[i] += (against ? -sign : sign) * disturbance_ * truth.scale[i];
   }
   const Tight end = tight(solver_, std::max(rtol_, disturbed_rtol), &x, nullptr);
   late_ = late_ || end.late;
-  if (end.x.empty()) return std::nullopt;
-  return distance(end.x, truth.x, truth.scale) / disturbance;
+  if (end.x.empty() || end.samples.size() != truth.samples.size()) return false;
+  double early = 1;
+  for (std::size_t k = 0; k < early_samples; ++k) early = std::max(early, distance(end.samples[k].x, truth.samples[k].x, truth.scale) / disturbance_);
+  const double late = distance(end.x, truth.x, truth.scale) / disturbance_;
+  truth.condition = std::max(truth.condition, late);
+  truth.growth = std::max(truth.growth, late / early);
+  return true;
 }
 
 }  // namespace eomgen::stress

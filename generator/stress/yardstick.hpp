@@ -34,17 +34,20 @@ using State = std::vector<double>;
 
 struct Truth {
   State x;
-  State scale;             // largest value of each component along the motion
+  State scale;             // largest value of each component along the motion; of rates no less than what turns the coordinate over in the whole span
   double uncertainty = 0;  // relative to it
   double condition = 1;    // by how much more than the start the end moves, both relative
+  double growth = 1;       // of a disturbance, from the first sixteenth of the span to its end
+  std::vector<Sample> samples;  // the start first
 };
 
 inline constexpr double unit = std::numeric_limits<double>::epsilon();
-inline constexpr double most_condition = 1.6e5;  // e^12: beyond twelve Lyapunov times only invariants say anything
+inline constexpr double most_condition = 1.6e5;  // e^12: what grows by more, in twelve Lyapunov times, says nothing; and no run is kept by more
 
 class Yardstick {
  public:
-  Yardstick(const run::Scene& scene, const Request& request);
+  /// whole: the span that was asked for, of which the scene may have a part; nearness: of the start to where coordinates fail.
+  Yardstick(const run::Scene& scene, double whole, double nearness, const Request& request);
 
   /// Nothing where no two solvers come to the end, or not to the same; `why` says so, and the span to try next (0: none).
   std::optional<Truth> truth(std::string& why, double& next_span);
@@ -54,14 +57,17 @@ class Yardstick {
     State x;                 // empty: the run did not come to the end
     double reached = 0;      // the part of the span that it covered
     bool late = false;
+    std::vector<Sample> samples;
   };
   Tight tight(const std::string& solver, double rtol, const State* start, State* scale) const;
+  void sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const;
   void level(State& scale, const State& x0) const;
   run::Scene started(const State& x) const;
-  std::optional<double> condition(const Truth& truth);
-  std::optional<double> moved(const Truth& truth, const State& x0, int pattern, double sign);
+  bool condition(Truth& truth);
+  bool moved(Truth& truth, const State& x0, int pattern, double sign);
 
   const run::Scene& scene_;
+  double whole_, disturbance_;
   const Request& request_;
   run::RunRequest run_;
   std::string solver_;   // of the first tight run

@@ -166,6 +166,7 @@ class Run {
     if (adaptive() && h_ >= smallest_step(t_)) return true;
     const std::string what = code == code_not_finite       ? "a value that is not finite"
                              : code == code_no_convergence ? "the iteration of the implicit step does not converge, or its matrix is singular,"
+                             : code == code_jump ? "the right-hand side jumps"
                                                            : "code " + std::to_string(code);
     return end(outcome_of_abi_code(code), what + " just after t = " + printed(t_));
   }

@@ -4,7 +4,9 @@
 // The second run is tighter: tolerances a hundredth, not below rtol 1e-14, but at most a half; or half the fixed step. With the
 // error proportional to the tolerance (to step^order) the difference of the end states is the first run's error times
 // 1 - ratio (1 - 2^-order), by which it is divided. Where the two agree so well that rounding may be what they differ
-// by, or happen to agree in, a third run with another sequence of steps is made and the largest difference is taken.
+// by, or happen to agree in, a third run with another sequence of steps is made and the largest difference is taken. Of fixed steps, which
+// nothing controls, the third run is always made: where it differs from the second by half as much as that one from the first the steps are
+// too long for the order to show, and no difference says much.
 // Never below a unit in the last place of the component. What all runs get wrong alike (the model, t0, x0, the
 // representation of the parameters, a discontinuity that no step sees) is not in it.
 #pragma once
@@ -26,6 +28,7 @@ struct ErrorEstimate {
   std::vector<double> x;           // per component of the end state, absolute; infinite where a further run failed
   double max = 0;                  // the largest of them
   Outcome outcome = Outcome::done; // of the further runs: the first that did not end as the run itself did
+  bool converging = true;          // false: shorter fixed steps change the end by as much again
   std::size_t runs = 0;            // further runs made
   Statistics statistics;           // and what they cost
 };
@@ -60,6 +63,9 @@ inline Repetition repetition(const Options& first, double span, std::size_t step
   return next;
 }
 
+/// Of the change that half the step makes, what 0.35 of it may add; 0.3 is what order 1 does.
+inline constexpr double still_converging = 0.5;
+
 /// What counts as close enough to rounding for a third run: relative to the largest component.
 inline constexpr double rounding_suspected = 1e-10;
 
@@ -84,6 +90,8 @@ ErrorEstimate estimate_error(int order, double t0, const Result& first, const Op
     estimate.x[i] = std::numeric_limits<double>::epsilon() * std::abs(first.x[i]);
     size_x = std::max(size_x, std::abs(first.x[i]));
   }
+  std::vector<double> second;
+  const bool fixed = options.fixed_step > 0;
   for (const double part : {0.5, 0.35}) {
     const detail::Repetition next =
         detail::repetition(options, std::abs(first.t - t0), first.statistics.steps, order, part);
@@ -97,7 +105,18 @@ ErrorEstimate estimate_error(int order, double t0, const Result& first, const Op
       estimate.x[i] = std::max(estimate.x[i], std::isnan(difference) ? infinity : difference);
       estimate.max = std::max(estimate.max, estimate.x[i]);
     }
-    if (estimate.max > detail::rounding_suspected * size_x) break;
+    if (!comparable) break;
+    if (!fixed && estimate.max > detail::rounding_suspected * size_x) break;
+    if (second.empty()) {
+      second = again.x;
+      continue;
+    }
+    double before = 0, after = 0;
+    for (std::size_t i = 0; i < first.x.size(); ++i) {
+      before = std::max(before, std::abs(first.x[i] - second[i]));
+      after = std::max(after, std::abs(second[i] - again.x[i]));
+    }
+    if (fixed && after > std::max(detail::still_converging * before, detail::rounding_suspected * size_x)) estimate.converging = false;
   }
   return estimate;
 }

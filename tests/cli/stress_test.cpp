@@ -15,6 +15,18 @@ TEST_CASE("stress: no shipped model of these loses its way without a word") {
     CHECK(found["silent"] == 0);
     CHECK(found["kept"].get<int>() > 10);
     for (const Json& row : found["rows"]) CHECK_FALSE(row["verdict"] == "silent");
+    const Json& audit = found["denominator_audit"];
+    CHECK(audit["states"].get<int>() > 20);
+    CHECK(audit["digits_lost"]["value"].get<double>() >= 0);
+    CHECK(audit["mass_condition"]["value"].get<double>() >= 1);
+    if (std::string(model) != "elastic_pendulum") continue;
+    // r'' = .. - k (r - L)/m, theta'' = (..)/r: that and nothing else; near r = 0 the mass matrix diag(m, m r^2) is that of a point.
+    CHECK(audit["denominators"].size() == 2);
+    for (const Json& d : audit["denominators"]) CHECK(d["zero"] == d["expression"].get<std::string>() + " = 0");
+    CHECK(audit["mass_condition"]["case"] == "r at 0 + 1e-09");
+    CHECK(audit["mass_condition"]["value"].get<double>() == doctest::Approx(1e18));
+    CHECK(audit["scaled_mass_condition"]["value"].get<double>() == doctest::Approx(1));
+    CHECK(audit["digits_lost"]["value"].get<double>() > 3);  // a stiff spring that is hardly stretched
   }
 }
 

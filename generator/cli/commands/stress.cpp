@@ -16,7 +16,7 @@
 #include "cli/simulate.hpp"
 #include "cli/usage.hpp"
 #include "run/integration.hpp"
-#include "stress/stress.hpp"
+#include "stress/audit.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -64,6 +64,14 @@ class Variation {
       }
       scene.q[i] = value;
     }
+    if (test.zeros && constrained) {
+      why = "a start there would have to satisfy the constraints";
+      return std::nullopt;
+    }
+    for (const std::uint32_t i : derived.mechanics.free) {
+      if (test.zeros && scene.q[i] == 0) scene.q[i] = *test.zeros;
+      if (test.zeros && scene.qdot[i] == 0) scene.qdot[i] = *test.zeros;
+    }
     for (double& rate : scene.qdot) rate *= test.speed;
     scene.t1 = scene.t0 + (scene.t1 - scene.t0) * test.span / (test.speed > 1 ? test.speed : 1);
     if (constrained && test.speed != 1 && broken(scene, test.speed)) {
@@ -88,9 +96,43 @@ class Variation {
   const run::Code& code_;
 };
 
+/// Each constraint once more under another name: what follows from others has to be found before anything is derived.
+void repeat_constraints(const model::Model& given, std::vector<Row>& rows, std::vector<LeftOut>& left_out) {
+  for (std::size_t c = 0; c < given.constraints.size(); ++c) {
+    if (given.constraints[c].joint) continue;  // its equations may repeat others, and are left out where they do
+    model::Model model = given;
+    model.constraints.push_back(given.constraints[c]);
+    model.constraints.back().name += "_again";
+    const std::string test = fmt::format("constraint {} twice", given.constraints[c].name);
+    try {
+      mechanics::build_mechanics(model);
+      rows.push_back({.test = test, .solver = "none", .verdict = Verdict::silent, .outcome = "accepted", .note = "a constraint that repeats another is taken for one more"});
+    } catch (const Error& error) {
+      left_out.push_back({test, "refused: " + error.message()});
+    }
+  }
+}
+
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
-Json document(const Simulation& simulation, const std::vector<Row>& rows, const std::vector<LeftOut>& left_out) {
+Json of(const stress::Extreme& extreme) {
+  if (extreme.value == stress::no_value) return nullptr;
+  return {{"value", number(extreme.value)}, {"case", extreme.at}};
+}
+
+Json of(const stress::Audit& audit) {
+  Json denominators = Json::array();
+  for (const stress::Denominator& d : audit.denominators) {
+    const bool seen = d.smallest != stress::no_value;
+    denominators.push_back({{"expression", d.expression}, {"zero", d.zero}, {"test", d.test}, {"smallest", seen ? Json(d.smallest) : Json(nullptr)},
+                            {"largest", seen ? Json(d.largest) : Json(nullptr)}, {"case", d.at}});
+  }
+  return {{"states", audit.states}, {"denominators", denominators}, {"mass_condition", of(audit.mass_condition)},
+          {"scaled_mass_condition", of(audit.scaled_mass_condition)}, {"pivot_cancellation", of(audit.pivot)}, {"digits_lost", of(audit.digits_lost)},
+          {"without_value", audit.without_digits}};
+}
+
+Json document(const Simulation& simulation, const std::vector<Row>& rows, const std::vector<LeftOut>& left_out, const stress::Audit& audit) {
   Json list = Json::array(), without = Json::array();
   std::map<Verdict, std::size_t> count;
   for (const Row& row : rows) {
@@ -101,7 +143,22 @@ Json document(const Simulation& simulation, const std::vector<Row>& rows, const 
   for (const LeftOut& l : left_out) without.push_back({{"case", l.test}, {"reason", l.reason}});
   return {{"format", 1}, {"model", simulation.derived->model.id}, {"scene", simulation.scene.name}, {"rows", list}, {"left_out", without},
           {"kept", count[Verdict::kept]}, {"told", count[Verdict::told]}, {"silent", count[Verdict::silent]},
-          {"verdict", count[Verdict::silent] == 0 ? "pass" : "fail"}};
+          {"denominator_audit", of(audit)}, {"verdict", count[Verdict::silent] == 0 ? "pass" : "fail"}};
+}
+
+void print_audit(const Json& audit) {
+  const auto value = [](const Json& v, const char* format) { return v.is_null() ? std::string("none") : fmt::format(fmt::runtime(format), v.get<double>()); };
+  fmt::print("denominator audit, {} states\n", audit["states"].get<std::size_t>());
+  for (const auto& [key, what] : {std::pair{"mass_condition", "condition of the mass matrix"}, {"scaled_mass_condition", "with its diagonal scaled to 1"},
+                                  {"pivot_cancellation", "largest cancellation in a pivot"}, {"digits_lost", "digits lost, of 16"}}) {
+    const Json& extreme = audit[key];
+    if (!extreme.is_null()) fmt::print("  {:<32}{:>10}  {}\n", what, value(extreme["value"], "{:.3g}"), extreme["case"].get<std::string>());
+  }
+  if (!audit["denominators"].empty()) fmt::print("  {:<32}{:>10}\n", "divided by, zero where", "least");
+  for (const Json& d : audit["denominators"]) {
+    fmt::print("  {:<32}{:>10}  {}; {}\n", d["zero"].get<std::string>(), value(d["smallest"], "{:.2g}"), d["case"].get<std::string>(), d["test"].get<std::string>());
+  }
+  fmt::print("\n");
 }
 
 void print_readable(const Json& found, const std::vector<std::string>& solvers) {
@@ -121,6 +178,7 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
   }
   fmt::print("\n\n");
   for (const Json& l : found["left_out"]) fmt::print("left out: {}: {}\n", l["case"].get<std::string>(), l["reason"].get<std::string>());
+  print_audit(found["denominator_audit"]);
   for (const Json& row : found["rows"]) {
     if (row["verdict"] != "silent") continue;
     const auto shown = [&](const char* key) { return row[key].is_null() ? std::string("none") : fmt::format("{:.2e}", row[key].get<double>()); };
@@ -151,7 +209,7 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
   request.overrides.t_end = options.t_end;
   request.overrides.solver = "dop853";
   request.overrides.step = 0;
-  request.with = {"taylor", "jac"};
+  request.with = {"taylor", "jac", "mass"};
   request.integrate = false;
   request.seed = common.seed;
   return request;
@@ -172,6 +230,8 @@ int execute(const Options& options, const Common& common) {
   request.interrupt = &Interrupt::flag();
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) request.progress = [](const std::string& what) { fmt::print(stderr, "\r{:60}\r{}", "", what); };
+  stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
+  request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) { auditor.see(test.name, scene, code, samples); };
   std::vector<Row> rows;
   std::vector<LeftOut> left_out;
   for (const stress::Case& test : stress::cases(simulation.derived->mechanics, simulation.scene, options.quick)) {
@@ -187,8 +247,9 @@ int execute(const Options& options, const Common& common) {
     }
     if (!why.empty()) left_out.push_back({test.name, why});
   }
+  repeat_constraints(simulation.derived->model, rows, left_out);
   if (terminal) fmt::print(stderr, "\r{:60}\r", "");
-  const Json found = document(simulation, rows, left_out);
+  const Json found = document(simulation, rows, left_out, auditor.audit());
   if (common.json) {
     print_document(found);
   } else {

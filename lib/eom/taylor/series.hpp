@@ -70,7 +70,11 @@ class Series {
     return code;
   }
   /// The series at the end too: it decides the length of the next step.
-  int evaluate_end() { return fixed_ ? evaluate(t1_, x1_, f1_) : expand(t1_, x1_, f1_, there_, next_order()); }
+  int evaluate_end() {
+    if (fixed_) return evaluate(t1_, x1_, f1_);
+    const int code = expand(t1_, x1_, f1_, there_, next_order());
+    return code != 0 || goes_on() ? code : code_jump;
+  }
 
   double first_step() { return length(here_); }
 
@@ -133,6 +137,8 @@ class Series {
   static constexpr int lowest_order = 4;
   static constexpr double aim = 0.5, log2_aim = -1;  // of the tolerance that a step may use
   static constexpr double tail = -2.3;     // log2 of what is left out, in units of the last terms: the next ones are shorter by h/radius
+  static constexpr double jump = 4;        // times the order, of the tolerance: what the derivative at the end may be off by, over the step
+  static constexpr double smooth = 1e-9;   // of the derivative: what is off by less is rounding
   static constexpr double overhead = 6;    // an order p costs (p + overhead)^2, measured
 
   /// Where the terms of a series that loses e^-1.6 from one to the next reach the tolerance.
@@ -154,6 +160,22 @@ class Series {
     const int code = evaluate(t, x, scratch_);
     std::copy(scratch_ + s_, scratch_ + n_, f + s_);
     return code;
+  }
+
+  /// Whether the series ends with the derivative that the right-hand side has there. Where it jumps, or bends within less than the series sees
+  /// (dry friction in a plane as the slip passes by zero), the coefficients know nothing of it, nor does their size.
+  bool goes_on() const {
+    double off = 0, size = 0;
+    for (std::size_t i = 0; i < error_; ++i) {
+      const double* term = here_.c + static_cast<std::size_t>(here_.order) * s_ + i;
+      double slope = here_.order * *term;
+      for (int k = here_.order - 1; k > 0; --k) slope = slope * h_ + k * *(term -= s_);
+      const double difference = (f1_[i] - slope) * weight_[i], whole = f1_[i] * weight_[i];
+      off += difference * difference;
+      size += whole * whole;
+    }
+    const double count = static_cast<double>(error_);
+    return !(std::sqrt(off / count) * std::abs(h_) > jump * here_.order && off > smooth * smooth * size);
   }
 
   /// log2 of the root mean square of the terms of order k at h = 1, in units of the tolerance.

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stress/audit.hpp"
+
+#include <cln/dfloat.h>
+#include <cln/exception.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "program/interpret.hpp"
+#include "stress/denominators.hpp"
+
+namespace eomgen::stress {
+namespace {
+
+constexpr int digits = 60;
+constexpr std::array<std::size_t, 3> places{0, 12, 32};  // of the samples of a motion
+constexpr std::size_t most_work = 20000;                 // instructions in many digits per case
+constexpr double smallest_scale = 1e-9;                  // of the largest acceleration: what is smaller is 0 to its rounding, and has no digits
+constexpr double all_digits = 15.65;                     // -log10 of the last one
+constexpr double last_digit = std::numeric_limits<double>::epsilon();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+void raise(Extreme& extreme, double value, const std::string& at) {
+  if (!std::isnan(value) && value > extreme.value) extreme = {value, at};
+}
+
+cln::cl_R exact(double x) { return cln::rational(cln::cl_DF(x)); }
+std::vector<cln::cl_R> exact(const std::vector<double>& list) {
+  std::vector<cln::cl_R> result;
+  for (const double x : list) result.push_back(exact(x));
+  return result;
+}
+
+std::vector<double> inputs(const run::Scene& scene, double t) {
+  std::vector<double> u;
+  for (const run::Signal& signal : scene.inputs) u.push_back(signal(t, t));
+  return u;
+}
+
+double condition(const Eigen::MatrixXd& M) {
+  if (M.size() == 0 || !M.allFinite()) return infinity;
+  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues();
+  const double smallest = values.minCoeff(), largest = values.maxCoeff();
+  return smallest > 0 ? largest / smallest : infinity;
+}
+
+bool all_finite(const std::vector<double>& list) {
+  return std::all_of(list.begin(), list.end(), [](double x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& program)
+    : program_(program), rhs_(program.functions.front()), divided_(rhs_) {
+  divided_.results = {{"denominators", {}}};
+  divided_.places.clear();
+  for (const Divisor& d : divisors(rhs_, program, mechanics)) {
+    divided_.results.front().second.push_back(d.operand);
+    audit_.denominators.push_back({d.expression, d.zero, d.test});
+  }
+}
+
+void Auditor::see(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<Sample>& samples) {
+  std::vector<const Sample*> taken;
+  for (const std::size_t place : places) {
+    if (place < samples.size() && all_finite(samples[place].x)) taken.push_back(&samples[place]);
+  }
+  if (!all_finite(scene.parameters)) return;
+  for (const Sample* sample : taken) {
+    ++audit_.states;
+    look_at_mass(test, scene, code, *sample);
+    look_at_denominators(test, scene, *sample, inputs(scene, sample->t));
+  }
+  while (!taken.empty() && taken.size() * rhs_.code.size() > most_work) taken.pop_back();
+  look_at_digits(test, scene, code, taken);
+}
+
+/// On the null space of the constraints: M alone may be singular (Euler parameters).
+void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code, const Sample& sample) {
+  if (code.mass == nullptr) return;
+  const auto n = static_cast<Eigen::Index>(code.free.size()), m = static_cast<Eigen::Index>(code.active_constraints);
+  Eigen::MatrixXd M(n, n);
+  Eigen::VectorXd h(n);
+  if (code.mass(sample.t, sample.x.data(), scene.parameters.data(), M.data(), h.data()) != 0 || !M.allFinite()) return;
+  if (m > 0 && code.constraints != nullptr) {
+    Eigen::MatrixXd A(m, n);
+    Eigen::VectorXd psi(m), b(m);
+    if (code.constraints(sample.t, sample.x.data(), scene.parameters.data(), psi.data(), A.data(), b.data()) != 0 || !A.allFinite()) return;
+    const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
+    const Eigen::MatrixXd Z = lu.kernel();
+    if (lu.rank() == n) return;
+    M = Z.transpose() * M * Z;
+  }
+  raise(audit_.mass_condition, condition(M), test);
+  const Eigen::VectorXd d = M.diagonal().cwiseAbs().cwiseSqrt().cwiseInverse();
+  if (d.allFinite()) raise(audit_.scaled_mass_condition, condition(d.asDiagonal() * M * d.asDiagonal()), test);
+}
+
+void Auditor::look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample, const std::vector<double>& u) {
+  const program::Values<double> values = program::interpret(divided_, {sample.t, sample.x, scene.parameters, u, {}, {}, sample.mode});
+  for (std::size_t i = 0; i < audit_.denominators.size(); ++i) {
+    const double value = std::abs(values.results[0][i]);
+    Denominator& d = audit_.denominators[i];
+    if (!std::isfinite(value)) continue;
+    d.largest = std::max(d.largest, value);
+    if (d.smallest != no_value && value >= d.smallest) continue;
+    d.smallest = value;
+    d.at = test;
+  }
+  for (const auto& [pivot, scale] : values.pivots) {
+    if (scale != 0 && std::isfinite(pivot) && std::isfinite(scale)) raise(audit_.pivot, std::abs(scale / pivot), test);
+  }
+}
+
+/// Of each acceleration relative to the largest value that it has in the motion.
+void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<const Sample*>& samples) {
+  const std::size_t n = code.free.size();
+  std::vector<double> scale(n, 0.0), off(n, 0.0);
+  for (const Sample* sample : samples) {
+    const std::vector<double> u = inputs(scene, sample->t);
+    std::vector<double> dx(sample->x.size());
+    if (code.rhs(sample->t, sample->x.data(), scene.parameters.data(), u.data(), sample->mode, dx.data()) != 0) continue;
+    try {
+      const program::Values<cln::cl_R> values = program::interpret(rhs_, {exact(sample->t), exact(sample->x), exact(scene.parameters), exact(u), {}, {}, sample->mode}, digits);
+      for (std::size_t i = 0; i < n; ++i) {
+        const cln::cl_R& right = values.results.front().at(n + i);
+        off[i] = std::max(off[i], std::abs(cln::double_approx(right - exact(dx[n + i]))));
+        scale[i] = std::max(scale[i], std::abs(cln::double_approx(right)));
+      }
+    } catch (const std::domain_error&) {
+      ++audit_.without_digits;
+    } catch (const cln::runtime_exception&) {
+      ++audit_.without_digits;
+    }
+  }
+  double largest = 0;
+  for (const double s : scale) largest = std::max(largest, s);
+  for (std::size_t i = 0; i < n && largest > 0 && std::isfinite(largest); ++i) {
+    if (scale[i] < smallest_scale * largest) continue;
+    const double relative = off[i] / scale[i];
+    raise(audit_.digits_lost, relative > last_digit ? std::min(all_digits, std::log10(relative / last_digit)) : 0, test);
+  }
+}
+
+}  // namespace eomgen::stress

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a function divides by, as text.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+#include "program/program.hpp"
+
+namespace eomgen::stress {
+
+struct Divisor {
+  program::Operand operand;
+  std::string expression, zero, test;
+};
+
+/// Factors of all denominators and pivots, each once, in the order of the code.
+std::vector<Divisor> divisors(const program::Function& function, const program::Program& program, const mechanics::Mechanics& mechanics);
+
+}  // namespace eomgen::stress
