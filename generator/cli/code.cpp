@@ -55,6 +55,7 @@ run::Code CompiledCode::for_run() const {
   run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.jac, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
   code.taylor = model.taylor;
   code.jac_p = model.jac_p;
+  code.momenta = model.momenta;
   code.taylor_order = taylor_order_;
   code.kinks = kinks_;
   code.contacts = contacts_;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/simulate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "error.hpp"
 #include "program/kinks.hpp"
 
 namespace eomgen::cli {
@@ -123,6 +126,17 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
 
 }  // namespace
 
+namespace {
+
+void require_variational(const system::EquationSystem& system, const std::string& solver) {
+  const bool on_velocities = std::find(system.holonomic.begin(), system.holonomic.end(), false) != system.holonomic.end();
+  const std::string why = run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system), !system.integrals.empty());
+  if (why.empty()) return;
+  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why), "take midpoint, which is symplectic as well, dop853 or auto");
+}
+
+}  // namespace
+
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
@@ -133,7 +147,9 @@ Simulation simulate(const SimulationRequest& request) {
   overrides.exchanges_charts = none.exchanges_charts = possible;
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
   const std::string solver = run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
-  const bool exchanges = possible && !run::method_named(solver).series;
+  const bool variational = run::method_named(solver).variational;
+  const bool exchanges = possible && !run::method_named(solver).series && !variational;
+  if (variational) require_variational(system, solver);
 
   const bool watch_power = !energy_is_conserved(*derived);
   program::Request wanted;
@@ -145,6 +161,8 @@ Simulation simulate(const SimulationRequest& request) {
   if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
   if (run::method_named(solver).implicit) wanted.with.push_back("jac");
   if (run::method_named(solver).series) wanted.with.push_back("taylor");
+  if (variational) wanted.with.push_back("momenta");
+  if (variational && system.active.empty()) wanted.with.push_back("mass");
   for (const std::string& name : request.with) {
     if (std::find(wanted.with.begin(), wanted.with.end(), name) == wanted.with.end()) wanted.with.push_back(name);
   }
@@ -172,7 +190,8 @@ Simulation simulate(const SimulationRequest& request) {
   run.progress = request.progress;
   run.interrupt = request.interrupt;
   run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
-  if (possible && !exchanges) result.reason += "; its series is that of the model's own coordinates, which are kept where they fail";
+  if (possible && !exchanges) result.reason += variational ? "; the model's own coordinates are kept where they fail, since an exchange is not symplectic"
+                                                           : "; its series is that of the model's own coordinates, which are kept where they fail";
   if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
   return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result), std::move(charts)};
 }

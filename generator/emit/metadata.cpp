@@ -337,6 +337,7 @@ std::string purpose(const std::string& function) {
   if (function == "jac") return "dfdx[i + N j] = d(dx_i)/d(x_j) with N entries of x; dfdt at fixed x.";
   if (function == "jac_p") return "dfdp[i + N j] = d(dx_i)/d(p_j) with N entries of x.";
   if (function == "mass") return "M qddot + h = A^T lambda: M by columns, h.";
+  if (function == "momenta") return "momenta = dL/d(qdot), and their rates but for the forces of constraints.";
   if (function == "constraints") return "psi = 0, A qdot + b = 0 of the constraints with multipliers: A by columns.";
   if (function == "reactions") return "The multipliers of all constraints, in the order of the model.";
   if (function == "taylor") {

@@ -10,8 +10,8 @@
 namespace eomgen::model {
 namespace {
 
-constexpr std::array<std::string_view, 9> solvers{"auto", "rk4", "dopri5", "tsit5", "dop853", "radau5", "rodas", "midpoint", "taylor"};
-constexpr std::array<std::string_view, 2> later_solvers{"variational2", "variational4"};
+constexpr std::array<std::string_view, 13> solvers{"auto",  "rk4",      "dopri5", "tsit5",        "dop853",       "radau5", "radau",
+                                                   "rodas", "midpoint", "taylor", "variational2", "variational4", "variational6"};
 constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
 
 std::vector<std::string> split_at_dots(const std::string& text) {
@@ -104,9 +104,6 @@ InputTable Reader::read_input_table(const Value& table, const Symbol& input) {
 
 void Reader::read_solver(Scene& scene, const Value& value) {
   as(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
-  if (std::find(later_solvers.begin(), later_solvers.end(), value.text) != later_solvers.end()) {
-    not_yet(value.span, fmt::format("the solver '{}'", value.text));
-  }
   if (std::find(solvers.begin(), solvers.end(), value.text) == solvers.end()) {
     const std::vector<std::string> names(solvers.begin(), solvers.end());
     const std::string hint = did_you_mean(value.text, names);

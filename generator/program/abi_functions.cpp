@@ -216,6 +216,28 @@ WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
   return function;
 }
 
+// Of L = T - U. Its rate is f + (dp/dq) qdot + dp/dt, since M = dp/dqdot and M qddot = f + A^T lambda: every route has it.
+WantedFunction AbiFunctions::momenta() {
+  Dag& dag = *system_.dag;
+  WantedFunction function{"momenta", {{"momenta", {}}, {"rates", {}}}, {}, {}};
+  const Ref lagrangian = dag.sub(system_.kinetic, system_.potential);
+  symbolic::Derivation by_time = symbolic::partial(dag, {SymbolKind::time, 0, 0});
+  std::map<Symbol, Ref> none;
+  for (std::size_t b = 0; b < friction_.phi.size(); ++b) none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = dag.zero();
+  Substitution frictionless(dag, none);
+  for (std::size_t i = 0; i < n_; ++i) {
+    const Ref p = symbolic::partial(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
+    Ref rate = dag.add(frictionless(live_f_[i]), by_time(p));
+    for (std::size_t j = 0; j < n_; ++j) {
+      rate = dag.add(rate, dag.mul(symbolic::partial(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
+    }
+    function.results[0].second.push_back(p);
+    function.results[1].second.push_back(rate);
+  }
+  label_matrices(function);
+  return function;
+}
+
 WantedFunction AbiFunctions::mass() {
   WantedFunction function{"mass", {{"M", {}}, {"h", {}}}, {}, {}};
   for (std::size_t j = 0; j < n_; ++j) {

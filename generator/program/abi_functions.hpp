@@ -40,6 +40,8 @@ class AbiFunctions {
   WantedFunction jac_p(std::size_t parameters);
   WantedFunction mass();
   WantedFunction constraints();
+  /// dT/dqdot, and its rate but for the forces of constraints; without friction of contacts.
+  WantedFunction momenta();
   WantedFunction reactions();
   /// Throws Error with the names that exist where one is unknown.
   WantedFunction outputs(const std::vector<std::string>& names);

@@ -13,7 +13,7 @@
 namespace eomgen::program {
 
 struct Request {
-  std::vector<std::string> with;     // further functions: "jac", "jac_p", "mass", "constraints", "reactions", "events", "taylor"
+  std::vector<std::string> with;     // further functions: "jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"
   std::vector<std::string> outputs;  // names of EquationSystem::outputs; any name asks for the function "outputs"
   std::map<std::uint32_t, symbolic::Rational> fix;  // parameters that become numbers
   std::size_t parameters = 0;  // of the model, for jac_p; 0: as many as the equations mention

@@ -19,6 +19,7 @@ Integration::Integration(const RunRequest& request, std::string solver)
     : request_(request),
       charts_(request),
       solver_(std::move(solver)),
+      variational_(method_named(solver_).variational),  // which keeps its constraints itself
       n_(request.code.free.size()),
       energy_(index_of(request.code.output_names, "energy")),
       u_(std::max<std::size_t>(1, request.scene.inputs.size())),
@@ -134,12 +135,26 @@ int Integration::taylor(double t, const double* x, int order, double* coefficien
   return code != 0 && mode_ != live ? compiled().taylor(t, x, p, u, live, order, coefficients) : code;
 }
 
+int Integration::momenta(double t, const double* x, double* p, double* rate) {
+  return compiled().momenta(t, x, request_.scene.parameters.data(), inputs(t), mode_, p, rate);
+}
+
+int Integration::mass(double t, const double* x, double* M) {
+  h_.resize(n_);
+  return compiled().mass(t, x, request_.scene.parameters.data(), M, h_.data());
+}
+
 /// The right-hand side with its derivatives as methods take them.
 struct MotionOf {
   Integration& of;
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const { return of.jacobian(t, x, dfdx, dfdt); }
   int taylor(double t, const double* x, int order, double* coefficients) const { return of.taylor(t, x, order, coefficients); }
+  std::size_t coordinates() const { return of.compiled().momenta != nullptr ? of.n_ : 0; }
+  std::size_t constraints() const { return of.rows_.size(); }
+  int momenta(double t, const double* x, double* p, double* rate) const { return of.momenta(t, x, p, rate); }
+  int mass(double t, const double* x, double* M) const { return of.mass(t, x, M); }
+  int constrain(double t, const double* x, double* psi, double* A, double* b) const { return of.rows_(t, x, of.inputs(t), psi, A, b); }
   int taylor_order() const { return of.compiled().taylor_order; }
   std::size_t taylor_states() const { return 2 * of.n_ + of.compiled().integrals; }
 };
@@ -313,7 +328,7 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
   };
   const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
-  const auto after = [this](double t, double* x) { return rows_.size() == 0 ? 0 : project(t, x); };
+  const auto after = [this](double t, double* x) { return rows_.size() == 0 || variational_ ? 0 : project(t, x); };
   while (true) {
     hold_sides(total.t, total.x.data(), true);
     exchange_due_ = false;

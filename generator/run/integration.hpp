@@ -45,6 +45,8 @@ class Integration {
   int rhs(double t, const double* x, double* dx);
   int jacobian(double t, const double* x, double* dfdx, double* dfdt);
   int taylor(double t, const double* x, int order, double* coefficients);
+  int momenta(double t, const double* x, double* p, double* rate);
+  int mass(double t, const double* x, double* M);
   int motion(double t, const double* x, const double* u, int mode, double* dx);
   int events(double t, const double* x, double* g);
   int contact_code(const double* g) const;
@@ -72,6 +74,7 @@ class Integration {
   const RunRequest& request_;
   ChartSwitch charts_;
   std::string solver_;
+  bool variational_;
   std::size_t n_;
   std::size_t power_ = 0, energy_ = 0;
   std::size_t kink_ = 0;  // crossed last, and when
@@ -86,7 +89,7 @@ class Integration {
   double side_ = 0;  // a time inside the piece of the inputs that is being integrated
   mutable std::vector<double> u_;
   std::vector<double> w_;  // of Code::prepare
-  std::vector<double> y_;
+  std::vector<double> y_, h_;
   ConstraintRows rows_;
   eom::Projection projection_;
   std::unique_ptr<ContactModes> contacts_;  // where there are any

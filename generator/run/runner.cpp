@@ -282,6 +282,20 @@ std::string unfit(const std::string& solver, const Scene& scene) {
   return "";
 }
 
+std::string not_variational(bool contacts, bool on_velocities, bool kinks, bool integrals) {
+  if (contacts) return "the model has contacts with friction, or that can be left, and no discrete Lagrangian has these";
+  if (on_velocities) return "a constraint on velocities does not follow from a Lagrangian; variational integrators take constraints on positions";
+  if (kinks) return "the equations have kinks (abs, sign, min, max), where the discrete Lagrangian has no derivative";
+  if (integrals) return "an integral of a function of time is a state of this model, which has no momentum";
+  return "";
+}
+
+std::string not_variational(const Code& code) {
+  const bool on_velocities = std::find(code.holonomic.begin(), code.holonomic.end(), false) != code.holonomic.end();
+  const std::string why = not_variational(!code.contacts.empty(), on_velocities, !code.kinks.empty(), code.integrals > 0);
+  return why.empty() && (code.momenta == nullptr || code.mass == nullptr) ? "the code was compiled without its momenta" : why;
+}
+
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
   if (asked != "auto") {
     for (const eom::MethodInfo& method : eom::methods()) {
@@ -300,10 +314,6 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
     for (const eom::MethodInfo& method : eom::methods()) {
       names += fmt::format("{}, ", method.name);
       known.emplace_back(method.name);
-    }
-    static constexpr const char* later[] = {"variational2", "variational4"};
-    for (const char* name : later) {
-      if (asked == name) throw Error("run", {}, fmt::format("solver '{}' is not supported yet", asked), "choose from: " + names + "auto");
     }
     const std::string hint = model::did_you_mean(asked, known);
     throw Error("run", {}, fmt::format("there is no solver {}", model::quote(asked)),
@@ -336,6 +346,13 @@ RunResult integrate_scene(const RunRequest& request) {
   if (method_named(result.solver).series) {
     if (request.code.taylor == nullptr) throw Error("run", {}, "the code was compiled without its Taylor series", "choose the solver taylor when the code is made");
     result.reason += ", series from the equations";
+  }
+  if (method_named(result.solver).variational) {
+    if (const std::string why = not_variational(request.code); !why.empty()) {
+      throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", result.solver, why), "take midpoint, which is symplectic as well, dop853 or auto");
+    }
+    result.reason += ", momenta from the equations";
+    if (request.watch_power) result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";
   }
   const eom::Options options = options_of(request);
   Integration integration(request, result.solver);

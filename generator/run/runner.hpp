@@ -46,6 +46,8 @@ struct Code {
   // Only where the solver taylor was asked for, up to its highest order.
   int (*taylor)(double, const double*, const double*, const double*, int, int, double*) = nullptr;
   int taylor_order = 0;
+  // Only where a variational solver was asked for, with mass, and with constraints where there are any.
+  int (*momenta)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
   // Only of code that knows several charts.
   int (*chart)(const double*, int, int, double*) = nullptr;
   int (*mass_in)(double, const double*, const double*, int, double*, double*) = nullptr;
@@ -154,6 +156,11 @@ const eom::MethodInfo& method_named(const std::string& name);
 
 /// Why a solver cannot integrate the scene, or "" where it can.
 std::string unfit(const std::string& solver, const Scene& scene);
+
+/// Why variational integrators are not for a model with such parts, or "".
+std::string not_variational(bool contacts, bool on_velocities, bool kinks, bool integrals);
+/// The same of compiled code, which has to have the momenta.
+std::string not_variational(const Code& code);
 
 /// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the way.
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);

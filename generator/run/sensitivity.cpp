@@ -98,9 +98,9 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
   return total;
 }
 
-/// The method that ran, or, where it needs a series, one of as high an order that does not.
+/// The method that ran, or, where it needs a series or momenta, one of as high an order that does not.
 std::string fitting(const std::string& solver) {
-  return method_named(solver).series ? "dop853" : solver;
+  return method_named(solver).series || method_named(solver).variational ? "dop853" : solver;
 }
 
 void require_smooth(const RunRequest& request) {

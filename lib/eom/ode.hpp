@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Initial value problems x' = f(t, x). In: a method's name, a right-hand side, a start and an end, options.
-// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/, implicit/ and taylor/.
+// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/, implicit/, taylor/ and variational/.
 #pragma once
 
 #include <array>
@@ -19,18 +19,22 @@
 #include "eom/implicit/registry.hpp"
 #include "eom/run_types.hpp"
 #include "eom/taylor/registry.hpp"
+#include "eom/variational/registry.hpp"
 #include "eom/with_jacobian.hpp"
 
 namespace eom {
 
 /// Every method that integrate() knows, in the registry's order; beside them there is `auto` (automatic.hpp), which chooses.
 inline std::span<const MethodInfo> methods() {
-  static constexpr auto table = []<class... T, class... I, class... S>(std::tuple<T...>*, std::tuple<I...>*, std::tuple<S...>*) {
-    return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(S)>{
+  static constexpr auto table = []<class... T, class... I, class... S, class... V>(std::tuple<T...>*, std::tuple<I...>*, std::tuple<S...>*,
+                                                                                   std::tuple<V...>*) {
+    return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(S) + sizeof...(V)>{
         {{T::name, T::order, T::dense_order, !T::error.empty()}...,
          {I::name, I::order, I::dense_order, I::adaptive, true}...,
-         {S::name, S::order, S::dense_order, S::adaptive, false, true}...}};
-  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr), static_cast<taylor::Registry*>(nullptr));
+         {S::name, S::order, S::dense_order, S::adaptive, false, true}...,
+         {V::name, V::order, V::dense_order, V::adaptive, false, false, true}...}};
+  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr), static_cast<taylor::Registry*>(nullptr),
+    static_cast<variational::Registry*>(nullptr));
   return table;
 }
 
@@ -88,13 +92,23 @@ Result run_series(F& rhs, double t0, std::span<const double> x0, double t1, cons
   return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
 }
 
+template <class T, class F, class Observer, class AfterStep>
+Result run_variational(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+                       AfterStep& after_step) {
+  const variational::Problem problem = variational::problem_of(rhs);
+  if (problem.coordinates == 0 || 2 * problem.coordinates + options.quadratures != x0.size())
+    throw std::invalid_argument("eom::integrate: " + std::string(T::name) +
+                                " needs a right-hand side with momenta (eom/variational/problem.hpp), of a state of coordinates, velocities and quadratures");
+  return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
+}
+
 }  // namespace detail
 
 /// Integrates from (t0, x0) to t1, which may lie before t0.
 /// rhs(t, x, dx) -> int; observer(StepView) -> bool, false stops; after_step(t, x) -> int may move the state at the end
 /// of a step (a projection) before the step counts as accepted. A nonzero code from rhs or after_step is retried with
 /// shorter steps before it ends the run. An rhs with a member jacobian (with_jacobian.hpp) gives it to implicit methods, one with
-/// a member taylor (taylor/problem.hpp) its series to `taylor`.
+/// a member taylor (taylor/problem.hpp) its series to `taylor`, one with momenta (variational/problem.hpp) these to variational ones.
 /// Throws std::invalid_argument for an unknown method or senseless options.
 template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
@@ -119,7 +133,10 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
   const bool known_series = known || [&]<class... T>(std::tuple<T...>*) {
     return ((asked(T::name, T::adaptive) && (result = detail::run_series<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
   }(static_cast<taylor::Registry*>(nullptr));
-  if (!known_series) detail::throw_unknown(method);
+  const bool known_variational = known_series || [&]<class... T>(std::tuple<T...>*) {
+    return ((asked(T::name, T::adaptive) && (result = detail::run_variational<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
+  }(static_cast<variational::Registry*>(nullptr));
+  if (!known_variational) detail::throw_unknown(method);
   return result;
 }
 

@@ -39,7 +39,7 @@ struct Options {
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
   double fixed_step = 0;    // > 0: steps of this size without error control, whatever the method; rk4 needs it
-  int series_order = 0;     // of `taylor`; 0: chosen, and changed from step to step
+  int series_order = 0;     // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step
   std::size_t max_steps = 50'000'000;               // accepted and rejected together
   std::size_t quadratures = 0;                      // trailing components of x kept out of the error norm
   const std::atomic<bool>* interrupt = nullptr;     // looked at once per step
@@ -99,6 +99,7 @@ struct MethodInfo {
   bool adaptive;                    // false: needs Options::fixed_step
   bool implicit = false;            // uses df/dx: for stiff systems
   bool series = false;              // needs a right-hand side with a Taylor series (taylor/problem.hpp)
+  bool variational = false;         // needs one with momenta (variational/problem.hpp)
 };
 
 /// The observer that looks at nothing.

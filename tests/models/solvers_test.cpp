@@ -87,6 +87,64 @@ TEST_CASE("solvers: auto hands a stiff spring to radau5 and says when, why, and 
   }
 }
 
+TEST_CASE("solvers: variational ones converge to dop853 with their order: free, with multipliers, moving constraints, damping, inputs") {
+  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "cart_pendulum"}) {
+    const test::Finished reference = test::run_model(model, [&](cli::SimulationRequest& request) {
+      request.overrides.solver = "dop853";
+      request.overrides.rtol = request.overrides.atol = 1e-13;
+      request.overrides.t_end = 1;
+    });
+    for (const char* solver : {"variational2", "variational4", "variational6"}) {
+      CAPTURE(std::string(model));
+      CAPTURE(std::string(solver));
+      const int order = run::method_named(solver).order;
+      const auto error = [&](double step) {
+        const test::Finished found = test::run_model(model, [&](cli::SimulationRequest& request) {
+          request.overrides.solver = solver;
+          request.overrides.step = step;
+          request.overrides.t_end = 1;
+        });
+        const run::RunResult& result = found.simulation.result;
+        CHECK(result.outcome == eom::Outcome::done);
+        CHECK(result.reason.find("momenta from the equations") != std::string::npos);
+        CHECK(result.constraint_drift < 1e-11);
+        return difference(found, reference);
+      };
+      const double coarse = error(order == 6 ? 0.025 : 0.01), fine = error(order == 6 ? 0.0125 : 0.005);
+      CHECK(fine < 1e-3);
+      CHECK((fine < 1e-11 || std::log2(coarse / fine) > order - 0.5));  // below, dop853 is no better
+    }
+  }
+}
+
+TEST_CASE("solvers: variational ones keep energy within bounds, and tell why they refuse a model") {
+  const auto drift = [](double end) {
+    return test::run_model("S5_double_pendulum_cartesian", [&](cli::SimulationRequest& request) {
+      request.overrides.solver = "variational4";
+      request.overrides.step = 0.02;
+      request.overrides.t_end = end;
+    }).simulation.result.invariants.front();
+  };
+  const run::Invariant brief = drift(10), lasting = drift(200);
+  CHECK(brief.name == "energy");
+  CHECK(lasting.max_relative_drift < 3 * brief.max_relative_drift);
+  CHECK(brief.max_relative_drift < 1e-3);
+  const std::pair<const char*, const char*> refused[] = {
+      {"knife_edge", "constraint on velocities"}, {"bouncing_ball", "contacts"}, {"bilinear_oscillator", "kinks"}};
+  for (const auto& [model, why] : refused) {
+    CAPTURE(std::string(model));
+    try {
+      test::run_model(model, [&](cli::SimulationRequest& request) {
+        request.overrides.solver = "variational2";
+        request.overrides.step = 0.01;
+      });
+      FAIL("not refused");
+    } catch (const Error& error) {
+      CHECK(std::string(error.what()).find(why) != std::string::npos);
+    }
+  }
+}
+
 TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, kinks, friction, impacts and rolling") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
                             "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian", "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {

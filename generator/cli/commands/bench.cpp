@@ -99,9 +99,11 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
   return problem;
 }
 
-std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, std::vector<std::pair<std::string, std::string>>& left_out) {
+std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, const run::Code& code, std::vector<std::pair<std::string, std::string>>& left_out) {
   std::vector<std::string> known, chosen;
-  for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (!method.variational || !options.solvers.empty()) known.emplace_back(method.name);  // their momenta are compiled only where one is named
+  }
   if (!options.solvers.empty()) known.emplace_back(eom::Automatic::name);  // it is one of the others most of the time: only where it is asked for
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
@@ -109,7 +111,7 @@ std::vector<std::string> solvers_for(const Options& options, const run::Scene& s
   }
   for (const std::string& name : known) {
     if (!options.solvers.empty() && std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end()) continue;
-    const std::string why = run::unfit(name, scene);
+    const std::string why = run::method_named(name).variational ? run::not_variational(code) : run::unfit(name, scene);
     if (why.empty()) chosen.push_back(name);
     else left_out.emplace_back(name, why);
   }
@@ -132,6 +134,9 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
   request.approach = approach_choice(options.approach);
   request.form = form_choice(options.form);
   request.with = {"taylor", "jac"};
+  for (const std::string& name : options.solvers) {
+    if (name.starts_with("variational")) request.with.insert(request.with.end(), {"momenta", "mass"});
+  }
   request.integrate = false;
   request.seed = common.seed;
   return request;
@@ -160,7 +165,7 @@ int execute(const Options& options, const Common& common) {
   const double seconds = std::chrono::duration<double>(Clock::now() - start).count();
 
   std::vector<std::pair<std::string, std::string>> left_out;
-  bench::Request measured{request, reference, times, solvers_for(options, scene, left_out)};
+  bench::Request measured{request, reference, times, solvers_for(options, scene, request.code, left_out)};
   measured.seconds_limit = options.seconds;
   if (!options.no_libraries && options.solvers.empty()) {
     status.show("compiling what calls other libraries");

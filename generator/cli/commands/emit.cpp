@@ -67,7 +67,7 @@ program::Request request_of(const Options& options, Derived& derived, const run:
 }
 
 void require_with(const std::vector<std::string>& with) {
-  const std::vector<std::string> known{"jac", "jac_p", "mass", "constraints", "reactions", "outputs", "events", "energy", "taylor", "charts"};
+  const std::vector<std::string> known{"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "outputs", "events", "energy", "taylor", "charts"};
   for (const std::string& name : with) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
     const bool later = name == "rhs_batch";

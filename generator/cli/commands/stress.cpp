@@ -191,7 +191,9 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
 
 std::vector<std::string> chosen_solvers(const Options& options) {
   std::vector<std::string> known;
-  for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if ((!method.variational && std::string_view(method.name) != "radau") || !options.solvers.empty()) known.emplace_back(method.name);  // momenta are compiled only where one is named; radau is like radau5
+  }
   if (!options.solvers.empty()) known.emplace_back(eom::Automatic::name);  // it is one of the others most of the time: only where it is asked for
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end()) throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
@@ -210,6 +212,9 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
   request.overrides.solver = "dop853";
   request.overrides.step = 0;
   request.with = {"taylor", "jac", "mass"};
+  for (const std::string& name : options.solvers) {
+    if (name.starts_with("variational")) request.with.emplace_back("momenta");
+  }
   request.integrate = false;
   request.seed = common.seed;
   return request;

@@ -43,6 +43,7 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   find(handle_, name + "_jac_p", jac_p);
   find(handle_, name + "_taylor", taylor);
   find(handle_, name + "_mass", mass);
+  find(handle_, name + "_momenta", momenta);
   find(handle_, name + "_constraints", constraints);
   find(handle_, name + "_reactions", reactions);
   find(handle_, name + "_outputs", outputs);
@@ -82,6 +83,7 @@ LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
   jac = other.jac;
   taylor = other.taylor;
   mass = other.mass;
+  momenta = other.momenta;
   constraints = other.constraints;
   chart = other.chart;
   mass_in = other.mass_in;

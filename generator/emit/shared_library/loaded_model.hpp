@@ -37,6 +37,7 @@ class LoadedModel {
   RhsFunction rhs = nullptr;
   PrepareFunction prepare = nullptr;           // null too where nothing is worth preparing
   PreparedRhsFunction rhs_prepared = nullptr;  // there with `prepare`
+  JacobianFunction momenta = nullptr;  // momenta, rates in place of dfdx, dfdt
   RhsFunction jac_p = nullptr;      // dfdp in place of dx
   RhsFunction reactions = nullptr;  // lambda in place of dx
   RhsFunction events = nullptr;     // g in place of dx

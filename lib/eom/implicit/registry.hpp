@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "eom/implicit/midpoint.hpp"
+#include "eom/implicit/radau.hpp"
 #include "eom/implicit/radau5.hpp"
 #include "eom/implicit/rodas.hpp"
 
@@ -12,6 +13,7 @@ namespace eom::implicit {
 
 using Registry = std::tuple<
     Radau5,
+    Radau,
     Rodas,
     Midpoint>;
 
