@@ -118,6 +118,8 @@ class Run {
     one.atol = options_.atol;
     one.quadratures = options_.quadratures;
     one.choice = options_.choice;
+    // A step of radau may be of any of its orders, and only the highest is as accurate as all of them.
+    if (method_ == implicit::Radau::name) one.series_order = options_.series_order != 0 ? options_.series_order : 13;
     const std::size_t i = crossing.function;
     const double limit = std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
     double t = crossing.t, before = 0, value_before = 0;
