@@ -52,7 +52,7 @@ TEST_CASE("names that are not there: the nearest one is told") {
       {{"check", ""}, "there is no such model file", "eomgen new NAME"},
       {{"run", P2, "--scene", "defualt"}, "there is no scene 'defualt'", "did you mean 'default'?"},
       {{"run", P2, "--solver", "dop835"}, "there is no solver 'dop835'", "did you mean 'dop853'?"},
-      {{"run", P2, "--solver", "variational2"}, "solver 'variational2' is not supported yet", "choose from: "},
+      {{"run", P2, "--solver", "variational2"}, "solver 'variational2' takes steps of a fixed size, and none is given", "give --step H"},
       {{"run", P2, "--output", "enrgy"}, "there is no output 'enrgy'", "choose from: energy, "},
       {{"run", P2, "--set", "LL=1"}, "there is no parameter 'LL' to set", "did you mean 'L'?"},
       {{"run", P2, "--set", "nosuch=1"}, "there is no parameter 'nosuch' to set", "the parameters are m, g, L"},
