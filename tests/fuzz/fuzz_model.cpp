@@ -24,7 +24,7 @@ void check_promises(const Model& model) {
   for (const Place& place : model.places) require(model.arena[place.position].vector);
   for (const Particle& particle : model.particles) require(!model.arena[particle.mass].vector);
   for (const Constraint& constraint : model.constraints) {
-    require(!constraint.psi.empty() && constraint.psi.size() <= 3);
+    require(!constraint.psi.empty() && constraint.psi.size() <= 6);  // a joint may have six
     for (const NodeId psi : constraint.psi) require(!model.arena[psi].vector);
   }
   for (const auto& warning : model.warnings) require(!eomgen::format_warning(warning).empty());
