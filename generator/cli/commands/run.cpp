@@ -183,6 +183,7 @@ int execute(const Options& options, const Common& common) {
     print_document(report.json());
   } else {
     fmt::print("{}", report.text());
+    if (!options.sensitivity.empty() && !ended) fmt::print("\nsensitivities     none: the run did not come to its end\n");
   }
   return ended && (!report.sensitivities || report.sensitivities->outcome == eom::Outcome::done) ? 0 : 3;
 }
