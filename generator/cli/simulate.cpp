@@ -128,9 +128,14 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
 
 namespace {
 
-void require_variational(const system::EquationSystem& system, const std::string& solver) {
+/// Empty where the system has what variational integrators need.
+std::string not_variational(const system::EquationSystem& system) {
   const bool on_velocities = std::find(system.holonomic.begin(), system.holonomic.end(), false) != system.holonomic.end();
-  const std::string why = run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system), !system.integrals.empty());
+  return run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system), !system.integrals.empty());
+}
+
+void require_variational(const system::EquationSystem& system, const std::string& solver) {
+  const std::string why = not_variational(system);
   if (why.empty()) return;
   throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why), "take midpoint, which is symplectic as well, dop853 or auto");
 }
@@ -159,10 +164,11 @@ Simulation simulate(const SimulationRequest& request) {
   }
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
   if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
-  if (run::method_named(solver).implicit) wanted.with.push_back("jac");
-  if (run::method_named(solver).series) wanted.with.push_back("taylor");
-  if (variational) wanted.with.push_back("momenta");
-  if (variational && system.active.empty()) wanted.with.push_back("mass");
+  if (run::method_named(solver).implicit || request.every_solver) wanted.with.push_back("jac");
+  if (run::method_named(solver).series || request.every_solver) wanted.with.push_back("taylor");
+  const bool momenta = variational || (request.every_solver && not_variational(system).empty());
+  if (momenta) wanted.with.push_back("momenta");
+  if (momenta && system.active.empty() && system.contacts.empty()) wanted.with.push_back("mass");
   for (const std::string& name : request.with) {
     if (std::find(wanted.with.begin(), wanted.with.end(), name) == wanted.with.end()) wanted.with.push_back(name);
   }

@@ -23,6 +23,7 @@ struct SimulationRequest {
   bool estimate = true;
   bool integrate = true;            // false: everything but the run; `result` stays empty
   std::vector<std::string> with;    // further functions of the code
+  bool every_solver = false;        // the code has what any solver needs that can integrate the model
   bool charts = true;  // where angles fail the run may go to second ones
   std::uint64_t seed = 1;
   /// Called once the model is derived: may add outputs to every candidate, and returns those that the code is to have.

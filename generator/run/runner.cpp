@@ -6,15 +6,14 @@
 #include <chrono>
 #include <algorithm>
 #include <cmath>
-#include <eom/error_estimate.hpp>
 #include <eom/watch/drift.hpp>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
 #include "model/names.hpp"
+#include "run/estimate.hpp"
 #include "run/integration.hpp"
 #include "run/resolution.hpp"
 
@@ -177,72 +176,6 @@ class Watch {
   std::uint64_t next_ = 1;
   double last_row_ = std::nan("");
 };
-
-/// Whole turns between two runs are no difference where the angles were read off another chart.
-void align(const RunRequest& request, const std::vector<double>& first, std::vector<double>& other) {
-  constexpr double turn = 2 * std::numbers::pi;
-  for (const ExchangedChart& chart : request.charts) {
-    for (const std::size_t angle : chart.angles) other[angle] += turn * std::round((first[angle] - other[angle]) / turn);
-  }
-}
-
-/// Where fixed steps do not resolve the motion the ends say little: the differences on the way are the estimate then.
-void tell_unresolved(const Resolution& resolution, RunResult& result) {
-  if (!(resolution.largest() > Resolution::unresolved)) return;
-  double& all = result.error_estimate.back().second;
-  for (std::size_t i = 0; i < resolution.differences().size() && i + 1 < result.error_estimate.size(); ++i) {
-    double& estimate = result.error_estimate[i].second;
-    estimate = std::max(estimate, resolution.differences()[i]);
-    all = std::max(all, estimate);
-  }
-  if (!result.estimate_note.empty()) return;
-  result.estimate_note = fmt::format("steps of this size do not resolve the motion: halving them moves states on the way by {:.2g} of their size; take shorter ones, or a solver "
-                                     "that chooses its steps", resolution.largest());
-}
-
-/// `first`: in the model's own charts; resolution: of fixed steps, else null.
-void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result) {
-  const Clock::time_point start = Clock::now();
-  const int order = method_named(solver).order;
-  Integration again(request, solver);
-  bool same_end = true, compared = false;
-  double stop = std::numeric_limits<double>::epsilon() * std::abs(first.t);
-  const eom::ErrorEstimate estimate =
-      eom::estimate_error(order, request.scene.t0, first, options, [&](const eom::Options& tighter) {
-        const Integration::Observer compare = [&](const eom::StepView& step) {
-          if (again.charts().second() == 0) resolution->compare(step, [&](const auto& one, auto& two) { align(request, one, two); });
-          return true;
-        };
-        const bool on_the_way = resolution != nullptr && !std::exchange(compared, true);
-        eom::Result other = again.run(tighter, on_the_way ? compare : Integration::Observer{});
-        if (other.outcome == first.outcome) {
-          other.x = again.own_state(other);
-          align(request, first.x, other.x);
-        }
-        same_end = same_end && other.outcome == first.outcome;
-        stop = std::max(stop, std::abs(other.t - first.t));
-        return other;
-      });
-  double largest = 0;
-  for (std::size_t i = 0; i < request.state_names.size(); ++i) {
-    result.error_estimate.emplace_back(request.state_names[i], estimate.x[i]);
-    largest = std::max(largest, estimate.x[i]);
-  }
-  if (first.outcome == eom::Outcome::stopped_by_event) result.error_estimate.emplace_back("t", stop);
-  result.error_estimate.emplace_back("max", largest);
-  result.estimate_rhs_evaluations = estimate.statistics.rhs_evaluations;
-  if (estimate.outcome != eom::Outcome::done) {
-    result.estimate_note = fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(estimate.outcome));
-  }
-  if (!same_end && result.estimate_note.empty()) {
-    result.estimate_note = "a tighter run did not stop at the event: the ends that are compared are not of the same time";
-  }
-  if (resolution != nullptr) tell_unresolved(*resolution, result);
-  if (!estimate.converging && result.estimate_note.empty()) {
-    result.estimate_note = "steps of this size are too long for the method's order to show: shorter ones change the end by as much again; the estimate is not to be trusted";
-  }
-  result.seconds_estimate = seconds_since(start);
-}
 
 /// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is false then).
 void tell_parameters(const Scene& scene, RunResult& result) {

@@ -100,11 +100,8 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
 }
 
 std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, const run::Code& code, std::vector<std::pair<std::string, std::string>>& left_out) {
-  std::vector<std::string> known, chosen;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if (!method.variational || !options.solvers.empty()) known.emplace_back(method.name);  // their momenta are compiled only where one is named
-  }
-  if (!options.solvers.empty()) known.emplace_back(eom::Automatic::name);  // it is one of the others most of the time: only where it is asked for
+  std::vector<std::string> known{eom::Automatic::name}, chosen;
+  for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error("bench", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
@@ -133,10 +130,7 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
   request.overrides.solver = "dop853";
   request.approach = approach_choice(options.approach);
   request.form = form_choice(options.form);
-  request.with = {"taylor", "jac"};
-  for (const std::string& name : options.solvers) {
-    if (name.starts_with("variational")) request.with.insert(request.with.end(), {"momenta", "mass"});
-  }
+  request.every_solver = true;
   request.integrate = false;
   request.seed = common.seed;
   return request;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -17,6 +18,7 @@
 #include "cli/usage.hpp"
 #include "run/integration.hpp"
 #include "stress/audit.hpp"
+#include "stress/start.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -38,6 +40,13 @@ struct LeftOut {
   std::string test, reason;
 };
 
+/// Denormal numbers too, which CLN's own conversion refuses.
+symbolic::Rational exactly(double value) {
+  if (std::abs(value) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(value));
+  constexpr int shift = 200;
+  return cln::rational(cln::cl_DF(std::ldexp(value, shift))) / cln::expt_pos(cln::cl_I(2), shift);
+}
+
 /// The scene of one case, made anew from the model where constants change.
 class Variation {
  public:
@@ -48,29 +57,32 @@ class Variation {
     Derived& derived = *simulation_.derived;
     run::Overrides overrides = overrides_;
     for (const auto& [p, factor] : test.factor) {
-      overrides.parameters[derived.model.parameters[p].name] = cln::rational(cln::cl_DF(simulation_.scene.parameters[p] * factor));
+      overrides.parameters[derived.model.parameters[p].name] = exactly(simulation_.scene.parameters[p] * factor);
+    }
+    for (const auto& [p, value] : test.value) {  // what follows from them is computed anew, and a start that they break is refused
+      if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = exactly(value);
     }
     if (test.rtol) {
       overrides.rtol = *test.rtol;
       overrides.atol = *test.rtol * (simulation_.scene.rtol > 0 ? simulation_.scene.atol / simulation_.scene.rtol : 1);
     }
     run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(simulation_.scene.name), overrides);
-    for (const auto& [p, value] : test.value) scene.parameters[p] = value;
-    const bool constrained = !derived.mechanics.active.empty();
-    for (const auto& [i, value] : test.start) {
-      if (constrained) {
-        why = "a start there would have to satisfy the constraints";
-        return std::nullopt;
-      }
-      scene.q[i] = value;
+    for (const auto& [p, value] : test.value) {
+      if (!std::isfinite(value)) scene.parameters[p] = value;
     }
-    if (test.zeros && constrained) {
-      why = "a start there would have to satisfy the constraints";
-      return std::nullopt;
+    const bool constrained = !derived.mechanics.active.empty();
+    std::vector<std::uint32_t> kept;
+    for (const auto& [i, value] : test.start) {
+      scene.q[i] = value;
+      kept.push_back(i);
     }
     for (const std::uint32_t i : derived.mechanics.free) {
       if (test.zeros && scene.q[i] == 0) scene.q[i] = *test.zeros;
       if (test.zeros && scene.qdot[i] == 0) scene.qdot[i] = *test.zeros;
+    }
+    if (constrained && !kept.empty() && !stress::meet_constraints(scene, run_request(derived, scene, code_, false), kept)) {
+      why = "the constraints allow no start there";
+      return std::nullopt;
     }
     for (double& rate : scene.qdot) rate *= test.speed;
     scene.t1 = scene.t0 + (scene.t1 - scene.t0) * test.span / (test.speed > 1 ? test.speed : 1);
@@ -190,11 +202,8 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
 }
 
 std::vector<std::string> chosen_solvers(const Options& options) {
-  std::vector<std::string> known;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if ((!method.variational && std::string_view(method.name) != "radau") || !options.solvers.empty()) known.emplace_back(method.name);  // momenta are compiled only where one is named; radau is like radau5
-  }
-  if (!options.solvers.empty()) known.emplace_back(eom::Automatic::name);  // it is one of the others most of the time: only where it is asked for
+  std::vector<std::string> known{eom::Automatic::name};
+  for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end()) throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
   }
@@ -211,10 +220,8 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
   request.overrides.t_end = options.t_end;
   request.overrides.solver = "dop853";
   request.overrides.step = 0;
-  request.with = {"taylor", "jac", "mass"};
-  for (const std::string& name : options.solvers) {
-    if (name.starts_with("variational")) request.with.emplace_back("momenta");
-  }
+  request.with = {"mass"};
+  request.every_solver = true;
   request.integrate = false;
   request.seed = common.seed;
   return request;
