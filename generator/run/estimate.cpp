@@ -69,6 +69,20 @@ void see_rounding_of_rates(const RunRequest& request, const eom::Result& first, 
   }
 }
 
+/// Steps so short that positions move in their last digits only: constraints on positions are then met by rounding, and rates follow from that.
+void tell_frozen(const RunRequest& request, const eom::Result& first, const eom::Options& options, RunResult& result) {
+  constexpr double digits = 100 * std::numeric_limits<double>::epsilon();
+  const std::size_t n = request.code.free.size();
+  double position = 0, rate = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    position = std::max(position, std::abs(first.x[i]));
+    rate = std::max(rate, std::abs(first.x[n + i]));
+  }
+  if (request.code.active_constraints == 0 || !(rate > 0) || options.fixed_step * rate >= digits * position || !result.estimate_note.empty()) return;
+  result.estimate_note = fmt::format("steps of {:.3g} move the positions by less than their last digits, so that the constraints say nothing about rates; the estimate is not to be trusted",
+                                     options.fixed_step);
+}
+
 /// Where a force turns within one step, what it changes the velocity by in the wrong place is in the end, and not in the differences of ends.
 void tell_kick(const Kicks& kicks, std::span<const double> end, RunResult& result) {
   double at = 0;
@@ -134,6 +148,7 @@ void estimate_error(const RunRequest& request, const std::string& solver, const 
   if (!estimate.converging && result.estimate_note.empty()) {
     result.estimate_note = "steps of this size are too long for the method's order to show: shorter ones change the end by as much again; the estimate is not to be trusted";
   }
+  if (method_named(solver).variational) tell_frozen(request, first, options, result);
   result.seconds_estimate = std::chrono::duration<double>(Clock::now() - start).count();
 }
 

@@ -25,8 +25,9 @@ std::vector<double> inputs(const RunRequest& request, double t) {
 class Momenta {
  public:
   Momenta(const RunRequest& request, double t, const std::vector<double>& x)
-      : request_(request), t_(t), u_(inputs(request, t)), n_(static_cast<Eigen::Index>(request.code.free.size())), p_(n_), scratch_(n_), M_(n_, n_) {
+      : request_(request), t_(t), u_(inputs(request, t)), n_(static_cast<Eigen::Index>(request.code.free.size())), p_(Eigen::VectorXd::Zero(n_)), scratch_(Eigen::VectorXd::Zero(n_)), M_(n_, n_) {
     valid_ = request.code.mass(t, x.data(), request.scene.parameters.data(), M_.data(), scratch_.data()) == 0 && M_.allFinite() && at(x, p_);
+    force_ = scratch_;
     if (!valid_) return;
     size_ = M_.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // of one coordinate beside another says nothing
     solver_.compute(size_.asDiagonal() * M_ * size_.asDiagonal());
@@ -36,6 +37,7 @@ class Momenta {
     return request_.code.momenta(t_, x.data(), request_.scene.parameters.data(), u_.data(), 0, p.data(), scratch_.data()) == 0 && p.allFinite();
   }
   const Eigen::VectorXd& value() const { return p_; }
+  const Eigen::VectorXd& force() const { return force_; }  // dL/dq
   /// Zero where there is no value.
   Eigen::VectorXd rates(const Eigen::VectorXd& p) const {
     if (!valid_) return Eigen::VectorXd::Zero(n_);
@@ -48,7 +50,7 @@ class Momenta {
   double t_;
   std::vector<double> u_;
   Eigen::Index n_;
-  Eigen::VectorXd p_, scratch_, size_;
+  Eigen::VectorXd p_, scratch_, force_, size_;
   Eigen::MatrixXd M_;
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver_;
   bool valid_ = false;
@@ -89,12 +91,14 @@ std::vector<double> rounding_of_rates(const RunRequest& request, double t, std::
   Momenta momenta(request, t, x);
   Eigen::VectorXd moved(static_cast<Eigen::Index>(n)), sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   for (std::size_t i = 0; i < n; ++i) {
-    const double q = x[i], p = momenta.value()(static_cast<Eigen::Index>(i));
+    const auto k = static_cast<Eigen::Index>(i);
+    // Where positions hardly move, forces are rounded in the same way in each step.
+    const double q = x[i], p = std::abs(momenta.value()(k)) + std::abs(momenta.force()(k) * (t - request.scene.t0));
     x[i] = q + unit * std::abs(q);
     if (momenta.at(x, moved)) sum += momenta.rates(moved - momenta.value()).cwiseAbs();
     x[i] = q;
     moved.setZero();
-    moved(static_cast<Eigen::Index>(i)) = unit * p;
+    moved(k) = unit * p;
     sum += momenta.rates(moved).cwiseAbs();
   }
   return {sum.begin(), sum.end()};

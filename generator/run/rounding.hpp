@@ -15,7 +15,8 @@ namespace eomgen::run {
 /// solver the momenta are, which it integrates: the rates move by M^-1 of it.
 eom::Result from_rounded_start(const RunRequest& request, const std::string& solver, const eom::Options& options);
 
-/// Of a variational solver, whose rates follow from positions and momenta: by how much those of a state move with the last digits of these.
+/// Of a variational solver, whose rates follow from positions and momenta: by how much those of a state move with the last
+/// digits of these, and of the forces on the way.
 std::vector<double> rounding_of_rates(const RunRequest& request, double t, std::vector<double> x);
 
 }  // namespace eomgen::run

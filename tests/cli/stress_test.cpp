@@ -2,6 +2,8 @@
 // The command stress: its document, its exit codes, and a few shipped models through the quick variations.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -28,6 +30,41 @@ TEST_CASE("stress: no shipped model of these loses its way without a word") {
     CHECK(audit["scaled_mass_condition"]["value"].get<double>() == doctest::Approx(1));
     CHECK(audit["digits_lost"]["value"].get<double>() > 3);  // a stiff spring that is hardly stretched
   }
+}
+
+TEST_CASE("stress: a start near where coordinates fail meets the constraints") {
+  const Folder folder;
+  const Json found = document(folder, {"stress", "R8_pendulum_body_joint", "--quick", "--steps", "1000", "--seconds", "1e6", "--solver", "dop853", "--solver", "auto", "--t-end", "0.5"});
+  CHECK(found["silent"] == 0);
+  int near = 0;
+  for (const Json& row : found["rows"]) near += contains(row["case"].get<std::string>(), " at ") && row["verdict"] == "kept" ? 1 : 0;
+  CHECK(near > 0);
+  for (const Json& left : found["left_out"]) CHECK_FALSE(contains(left["reason"].get<std::string>(), "constraints allow no start"));
+}
+
+// A stiff spring through its centre: whatever the number of steps, the force turns within one of them, and some of these numbers agree by chance.
+TEST_CASE("run: the estimate of fixed steps sees a force that turns within one of them") {
+  const Folder folder;
+  const auto end = [&](const char* solver, const char* how, const char* much) {
+    return document(folder, {"run", "P13_saddle_field", "--set", "K=9e12", "--t-end", "5.15473e-06", "--solver", solver, how, much});
+  };
+  const Json right = end("dop853", "--rtol", "1e-13");
+  for (const char* step : {"1.030946e-08", "5.15473e-09", "2.577365e-09"}) {
+    const Json fixed = end("midpoint", "--step", step);
+    for (const char* state : {"x_dot", "y_dot", "z_dot"}) {
+      CAPTURE(std::string(state));
+      const double error = std::abs(fixed["final"][state].get<double>() - right["final"][state].get<double>());
+      CHECK(fixed["error_estimate"][state].get<double>() >= error / 10);  // design: told is within ten times the estimate
+    }
+    CHECK(contains(fixed.dump(), "a force turns within one step"));
+  }
+}
+
+// Close to the pole the rate follows from the momentum and an angle whose last digit is 4e-4 of its distance from there: orders 2 and 6 agree, and are wrong alike.
+TEST_CASE("run: the estimate of variational solvers knows what rates lose near the pole") {
+  const Folder folder;
+  const Json found = document(folder, {"stress", "G1_spherical", "--steps", "1000", "--seconds", "1e6", "--solver", "variational2", "--solver", "variational6"});
+  CHECK(found["silent"] == 0);
 }
 
 TEST_CASE("stress: wrong input is refused before anything is run") {
