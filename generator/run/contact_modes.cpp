@@ -78,6 +78,26 @@ void ContactModes::hold(double t, const double* x) {
   if (two_directions_) velocities_.hold(t, x, inputs_(t), mode());
 }
 
+bool ContactModes::slow_slip(double t, const double* x, double h, bool now) {
+  const double steps = now ? 8 : 4;
+  bool slow = false, moved = false;
+  for (std::size_t j = 0; j < request_.code.contacts.size() && !slow; ++j) {
+    const eom::Contact& contact = request_.code.contacts[j];
+    if (contact.dimensions != 2 || !contact.sticks || eom::contact_digit(mode(), j) % 3 == 0 || (contact.unilateral && eom::contact_digit(mode(), j) >= 3)) continue;
+    if (!moved) {
+      k_.resize(request_.code.free.size() * 2 + request_.code.integrals + (request_.watch_power ? 1 : 0));
+      if (rhs_(t, x, mode(), k_.data()) != 0) return now;
+      middle_.resize(k_.size());
+      for (std::size_t i = 0; i < k_.size(); ++i) middle_[i] = x[i] + h * k_[i];
+      moved = true;
+    }
+    const std::array<double, 2> here = velocities_.slip(t, x, inputs_(t), mode(), j);
+    const std::array<double, 2> there = velocities_.slip(t + h, middle_.data(), inputs_(t + h), mode(), j);
+    slow = std::hypot(here[0], here[1]) < steps * std::hypot(there[0] - here[0], there[1] - here[1]);
+  }
+  return slow;
+}
+
 /// Where the slip of contact j vanishes, by the midpoint rule over the short time that is left: the slip along its direction is
 /// all but linear there.
 int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, std::size_t j) const {
@@ -97,7 +117,7 @@ int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, std::si
   // The rate of the slip from a step in which it changes by a small part of itself.
   double h = 1e-6, rate = (moved(h) - speed) / h;
   if (rate < 0) h = -speed / rate / 8, rate = (moved(h) - speed) / h;
-  if (!(rate < 0)) return 0;
+  if (!(rate < 0)) return eom::slips_on;
   h = -speed / rate;
   for (std::size_t i = 0; i < x.size(); ++i) middle[i] = x[i] + h / 2 * k[i];
   if (const int code = self->rhs_(t + h / 2, middle.data(), mode, k.data()); code != 0) return code;

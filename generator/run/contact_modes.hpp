@@ -28,6 +28,10 @@ class ContactModes {
   void adjust(double* g);
   /// A step begins at (t, x).
   void hold(double t, const double* x);
+  void tolerances(double rtol, double atol) { velocities_.tolerances(rtol, atol); }
+  /// Whether slip in two directions changes in a step h by so much beside its speed that the step follows neither its direction nor its end.
+  /// `now`: the answer before, so that it does not go to and fro.
+  bool slow_slip(double t, const double* x, double h, bool now);
   /// A crossing of one of the functions; what is to be told of it.
   eom::AtEvent take(double& t, std::span<double> x, const eom::Crossing& crossing, std::span<eom::EventFunction> functions);
   const eom::ModeEvent* told() const { return told_ ? &*told_ : nullptr; }

@@ -6,7 +6,8 @@
 namespace eomgen::run {
 
 ContactVelocities::ContactVelocities(const RunRequest& request, ConstraintRows& rows)
-    : request_(request), rows_(rows), projection_(request.code.free.size(), rows.size(), 0), y_(request.code.output_names.size()) {
+    : request_(request), rows_(rows), projection_(request.code.free.size(), rows.size(), 0), y_(request.code.output_names.size()),
+      rtol_(request.scene.rtol), atol_(request.scene.atol) {
   const auto all = [&](const std::vector<std::string>& names) {
     std::vector<std::size_t> result;
     for (const std::string& name : names) result.push_back(index_of(request.code.output_names, name));
@@ -21,9 +22,8 @@ ContactVelocities::ContactVelocities(const RunRequest& request, ConstraintRows& 
 }
 
 double ContactVelocities::still() const {
-  constexpr double rounding = 1e-15, share = 1e-3;
-  const Scene& scene = request_.scene;
-  return std::max({rounding, scene.atol, share * scene.rtol * largest_slip_});
+  constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
+  return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_slip_});
 }
 
 double ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact) {
@@ -34,31 +34,26 @@ double ContactVelocities::restitution(double t, const double* x, const double* u
 
 void ContactVelocities::forget() {
   largest_slip_ = 0;
-  held_.assign(request_.contacts.size(), Held{-1, still()});
+  least_.assign(request_.contacts.size(), still());
 }
 
-// Slip is known to the tolerance of the rates that it is made of; a fixed step makes it change by as much as the last one did.
+// Slip is known to the tolerance of the rates that it is made of.
 void ContactVelocities::hold(double t, const double* x, const double* u, int mode) {
-  constexpr double tolerances = 30, steps = 1.5;
-  const Scene& scene = request_.scene;
+  constexpr double tolerances = 30;
   const std::size_t n = request_.code.free.size();
-  if (request_.code.outputs(t, x, scene.parameters.data(), u, mode, y_.data()) != 0) return;
-  for (std::size_t j = 0; j < held_.size(); ++j) {
+  if (request_.code.outputs(t, x, request_.scene.parameters.data(), u, mode, y_.data()) != 0) return;
+  for (std::size_t j = 0; j < least_.size(); ++j) {
     if (places_[j].slip.size() != 2) continue;
-    double known = 0, squares = 0;
+    double known = 0;
     for (std::size_t a = 0; a < 2; ++a) {
-      const double w = y_[places_[j].slip[a]];
-      squares += w * w;
       double sum = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const double slope = y_[places_[j].slopes[a][i]];
-        sum += std::abs(slope) * (scene.atol + scene.rtol * std::abs(x[n + i]));
+        sum += std::abs(slope) * (atol_ + rtol_ * std::abs(x[n + i]));
       }
       known = std::max(known, sum);
     }
-    const double speed = std::sqrt(squares);
-    const double change = scene.step > 0 && held_[j].speed >= 0 ? steps * std::abs(speed - held_[j].speed) : 0;
-    held_[j] = {speed, std::max({still(), tolerances * known, change})};
+    least_[j] = std::max(still(), tolerances * known);
   }
 }
 

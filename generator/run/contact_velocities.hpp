@@ -12,6 +12,9 @@
 
 namespace eomgen::run {
 
+/// Of the steps in place of fixed ones where slip in two directions changes by too much in one of these.
+inline constexpr double slow_slip_rtol = 1e-12, slow_slip_atol = 1e-15;
+
 class ContactVelocities {
  public:
   ContactVelocities(const RunRequest& request, ConstraintRows& rows);
@@ -25,10 +28,12 @@ class ContactVelocities {
   /// Slip and gap speeds up to here count as none: within the tolerances of the run.
   double still() const;
   void forget();
+  /// Of the steps that are made.
+  void tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
   void see_slip(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
   /// A step begins at (t, x): how much slip in two directions counts there.
   void hold(double t, const double* x, const double* u, int mode);
-  double least_slip(std::size_t contact) const { return held_[contact].least; }
+  double least_slip(std::size_t contact) const { return least_[contact]; }
   std::array<double, 2> slip(double t, const double* x, const double* u, int mode, std::size_t contact);
   double restitution(double t, const double* x, const double* u, std::size_t contact);
 
@@ -46,10 +51,8 @@ class ContactVelocities {
   ConstraintRows& rows_;
   eom::Projection projection_;
   std::vector<double> y_;
-  struct Held {
-    double speed = -1, least = 0;  // speed: -1 before the first step
-  };
-  std::vector<Held> held_;  // per contact
+  std::vector<double> least_;  // per contact
+  double rtol_, atol_;
   double largest_slip_ = 0;
 };
 

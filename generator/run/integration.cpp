@@ -255,8 +255,25 @@ eom::AtEvent Integration::change_contact(const eom::EventPoint& point, const OnE
   const eom::AtEvent answer = contacts_->take(point.t, point.x, crossing, point.functions.subspan(first_contact()));
   mode_ = (mode_ & ~eom::contact_bits) | contacts_->mode();
   if (const eom::ModeEvent* told = contacts_->told(); told != nullptr && event) event({told->t, told->kind, told->name}, point.x);
-  if (answer == eom::AtEvent::restart) hold_sides(point.t, point.x.data(), true);
-  return answer;
+  if (answer != eom::AtEvent::restart) return answer;
+  hold_sides(point.t, point.x.data(), true);
+  steps_due_ = steps_due_ || steps_due(point.t, point.x.data());
+  return steps_due_ ? eom::AtEvent::stop : answer;
+}
+
+/// Whether the steps are to be others from (t, x) on: chosen ones where fixed ones would not follow the direction of slip, or its end.
+bool Integration::steps_due(double t, const double* x) {
+  return fixed_step_ > 0 && contacts_ && contacts_->slow_slip(t, x, fixed_step_, finer_) != finer_;
+}
+
+eom::Options Integration::finer(const eom::Options& piece) {
+  eom::Options options = piece;
+  options.fixed_step = options.initial_step = 0;
+  options.max_step = piece.fixed_step;
+  options.rtol = slow_slip_rtol;
+  options.atol = slow_slip_atol;
+  options.choice = &finer_choice_;
+  return options;
 }
 
 /// Of an accepted step: the work of its projection; others were made on trial.
@@ -324,24 +341,34 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
     hold_sides(step.t1, step.x1.data(), false);
     if (contacts_) contacts_->hold(step.t1, step.x1.data());
     exchange_due_ = exchange_due_ && go_on;
-    return go_on && !exchange_due_;
+    steps_due_ = go_on && steps_due(step.t1, step.x1.data());
+    return go_on && !exchange_due_ && !steps_due_;
   };
   const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
   const auto after = [this](double t, double* x) { return rows_.size() == 0 || variational_ ? 0 : project(t, x); };
+  int idle = 0;
   while (true) {
     hold_sides(total.t, total.x.data(), true);
     exchange_due_ = false;
-    const eom::Result part =
-        eom::integrate_events(solver_, f, total.t, total.x, end, piece, g, watched(), at, watch, after);
+    if (steps_due(total.t, total.x.data())) finer_ = !finer_;
+    const double begin = total.t;
+    const eom::Result part = eom::integrate_events(finer_ ? std::string(eom::Automatic::name) : solver_, f, total.t, total.x, end,
+                                                   finer_ ? finer(piece) : piece, g, watched(), at, watch, after);
     total.outcome = part.outcome;
     total.detail = part.detail;
     total.t = part.t;
     total.x = part.x;
     total.statistics += part.statistics;
-    if (!exchange_due_ || stopped_ || part.outcome != eom::Outcome::stopped_by_event) return;
-    for (const std::string& whose : exchange_charts(total.t, total.x)) {
+    if (!(exchange_due_ || steps_due_) || stopped_ || (contacts_ && contacts_->ended()) || part.outcome != eom::Outcome::stopped_by_event) return;
+    for (const std::string& whose : exchange_due_ ? exchange_charts(total.t, total.x) : std::vector<std::string>{}) {
       if (event) event({total.t, "chart", whose}, total.x);
+    }
+    idle = total.t > begin ? 0 : idle + 1;
+    if (idle >= eom::events_without_progress) {
+      total.outcome = eom::Outcome::step_too_small;
+      total.detail = fmt::format("slip starts and ends at t = {:.17g} without time going on", total.t);
+      return;
     }
     total.outcome = eom::Outcome::done;
     total.detail.clear();
@@ -373,8 +400,10 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   kink_at_ = std::nan("");
   kink_crossings.assign(compiled().kinks.size(), 0);
   projected_.clear();
-  stopped_ = false;
-  choice = {};
+  stopped_ = finer_ = steps_due_ = false;
+  fixed_step_ = options.fixed_step;
+  if (contacts_) contacts_->tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol, fixed_step_ > 0 ? slow_slip_atol : options.atol);
+  choice = finer_choice_ = {};
   eom::Options piece = options;
   piece.choice = &choice;
   // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.

@@ -64,6 +64,8 @@ class Integration {
   std::vector<double> restarts() const;
   void integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total);
   void explain(eom::Result& end);
+  bool steps_due(double t, const double* x);
+  eom::Options finer(const eom::Options& piece);
   std::size_t first_contact() const { return request_.events.size() + request_.code.kinks.size(); }
   const Code& compiled() const { return charts_.code(); }  // knows all charts that the run is or was in
   void accept(const eom::StepView& step);
@@ -83,6 +85,9 @@ class Integration {
   std::vector<double> g_, g_size_;  // event functions; largest |g| seen of each kink
   std::vector<std::pair<double, double>> projected_;  // time, work of projections since the last accepted step
   bool stopped_ = false, exchange_due_ = false;
+  double fixed_step_ = 0;       // of the run
+  bool finer_ = false, steps_due_ = false;  // steps that are chosen in place of fixed ones, where slip in two directions is slow; to be changed
+  eom::Choice finer_choice_;
   double last_step_ = 0;
   std::vector<double> start_;
   mutable std::vector<double> own_x_, own_y_;

@@ -47,6 +47,8 @@ inline Repetition repetition(const Options& first, double span, std::size_t step
   const double count = static_cast<double>(steps);
   if (first.fixed_step > 0) {
     next.options.fixed_step = part * (steps > 0 ? std::min(first.fixed_step, span / count) : first.fixed_step);
+    // The way to an event that is shorter than all these steps would be the same step in each run.
+    next.options.event_parts = static_cast<std::size_t>(std::ceil(static_cast<double>(first.event_parts) / part));
     next.remaining = std::pow(part, order);
     return next;
   }

@@ -39,6 +39,7 @@ struct Options {
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
   double fixed_step = 0;    // > 0: steps of this size without error control, whatever the method; rk4 needs it
+  std::size_t event_parts = 1;  // so many equal steps to a breaking event that ends a step, instead of one
   int series_order = 0;     // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step
   std::size_t max_steps = 50'000'000;               // accepted and rejected together
   std::size_t quadratures = 0;                      // trailing components of x kept out of the error norm

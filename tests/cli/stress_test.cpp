@@ -67,6 +67,17 @@ TEST_CASE("run: the estimate of variational solvers knows what rates lose near t
   CHECK(found["silent"] == 0);
 }
 
+// P5: slip that starts all but at rest, and has to grow; P6: it ends within the first step; R16: it lasts for 2e-4 s before contact is lost.
+TEST_CASE("stress: slip that is slow or short is not lost by fixed steps, nor by what they are held against") {
+  const Folder folder;
+  for (const auto& [model, solver] : {std::pair{"P5_rough_sphere", "rk4"}, {"P6_rough_circle", "midpoint"}, {"R16_disk_on_disk", "rodas"}}) {
+    CAPTURE(std::string(model));
+    const Json found = document(folder, {"stress", model, "--solver", solver, "--steps", "2000", "--seconds", "1e6"});
+    CHECK(found["silent"] == 0);
+    CHECK(found["rows"].size() > 40);
+  }
+}
+
 TEST_CASE("stress: wrong input is refused before anything is run") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"stress", "P2_planar_pendulum", "--solver", "dopri"}).err, "did you mean"));

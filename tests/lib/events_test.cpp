@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "eom/error_estimate.hpp"
 #include "eom/events/integrate.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
@@ -240,4 +241,79 @@ TEST_CASE("an event function without a value is no event; one that fails at the 
   const auto refuses = [](double, const double*, double*) { return 2; };
   const eom::Result none = eom::integrate_events("rk4", f, 0, start, 4, options, refuses, {EventFunction{}}, handler);
   CHECK(none.outcome == eom::Outcome::chart_left);
+}
+
+TEST_CASE("a dip between two samples is found: of a function with a kink, and of a short one by what crosses within it") {
+  const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
+  const std::vector<double> start{0};
+  eom::Options options;
+  options.fixed_step = 1;  // all in one step
+  const auto met = [&](auto g) {
+    std::vector<std::pair<std::size_t, double>> events;
+    const auto handler = [&](const EventPoint& point) { return events.emplace_back(point.crossing.function, point.t), AtEvent::go_on; };
+    CHECK(eom::integrate_events("rk4", f, 0, start, 1, options, g, std::vector<EventFunction>(2), handler).outcome == eom::Outcome::done);
+    return events;
+  };
+  // As a friction limit about N = 0: the parabola through three of the nine samples stays above zero.
+  const auto kink = met([](double t, const double*, double* g) { return g[0] = std::abs(t - 0.4) - 0.01, g[1] = 1, 0; });
+  REQUIRE(kink.size() == 2);
+  CHECK(std::abs(kink[0].second - 0.39) < tolerances::event_time);
+  CHECK(std::abs(kink[1].second - 0.41) < tolerances::event_time);
+  // Flat at all samples; where the other function crosses it is below zero, so it has crossed before.
+  const auto pulse = met([](double t, const double*, double* g) {
+    g[0] = t - 0.4;
+    g[1] = 1 - 2 * std::exp(-1e6 * (t - 0.4) * (t - 0.4));
+    return 0;
+  });
+  const double half = 1e-3 * std::sqrt(std::log(2.0));
+  REQUIRE(pulse.size() >= 2);
+  CHECK(pulse[0].first == 1);
+  CHECK(std::abs(pulse[0].second - (0.4 - half)) < tolerances::event_time);
+  CHECK(pulse[1].first == 0);
+}
+
+TEST_CASE("a function that has another meaning after an event is watched from where it is then") {
+  int part = 0;
+  const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
+  const auto g = [&part](double t, const double*, double* value) { return value[0] = (part == 0 ? 1 : 3) - t, 0; };
+  std::vector<double> times;
+  const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), ++part, AtEvent::restart; };
+  const std::vector<double> start{0};
+  eom::Options options;
+  options.fixed_step = 0.3;
+  CHECK(eom::integrate_events("rk4", f, 0, start, 4, options, g, {{Direction::down}}, handler).outcome == eom::Outcome::done);
+  REQUIRE(times.size() == 2);
+  CHECK(std::abs(times[0] - 1) < tolerances::event_time);
+  CHECK(std::abs(times[1] - 3) < tolerances::event_time);
+}
+
+TEST_CASE("estimate: sees the error of a way to an event that is shorter than any of its fixed steps") {
+  // v' = -1 - v until v = 0: x has gone v0 - log(1 + v0), and stands.
+  const double v0 = 0.4, exact = v0 - std::log(1 + v0);
+  const std::vector<double> start{0, v0};
+  for (const eom::MethodInfo& method : problems::methods()) {
+    if (method.adaptive) continue;
+    CAPTURE(std::string(method.name));
+    const auto run = [&](const eom::Options& options) {
+      bool stands = false;
+      const auto f = [&](double, const double* x, double* dx) { return dx[0] = stands ? 0 : x[1], dx[1] = stands ? 0 : -1 - x[1], 0; };
+      const auto speed = [](double, const double* x, double* g) { return g[0] = x[1], 0; };
+      const auto handler = [&](const EventPoint& point) { return stands = true, point.x[1] = 0, AtEvent::restart; };
+      std::vector<double> ends{0};
+      bool joined = true;
+      const auto observer = [&](const eom::StepView& view) { return joined = joined && view.t0 == ends.back(), ends.push_back(view.t1), true; };
+      const eom::Result end = eom::integrate_events(method.name, f, 0, start, 8, options, speed, {{Direction::down}}, handler, observer);
+      CHECK(joined);
+      CHECK(ends.back() == 8);
+      return end;
+    };
+    eom::Options options;
+    options.fixed_step = 1.3;
+    const eom::Result end = run(options);
+    const eom::ErrorEstimate estimate = eom::estimate_error(method.order, end, options, run);
+    const double error = std::abs(end.x[0] - exact);
+    CHECK(error > 1e-7);
+    CHECK(error < 10 * estimate.x[0]);
+    CHECK(estimate.x[0] < 10 * error);
+  }
 }

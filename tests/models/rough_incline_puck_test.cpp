@@ -52,3 +52,19 @@ TEST_CASE("rough_incline_puck: from rest it slides straight down if tan(beta) ex
   CHECK(events_of(run_rough("rough_incline_puck", "steep", with({{"mu_s", std::tan(beta) * (1 + 1e-9)}}))).empty());
   CHECK(!events_of(run_rough("rough_incline_puck", "steep", with({{"mu_s", std::tan(beta) * (1 - 1e-9)}}))).empty());
 }
+
+TEST_CASE("rough_incline_puck: fixed steps that are longer than the slip lasts stop it all the same") {
+  for (const double step : {0.7, 2.0}) {
+    CAPTURE(step);
+    const Finished run = run_rough("rough_incline_puck", "level", [&](cli::SimulationRequest& request) {
+      request.overrides.solver = "rk4";
+      request.overrides.step = step;
+      request.overrides.t_end = 4;
+    });
+    const double deceleration = run.parameter("mu_d") * run.parameter("g"), way = 1.5 * 1.5 / (2 * deceleration);
+    REQUIRE(events_of(run).size() == 1);
+    CHECK(std::abs(events_of(run)[0].t - 1.5 / deceleration) < by_hand);
+    CHECK(std::abs(run.final("x") - 0.6 * way) < by_hand);
+    CHECK(std::abs(run.final("y") - 0.8 * way) < by_hand);
+  }
+}

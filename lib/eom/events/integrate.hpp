@@ -102,7 +102,7 @@ class Run {
       std::vector<double> x(view.x0.size());
       view.interpolate(exact.t, x);
       const Statistics before = total_.statistics;
-      refine(view.t0, view.x0, view.t1 - view.t0, exact, x, [](const StepView&) { return true; });
+      refine(view.t0, view.x0, view.t1 - view.t0, 1, exact, x, [](const StepView&) { return true; });
       total_.statistics.steps = before.steps;
       handler_(EventPoint{exact.t, x, exact, locator_.functions()});
     }
@@ -110,9 +110,10 @@ class Run {
     return observer_(view);
   }
 
-  /// Steps from (t0, x0) to the crossing until it stays where it is; `last` sees the final step. x is the state there.
+  /// Goes from (t0, x0) to the crossing, in so many `parts`, until it stays where it is; `last` sees the final ones. x is the state there.
   template <class Last>
-  bool refine(double t0, std::span<const double> x0, double h, Crossing& crossing, std::vector<double>& x, Last&& last) {
+  bool refine(double t0, std::span<const double> x0, double h, std::size_t parts, Crossing& crossing, std::vector<double>& x, Last&& last) {
+    if (std::abs(crossing.t - t0) < static_cast<double>(parts) * smallest_parts * std::abs(crossing.t)) parts = 1;
     Options one;
     one.rtol = options_.rtol;
     one.atol = options_.atol;
@@ -125,11 +126,12 @@ class Run {
     double t = crossing.t, before = 0, value_before = 0;
     bool go_on = true;
     for (int trial = 0; trial < most_corrections; ++trial) {
-      one.fixed_step = std::abs(t - t0);
+      one.fixed_step = std::abs(t - t0) / static_cast<double>(parts);
       if (one.fixed_step == 0) return go_on;
       bool final = false;
       double next = t;
       const auto look = [&](const StepView& view) {
+        if (view.t1 != t) return true;
         final = g_(view.t1, view.x1.data(), values_.data()) != 0 || !std::isfinite(values_[i]) || values_[i] == 0 ||
                 trial + 1 == most_corrections;
         if (!final) {
@@ -139,7 +141,7 @@ class Run {
           if (!final) next = t + move;
           if ((next - t0) * h <= 0) final = true;
         }
-        if (final) go_on = last(view);
+        if (final && parts == 1) go_on = last(view);
         return true;
       };
       const Result step = integrate(method_, rhs_, t0, x0, t, one, look, after_step_);
@@ -148,6 +150,13 @@ class Run {
       total_.statistics.steps -= final ? 0 : step.statistics.steps;
       crossing.t = t;
       x = step.x;
+      if (final && parts > 1) {  // the parts anew, now that the last is known to end where it should
+        const auto show = [&](const StepView& view) {
+          go_on = last(view) && go_on;
+          return true;
+        };
+        total_.statistics.rhs_evaluations += integrate(method_, rhs_, t0, x0, t, one, show, after_step_).statistics.rhs_evaluations;
+      }
       if (final) return go_on;
       before = t;
       value_before = values_[i];
@@ -171,9 +180,11 @@ class Run {
   bool take_event(Options& piece) {
     Crossing crossing = *cut_;
     const double h = cut_h_;
-    const bool go_on = refine(cut_t_, cut_x_, h, crossing, total_.x, [this](const StepView& view) { return observer_(view); });
+    const bool go_on = refine(cut_t_, cut_x_, h, options_.event_parts, crossing, total_.x, [this](const StepView& view) { return observer_(view); });
     const double progress = std::abs(crossing.t - total_.t);
     total_.t = crossing.t;
+    const bool known = g_(total_.t, total_.x.data(), values_.data()) == 0 && std::isfinite(values_[crossing.function]);
+    if (known) crossing.value = values_[crossing.function];
     crowded_ = progress > std::max(1e-14 * std::abs(crossing.t), 1e-11 * std::abs(h)) ? 0 : crowded_ + 1;
     const AtEvent answer = handler_(EventPoint{total_.t, total_.x, crossing, locator_.functions()});
     if (!go_on) return end(Outcome::stopped_by_event, answer == AtEvent::stop ? "" : "stopped by the observer");
@@ -197,6 +208,7 @@ class Run {
   }
 
   static constexpr int most_corrections = 6;
+  static constexpr double smallest_parts = 1e-13;  // of the time
   static constexpr double farthest = 0.01;  // of the step: a correction that is larger is none
 
   std::string_view method_;

@@ -5,8 +5,10 @@
 // An event function keeps a side (the sign it had last). A crossing flips it, so that the residual of a root that was
 // just found is not found again. A side that is not known (at the start of a run on the surface itself, or after a state
 // was changed there) is the sign of the first value beyond rounding, looked for on a geometric sequence of points.
-// Each step is sampled at nine points; between samples of one sign a double root is looked for wherever three of
-// them show a dip that may reach zero. A zero without a change of sign is no event.
+// Each step is sampled at nine points; between samples of one sign a double root is looked for wherever they show a dip that may
+// reach zero: three of them by the parabola through them, four by the lines through the outer two on either side, below which a convex function, with
+// a kink or not, cannot come. Where a crossing is found all functions are looked at: one that is beyond zero there has crossed before,
+// however short that is and whatever the samples say. A zero without a change of sign is no event.
 #pragma once
 
 #include <algorithm>
@@ -43,6 +45,7 @@ struct Crossing {
   std::size_t function = 0;
   double t = 0;
   bool up = false;  // the value rises with t
+  double value = std::numeric_limits<double>::infinity();  // the function's there, before a handler changed anything; infinite: not known
 };
 
 class EventLocator {
@@ -55,6 +58,7 @@ class EventLocator {
         size_(functions_.size(), 0),
         residual_(functions_.size(), 0),
         values_(functions_.size()),
+        there_(functions_.size()),
         samples_(places.size() * functions_.size()),
         x_(n) {}
 
@@ -63,7 +67,8 @@ class EventLocator {
   /// -1, 0 (not known) or 1 of a function's value where the run stands.
   int side(std::size_t function) const { return side_[function]; }
 
-  /// Takes the sides at (t, x) afresh; those of `crossed` functions, and those within rounding of zero, are not known.
+  /// Takes the sides at (t, x) afresh; those within rounding of zero are not known, nor those of `crossed` functions that are as near zero as
+  /// they were at the crossing (a mode may give the function another meaning).
   template <class G>
   int start(double t, const double* x, G& g, bool forward = true, std::span<const Crossing> crossed = {}) {
     if (functions_.empty()) return 0;
@@ -71,7 +76,10 @@ class EventLocator {
     if (code != 0) return code;
     std::fill(residual_.begin(), residual_.end(), 0.0);
     for (std::size_t i = 0; i < functions_.size(); ++i) side_[i] = beyond(i, values_[i]) ? sign(values_[i]) : 0;
-    for (const Crossing& c : crossed) side_[c.function] = 0;
+    for (const Crossing& c : crossed) {
+      const double near = std::max(4 * std::abs(c.value), crossed_rounding * size_[c.function]);
+      if (!(std::abs(values_[c.function]) > near)) side_[c.function] = 0;
+    }
     for (std::size_t i = 0; i < functions_.size(); ++i)
       if (side_[i] == 0 && std::isfinite(values_[i])) residual_[i] = std::abs(values_[i]);
     for (std::size_t i = 0; i < functions_.size(); ++i)
@@ -105,6 +113,11 @@ class EventLocator {
         if (candidate && (!first || candidate->s < first->s)) first = candidate;
       }
       if (!first) return std::nullopt;
+      for (std::size_t k = 0; k < 2 * functions_.size(); ++k) {
+        const std::optional<Candidate> before = crossed_before(view, *first, g);
+        if (!before) break;
+        first = before;
+      }
       const std::size_t i = first->function;
       side_[i] = -first->side;
       position_[i] = first->s;
@@ -125,6 +138,9 @@ class EventLocator {
   }
 
  private:
+  struct Point {
+    double s, value;
+  };
   struct Candidate {
     std::size_t function;
     double s;
@@ -135,6 +151,8 @@ class EventLocator {
   static constexpr std::array<double, 9> places{0, 1e-4, 0.067, 0.25, 0.5, 0.75, 0.933, 1 - 1e-4, 1};
   static constexpr double tolerance = 1e-12;         // of the step
   static constexpr double rounding = 1e-13;          // of the largest value seen: smaller ones have no sign
+  static constexpr double crossed_rounding = 1e-10;  // the same of a function that has just crossed: its place is corrected, not exact
+  static constexpr double none = std::numeric_limits<double>::quiet_NaN();
   static constexpr double dip_worth_a_look = 0.5;    // of the smallest sample: where a parabola's vertex lies lower
 
   /// The side from which a function with a direction may be crossed.
@@ -211,7 +229,9 @@ class EventLocator {
       if (!std::isfinite(here)) break;
       if (here < 0) return Candidate{i, root(inward, left, at_left, places[k], here), side};
       if (k + 1 < places.size()) {
-        const double dip = dipped(inward, left, at_left, places[k], here, places[k + 1], side * sample(k + 1, i));
+        const Point b{left, at_left}, c{places[k], here}, d{places[k + 1], side * sample(k + 1, i)};
+        double dip = k > 1 && places[k - 2] >= position_[i] ? dipped({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward) : none;
+        if (!std::isfinite(dip)) dip = dipped(inward, left, at_left, places[k], here, d.s, d.value);
         if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
       }
       left = places[k];
@@ -220,10 +240,46 @@ class EventLocator {
     return std::nullopt;
   }
 
+  /// Of the other functions the first that has crossed before a crossing that was found: it is beyond zero there.
+  template <class G>
+  std::optional<Candidate> crossed_before(const StepView& view, const Candidate& found, G& g) {
+    evaluate(view, found.s, g);
+    there_ = values_;
+    std::optional<Candidate> first;
+    for (std::size_t i = 0; i < functions_.size(); ++i) {
+      const int side = side_[i];
+      const double there = side * there_[i];
+      if (i == found.function || functions_[i].watch == Watch::off || !(there < 0) || !beyond(i, there) || position_[i] >= found.s) continue;
+      double left = position_[i], at_left = left == 0 ? side * sample(0, i) : none;
+      for (std::size_t k = 1; k < places.size() && places[k] < found.s; ++k) {
+        if (places[k] > left && side * sample(k, i) > 0) left = places[k], at_left = side * sample(k, i);
+      }
+      const auto inward = [&](double s) { return side * value(view, s, i, g); };
+      const double s = root(inward, left, at_left, found.s, there);
+      if (s < found.s && (!first || s < first->s)) first = Candidate{i, s, side};
+    }
+    return first;
+  }
+
+  /// A point between b and c where the function is negative though not at the four samples; NaN where the lines through the outer two
+  /// meet above zero, or there is none.
+  template <class F>
+  double dipped(Point a, Point b, Point c, Point d, F& inward) {
+    if (!(a.value > 0 && b.value > 0 && c.value > 0 && d.value > 0)) return none;
+    const double falls = (b.value - a.value) / (b.s - a.s), rises = (d.value - c.value) / (d.s - c.s);
+    if (!(falls < 0 && rises > 0)) return none;
+    const double s = (c.value - b.value + falls * b.s - rises * c.s) / (falls - rises);
+    if (!(s > b.s && s < c.s && b.value + falls * (s - b.s) < 0)) return none;
+    const Point m{s, inward(s)};
+    if (m.value < 0) return s;
+    if (m.value < b.value && m.value < c.value) return events::find_negative(inward, b.s, s, m.value, c.s, 1e-9);
+    if (b.value < c.value) return events::find_negative(inward, a.s, b.s, b.value, s, 1e-9);
+    return events::find_negative(inward, s, c.s, c.value, d.s, 1e-9);
+  }
+
   /// A point where the function is negative between three samples that are not, the middle one the lowest; else NaN.
   template <class F>
   double dipped(F& inward, double a, double fa, double b, double fb, double c, double fc) {
-    constexpr double none = std::numeric_limits<double>::quiet_NaN();
     if (!std::isfinite(fa)) fa = inward(a);
     if (!(fb > 0 && fb <= fa && fb < fc)) return none;
     const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b);
@@ -257,6 +313,7 @@ class EventLocator {
   std::vector<double> size_;      // largest value seen
   std::vector<double> residual_;  // value at the start, of a function that started on its surface
   std::vector<double> values_;
+  std::vector<double> there_;     // values at a crossing
   std::vector<double> samples_;
   std::vector<double> x_;
 };

@@ -39,7 +39,7 @@ struct ContactMotion {
   int impact(double, std::span<double>, int, std::size_t, double) { return 0; }
   /// Slip 0 at contact j in `mode`.
   int stick(double, std::span<double>, int, std::size_t) { return 0; }
-  /// Goes on from (t, x), where contact j slides slowly, to where it stops.
+  /// Goes on from (t, x), where contact j slides slowly, to where it stops; slips_on where it does not: its slip grows.
   int stop(double&, std::span<double>, int, std::size_t) { return 0; }
   /// Twice the least slip, in the direction in which contact j gives way; `mode` as it still sticks.
   int slide(double, std::span<double>, int, std::size_t) { return 0; }
@@ -52,6 +52,9 @@ struct ContactMotion {
 };
 
 inline constexpr std::size_t contact_values = 5;
+
+/// Of ContactMotion::stop, in place of a code.
+inline constexpr int slips_on = -1;
 
 template <class Rhs, class Functions, class Motion = ContactMotion>
 class Contacts {
@@ -135,7 +138,9 @@ class Contacts {
     const int digit = contact_digit(point.mode, j), sign = digit - digit % 3, sticking = with_contact_digit(point.mode, j, sign);
     const std::string& name = contacts_[j].name;
     if (contacts_[j].dimensions == 2) {
-      if (const int code = motion_.stop(point.t, point.x, point.mode, j); code != 0) return failed(point, code);
+      const int code = motion_.stop(point.t, point.x, point.mode, j);
+      if (code == slips_on) return {point.mode};
+      if (code != 0) return failed(point, code);
     }
     if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0) return failed(point, code);
     if (static_law_holds(j)) {
