@@ -270,7 +270,9 @@ eom::Options Integration::finer(const eom::Options& piece) {
   eom::Options options = piece;
   options.fixed_step = options.initial_step = 0;
   options.max_step = piece.fixed_step;
-  options.rtol = slow_slip_rtol;
+  // Tighter in a further run, as its steps are shorter, so that the estimate sees the error of these steps too.
+  const double part = std::min(1.0, piece.fixed_step / request_.scene.step);
+  options.rtol = slow_slip_rtol * std::max(0.01, std::pow(part, 4));
   options.atol = slow_slip_atol;
   options.choice = &finer_choice_;
   return options;
