@@ -76,8 +76,16 @@ TEST_CASE("auto: where nothing is stiff it is dopri5 or dop853 to the last bit, 
 TEST_CASE("auto: a decay a hundred thousand times faster than the motion is handed to radau5, with the reason") {
   for (const double tolerance : {1e-4, 1e-8, 1e-12}) {
     CAPTURE(tolerance);
-    Choice choice;
+    Choice choice, backwards;
     const Result found = eom::integrate("auto", Decay{}, 0, State{1}, 5, options_for(tolerance, choice));
+    const auto mirrored = [](double t, const double* x, double* dx) {
+      const int code = Decay{}(-t, x, dx);
+      dx[0] = -dx[0];
+      return code;
+    };
+    CHECK(eom::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome == eom::Outcome::done);
+    CHECK(backwards.method == std::string("radau5"));
+    CHECK(backwards.changes.size() == 1);  // it stays
     CHECK(found.outcome == eom::Outcome::done);
     CHECK(choice.method == std::string("radau5"));
     REQUIRE(choice.changes.size() == 1);

@@ -6,7 +6,6 @@
 #include <string>
 #include <vector>
 
-#include "eom/implicit/radau5_tableau.hpp"
 #include "eom/ode.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
@@ -51,45 +50,39 @@ struct VanDerPol {
 
 }  // namespace
 
-TEST_CASE("radau5: A integrates polynomials of degree 2 at each stage, its last row those of degree 4") {
-  using namespace eom::implicit::radau;
-  for (std::size_t i = 0; i < 3; ++i)
-    for (int k = 0; k < (i == 2 ? 5 : 3); ++k) {
-      double sum = 0;
-      for (std::size_t j = 0; j < 3; ++j) sum += A[i][j] * std::pow(c[j], k);
-      CHECK(std::abs(sum - std::pow(c[i], k + 1) / (k + 1)) < tolerances::order_condition);
-    }
-}
-
-TEST_CASE("radau5: T brings the inverse of A to the stated block form: T_inverse = blocks T_inverse A") {
-  using namespace eom::implicit::radau;
-  const double blocks[3][3]{{gamma0, 0, 0}, {0, alpha, -beta}, {0, beta, alpha}};
-  for (std::size_t i = 0; i < 3; ++i)
+TEST_CASE("radau5: the tableau worked out is the published one (Hairer, Wanner, section IV.8)") {
+  const eom::implicit::RadauTableau& r = eom::implicit::RadauTableau::of(3);
+  const double root6 = std::sqrt(6.0);
+  const double T[3][3]{{0.091232394870892942792, -0.14125529502095420843, -0.030029194105147424492},
+                       {0.24171793270710701896, 0.20412935229379993199, 0.38294211275726193779},
+                       {0.96604818261509293619, 1, 0}};
+  const double A[3][3]{{(88 - 7 * root6) / 360, (296 - 169 * root6) / 1800, (-2 + 3 * root6) / 225},
+                       {(296 + 169 * root6) / 1800, (88 + 7 * root6) / 360, (-2 - 3 * root6) / 225},
+                       {(16 - root6) / 36, (16 + root6) / 36, 1.0 / 9}};
+  const double slope[3]{-(13 + 7 * root6) / 3, (-13 + 7 * root6) / 3, -1.0 / 3};
+  CHECK(std::abs(r.gamma - 3.637834252744495732208418) < tolerances::order_condition);
+  CHECK(std::abs(r.alpha[0] - 2.681082873627752133895791) < tolerances::order_condition);
+  CHECK(std::abs(r.beta[0] - 3.050430199247410569426378) < tolerances::order_condition);
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(std::abs(r.slope[i] - slope[i]) < 10 * tolerances::order_condition);  // of size 10
     for (std::size_t j = 0; j < 3; ++j) {
-      double identity = 0, transformed = 0;
-      for (std::size_t k = 0; k < 3; ++k) {
-        identity += T[i][k] * T_inverse[k][j];
-        for (std::size_t l = 0; l < 3; ++l) transformed += blocks[i][k] * T_inverse[k][l] * A[l][j];
-      }
-      CHECK(std::abs(identity - (i == j ? 1 : 0)) < tolerances::order_condition);
-      CHECK(std::abs(transformed - T_inverse[i][j]) < tolerances::order_condition);
+      CHECK(std::abs(r.T[i][j] - T[i][j]) < tolerances::order_condition);
+      CHECK(std::abs(r.A[i][j] - A[i][j]) < tolerances::order_condition);
     }
+  }
 }
 
-TEST_CASE("radau5: the collocation polynomial meets its points; the bump has its slopes") {
-  using namespace eom::implicit::radau;
-  CHECK(collocation(0, 2, 3, 5) == 0);
-  CHECK(collocation(c[0], 2, 3, 5) == doctest::Approx(2));
-  CHECK(collocation(c[1], 2, 3, 5) == doctest::Approx(3));
-  CHECK(collocation(1, 2, 3, 5) == doctest::Approx(5));
+TEST_CASE("radau5: the bump of its dense output has its slopes; what gives the slope at the start is right") {
+  const eom::implicit::RadauTableau& r = eom::implicit::RadauTableau::of(3);
+  using eom::implicit::bump;
   const auto slope = [](double s) { return 1 - 9 * s + 18 * s * s - 10 * s * s * s; };
-  for (const double at : c) CHECK(std::abs(slope(at)) < tolerances::order_condition);
+  for (std::size_t i = 0; i < 3; ++i) CHECK(std::abs(slope(r.c[i])) < tolerances::order_condition);
   for (const double s : {0.2, 0.7, 1.0}) CHECK(std::abs((bump(s + 1e-5) - bump(s - 1e-5)) / 2e-5 - slope(s)) < 1e-8);
   CHECK(std::abs(bump(1)) < tolerances::order_condition);
   // slope at 0 of the polynomial that is s, s^2, s^3 at the stages: 1, 0, 0
   for (int k = 1; k <= 3; ++k) {
     double slope_at_start = 0;
-    for (std::size_t i = 0; i < 3; ++i) slope_at_start -= slope_defect[i] * std::pow(c[i], k);
+    for (std::size_t i = 0; i < 3; ++i) slope_at_start -= r.slope[i] * std::pow(r.c[i], k);
     CHECK(std::abs(slope_at_start - (k == 1 ? 1 : 0)) < tolerances::order_condition);
   }
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "eom/implicit/base.hpp"
+#include "eom/implicit/hermite.hpp"
 #include "eom/implicit/newton.hpp"
 
 namespace eom::implicit {
@@ -25,7 +26,7 @@ class Midpoint : public Base {
   static constexpr bool error_uses_end = false;
 
   Midpoint(Problem& problem, std::span<const double> x, const Options& options)
-      : Base(problem, x, options, Jacobian::Differences::one_sided), lu_(m_), work_(3 * n_) {
+      : Base(problem, x, options, Jacobian::Differences::one_sided), lu_(m_), units_(m_, m_), work_(3 * n_) {
     z_ = work_.data();
     f_ = z_ + n_;
     right_ = f_ + n_;
@@ -59,11 +60,7 @@ class Midpoint : public Base {
   static void interpolate(const void* method, double t, double* x) { static_cast<const Midpoint*>(method)->interpolate(t, x); }
 
   void interpolate(double t, double* x) const {
-    const double s = (t - t0_) / h_;
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double d1 = x1_[i] - x0_[i], d2 = h_ * f0_[i] - d1, d3 = d1 - h_ * f1_[i] - d2;
-      x[i] = x0_[i] + s * (d1 + (1 - s) * (d2 + s * d3));
-    }
+    hermite((t - t0_) / h_, h_, n_, x0_, f0_, x1_, f1_, x);
   }
 
  private:
@@ -88,6 +85,7 @@ class Midpoint : public Base {
   /// z = h/2 f(t0 + h/2, x0 + z).
   int iterate() {
     for (std::size_t i = 0; i < n_; ++i) z_[i] = i < m_ ? 0.5 * h_ * f0_[i] : 0;
+    units_.see(jacobian_, x0_, f0_, h_, 0.5 * h_, [&](double* w) { lu_.solve(w); }, [](double*, const auto&) {});
     ToRounding to_rounding;
     while (true) {
       if (const int code = evaluate_middle(); code != 0) return code;
@@ -96,8 +94,7 @@ class Midpoint : public Base {
       lu_.solve(right_);
       for (std::size_t i = 0; i < m_; ++i) z_[i] += right_[i];
       const double size = norm([&](std::size_t i) { return right_[i]; }, [&](std::size_t i) {
-        const double largest = std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[i]));
-        return largest > 0 ? largest : std::max(std::abs(h_ * f0_[i]), 1e-300);
+        return units_(i, std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[i])), right_[i]);
       });
       const ToRounding::State state = to_rounding.see(size);
       jacobian_wanted_ = to_rounding.contraction() > keep_jacobian;
@@ -114,6 +111,7 @@ class Midpoint : public Base {
   }
 
   Lu<double> lu_;
+  Units units_;
   std::vector<double> work_;
   double *z_, *f_, *right_;  // half the step's increment, the derivative in the middle, a correction
   double h_factored_ = 0;

@@ -3,7 +3,8 @@
 // Solving Ordinary Differential Equations II, sections IV.3, IV.5 and IV.8.
 //   c      the zeros of P_s(2x - 1) - P_(s-1)(2x - 1), the last is 1;  A[i][j] = integral of the j-th Lagrange polynomial up to c[i]
 //   gamma, alpha +- i beta   the eigenvalues of A^-1: zeros of the denominator of the Pade approximation (s - 1, s) of exp
-//   T      brings A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]
+//   T      brings A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]; the first column has length 1, in the last row then 1, 0
+//   node   1/(c[i] times the product of c[i] - c[j]), of Lagrange's polynomials through 0 as well
 //   slope  slope . Z = minus the derivative at 0 of the polynomial through 0 at 0 and Z[i] at c[i]
 #pragma once
 
@@ -21,13 +22,17 @@ struct RadauTableau {
   std::size_t stages = 0;
   double gamma = 0;
   std::array<double, most / 2> alpha{}, beta{};
-  Row c{}, slope{};
+  Row c{}, node{}, slope{};
   std::array<Row, most> A{}, T{}, T_inverse{};
 
   /// For s = 3, 5 or 7.
   static const RadauTableau& of(std::size_t s) {
-    static const RadauTableau three(3), five(5), seven(7);
-    return s == 3 ? three : s == 5 ? five : seven;
+    if (s == 7) {
+      static const RadauTableau seven(7);
+      return seven;
+    }
+    static const RadauTableau three(3), five(5);
+    return s == 3 ? three : five;
   }
 
  private:
@@ -53,8 +58,10 @@ struct RadauTableau {
       const std::array<Number, most> v = eigenvector(a, roots[r]);
       const bool real = roots[r].imag() < 1e-9L;
       const std::size_t column = real ? 0 : 1 + 2 * pair;
+      Real length = 0;
+      for (std::size_t i = 0; i < s; ++i) length = std::hypot(length, v[i].real());
       for (std::size_t i = 0; i < s; ++i) {
-        t[i][column] = v[i].real();
+        t[i][column] = v[i].real() / (real ? length : 1);
         if (!real) t[i][column + 1] = -v[i].imag();
       }
       if (real) {
@@ -69,6 +76,9 @@ struct RadauTableau {
     for (std::size_t i = 0; i < s; ++i) {
       c[i] = static_cast<double>(nodes[i]);
       slope[i] = static_cast<double>(-slope_at_start(nodes, i));
+      Real product = nodes[i];
+      for (std::size_t j = 0; j < s; ++j) product *= j == i ? 1 : nodes[i] - nodes[j];
+      node[i] = static_cast<double>(1 / product);
       for (std::size_t j = 0; j < s; ++j) {
         A[i][j] = static_cast<double>(a[i][j]);
         T[i][j] = static_cast<double>(t[i][j]);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "eom/implicit/base.hpp"
+#include "eom/implicit/hermite.hpp"
 #include "eom/variational/composition.hpp"
 #include "eom/variational/problem.hpp"
 
@@ -98,11 +99,7 @@ class Integrator : public implicit::Base {
   static void interpolate(const void* method, double t, double* x) { static_cast<const Integrator*>(method)->interpolate(t, x); }
 
   void interpolate(double t, double* x) const {
-    const double s = (t - t0_) / h_;
-    for (std::size_t i = 0; i < n_; ++i) {
-      const double d1 = x1_[i] - x0_[i], d2 = h_ * f0_[i] - d1, d3 = d1 - h_ * f1_[i] - d2;
-      x[i] = x0_[i] + s * (d1 + (1 - s) * (d2 + s * d3));
-    }
+    implicit::hermite((t - t0_) / h_, h_, n_, x0_, f0_, x1_, f1_, x);
   }
 
  private:

@@ -1,0 +1,397 @@
+// SPDX-License-Identifier: MIT
+// Steps of Radau IIA with error control, for stiff systems: what radau5, radau and ggl share. Source: Hairer, Wanner, Solving Ordinary
+// Differential Equations II, section IV.8: stage increments by simplified Newton iterations, transformed so that one real and (s - 1)/2
+// complex matrices are factored; an error estimate of order s, filtered by the real matrix; step sizes predicted from two steps
+// (Gustafsson); df/dx and the factors are kept as long as the iteration converges fast.
+//
+// The estimate is of lower order than the method. So that the step's own error stays in proportion to the tolerance r, it is
+// compared with r^((s+1)/(2s))/10. With fixed steps there is no tolerance: the iteration goes on to rounding.
+// A Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) beside x' = f(x, u) has hidden the hooks
+// below; u and g stand behind the state in each stage, and behind its motion (what is no quadrature) in matrices.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/implicit/base.hpp"
+#include "eom/implicit/newton.hpp"
+#include "eom/implicit/radau_tableau.hpp"
+
+namespace eom::implicit {
+
+/// most: stages; where that is 3, loops over them are written out.
+template <class Method, std::size_t most>
+class Collocation : public Base {
+ public:
+  static constexpr bool adaptive = true, error_uses_end = false;
+
+  /// Trial state at t1; a code of the right-hand side, or code_no_convergence.
+  int attempt(double t0, double t1) {
+    open(t0, t1);
+    if (jacobian_wanted_ || !jacobian_known_)
+      if (const int code = new_jacobian(); code != 0) return code;
+    while (true) {
+      if (!factored_ || std::abs(h_ - h_factored_) > same_step * std::abs(h_))
+        if (!factor()) return fail(0.5), code_no_convergence;
+      start_values();
+      int code = 0;
+      if (iterate(code)) break;
+      if (code != 0) return code;
+      ++counts_.newton_failures;
+      if (jacobian_here_) return code_no_convergence;
+      if ((code = new_jacobian()) != 0) return code;
+    }
+    return finish();
+  }
+
+  double error_norm(double, double) {
+    const auto scale = [&](std::size_t i) { return atol_ + rtol_ * std::max(std::abs(x0_[i]), std::abs(x1_[i])); };
+    double error = norm([&](std::size_t i) { return estimate_[i]; }, scale);
+    if (error >= 1 && (rejected_ || !accepted_)) {  // once more through the filter: less is asked of a stiff start
+      for (std::size_t i = 0; i < n_; ++i) scratch_[i] = x0_[i] + (i < m_ ? estimate_[i] : 0);
+      if (evaluate(t0_, scratch_, f_) == 0) {
+        filter(f_, right_.data());
+        const double again = norm([&](std::size_t i) { return right_[i]; }, scale);
+        if (std::isfinite(again)) error = again;
+      }
+    }
+    return std::max(error, 1e-10);
+  }
+
+  double after_accepted(double h, double error) {
+    double quotient = step_quotient(error);
+    if (accepted_ && !stages_changed_) {
+      const double predicted = h_before_ / h * std::pow(error * error / error_before_, exponent()) / safety;
+      quotient = std::max(quotient, std::clamp(predicted, 1 / most_growth, most_shrinking));
+    }
+    h_before_ = h;
+    error_before_ = std::max(error, 1e-2);
+    double next = h / quotient;
+    if (rejected_) next = std::min(next, h);
+    stages_changed_ = false;
+    method().choose_stages(next / h);
+    rejected_ = false;
+    accepted_ = true;
+    if (!stages_changed_ && contraction_ <= keep_jacobian && next >= h && next <= 1.2 * h) return h;  // the factors stay
+    return next;
+  }
+
+  double after_rejected(double h, double error) {
+    jacobian_wanted_ = !jacobian_here_;
+    rejected_ = true;
+    return accepted_ ? std::min(h / step_quotient(error), 0.95 * h) : 0.1 * h;
+  }
+
+  double after_failed(double h) {
+    jacobian_wanted_ = !jacobian_here_;
+    rejected_ = true;
+    return h * std::exchange(after_failure_, 0.25);
+  }
+
+  void accept(bool moved) {
+    std::swap(z_, z_before_);
+    h_of_before_ = h_;
+    of_before_ = made_with_;
+    jacobian_here_ = false;
+    jacobian_wanted_ = contraction_ > keep_jacobian;
+    swap_ends(moved);
+  }
+
+  static void interpolate(const void* method, double t, double* x) { static_cast<const Method*>(method)->interpolate(t, x); }
+
+  /// Of the step that comes.
+  std::size_t stages() const {
+    if constexpr (most == 3) return 3;
+    return stages_;
+  }
+
+  // Hooks of what has algebraic equations, or chooses its stages.
+  int linearise() { return 0; }                            // at the step's start, with df/dx; returns a code
+  template <class Matrix>
+  void border(Matrix&) const {}                            // rows and columns beyond the motion
+  int add_algebraic(double, const double*, const double*, double*) { return 0; }  // t, x, u, derivatives in which g stands too; a code
+  template <class Size>
+  void border_units(double*, const Size&) const {}         // right-hand sides for Units
+  int settle() { return 0; }                               // after the iteration: of the last stage; returns a code
+  void choose_stages(double) {}                            // after an accepted step; growth of the next
+
+ protected:
+  static constexpr double safety = 0.9, most_growth = 8, most_shrinking = 5;
+  static constexpr double keep_jacobian = 1e-3;  // of the contraction of Newton's iteration
+  static constexpr double same_step = 1e-9;
+
+  Collocation(Problem& problem, std::span<const double> x, const Options& options, std::size_t stages, std::size_t algebraic = 0)
+      : Base(problem, x, options, Jacobian::Differences::one_sided), extra_(algebraic), length_(n_ + algebraic), real_(m_ + algebraic),
+        complex_(most / 2, Lu<Complex>(m_ + algebraic)), units_(m_, m_ + algebraic), work_(4 * most * length_), estimate_(length_), right_(length_),
+        pair_(m_ + algebraic) {
+    double* next = work_.data();
+    for (double** block : {&z_, &w_, &f_, &z_before_}) *block = std::exchange(next, next + most * length_);
+    set_tolerances(options, x);
+    use(stages);
+  }
+
+  template <class Act>
+  static void each_stage(const RadauTableau& tableau, Act act) {
+    if constexpr (most == 3)
+      act(0), act(1), act(2);
+    else
+      for (std::size_t k = 0; k < tableau.stages; ++k) act(k);
+  }
+  Method& method() { return static_cast<Method&>(*this); }
+
+  double exponent() const { return 1 / static_cast<double>(stages() + 1); }
+  int most_iterations() const { return 7 + 5 * static_cast<int>(stages() - 3) / 2; }
+
+  /// act(place in a stage, row of the matrices) for the motion, then for algebraic unknowns.
+  template <class Act>
+  void each_unknown(Act act) const {
+    for (std::size_t i = 0; i < m_; ++i) act(i, i);
+    for (std::size_t j = 0; j < extra_; ++j) act(n_ + j, m_ + j);
+  }
+
+  void set_tolerances(const Options& options, std::span<const double> x) {
+    double largest = 0;
+    for (std::size_t i = 0; i < m_; ++i) largest = std::max(largest, std::abs(x[i]));
+    const double of_atol = options.atol > 0 ? options.atol / std::max(largest, 1e-300) : 0;
+    tolerance_ = std::clamp(std::max(options.rtol, of_atol), 10 * epsilon, 1e-3);
+    asked_rtol_ = options.rtol;
+    asked_atol_ = options.atol;
+  }
+
+  /// The tableau with s stages, and the tolerances that go with its estimate.
+  void use(std::size_t s) {
+    stages_ = s;
+    tableau_ = &RadauTableau::of(s);
+    const double power = static_cast<double>(s + 1) / static_cast<double>(2 * s);
+    const double loosened = 0.1 * std::pow(tolerance_, power - 1);
+    rtol_ = loosened * asked_rtol_;
+    atol_ = loosened * asked_atol_;
+    const double compared = loosened * tolerance_;
+    newton_tolerance_ = std::max(10 * epsilon / compared, std::min(0.03, std::pow(compared, 1 / power - 1)));
+    factored_ = false;
+    stages_changed_ = true;
+  }
+
+  int new_jacobian() {
+    int code = jacobian_.evaluate(t0_, x0_, f0_, h_, counts_);
+    if (code == 0) code = method().linearise();
+    jacobian_known_ = jacobian_here_ = code == 0;
+    jacobian_wanted_ = factored_ = false;
+    return code;
+  }
+
+  bool factor() {
+    ++counts_.factorisations;
+    const std::size_t pairs = stages() / 2;
+    const double inverse = 1 / h_;
+    for (std::size_t j = 0; j < m_; ++j)
+      for (std::size_t i = 0; i < m_; ++i) {
+        const double diagonal = i == j ? inverse : 0, entry = jacobian_(i, j);
+        real_(i, j) = tableau_->gamma * diagonal - entry;
+        for (std::size_t p = 0; p < pairs; ++p) complex_[p](i, j) = {tableau_->alpha[p] * diagonal - entry, tableau_->beta[p] * diagonal};
+      }
+    method().border(real_);
+    for (std::size_t p = 0; p < pairs; ++p) method().border(complex_[p]);
+    h_factored_ = h_;
+    factored_ = real_.factor();
+    for (std::size_t p = 0; p < pairs; ++p) factored_ = factored_ && complex_[p].factor();
+    return factored_;
+  }
+
+  /// The iteration is given up; such a part of the step is tried next.
+  bool fail(double part) {
+    after_failure_ = part;
+    return false;
+  }
+
+  /// What the values at the nodes weigh at s, with 0 at 0: Lagrange's polynomials.
+  static void weights(const RadauTableau& tableau, double s, RadauTableau::Row& weight) {
+    each_stage(tableau, [&](std::size_t k) {
+      weight[k] = s * tableau.node[k];
+      each_stage(tableau, [&](std::size_t j) { weight[k] *= j == k ? 1 : s - tableau.c[j]; });
+    });
+  }
+
+  /// The collocation polynomial of the step made; moved: towards x1, by after_step and by rounding.
+  double polynomial(const RadauTableau::Row& weight, double s, std::size_t i) const {
+    double sum = 0;
+    each_stage(*made_with_, [&](std::size_t k) { sum += weight[k] * z_[k * length_ + i]; });
+    const double moved = x1_[i] - (x0_[i] + z_[(made_with_->stages - 1) * length_ + i]);
+    return sum + s * moved;
+  }
+
+  /// The polynomial of the step before, continued; zero where there is none, and for algebraic unknowns.
+  void start_values() {
+    RadauTableau::Row weight;
+    std::fill_n(z_, stages() * length_, 0.0);
+    for (std::size_t k = 0; k < stages() && of_before_ != nullptr; ++k) {
+      weights(*of_before_, 1 + tableau_->c[k] * h_ / h_of_before_, weight);
+      const double* const end = z_before_ + (of_before_->stages - 1) * length_;
+      for (std::size_t i = 0; i < m_; ++i) {
+        double sum = -end[i];
+        each_stage(*of_before_, [&](std::size_t j) { sum += weight[j] * z_before_[j * length_ + i]; });
+        z_[k * length_ + i] = sum;
+      }
+    }
+    transform(tableau_->T_inverse, z_, w_);
+  }
+
+  void transform(const std::array<RadauTableau::Row, RadauTableau::most>& by, const double* from, double* to) const {
+    std::array<double, most> value;
+    each_unknown([&](std::size_t i, std::size_t) {
+      each_stage(*tableau_, [&](std::size_t k) { value[k] = from[k * length_ + i]; });
+      each_stage(*tableau_, [&](std::size_t k) {
+        double sum = 0;
+        each_stage(*tableau_, [&](std::size_t j) { sum += by[k][j] * value[j]; });
+        to[k * length_ + i] = sum;
+      });
+    });
+  }
+
+  int evaluate_stages() {
+    for (std::size_t k = 0; k < stages(); ++k) {
+      const double* z = z_ + k * length_;
+      double* f = f_ + k * length_;
+      const double t = t0_ + tableau_->c[k] * h_;
+      for (std::size_t i = 0; i < n_; ++i) scratch_[i] = x0_[i] + z[i];
+      if (const int code = evaluate(t, scratch_, f); code != 0) return code;
+      if (const int code = method().add_algebraic(t, scratch_, z + n_, f); code != 0) return code;
+    }
+    return std::all_of(f_, f_ + stages() * length_, [](double value) { return std::isfinite(value); }) ? 0 : code_not_finite;
+  }
+
+  /// One simplified Newton iteration from stage derivatives in f_; returns the size of the correction.
+  double correct() {
+    transform(tableau_->T_inverse, f_, f_);
+    const double inverse = 1 / h_;
+    const auto per_h = [&](std::size_t row) { return row < m_ ? inverse : 0; };  // algebraic rows have no derivative
+    each_unknown([&](std::size_t i, std::size_t row) { right_[row] = f_[i] - tableau_->gamma * w_[i] * per_h(row); });
+    real_.solve(right_.data());
+    const double part = norm([&](std::size_t i) { return right_[i]; }, [&](std::size_t i) { return newton_scale(i, right_[i]); });
+    double sum = part * part;
+    each_unknown([&](std::size_t i, std::size_t row) { w_[i] += right_[row]; });
+    for (std::size_t p = 0; p < stages() / 2; ++p) {
+      double *a = w_ + (1 + 2 * p) * length_, *b = a + length_;
+      const double *fa = f_ + (1 + 2 * p) * length_, *fb = fa + length_;
+      const double alpha = tableau_->alpha[p], beta = tableau_->beta[p];
+      each_unknown([&](std::size_t i, std::size_t row) {
+        pair_[row] = {fa[i] - (alpha * a[i] - beta * b[i]) * per_h(row), fb[i] - (alpha * b[i] + beta * a[i]) * per_h(row)};
+      });
+      complex_[p].solve(pair_.data());
+      const auto of_pair = [&](std::size_t i) { return std::sqrt(pair_[i].re * pair_[i].re + pair_[i].im * pair_[i].im); };
+      const double size = norm(of_pair, [&](std::size_t i) { return newton_scale(i, of_pair(i)); });
+      sum += size * size;
+      each_unknown([&](std::size_t i, std::size_t row) { a[i] += pair_[row].re, b[i] += pair_[row].im; });
+    }
+    transform(tableau_->T, w_, z_);
+    return std::sqrt(sum / static_cast<double>(stages()));
+  }
+
+  double newton_scale(std::size_t i, double correction) const {
+    const double size = std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[(stages() - 1) * length_ + i]));
+    if (fixed_) return units_(i, size, correction);
+    const double scale = atol_ + rtol_ * size;
+    return scale > 0 ? scale : std::max(std::abs(h_ * f0_[i]), 1e-300);
+  }
+
+  /// Newton's iteration; false with a code of the right-hand side, or 0 where it does not converge.
+  bool iterate(int& code) {
+    remaining_ = std::pow(std::max(remaining_, epsilon), 0.8);
+    contraction_ = keep_jacobian;
+    if (fixed_)
+      units_.see(jacobian_, x0_, f0_, h_, 1, [&](double* w) { real_.solve(w); },
+                 [&](double* w, const auto& size) { method().border_units(w, size); });
+    ToRounding to_rounding;
+    double before = 0, ratio_before = 0;
+    const int most_here = most_iterations();
+    for (newton_ = 1; fixed_ || newton_ <= most_here; ++newton_) {
+      if ((code = evaluate_stages()) != 0) return false;
+      ++counts_.newton_iterations;
+      const double size = correct();
+      if (!std::isfinite(size)) return fail(0.5);
+      if (fixed_) {
+        const ToRounding::State state = to_rounding.see(size);
+        contraction_ = to_rounding.contraction();
+        if (state != ToRounding::State::goes_on) return state == ToRounding::State::converged || fail(0.5);
+        continue;
+      }
+      if (newton_ > 1 && newton_ < most_here) {
+        const double ratio = size / before;
+        contraction_ = newton_ == 2 ? ratio : std::sqrt(ratio * ratio_before);
+        ratio_before = ratio;
+        if (contraction_ >= 0.99) return fail(0.5);
+        remaining_ = contraction_ / (1 - contraction_);
+        const int left = most_here - 1 - newton_;
+        const double expected = remaining_ * size * std::pow(contraction_, left) / newton_tolerance_;
+        if (expected >= 1) return fail(0.8 * std::pow(std::min(expected, 20.0), -1.0 / (4 + left)));
+      }
+      before = std::max(size, epsilon * epsilon);
+      if (remaining_ * size <= newton_tolerance_) return true;
+    }
+    return fail(0.5);
+  }
+
+  /// x1, the quadratures and the filtered estimate.
+  int finish() {
+    made_with_ = tableau_;
+    if (const int code = method().settle(); code != 0) return code;
+    const std::size_t s = stages();
+    if (m_ < n_) {
+      if (const int code = evaluate_stages(); code != 0) return code;
+      for (std::size_t i = m_; i < n_; ++i)
+        for (std::size_t k = 0; k < s; ++k) {
+          double sum = 0;
+          for (std::size_t j = 0; j < s; ++j) sum += tableau_->A[k][j] * f_[j * length_ + i];
+          z_[k * length_ + i] = h_ * sum;
+        }
+    }
+    for (std::size_t i = 0; i < n_; ++i) advance(i, z_[(s - 1) * length_ + i]);
+    filter(f0_, estimate_.data());
+    return 0;
+  }
+
+  /// What f at the start differs by from the slope of the collocation polynomial there, through the real matrix.
+  void filter(const double* f, double* result) {
+    for (std::size_t i = 0; i < m_; ++i) result[i] = f[i] + defect(i) / h_;
+    std::fill_n(result + m_, extra_, 0.0);
+    real_.solve(result);
+  }
+
+  /// Minus h times the slope of the collocation polynomial at the start.
+  double defect(std::size_t i) const {
+    double sum = 0;
+    each_stage(*tableau_, [&](std::size_t k) { sum += tableau_->slope[k] * z_[k * length_ + i]; });
+    return sum;
+  }
+
+  double step_quotient(double error) const {
+    const int most_here = most_iterations();
+    const double factor = std::min(safety, safety * (1 + 2 * most_here) / (newton_ + 2 * most_here));
+    return std::clamp(std::pow(error, exponent()) / factor, 1 / most_growth, most_shrinking);
+  }
+
+  std::size_t extra_, length_;  // algebraic unknowns; of a stage
+  Lu<double> real_;
+  std::vector<Lu<Complex>> complex_;
+  Units units_;
+  std::vector<double> work_, estimate_, right_;
+  std::vector<Complex> pair_;
+  const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr, *of_before_ = nullptr;  // of the step that comes, the last, the one before
+  std::size_t stages_ = 3;
+  double *z_, *w_, *f_, *z_before_;  // stage increments, transformed, stage derivatives; of the step before
+  double tolerance_ = 0, asked_rtol_ = 0, asked_atol_ = 0, rtol_ = 0, atol_ = 0, newton_tolerance_ = 0;
+  double h_factored_ = 0, h_of_before_ = 0;
+  double contraction_ = 0, remaining_ = 1;
+  double h_before_ = 0, error_before_ = 1;
+  double after_failure_ = 0.25;
+  int newton_ = 0;
+  bool jacobian_known_ = false, jacobian_here_ = false, jacobian_wanted_ = false, factored_ = false;
+  bool accepted_ = false, rejected_ = false, stages_changed_ = false;
+};
+
+}  // namespace eom::implicit
