@@ -134,10 +134,14 @@ std::string not_variational(const system::EquationSystem& system) {
   return run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system), !system.integrals.empty());
 }
 
-void require_variational(const system::EquationSystem& system, const std::string& solver) {
-  const std::string why = not_variational(system);
+/// Told before anything is compiled.
+void require_fit(const system::EquationSystem& system, const std::string& solver) {
+  const eom::MethodInfo& method = run::method_named(solver);
+  std::string why;
+  if (method.variational) why = not_variational(system);
+  if (method.constrained) why = run::not_constrained(!system.contacts.empty(), !system.active.empty());
   if (why.empty()) return;
-  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why), "take midpoint, which is symplectic as well, dop853 or auto");
+  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why), run::instead_of(solver));
 }
 
 }  // namespace
@@ -154,7 +158,7 @@ Simulation simulate(const SimulationRequest& request) {
   const std::string solver = run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
   const bool variational = run::method_named(solver).variational;
   const bool exchanges = possible && !run::method_named(solver).series && !variational;
-  if (variational) require_variational(system, solver);
+  require_fit(system, solver);
 
   const bool watch_power = !energy_is_conserved(*derived);
   program::Request wanted;

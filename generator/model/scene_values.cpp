@@ -10,8 +10,8 @@
 namespace eomgen::model {
 namespace {
 
-constexpr std::array<std::string_view, 13> solvers{"auto",  "rk4",      "dopri5", "tsit5",        "dop853",       "radau5", "radau",
-                                                   "rodas", "midpoint", "taylor", "variational2", "variational4", "variational6"};
+constexpr std::array<std::string_view, 14> solvers{"auto",  "rk4",      "dopri5", "tsit5",        "dop853",       "radau5", "radau",
+                                                   "rodas", "midpoint", "ggl",    "taylor", "variational2", "variational4", "variational6"};
 constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
 
 std::vector<std::string> split_at_dots(const std::string& text) {

@@ -19,7 +19,7 @@ Integration::Integration(const RunRequest& request, std::string solver)
     : request_(request),
       charts_(request),
       solver_(std::move(solver)),
-      variational_(method_named(solver_).variational),  // which keeps its constraints itself
+      keeps_constraints_(method_named(solver_).variational || method_named(solver_).constrained),
       n_(request.code.free.size()),
       energy_(index_of(request.code.output_names, "energy")),
       u_(std::max<std::size_t>(1, request.scene.inputs.size())),
@@ -140,8 +140,9 @@ int Integration::momenta(double t, const double* x, double* p, double* rate) {
 }
 
 int Integration::mass(double t, const double* x, double* M) {
+  const double* p = request_.scene.parameters.data();
   h_.resize(n_);
-  return compiled().mass(t, x, request_.scene.parameters.data(), M, h_.data());
+  return charts_.second() != 0 ? compiled().mass_in(t, x, p, mode_, M, h_.data()) : compiled().mass(t, x, p, M, h_.data());
 }
 
 /// The right-hand side with its derivatives as methods take them.
@@ -150,8 +151,9 @@ struct MotionOf {
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const { return of.jacobian(t, x, dfdx, dfdt); }
   int taylor(double t, const double* x, int order, double* coefficients) const { return of.taylor(t, x, order, coefficients); }
-  std::size_t coordinates() const { return of.compiled().momenta != nullptr ? of.n_ : 0; }
+  std::size_t coordinates() const { return of.keeps_constraints_ ? of.n_ : 0; }
   std::size_t constraints() const { return of.rows_.size(); }
+  std::size_t position_constraints() const { return of.rows_.on_positions(); }
   int momenta(double t, const double* x, double* p, double* rate) const { return of.momenta(t, x, p, rate); }
   int mass(double t, const double* x, double* M) const { return of.mass(t, x, M); }
   int constrain(double t, const double* x, double* psi, double* A, double* b) const { return of.rows_(t, x, of.inputs(t), psi, A, b); }
@@ -286,7 +288,6 @@ void Integration::accept(const eom::StepView& step) {
 }
 
 int Integration::project(double t, double* x) {
-  const double* p = request_.scene.parameters.data();
   outputs(t, x, y_);
   const double before = y_[energy_];
   const eom::ProjectionResult moved = projection_(
@@ -294,9 +295,7 @@ int Integration::project(double t, double* x) {
       [&](double at, const double* state, double* psi, double* A, double* b) {
         return rows_(at, state, inputs(at), psi, A, b);
       },
-      [&](double at, const double* state, double* M, double* h) {
-        return charts_.second() != 0 ? compiled().mass_in(at, state, p, mode_, M, h) : compiled().mass(at, state, p, M, h);
-      });
+      [&](double at, const double* state, double* M, double*) { return mass(at, state, M); });
   if (moved.code != 0) return moved.code;
   outputs(t, x, y_);
   position_correction = std::max(position_correction, moved.position_correction);
@@ -348,7 +347,7 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
   };
   const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
-  const auto after = [this](double t, double* x) { return rows_.size() == 0 || variational_ ? 0 : project(t, x); };
+  const auto after = [this](double t, double* x) { return rows_.size() == 0 || keeps_constraints_ ? 0 : project(t, x); };
   int idle = 0;
   while (true) {
     hold_sides(total.t, total.x.data(), true);

@@ -76,7 +76,7 @@ class Integration {
   const RunRequest& request_;
   ChartSwitch charts_;
   std::string solver_;
-  bool variational_;
+  bool keeps_constraints_;  // the solver itself
   std::size_t n_;
   std::size_t power_ = 0, energy_ = 0;
   std::size_t kink_ = 0;  // crossed last, and when

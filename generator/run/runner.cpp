@@ -206,29 +206,6 @@ const eom::MethodInfo& method_named(const std::string& name) {
   throw std::logic_error("no method is called " + name);
 }
 
-std::string unfit(const std::string& solver, const Scene& scene) {
-  if (!method_named(solver).series) return "";
-  // The series of the motion holds them still; a table does so between its jumps.
-  for (const Signal& signal : scene.inputs) {
-    if (signal.moves()) return "its series knows inputs that stand still or jump, and one here is an expression of t";
-  }
-  return "";
-}
-
-std::string not_variational(bool contacts, bool on_velocities, bool kinks, bool integrals) {
-  if (contacts) return "the model has contacts with friction, or that can be left, and no discrete Lagrangian has these";
-  if (on_velocities) return "a constraint on velocities does not follow from a Lagrangian; variational integrators take constraints on positions";
-  if (kinks) return "the equations have kinks (abs, sign, min, max), where the discrete Lagrangian has no derivative";
-  if (integrals) return "an integral of a function of time is a state of this model, which has no momentum";
-  return "";
-}
-
-std::string not_variational(const Code& code) {
-  const bool on_velocities = std::find(code.holonomic.begin(), code.holonomic.end(), false) != code.holonomic.end();
-  const std::string why = not_variational(!code.contacts.empty(), on_velocities, !code.kinks.empty(), code.integrals > 0);
-  return why.empty() && (code.momenta == nullptr || code.mass == nullptr) ? "the code was compiled without its momenta" : why;
-}
-
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
   if (asked != "auto") {
     for (const eom::MethodInfo& method : eom::methods()) {
@@ -280,10 +257,11 @@ RunResult integrate_scene(const RunRequest& request) {
     if (request.code.taylor == nullptr) throw Error("run", {}, "the code was compiled without its Taylor series", "choose the solver taylor when the code is made");
     result.reason += ", series from the equations";
   }
+  if (const std::string why = unfit(result.solver, request.code); !why.empty()) {
+    throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", result.solver, why), instead_of(result.solver));
+  }
+  if (method_named(result.solver).constrained) result.reason += "; constraints on positions and velocities are equations of each step, so that nothing is projected";
   if (method_named(result.solver).variational) {
-    if (const std::string why = not_variational(request.code); !why.empty()) {
-      throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", result.solver, why), "take midpoint, which is symplectic as well, dop853 or auto");
-    }
     result.reason += ", momenta from the equations";
     if (request.watch_power) result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";
   }

@@ -98,8 +98,9 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
   return total;
 }
 
-/// The method that ran, or, where it needs a series or momenta, one of as high an order that does not.
+/// The method that ran, or, where it needs a series, momenta or constraints, one of as high an order that does not.
 std::string fitting(const std::string& solver) {
+  if (method_named(solver).constrained) return "radau5";
   return method_named(solver).series || method_named(solver).variational ? "dop853" : solver;
 }
 

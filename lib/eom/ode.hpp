@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Initial value problems x' = f(t, x). In: a method's name, a right-hand side, a start and an end, options.
-// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/, implicit/, taylor/ and variational/.
+// Out: Result. Start reading in docs/runtime.md; the methods are in explicit_rk/, implicit/, constrained/, taylor/ and variational/.
 #pragma once
 
 #include <array>
@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "eom/automatic.hpp"
+#include "eom/constrained/registry.hpp"
 #include "eom/drive.hpp"
 #include "eom/explicit_rk/method.hpp"
 #include "eom/explicit_rk/registry.hpp"
@@ -26,15 +27,16 @@ namespace eom {
 
 /// Every method that integrate() knows, in the registry's order; beside them there is `auto` (automatic.hpp), which chooses.
 inline std::span<const MethodInfo> methods() {
-  static constexpr auto table = []<class... T, class... I, class... S, class... V>(std::tuple<T...>*, std::tuple<I...>*, std::tuple<S...>*,
-                                                                                   std::tuple<V...>*) {
-    return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(S) + sizeof...(V)>{
+  static constexpr auto table = []<class... T, class... I, class... C, class... S, class... V>(std::tuple<T...>*, std::tuple<I...>*, std::tuple<C...>*,
+                                                                                               std::tuple<S...>*, std::tuple<V...>*) {
+    return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(C) + sizeof...(S) + sizeof...(V)>{
         {{T::name, T::order, T::dense_order, !T::error.empty()}...,
          {I::name, I::order, I::dense_order, I::adaptive, true}...,
+         {C::name, C::order, C::dense_order, C::adaptive, true, false, false, true}...,
          {S::name, S::order, S::dense_order, S::adaptive, false, true}...,
          {V::name, V::order, V::dense_order, V::adaptive, false, false, true}...}};
-  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr), static_cast<taylor::Registry*>(nullptr),
-    static_cast<variational::Registry*>(nullptr));
+  }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr), static_cast<constrained::Registry*>(nullptr),
+    static_cast<taylor::Registry*>(nullptr), static_cast<variational::Registry*>(nullptr));
   return table;
 }
 
@@ -102,13 +104,30 @@ Result run_variational(F& rhs, double t0, std::span<const double> x0, double t1,
   return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
 }
 
+template <class T, class F, class Observer, class AfterStep>
+Result run_constrained(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+                       AfterStep& after_step) {
+  const constrained::Problem problem = constrained::problem_of(rhs);
+  if (problem.constraints == 0 || 2 * problem.coordinates + options.quadratures > x0.size())
+    throw std::invalid_argument("eom::integrate: " + std::string(T::name) +
+                                " needs a right-hand side with constraints (eom/constrained/problem.hpp), of a state that begins with coordinates and "
+                                "velocities; without constraints radau5 is that method");
+  constrained::Rows rows(problem);
+  constexpr double allowed = 1e-6;  // of the coordinates or rates
+  if (rows.evaluate(t0, x0.data()) == 0 && (rows.select(), !rows.met(x0.data(), allowed)))
+    throw std::invalid_argument("eom::integrate: the start of " + std::string(T::name) +
+                                " does not meet the constraints; eom::Projection (eom/constraints/projection.hpp) moves it there");
+  return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
+}
+
 }  // namespace detail
 
 /// Integrates from (t0, x0) to t1, which may lie before t0.
 /// rhs(t, x, dx) -> int; observer(StepView) -> bool, false stops; after_step(t, x) -> int may move the state at the end
 /// of a step (a projection) before the step counts as accepted. A nonzero code from rhs or after_step is retried with
 /// shorter steps before it ends the run. An rhs with a member jacobian (with_jacobian.hpp) gives it to implicit methods, one with
-/// a member taylor (taylor/problem.hpp) its series to `taylor`, one with momenta (variational/problem.hpp) these to variational ones.
+/// a member taylor (taylor/problem.hpp) its series to `taylor`, one with momenta (variational/problem.hpp) these to variational ones, one
+/// with constraints (constrained/problem.hpp) these to `ggl`.
 /// Throws std::invalid_argument for an unknown method or senseless options.
 template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
@@ -130,7 +149,10 @@ Result integrate(std::string_view method, F&& rhs, double t0, std::span<const do
     return ((asked(T::name, T::adaptive) &&
              (result = detail::run_once<T>(implicit::problem_of(rhs), t0, x0, t1, options, observer, after_step), true)) || ...);
   }(static_cast<implicit::Registry*>(nullptr));
-  const bool known_series = known || [&]<class... T>(std::tuple<T...>*) {
+  const bool known_constrained = known || [&]<class... T>(std::tuple<T...>*) {
+    return ((asked(T::name, T::adaptive) && (result = detail::run_constrained<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
+  }(static_cast<constrained::Registry*>(nullptr));
+  const bool known_series = known_constrained || [&]<class... T>(std::tuple<T...>*) {
     return ((asked(T::name, T::adaptive) && (result = detail::run_series<T>(rhs, t0, x0, t1, options, observer, after_step), true)) || ...);
   }(static_cast<taylor::Registry*>(nullptr));
   const bool known_variational = known_series || [&]<class... T>(std::tuple<T...>*) {

@@ -101,6 +101,7 @@ struct MethodInfo {
   bool implicit = false;            // uses df/dx: for stiff systems
   bool series = false;              // needs a right-hand side with a Taylor series (taylor/problem.hpp)
   bool variational = false;         // needs one with momenta (variational/problem.hpp)
+  bool constrained = false;         // needs one with constraints (constrained/problem.hpp), and keeps them itself
 };
 
 /// The observer that looks at nothing.

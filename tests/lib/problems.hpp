@@ -12,12 +12,12 @@
 
 namespace problems {
 
-/// The methods that take any right-hand side; those that need its series or momenta have tests of their own (taylor_test.cpp,
-/// variational_test.cpp).
+/// The methods that take any right-hand side; those that need its series, momenta or constraints have tests of their own (taylor_test.cpp,
+/// variational_test.cpp, ggl_test.cpp).
 inline std::vector<eom::MethodInfo> methods() {
   std::vector<eom::MethodInfo> result;
   for (const eom::MethodInfo& method : eom::methods())
-    if (!method.series && !method.variational) result.push_back(method);
+    if (!method.series && !method.variational && !method.constrained) result.push_back(method);
   return result;
 }
 

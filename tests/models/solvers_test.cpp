@@ -171,3 +171,57 @@ TEST_CASE("solvers: taylor takes inputs that jump, refuses those that are expres
   overrides.solver = "taylor";
   CHECK_THROWS_WITH_AS(cli::run_again(first.simulation, overrides, false), doctest::Contains("compiled without its Taylor series"), Error);
 }
+
+TEST_CASE("solvers: ggl ends where dop853 with projection does, constraints at rounding and nothing projected; it tells why it refuses a model") {
+  // among them a loop of bodies, constraints on velocities, and one that moves
+  for (const char* model : {"S5_double_pendulum_cartesian", "iftomm_pendulum", "four_bar_spatial_pins", "knife_edge", "P7_moving_sphere_pfaffian", "car_axis"}) {
+    CAPTURE(std::string(model));
+    const test::Finished reference = motion(model, "dop853", 1);
+    run::Overrides overrides;
+    overrides.solver = "ggl";
+    overrides.rtol = 1e-10;
+    overrides.atol = 1e-12;
+    overrides.t_end = 1;
+    const run::RunResult found = cli::run_again(reference.simulation, overrides, false);
+    CHECK(found.outcome == eom::Outcome::done);
+    CHECK(found.reason.find("equations of each step") != std::string::npos);
+    CHECK(found.projection_position == 0);
+    CHECK(found.projection_velocity == 0);
+    CHECK(found.constraint_drift < 1e-13);
+    for (const auto& [name, value] : found.final) {
+      CAPTURE(name);
+      if (name.ends_with("_dot")) CHECK(std::abs(value - reference.final(name)) < 1e-7);
+    }
+  }
+  const std::pair<const char*, const char*> refused[] = {{"S5_double_pendulum", "no constraints with multipliers"}, {"bouncing_ball", "contacts"}};
+  for (const auto& [model, why] : refused) {
+    CAPTURE(std::string(model));
+    try {
+      motion(model, "ggl", 1);
+      FAIL("it is to be refused");
+    } catch (const Error& error) {
+      CHECK(std::string(error.what()).find(why) != std::string::npos);
+      CHECK(std::string(error.what()).find("take radau5") != std::string::npos);
+    }
+  }
+}
+
+TEST_CASE("solvers: fixed implicit steps where components stay at rounding level, or start at 0") {
+  for (const auto& [model, t_end] : {std::pair{"n_four_bar_2", 0.5}, std::pair{"iftomm_pendulum", 2.0}}) {
+    const test::Finished reference = motion(model, "dop853", t_end);
+    for (const char* solver : {"midpoint", "radau5", "radau", "ggl"}) {
+      CAPTURE(std::string(model));
+      CAPTURE(std::string(solver));
+      run::Overrides overrides;
+      overrides.solver = solver;
+      overrides.step = 1e-3;
+      overrides.t_end = t_end;
+      const run::RunResult found = cli::run_again(reference.simulation, overrides, false);
+      CHECK(found.outcome == eom::Outcome::done);
+      for (const auto& [name, value] : found.final) {
+        CAPTURE(name);
+        if (name.ends_with("_dot")) CHECK(std::abs(value - reference.final(name)) < (std::string(solver) == "midpoint" ? 1e-3 : 1e-8));
+      }
+    }
+  }
+}

@@ -108,7 +108,8 @@ std::vector<std::string> solvers_for(const Options& options, const run::Scene& s
   }
   for (const std::string& name : known) {
     if (!options.solvers.empty() && std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end()) continue;
-    const std::string why = run::method_named(name).variational ? run::not_variational(code) : run::unfit(name, scene);
+    std::string why = run::unfit(name, scene);
+    if (why.empty()) why = run::unfit(name, code);
     if (why.empty()) chosen.push_back(name);
     else left_out.emplace_back(name, why);
   }

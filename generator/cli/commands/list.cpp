@@ -29,7 +29,7 @@ json registries() {
   coordinates.push_back({{"name", "custom"}, {"title", "coordinates that a model defines, by x(q) or by q(x)"}, {"slots", json::array()}, {"singular", ""}});
   for (const derive::RouteEntry& route : derive::routes()) routes.push_back({{"name", route.name}, {"title", route.title}});
   for (const eom::MethodInfo& method : eom::methods()) {
-    solvers.push_back({{"name", method.name}, {"order", method.order}, {"dense_order", method.dense_order}, {"adaptive", method.adaptive}, {"implicit", method.implicit}, {"series", method.series}, {"variational", method.variational}});
+    solvers.push_back({{"name", method.name}, {"order", method.order}, {"dense_order", method.dense_order}, {"adaptive", method.adaptive}, {"implicit", method.implicit}, {"series", method.series}, {"variational", method.variational}, {"constrained", method.constrained}});
   }
   for (const emit::TargetEntry& target : emit::targets()) targets.push_back({{"name", target.name}, {"title", target.title}});
   // A document comes from the reading form, not from a program, so it is no entry of that registry.
@@ -66,7 +66,8 @@ int execute(const Common& common) {
       const std::string title = entry.contains("title") ? entry["title"].get<std::string>()
                                                         : fmt::format("order {}, {}{}", entry["order"].get<int>(),
                                                                       entry["adaptive"].get<bool>() ? "chooses its steps" : "needs --step",
-                                                                      entry["implicit"].get<bool>() ? ", implicit" : "");
+                                                                      entry["implicit"].get<bool>() ? ", implicit" : "") +
+                                                          (entry["constrained"].get<bool>() ? ", for models with constraints, which it keeps itself" : "");
       fmt::print("  {:<14} {}\n", entry["name"].get<std::string>(), title);
     }
   }

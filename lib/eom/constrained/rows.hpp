@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: MIT
+// The equations g = (psi of the constraints on positions, A v + b of all) that a method keeps, each in units of the length of its row of A.
+// In: a problem, states. Out: values, their rounding, an independent set of them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "eom/constrained/problem.hpp"
+
+namespace eom::constrained {
+
+class Rows {
+ public:
+  explicit Rows(const Problem& problem)
+      : of_(problem), c_(problem.coordinates), k_(problem.constraints), positions_(problem.on_positions), psi_(k_), A_(k_ * c_), b_(k_),
+        length_(k_, 1.0), rest_(k_ * c_), chosen_(k_) {}
+
+  /// Of g.
+  std::size_t size() const { return positions_ + k_; }
+  std::size_t on_positions() const { return positions_; }
+  /// The row of A that belongs to g_a.
+  std::size_t row(std::size_t a) const { return a < positions_ ? a : a - positions_; }
+  bool chosen(std::size_t a) const { return chosen_[row(a)]; }
+  /// Entries of that row, in its units.
+  double slope(std::size_t a, std::size_t i) const { return A_[row(a) + k_ * i] / length_[row(a)]; }
+
+  /// psi, A and b at a state; a code.
+  int evaluate(double t, const double* x) {
+    const int code = of_.constrain(of_.rhs.self, t, x, psi_.data(), A_.data(), b_.data());
+    const auto finite = [](double value) { return std::isfinite(value); };
+    if (code != 0) return code;
+    return std::all_of(A_.begin(), A_.end(), finite) && std::all_of(b_.begin(), b_.end(), finite) &&
+                   std::all_of(psi_.begin(), psi_.begin() + static_cast<std::ptrdiff_t>(positions_), finite)
+               ? 0
+               : code_not_finite;
+  }
+
+  /// Lengths and a largest independent set of rows, those on positions first: Gram and Schmidt, each time the row of which most is left.
+  void select() {
+    for (std::size_t r = 0; r < k_; ++r) {
+      double sum = 0;
+      for (std::size_t i = 0; i < c_; ++i) sum += A_[r + k_ * i] * A_[r + k_ * i];
+      length_[r] = sum > 0 ? std::sqrt(sum) : 1;
+      for (std::size_t i = 0; i < c_; ++i) rest_[r + k_ * i] = A_[r + k_ * i] / length_[r];
+    }
+    std::fill(chosen_.begin(), chosen_.end(), false);
+    while (choose_among(0, positions_)) {
+    }
+    while (choose_among(positions_, k_)) {
+    }
+  }
+
+  /// g_a of the state last evaluated.
+  double value(std::size_t a, const double* x) const {
+    const std::size_t r = row(a);
+    if (a < positions_) return psi_[r] / length_[r];
+    double sum = b_[r];
+    for (std::size_t i = 0; i < c_; ++i) sum += A_[r + k_ * i] * x[c_ + i];
+    return sum / length_[r];
+  }
+
+  /// The size of the terms whose sum g_a is: |A| |q| stands for those of psi.
+  double terms(std::size_t a, const double* x) const {
+    const std::size_t r = row(a);
+    double sum = a < positions_ ? 0 : std::abs(b_[r]);
+    for (std::size_t i = 0; i < c_; ++i) sum += std::abs(A_[r + k_ * i] * x[(a < positions_ ? 0 : c_) + i]);
+    return sum / length_[r];
+  }
+
+  /// Whether all of g, rows that were not chosen too, is 0 but for such a part of the coordinates or rates.
+  bool met(const double* x, double part) const {
+    double sizes[2]{1, 1};
+    for (std::size_t i = 0; i < 2 * c_; ++i) sizes[i / c_] = std::max(sizes[i / c_], std::abs(x[i]));
+    for (std::size_t a = 0; a < size(); ++a)
+      if (!(std::abs(value(a, x)) <= part * sizes[a < positions_ ? 0 : 1])) return false;
+    return true;
+  }
+
+ private:
+  static constexpr double independent = 1e-10;  // of a row's length: less is left of one that others make up, by their rounding
+
+  bool choose_among(std::size_t begin, std::size_t end) {
+    std::size_t best = end;
+    double largest = independent * independent;
+    for (std::size_t r = begin; r < end; ++r) {
+      double sum = 0;
+      for (std::size_t i = 0; i < c_; ++i) sum += rest_[r + k_ * i] * rest_[r + k_ * i];
+      if (!chosen_[r] && sum > largest) best = r, largest = sum;
+    }
+    if (best == end) return false;
+    chosen_[best] = true;
+    const double length = std::sqrt(largest);
+    for (std::size_t i = 0; i < c_; ++i) rest_[best + k_ * i] /= length;
+    for (std::size_t r = 0; r < k_; ++r) {
+      if (chosen_[r]) continue;
+      double along = 0;
+      for (std::size_t i = 0; i < c_; ++i) along += rest_[r + k_ * i] * rest_[best + k_ * i];
+      for (std::size_t i = 0; i < c_; ++i) rest_[r + k_ * i] -= along * rest_[best + k_ * i];
+    }
+    return true;
+  }
+
+  const Problem& of_;
+  std::size_t c_, k_, positions_;
+  std::vector<double> psi_, A_, b_, length_, rest_;
+  std::vector<bool> chosen_;
+};
+
+}  // namespace eom::constrained
