@@ -60,6 +60,7 @@ TEST_CASE("every solver that list shows runs, and they agree") {
   const double expected = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;
   for (const Json& solver : document(folder, {"list"})["solvers"]) {
     const std::string name = solver["name"].get<std::string>();
+    if (solver["constrained"].get<bool>()) continue;  // this model has nothing for it to keep
     CAPTURE(name);
     Words words{"run", "P2_planar_pendulum", "--solver", name};
     const bool adaptive = solver["adaptive"].get<bool>();

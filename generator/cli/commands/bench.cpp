@@ -101,7 +101,9 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
 
 std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, const run::Code& code, std::vector<std::pair<std::string, std::string>>& left_out) {
   std::vector<std::string> known{eom::Automatic::name}, chosen;
-  for (const eom::MethodInfo& method : eom::methods()) known.emplace_back(method.name);
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (!method.constrained || !options.solvers.empty() || run::unfit(method.name, code).empty()) known.emplace_back(method.name);
+  }
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error("bench", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
