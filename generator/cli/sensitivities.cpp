@@ -113,6 +113,7 @@ run::Sensitivities sensitivities(const Simulation& simulation, const SimulationR
   const run::RunRequest run = [&] {
     run::RunRequest made = run_request(*simulation.derived, simulation.scene, code, false);
     made.interrupt = request.interrupt;
+    made.max_steps = request.max_steps;
     return made;
   }();
   for (const run::KinkCrossings& kink : simulation.result.kinks) {

@@ -98,6 +98,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     run.integrals.push_back(std::move(names));
   }
   run.contacts = contact_outputs(derived);
+  for (const std::uint32_t k : derived.candidates.front().active) run.constraint_names.push_back(derived.mechanics.constraints[k].label);
   for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
     const model::Event& event = derived.model.events[i];
     run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});
@@ -199,6 +200,7 @@ Simulation simulate(const SimulationRequest& request) {
   run.row = request.row;
   run.progress = request.progress;
   run.interrupt = request.interrupt;
+  run.max_steps = request.max_steps;
   run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
   if (possible && !exchanges) result.reason += variational ? "; the model's own coordinates are kept where they fail, since an exchange is not symplectic"
                                                            : "; its series is that of the model's own coordinates, which are kept where they fail";

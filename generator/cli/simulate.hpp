@@ -34,6 +34,7 @@ struct SimulationRequest {
   /// energy, kinetic, potential, reactions and what the scene asks for). Left out: no rows.
   std::function<void(const Derived&, const run::Scene&, const std::vector<std::string>& names)> begin;
   std::function<void(double t, std::span<const double> values)> row;
+  std::size_t max_steps = 0;   // as run::RunRequest has it
   std::optional<double> rows;  // so many, whatever interval the scene asks for
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;

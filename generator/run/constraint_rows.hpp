@@ -13,6 +13,11 @@ class ConstraintRows {
 
   std::size_t size() const { return order_.size() + integrals_.size() + slips_.size(); }
   std::size_t on_positions() const { return holonomic_ + integrals_.size(); }
+  /// Which of the active constraints a row is; their number for one of an integral or of slip.
+  std::size_t constraint_of(std::size_t row) const {
+    if (row < holonomic_) return order_[row];
+    return row < on_positions() || row - integrals_.size() >= order_.size() ? order_.size() : order_[row - integrals_.size()];
+  }
 
   /// The state whose integrals are kept; u: the inputs there.
   void start(double t, const double* x, const double* u);

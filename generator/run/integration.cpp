@@ -34,7 +34,15 @@ Integration::Integration(const RunRequest& request, std::string solver)
   g_size_.resize(request.code.kinks.size());
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
   start_charts(request.scene.t0, start_);
-  if (compiled().contacts.empty()) return;
+  if (compiled().contacts.empty()) {
+    if (rows_.size() == 0 || keeps_constraints_) return;
+    psi_.resize(rows_.size());
+    b_.resize(rows_.size());
+    passage_ = std::make_unique<SingularPassage>(n_, rows_.size(), [this](double t, const double* x, double* A) {
+      return rows_(t, x, inputs(t), psi_.data(), A, b_.data());
+    });
+    return;
+  }
   const auto in_mode = [this](int contacts) { return (mode_ & ~eom::contact_bits) | contacts; };
   contacts_ = std::make_unique<ContactModes>(
       request, rows_, initial_state().size(), [this](double t) { return inputs(t); },
@@ -144,22 +152,6 @@ int Integration::mass(double t, const double* x, double* M) {
   h_.resize(n_);
   return charts_.second() != 0 ? compiled().mass_in(t, x, p, mode_, M, h_.data()) : compiled().mass(t, x, p, M, h_.data());
 }
-
-/// The right-hand side with its derivatives as methods take them.
-struct MotionOf {
-  Integration& of;
-  int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
-  int jacobian(double t, const double* x, double* dfdx, double* dfdt) const { return of.jacobian(t, x, dfdx, dfdt); }
-  int taylor(double t, const double* x, int order, double* coefficients) const { return of.taylor(t, x, order, coefficients); }
-  std::size_t coordinates() const { return of.keeps_constraints_ ? of.n_ : 0; }
-  std::size_t constraints() const { return of.rows_.size(); }
-  std::size_t position_constraints() const { return of.rows_.on_positions(); }
-  int momenta(double t, const double* x, double* p, double* rate) const { return of.momenta(t, x, p, rate); }
-  int mass(double t, const double* x, double* M) const { return of.mass(t, x, M); }
-  int constrain(double t, const double* x, double* psi, double* A, double* b) const { return of.rows_(t, x, of.inputs(t), psi, A, b); }
-  int taylor_order() const { return of.compiled().taylor_order; }
-  std::size_t taylor_states() const { return 2 * of.n_ + of.compiled().integrals; }
-};
 
 int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
   const double* p = request_.scene.parameters.data();
@@ -329,54 +321,6 @@ void Integration::tell_friction(eom::Result& end) {
   }
   end.detail = fmt::format("just after t = {:.17g} the law of friction at '{}' has {}: friction changes its own normal force by more than that force (Painleve)",
                            end.t, compiled().contacts[worst].name, none ? "no solution" : "several solutions");
-}
-
-/// One piece of the inputs: its end, or why the run ends before; exchanges of charts on the way.
-void Integration::integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total) {
-  const MotionOf f{*this};
-  const auto watch = [&](const eom::StepView& step) {
-    accept(step);
-    last_step_ = step.t1 - step.t0;
-    exchange_due_ = charts_.any() && charts_.follow(step);
-    const bool go_on = !observer || observer(step);
-    hold_sides(step.t1, step.x1.data(), false);
-    if (contacts_) contacts_->hold(step.t1, step.x1.data());
-    exchange_due_ = exchange_due_ && go_on;
-    steps_due_ = go_on && steps_due(step.t1, step.x1.data());
-    return go_on && !exchange_due_ && !steps_due_;
-  };
-  const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
-  const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
-  const auto after = [this](double t, double* x) { return rows_.size() == 0 || keeps_constraints_ ? 0 : project(t, x); };
-  int idle = 0;
-  while (true) {
-    hold_sides(total.t, total.x.data(), true);
-    exchange_due_ = false;
-    if (steps_due(total.t, total.x.data())) finer_ = !finer_;
-    const double begin = total.t;
-    const eom::Result part = eom::integrate_events(finer_ ? std::string(eom::Automatic::name) : solver_, f, total.t, total.x, end,
-                                                   finer_ ? finer(piece) : piece, g, watched(), at, watch, after);
-    total.outcome = part.outcome;
-    total.detail = part.detail;
-    total.t = part.t;
-    total.x = part.x;
-    total.statistics += part.statistics;
-    if (!(exchange_due_ || steps_due_) || stopped_ || (contacts_ && contacts_->ended()) || part.outcome != eom::Outcome::stopped_by_event) return;
-    for (const std::string& whose : exchange_due_ ? exchange_charts(total.t, total.x) : std::vector<std::string>{}) {
-      if (event) event({total.t, "chart", whose}, total.x);
-    }
-    idle = total.t > begin ? 0 : idle + 1;
-    if (idle >= eom::events_without_progress) {
-      total.outcome = eom::Outcome::step_too_small;
-      total.detail = fmt::format("slip starts and ends at t = {:.17g} without time going on", total.t);
-      return;
-    }
-    total.outcome = eom::Outcome::done;
-    total.detail.clear();
-    if (total.t == end) return;
-    piece.initial_step = std::abs(last_step_);
-    piece.max_steps -= std::min(piece.max_steps, part.statistics.steps + part.statistics.rejected);
-  }
 }
 
 /// Why a run ended, where the outcome alone does not say it.

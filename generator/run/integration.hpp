@@ -8,6 +8,7 @@
 
 #include "run/chart_switch.hpp"
 #include "run/contact_modes.hpp"
+#include "run/singular_passage.hpp"
 
 namespace eomgen::run {
 
@@ -63,6 +64,9 @@ class Integration {
   void tell_friction(eom::Result& end);
   std::vector<double> restarts() const;
   void integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total);
+  bool passable(const eom::Result& from, double length, const eom::Options& piece);
+  std::string name_of_row(std::size_t row) const;
+  void tell_passage(const eom::StepView& step, const OnEvent& event);
   void explain(eom::Result& end);
   bool steps_due(double t, const double* x);
   eom::Options finer(const eom::Options& piece);
@@ -95,9 +99,12 @@ class Integration {
   mutable std::vector<double> u_;
   std::vector<double> w_;  // of Code::prepare
   std::vector<double> y_, h_;
+  std::vector<double> psi_, b_;
   ConstraintRows rows_;
   eom::Projection projection_;
   std::unique_ptr<ContactModes> contacts_;  // where there are any
+  std::unique_ptr<SingularPassage> passage_;  // where constraints without contacts may lose their rank
+  std::size_t passage_evaluations_ = 0;       // of trials
 };
 
 }  // namespace eomgen::run

@@ -191,7 +191,7 @@ eom::Options options_of(const RunRequest& request) {
   options.atol = request.scene.atol;
   options.fixed_step = request.scene.step;
   options.interrupt = request.interrupt;
-  options.max_steps = request.max_steps;
+  options.max_steps = request.steps_allowed(options.fixed_step > 0);
   return options;
 }
 
@@ -286,6 +286,7 @@ RunResult integrate_scene(const RunRequest& request) {
   watch.report(result);
   result.outcome = end.outcome;
   result.detail = end.detail;
+  if (end.detail.starts_with("max_steps")) result.detail += "; --max-steps allows more";
   result.t = end.t;
   result.statistics = end.statistics;
   if (asked == eom::Automatic::name) tell_choice(request, integration.choice, result);

@@ -8,6 +8,7 @@
 #include <eom/modes/contacts.hpp>
 #include <eom/ode.hpp>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -145,7 +146,13 @@ struct RunRequest {
   std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
   std::vector<ExchangedChart> charts = {};   // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those asked for before
-  std::size_t max_steps = eom::Options{}.max_steps;  // accepted and rejected together
+  std::vector<std::string> constraint_names = {};  // of Code::active_constraints
+  std::size_t max_steps = 0;  // accepted and rejected together; 0: those of eom::Options, and no bound on fixed steps, whose number is known
+
+  std::size_t steps_allowed(bool fixed) const {
+    if (max_steps > 0) return max_steps;
+    return fixed ? std::numeric_limits<std::size_t>::max() : eom::Options{}.max_steps;
+  }
 };
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.

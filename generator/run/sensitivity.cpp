@@ -122,7 +122,7 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const std::stri
   options.atol = request.scene.atol;
   options.fixed_step = method_named(result.solver).adaptive ? 0 : request.scene.step;
   options.interrupt = request.interrupt;
-  options.max_steps = request.max_steps;
+  options.max_steps = request.steps_allowed(options.fixed_step > 0);
   const eom::Result end = run(request, result.solver, t_end, directions, options);
   result.outcome = end.outcome;
   result.t = end.t;

@@ -55,6 +55,15 @@ TEST_CASE("--t-end, --rtol, --scene") {
   CHECK(other["compiled"] == "from the cache");  // scenes run the same code
 }
 
+TEST_CASE("--max-steps ends a run and says how to go on") {
+  const Folder folder;
+  const Json told = document(folder, {"run", "P2_planar_pendulum", "--max-steps", "20"}, 3);
+  CHECK(told["outcome"] == "diverged");
+  CHECK(told["steps"].get<int>() + told["rejected"].get<int>() == 20);
+  CHECK(contains(told["detail"].get<std::string>(), "--max-steps"));
+  expect(2, folder, {"run", "P2_planar_pendulum", "--max-steps", "0"});
+}
+
 TEST_CASE("every solver that list shows runs, and they agree") {
   const Folder folder;
   const double expected = pendulum_from_rest(1.0, std::sqrt(9.81), 10).angle;

@@ -201,6 +201,53 @@ TEST_CASE("published: the N-four-bar mechanism of two windows passes the flat pl
   CHECK(run.drift("energy") < 1e-10);
 }
 
+TEST_CASE("published: solvers that choose their steps pass the flat places of the N-four-bar mechanism as well, and tell them") {
+  const test::Finished run = test::run_model("n_four_bar_2", [](cli::SimulationRequest& request) {
+    request.scene = "chosen";
+    request.estimate = false;
+    request.with = {"jac", "taylor"};
+  });
+  const auto again = [&](const char* solver, double tolerance, double step = 0, double t_end = 10) {
+    run::Overrides overrides;
+    overrides.solver = solver;
+    overrides.rtol = overrides.atol = tolerance;
+    if (step > 0) overrides.step = step;
+    overrides.t_end = t_end;
+    return cli::run_again(run.simulation, overrides, false);
+  };
+  const auto holds = [](const run::RunResult& result, double bound) {
+    CAPTURE(result.solver);
+    CAPTURE(result.detail);
+    CHECK(result.outcome == eom::Outcome::done);
+    for (const auto& [name, value] : result.final) {
+      if (name == "a0" || name == "a1" || name == "a2") CHECK(std::abs(value + 31.750597186986101817) < bound);
+      if (name == "b1" || name == "b2") CHECK(std::abs(value) < bound);
+    }
+    for (const run::Invariant& invariant : result.invariants) CHECK(invariant.max_relative_drift < bound);
+    CHECK(result.constraint_drift < 1e-11);
+  };
+  for (const char* solver : {"dop853", "dopri5", "tsit5", "radau5", "radau", "rodas", "taylor", "auto"}) {
+    const run::RunResult result = again(solver, 1e-9);
+    holds(result, 1e-4);  // of errors of 3e-6 and less
+    CHECK(!result.events.empty());
+    for (const run::RunEvent& event : result.events) {
+      CHECK(event.kind == "singular_configuration");
+      CHECK(event.name.starts_with("window"));
+    }
+  }
+  for (const char* solver : {"dop853", "tsit5", "taylor"}) holds(again(solver, 1e-12), 1e-6);
+  // With fixed steps: a series ends at its smallest terms; iterations do not wait for digits of coordinates that stay 0.
+  const run::RunResult series = again("taylor", 1e-9, 1e-3);
+  holds(series, 1e-4);
+  CHECK(series.events.empty());
+  for (const char* solver : {"midpoint", "radau5", "radau"}) {
+    const run::RunResult before = again(solver, 1e-9, 1e-3, 0.6);
+    CAPTURE(before.solver);
+    CHECK(before.outcome == eom::Outcome::done);
+    for (const run::Invariant& invariant : before.invariants) CHECK(invariant.max_relative_drift < 1e-6);
+  }
+}
+
 TEST_CASE("published: the reference starts where the constraints hold in all digits") {
   cli::SimulationRequest request;
   request.model = test::model_path("andrews_squeezer");

@@ -25,6 +25,7 @@ struct Options {
   std::vector<std::string> set, outputs, sensitivity;
   std::optional<double> rtol, atol, step, t_end, every;
   std::optional<std::string> solver;
+  std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false;
 };
 
@@ -163,6 +164,7 @@ int execute(const Options& options, const Common& common) {
   std::optional<Interrupt> interrupt;
   request.ready = [&interrupt] { interrupt.emplace(); };
   request.interrupt = &Interrupt::flag();
+  request.max_steps = options.max_steps;
   std::optional<Rows> rows;
   if (!options.out.empty() || !options.plot.empty()) {
     request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
@@ -199,6 +201,7 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
   app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")->check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
   app.add_option("--out", options->out, "a CSV file");

@@ -28,7 +28,7 @@ class ToRounding {
       if (iterations_ == 2) contraction_ = size > too_small_to_tell ? ratio : 0;
       if (ratio > 0.95 && size < stagnant) return State::converged;  // rounding is what is left
       if (ratio > 2 && ++growths_ > most_growths) return State::failed;
-      if (ratio < 1 && ratio / (1 - ratio) * size <= std::numeric_limits<double>::epsilon() / 4) return State::converged;
+      if (ratio < 1 && ratio / (1 - ratio) * size <= negligible) return State::converged;
     }
     before_ = size;
     return iterations_ < most_iterations ? State::goes_on : State::failed;
@@ -39,6 +39,8 @@ class ToRounding {
 
  private:
   static constexpr double stagnant = 1e-5, too_small_to_tell = 1e-8;
+  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a rounding of x.
+  static constexpr double negligible = std::numeric_limits<double>::epsilon() / 1024;
   static constexpr int most_growths = 2;  // a component that first stirs in a later correction makes that one large once
   int iterations_ = 0, growths_ = 0;
   double before_ = 0, contraction_ = 0;

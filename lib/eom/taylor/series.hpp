@@ -88,6 +88,7 @@ class Series {
       if (const int code = expand(t0, x0_, f0_, here_, terms); code != 0) return code;
       measure(here_, x0_, h_);
     }
+    if (fixed_ && !order_is_given_ && !(error_norm(0, 0) <= 1)) cut();
     increments(h_, node_);
     for (std::size_t i = 0; i < s_; ++i) advance(i, node_[i]);
     return s_ < n_ ? quadratures() : 0;
@@ -202,6 +203,21 @@ class Series {
     const At lower{at.c, p - 2, tail + size_of_term(at, p - 2), 2 * tail + size_of_term(at, p - 3)};
     const double gain = log2_length(at) - log2_length(lower) - 2 * std::log2((p + overhead) / (p - 2 + overhead));
     trend_ = gain > 1e-3 ? 1 : gain < -1e-3 ? -1 : 0;
+  }
+
+  /// Ends the series of a fixed step at its smallest terms, where they do not become small: the step is longer than the radius of
+  /// convergence, or rounding grows from term to term (near a place where constraints lose rank).
+  void cut() {
+    int best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (int p = here_.order; p >= std::min(lowest_order, highest_); --p) {
+      here_.order = p;
+      measure(here_, x0_, h_);
+      if (const double error = error_norm(0, 0); error < least) least = error, best = p;
+    }
+    if (best == 0) return;
+    here_.order = best;
+    measure(here_, x0_, h_);
   }
 
   /// Of the step at which the last terms use what may be used of the tolerance.

@@ -105,7 +105,9 @@ class Integrator : public implicit::Base {
  private:
   static constexpr double keep_matrix = 1e-2;  // of the contraction of Newton's iteration
   static constexpr int most_iterations = 50;
-  static constexpr double at_rounding = 1e-8;
+  static constexpr double at_rounding = 1e-8, sure_rounding = 1e-15;
+  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a rounding of q.
+  static constexpr double negligible = epsilon / 1024;
   static constexpr double still = 1e-6;        // of the largest coordinate: below it one is not told from 0
 
   int momenta(double t, const double* x, double* p, double* rate) {
@@ -204,8 +206,9 @@ class Integrator : public implicit::Base {
   }
 
   int iterate(double t, double t_end, double h, const Summed& q, const Summed& p) {
-    double before = 0;
-    bool slow = false;
+    double before = 0, least = 0;
+    int grown = 0;
+    int stalled = 0;  // corrections that did not halve the least one; at rounding they may go round for ever
     for (int iteration = 1; iteration <= most_iterations; ++iteration) {
       if (const int code = evaluate_middle(t, h, q, momentum_, rate_); code != 0) return code;
       ++counts_.newton_iterations;
@@ -229,12 +232,13 @@ class Integrator : public implicit::Base {
       if (iteration > 1) {
         const double ratio = size / before;
         if (iteration == 2) matrix_wanted_ = ratio > keep_matrix;
-        if (ratio < 0.5 && ratio / (1 - ratio) * size <= epsilon / 4) return 0;
-        if (ratio >= 0.5 && slow && size < at_rounding) return 0;  // twice in a row: rounding is what is left
-        if (ratio > 2 && size > at_rounding) return code_no_convergence;
-        slow = ratio >= 0.5;
+        if (ratio < 0.5 && ratio / (1 - ratio) * size <= negligible) return 0;
+        if (size > 0.5 * least && ++stalled >= (least < sure_rounding ? 2 : 6) && least < at_rounding) return 0;  // rounding is what is left
+        // One correction may grow: coordinates that have gone far count for little in `size`, and what is mended of them moves others.
+        if (ratio > 2 && size > at_rounding && ++grown == 3) return code_no_convergence;
       }
       before = size;
+      least = iteration == 1 ? size : std::min(least, size);
     }
     return code_no_convergence;
   }
