@@ -204,7 +204,7 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
 std::vector<std::string> chosen_solvers(const Options& options) {
   std::vector<std::string> known{eom::Automatic::name};
   for (const eom::MethodInfo& method : eom::methods()) {
-    if (!method.constrained || !options.solvers.empty()) known.emplace_back(method.name);
+    known.emplace_back(method.name);
   }
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end()) throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
