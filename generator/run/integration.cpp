@@ -363,6 +363,11 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
     if (event) event({told.t, told.kind, told.name}, total.x);
   }
+  if (method_named(solver_).constrained && project(total.t, total.x.data()) != 0) {  // it has to begin on the constraints, to rounding
+    total.outcome = eom::Outcome::inconsistent_start;
+    total.detail = "the start cannot be moved onto the constraints";
+    return total;
+  }
   for (const double end : restarts()) {
     side_ = (total.t + end) / 2;
     piece.max_steps = options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);

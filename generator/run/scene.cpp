@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/scene.hpp"
 
+#include <cln/exception.h>
 #include <fmt/format.h>
 
 #include <Eigen/Dense>
@@ -282,7 +283,7 @@ std::vector<cln::cl_R> exact_parameters(Mechanics& m, const model::Scene& scene,
 }
 
 Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
-                    const Overrides& overrides) {
+                    const Overrides& overrides) try {
   Scene result;
   result.name = scene.name;
   const std::vector<cln::cl_R> parameters = parameter_values(m, parameter_formulas(m, scene, overrides), digits);
@@ -359,6 +360,9 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   }
   result.outputs = expand_outputs(m, system, wanted);
   return result;
+} catch (const cln::runtime_exception& error) {
+  throw Error("scene", m.model->where(scene.span), fmt::format("a number of scene '{}' is beyond what floating point holds: {}", scene.name, error.what()),
+              "choose parameters from which its start can be computed");
 }
 
 namespace {

@@ -6,8 +6,8 @@
 //
 // The estimate is of lower order than the method. So that the step's own error stays in proportion to the tolerance r, it is
 // compared with r^((s+1)/(2s))/10. With fixed steps there is no tolerance: the iteration goes on to rounding.
-// A Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) beside x' = f(x, u) has hidden the hooks
-// below; u and g stand behind the state in each stage, and behind its motion (what is no quadrature) in matrices.
+// A Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) has hidden the hooks below; u and g stand
+// behind the state in each stage, and behind its motion in matrices.
 #pragma once
 
 #include <algorithm>
@@ -35,6 +35,8 @@ class Collocation : public Base {
     open(t0, t1);
     if (jacobian_wanted_ || !jacobian_known_)
       if (const int code = new_jacobian(); code != 0) return code;
+    if (!fixed_ && !std::exchange(begun_, true))
+      if (const double fast = std::abs(h_) * jacobian_.fastest(f_, f_ + n_); fast > first_step && std::isfinite(fast)) return fail(first_step / fast), code_no_convergence;
     while (true) {
       if (!factored_ || std::abs(h_ - h_factored_) > same_step * std::abs(h_))
         if (!factor()) return fail(0.5), code_no_convergence;
@@ -119,11 +121,11 @@ class Collocation : public Base {
   void border_units(double*, const Size&) const {}         // right-hand sides for Units
   int settle() { return 0; }                               // after the iteration: of the last stage; returns a code
   void choose_stages(double) {}                            // after an accepted step; growth of the next
-
  protected:
   static constexpr double safety = 0.9, most_growth = 8, most_shrinking = 5;
-  static constexpr double keep_jacobian = 1e-3;  // of the contraction of Newton's iteration
-  static constexpr double same_step = 1e-9;
+  static constexpr double keep_jacobian = 1e-3;  // of Newton's contraction
+  // Times |lambda| of the fastest motion: in a longer one the filter of the estimate takes an impact for a motion that has died away.
+  static constexpr double first_step = 1, same_step = 1e-9;
 
   Collocation(Problem& problem, std::span<const double> x, const Options& options, std::size_t stages, std::size_t algebraic = 0)
       : Base(problem, x, options, Jacobian::Differences::one_sided), extra_(algebraic), length_(n_ + algebraic), real_(m_ + algebraic),
@@ -391,7 +393,7 @@ class Collocation : public Base {
   double after_failure_ = 0.25;
   int newton_ = 0;
   bool jacobian_known_ = false, jacobian_here_ = false, jacobian_wanted_ = false, factored_ = false;
-  bool accepted_ = false, rejected_ = false, stages_changed_ = false;
+  bool begun_ = false, accepted_ = false, rejected_ = false, stages_changed_ = false;
 };
 
 }  // namespace eom::implicit

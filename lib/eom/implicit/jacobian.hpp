@@ -25,6 +25,29 @@ class Jacobian {
   double operator()(std::size_t i, std::size_t j) const { return dfdx_[i + m_ * j]; }
   double dfdt(std::size_t i) const { return dfdt_[i]; }
 
+  /// |lambda| of the fastest motion, about: power iteration on the square, which is right where the fastest ones are a pair. v, w: work space, m each.
+  double fastest(double* v, double* w) const {
+    for (std::size_t i = 0; i < m_; ++i) v[i] = 1 + 0.5 * static_cast<double>(i % 3);
+    const auto times = [&](const double* from, double* to) {
+      double size = 0;
+      for (std::size_t i = 0; i < m_; ++i) {
+        to[i] = 0;
+        for (std::size_t j = 0; j < m_; ++j) to[i] += (*this)(i, j) * from[j];
+        size = std::hypot(size, to[i]);
+      }
+      return size;
+    };
+    double before = 0, after = 0;
+    for (std::size_t i = 0; i < m_; ++i) before = std::hypot(before, v[i]);
+    for (int twice = 0; twice < 2; ++twice) {
+      if (twice > 0) before = after;
+      if (!(before > 0)) return 0;
+      times(v, w);
+      after = times(w, v);
+    }
+    return std::sqrt(after / before);
+  }
+
   /// At (t, x), where the right-hand side is f; h: the step in which it will be used. Returns a code.
   int evaluate(double t, const double* x, const double* f, double h, Statistics& counts) {
     ++counts.jacobians;
