@@ -61,7 +61,9 @@ echo "-- the program runs from the prefix, with its models"
 [[ -x $prefix/bin/eomgen ]] || refuse "there is no bin/eomgen"
 [[ $(cat "$scratch/consumer/cli_path.txt") == "$prefix/bin/eomgen" ]] || refuse "eomgen::cli is not bin/eomgen"
 cd "$elsewhere"
-"$prefix/bin/eomgen" list --json | grep -q '"format": 1' || refuse "eomgen list"
-"$prefix/bin/eomgen" check P7_moving_sphere --json | grep -q '"format": 1' || refuse "eomgen check of an installed model, by its name"
+# Read to the end first: grep -q ends at its match, and what still writes into the pipe then fails.
+says_format() { [[ $("$@" --json) == *'"format": 1'* ]]; }
+says_format "$prefix/bin/eomgen" list || refuse "eomgen list"
+says_format "$prefix/bin/eomgen" check P7_moving_sphere || refuse "eomgen check of an installed model, by its name"
 [[ -z $(ls -A) ]] || refuse "eomgen left files where it was called"
 echo "all is well"
