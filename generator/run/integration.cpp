@@ -368,6 +368,8 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
     total.detail = "the start cannot be moved onto the constraints";
     return total;
   }
+  position_correction = velocity_correction = 0;  // of the run
+  projected_.clear();
   for (const double end : restarts()) {
     side_ = (total.t + end) / 2;
     piece.max_steps = options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
