@@ -18,11 +18,8 @@ set(EOMGEN_TEST_OPTIONS $<$<CONFIG:Release>:-O1>)
 # eomgen_test(NAME SOURCES a.cpp ... LINKS target ...): one doctest executable and one ctest entry.
 function(eomgen_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;LINKS" ${ARGN})
-  add_executable(test_${name} ${PROJECT_SOURCE_DIR}/tests/support/main.cpp ${ARG_SOURCES})
-  target_include_directories(test_${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
-  target_compile_definitions(test_${name} PRIVATE
-    EOMGEN_SOURCE_DIR="${PROJECT_SOURCE_DIR}" EOMGEN_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  add_executable(test_${name} ${ARG_SOURCES})
   target_compile_options(test_${name} PRIVATE ${EOMGEN_TEST_OPTIONS})
-  target_link_libraries(test_${name} PRIVATE ${ARG_LINKS} doctest::doctest eomgen_warnings)
+  target_link_libraries(test_${name} PRIVATE eomgen_test_main ${ARG_LINKS} eomgen_warnings)
   add_test(NAME ${name} COMMAND test_${name})
 endfunction()

@@ -6,13 +6,14 @@
 #include <string>
 
 #include "architecture/stages.hpp"
+#include "support/folders.hpp"
 
 using namespace architecture;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = EOMGEN_SOURCE_DIR;
+const fs::path root = eomgen::test::source_folder();
 
 std::vector<fs::path> documents() {
   std::vector<fs::path> files = files_below(root / "docs", {".md"});

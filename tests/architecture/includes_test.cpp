@@ -11,13 +11,14 @@
 #include <vector>
 
 #include "architecture/stages.hpp"
+#include "support/folders.hpp"
 
 using namespace architecture;
 namespace fs = std::filesystem;
 
 namespace {
 
-const fs::path root = EOMGEN_SOURCE_DIR;
+const fs::path root = eomgen::test::source_folder();
 
 /// The products that the stages hand to one another, in the order of the data flow: plain data, so that a later stage
 /// may read them without needing the stage that makes them.

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "support/folders.hpp"
 #include "support/schema.hpp"
 
 namespace eomgen::test {
@@ -55,8 +56,8 @@ ChildCommand command(const Folder& folder, const Words& words) {
   result.arguments = {EOMGEN_PROGRAM};
   result.arguments.insert(result.arguments.end(), words.begin(), words.end());
   result.folder = folder.path();
-  result.environment = {{"EOMGEN_CACHE_DIR", std::string(EOMGEN_BINARY_DIR) + "/test-cache"},
-                        {"EOMGEN_MODELS", std::string(EOMGEN_SOURCE_DIR) + "/models"},
+  result.environment = {{"EOMGEN_CACHE_DIR", test::build_folder() + "/test-cache"},
+                        {"EOMGEN_MODELS", test::source_folder() + "/models"},
                         {"EOMGEN_CC", std::nullopt},
                         {"CC", std::nullopt}};
   return result;
@@ -173,7 +174,7 @@ Table read_table(const std::string& text) {
 
 std::vector<std::string> shipped_models() {
   std::vector<std::string> result;
-  for (const fs::directory_entry& entry : fs::directory_iterator(std::string(EOMGEN_SOURCE_DIR) + "/models")) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(test::source_folder() + "/models")) {
     if (entry.path().extension() == ".toml") result.push_back(entry.path().stem().string());
   }
   std::sort(result.begin(), result.end());

@@ -8,6 +8,7 @@
 
 #include "joints/joint.hpp"
 #include "joints/rod_on_base.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -16,7 +17,7 @@ using namespace eomgen::test;
 namespace {
 
 Finished run_text(const std::string& name, const std::string& text) {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/" + name + ".toml";
+  const std::string path = test::build_folder() + "/" + name + ".toml";
   write_text(path, text);
   return run_model(path);
 }

@@ -6,11 +6,12 @@
 #include <string>
 
 #include "eom/ode.hpp"
+#include "support/folders.hpp"
 
 namespace {
 
 std::string text_of(const std::string& path) {
-  std::ifstream file(std::string(EOMGEN_SOURCE_DIR) + "/" + path, std::ios::binary);
+  std::ifstream file(test::source_folder() + "/" + path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

@@ -4,6 +4,7 @@
 
 #include "cli/steady_search.hpp"
 #include "linearised.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -18,7 +19,7 @@ cli::SteadyMotions found(const std::string& model, const std::map<std::string, s
   request.scene = scene;
   request.hold = hold;
   if (!more.empty()) {
-    request.model = std::string(EOMGEN_BINARY_DIR) + "/" + model + "_" + scene + "_steady.toml";
+    request.model = test::build_folder() + "/" + model + "_" + scene + "_steady.toml";
     write_text(request.model, read_text(model_path(model)) + more);
   }
   return cli::steady_motions(request);
@@ -111,7 +112,7 @@ TEST_CASE("sleigh: straight ahead is stable, astern is not") {
 }
 
 TEST_CASE("a degenerate equilibrium is not called stable by its linear terms") {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/degenerate.toml";
+  const std::string path = test::build_folder() + "/degenerate.toml";
   // x' = v, v' = -v + x^3: the zero eigenvalue is no family, and x = 0 is unstable.
   write_text(path, "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x^4/4\"\n"
                    "[[force]]\ngeneralized = { x = \"-x_dot\" }\n[scene.default]\ninitial = { x = 0 }\n");

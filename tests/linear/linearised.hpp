@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "cli/steady.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 namespace eomgen::test {
@@ -49,7 +50,7 @@ inline Linearised linearised(const std::string& model, const std::string& scene 
   std::string path = model_path(model);
   if (!more.empty()) {
     const std::string text = read_text(path) + more;
-    path = std::string(EOMGEN_BINARY_DIR) + "/" + model + "_" + scene + "_linear.toml";
+    path = test::build_folder() + "/" + model + "_" + scene + "_linear.toml";
     write_text(path, text);
   }
   run::Overrides overrides;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The wall presses with m f'' = m b; the pull along it is F0 t.
 #include "models/rough.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -63,7 +64,7 @@ TEST_CASE("P11: under the smooth law it creeps before it slides, as its one equa
   const std::string law = "static = \"mu_s\", dynamic = \"mu_d\"", static_value = "mu_s = { value = 0.5, unit = \"1\" }\n";
   text.replace(text.find(law), law.size(), "dynamic = \"mu_d\", law = \"smooth\", width = \"20 mm/s\"");
   text.erase(text.find(static_value), static_value.size());
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/smooth_wall.toml";
+  const std::string path = test::build_folder() + "/smooth_wall.toml";
   write_text(path, text);
   const Finished run = run_rough(path);
   const double m = run.parameter("m"), b = run.parameter("b"), F0 = run.parameter("F0"), mu = run.parameter("mu_d");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "print/render.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -65,7 +66,7 @@ holonomic = "R - d"
 [[constraint]]
 name = "circle"
 )toml" + second + "\n[scene.default]\nt = [0, 2]\ninitial = { phi = 1, theta_dot = 2 }\noutputs = [\"reaction.circle\"]\n";
-    const std::string path = std::string(EOMGEN_BINARY_DIR) + "/circle.toml";
+    const std::string path = test::build_folder() + "/circle.toml";
     test::write_text(path, text);
     return test::run_model(path, [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
   };

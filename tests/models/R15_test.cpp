@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -33,7 +34,7 @@ std::string built_in(const std::string& name) {
 }
 
 Finished run_text(const std::string& name, const std::string& text) {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/" + name + ".toml";
+  const std::string path = test::build_folder() + "/" + name + ".toml";
   write_text(path, text);
   return run_model(path, tighten);
 }

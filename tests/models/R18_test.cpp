@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/attitude.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -28,7 +29,7 @@ TEST_CASE("R18: every representation of rotations gives the same motion of a hea
     std::string text = shipped;
     replace(text, "{ rodrigues = [\"l1\", \"l2\", \"l3\"] }", written->rotation);
     replace(text, "l1 = 0.3, l2 = 0.2", written->start);
-    const std::string path = std::string(EOMGEN_BINARY_DIR) + "/R18_" + r.name + ".toml";
+    const std::string path = test::build_folder() + "/R18_" + r.name + ".toml";
     test::write_text(path, text);
     const test::Finished run = test::run_model(path, [](cli::SimulationRequest& request) {
       request.overrides.rtol = 1e-13;

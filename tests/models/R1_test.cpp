@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "support/attitude.hpp"
+#include "support/folders.hpp"
 #include "support/free_body.hpp"
 #include "support/simulation.hpp"
 
@@ -107,7 +108,7 @@ TEST_CASE("R1: all twelve sets of Euler angles, Euler parameters and a Rodrigues
     const std::optional<test::Attitude> written = test::attitude_in(r, start);
     if (!written) continue;
     INFO(r.name);
-    const std::string path = std::string(EOMGEN_BINARY_DIR) + "/R1_" + r.name + ".toml";
+    const std::string path = test::build_folder() + "/R1_" + r.name + ".toml";
     test::write_text(path, model_text(written->rotation, written->start));
     const test::Finished run = test::run_model(path);
     found.emplace_back();

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -112,7 +113,7 @@ t = [0, 3]
 initial = { phi1 = "pi/2", phi2 = "pi/2", theta1 = 0.8, theta2 = 0.4 }
 )toml";
   // Gravity along E1 and both angles phi at pi/2: theta are the angles of the planar model.
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/S5_turned.toml";
+  const std::string path = test::build_folder() + "/S5_turned.toml";
   test::write_text(path, text);
   const test::Finished spherical = test::run_model(path, tighten);
   for (const char* name : {"theta1", "theta2", "theta1_dot", "theta2_dot", "reaction.rod1", "reaction.rod2"}) {

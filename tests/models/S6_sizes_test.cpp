@@ -10,6 +10,7 @@
 #include <filesystem>
 
 #include "derive/routes.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 #include "verify/certificate.hpp"
 
@@ -36,7 +37,7 @@ std::string chain_text(int n, bool relative) {
 }
 
 test::Finished run_chain(int n, bool relative) {
-  const std::string folder = std::string(EOMGEN_BINARY_DIR) + "/chains";
+  const std::string folder = test::build_folder() + "/chains";
   std::filesystem::create_directories(folder);
   const std::string path = fmt::format("{}/chain_{}_{}.toml", folder, n, relative ? "relative" : "absolute");
   test::write_text(path, chain_text(n, relative));

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -27,7 +28,7 @@ std::string variant(const std::string& name, const std::string& forces, const st
   const auto replace = [&text](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
   replace("-k1*max(0, x) - k2*min(0, x)", forces);
   replace("initial = { x = 0.1 }", "initial = { " + initial + " }");
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/" + name + ".toml";
+  const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, text);
   return path;
 }

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -23,7 +24,7 @@ TEST_CASE("cart_pendulum: p_x + c x stays, since friction is the only force alon
 }
 
 TEST_CASE("cart_pendulum: a force that jumps restarts the run, and its work is in the balance") {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/cart_pushed.toml";
+  const std::string path = test::build_folder() + "/cart_pushed.toml";
   std::string text = test::read_text(test::model_path("cart_pendulum"));
   text += "\n[scene.pushed]\nfrom = \"default\"\nt = [0, 4]\ninputs = { F = { t = [0, 1, 2], value = [0, 5, 0] } }\n";
   test::write_text(path, text);

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "support/attitude.hpp"
+#include "support/folders.hpp"
 #include "support/free_body.hpp"
 #include "support/simulation.hpp"
 
@@ -21,7 +22,7 @@ std::size_t exchanges(const test::Finished& run, const std::string& whose = "B")
 }
 
 test::Finished run_text(const std::string& name, const std::string& text, const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/" + name + ".toml";
+  const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);
 }

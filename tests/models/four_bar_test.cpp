@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -43,7 +44,7 @@ guess = { psi = 0.3, beta = 1.5 }
 }  // namespace
 
 TEST_CASE("four_bar: of ten equations of spatial pins seven keep multipliers, and the motion is that of the planar linkage") {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/four_bar_planar.toml";
+  const std::string path = test::build_folder() + "/four_bar_planar.toml";
   write_text(path, planar);
   const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
   const Finished flat = run_model(path, tighten), spatial = run_model("four_bar_spatial_pins", tighten);

@@ -16,6 +16,7 @@
 #include "program/interpret.hpp"
 #include "reference/consistent.hpp"
 #include "support/elliptic.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -118,7 +119,7 @@ TEST_CASE("published: the heavy top of the Lie-group literature, in Euler parame
                  {"e0_dot", -28.55931683497920995348961}, {"e1_dot", 58.08053732712041817400288}, {"e2_dot", 7.735086293981340390856202},
                  {"e3_dot", -37.21237517022154494696796}};
   check("heavy_top", "default", "taylor", e, 5e-10);  // 48 turns
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/heavy_top_pinned.toml";
+  const std::string path = test::build_folder() + "/heavy_top_pinned.toml";
   test::write_text(path, pinned);
   const test::Finished run = check(path, "default", "dop853", e, 5e-10);
   CHECK(run.simulation.derived->mechanics.active.size() == 4);

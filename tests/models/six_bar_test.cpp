@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -33,7 +34,7 @@ initial = { a = 0.6, a_dot = 1 }
 }  // namespace
 
 TEST_CASE("six_bar: Sarrus' linkage is overconstrained by one, and moves along its straight line") {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/six_bar_one.toml";
+  const std::string path = test::build_folder() + "/six_bar_one.toml";
   write_text(path, one_coordinate);
   const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
   const Finished one = run_model(path, tighten), all = run_model("six_bar_spatial", tighten);

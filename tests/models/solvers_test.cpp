@@ -7,6 +7,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -181,7 +182,7 @@ TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, 
 }
 
 TEST_CASE("solvers: taylor takes inputs that jump, refuses those that are expressions of t, and code without a series") {
-  const std::string folder = EOMGEN_BINARY_DIR, text = test::read_text(test::model_path("cart_pendulum"));
+  const std::string folder = test::build_folder(), text = test::read_text(test::model_path("cart_pendulum"));
   test::write_text(folder + "/cart_table.toml", text + "inputs = { F = { t = [0, 0.7], value = [5, -3] } }\n");
   test::write_text(folder + "/cart_pushed.toml", text + "inputs = { F = \"3*sin(2*t)\" }\n");
   const std::string table = folder + "/cart_table.toml", pushed = folder + "/cart_pushed.toml";

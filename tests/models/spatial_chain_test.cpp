@@ -7,6 +7,7 @@
 
 #include "cli/pipeline.hpp"
 #include "program/build.hpp"
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -30,7 +31,7 @@ std::string chain_text(int n) {
 }
 
 std::size_t operations(const std::string& text, int n) {
-  const std::string path = fmt::format("{}/spatial_chain_of_{}.toml", EOMGEN_BINARY_DIR, n);
+  const std::string path = fmt::format("{}/spatial_chain_of_{}.toml", test::build_folder(), n);
   test::write_text(path, text);
   const auto derived = cli::derive_model(path, cli::ApproachChoice::automatic, std::nullopt);
   const program::Program program = cli::make_program(*derived, {});

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "print/render.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen;
 namespace fs = std::filesystem;
@@ -43,7 +44,7 @@ holonomic = "write18 - end_document"
 }
 
 bool compiles(const std::string& text, const std::string& name) {
-  const fs::path folder = fs::path(EOMGEN_BINARY_DIR) / "print_test" / name;
+  const fs::path folder = fs::path(test::build_folder()) / "print_test" / name;
   fs::create_directories(folder);
   std::ofstream(folder / "document.tex") << text;
   const std::string command = "cd '" + folder.string() + "' && pdflatex -no-shell-escape -interaction=nonstopmode -halt-on-error document.tex > out.txt 2>&1";
@@ -64,7 +65,7 @@ TEST_CASE("hostile names and texts stay texts") {
 }
 
 TEST_CASE("the document has both approaches side by side and the constraint force") {
-  const std::string text = document(model::read_model(EOMGEN_SOURCE_DIR "/models/P7_moving_sphere.toml"));
+  const std::string text = document(model::read_model(test::source_folder() + "/models/P7_moving_sphere.toml"));
   CHECK(text.find("Approach I}") != std::string::npos);
   CHECK(text.find("Approach II}") != std::string::npos);
   CHECK(text.find("\\[\n\\lambda = m \\ddot{d}") != std::string::npos);
@@ -76,7 +77,7 @@ TEST_CASE("the document compiles with pdflatex, if it is installed") {
     MESSAGE("pdflatex is not installed: skipped");
     return;
   }
-  CHECK(compiles(document(model::read_model(EOMGEN_SOURCE_DIR "/models/P7_moving_sphere.toml")), "P7"));
-  CHECK(compiles(document(model::read_model(EOMGEN_SOURCE_DIR "/models/S5_spherical_double_pendulum.toml")), "S5"));
+  CHECK(compiles(document(model::read_model(test::source_folder() + "/models/P7_moving_sphere.toml")), "P7"));
+  CHECK(compiles(document(model::read_model(test::source_folder() + "/models/S5_spherical_double_pendulum.toml")), "S5"));
   CHECK(compiles(document(hostile()), "hostile"));
 }

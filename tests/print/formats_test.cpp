@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "print/render.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen;
 using print::Item;
@@ -27,7 +28,7 @@ struct Printed {
   std::vector<Item> items;
 };
 
-std::string shipped(const std::string& name) { return std::string(EOMGEN_SOURCE_DIR) + "/models/" + name + ".toml"; }
+std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
 
 // Every element that opens closes, in order.
 bool well_formed(const std::string& xml) {

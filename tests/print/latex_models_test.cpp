@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "print/render.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen;
 namespace fs = std::filesystem;
@@ -23,7 +24,7 @@ constexpr double largest_overrun = 5;  // pt; half a character
 
 std::vector<fs::path> shipped_models() {
   std::vector<fs::path> paths;
-  for (const fs::directory_entry& entry : fs::directory_iterator(EOMGEN_SOURCE_DIR "/models")) {
+  for (const fs::directory_entry& entry : fs::directory_iterator(test::source_folder() + "/models")) {
     if (entry.path().extension() == ".toml") paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
@@ -43,7 +44,7 @@ struct Typeset {
 
 /// Lines that begin with "% ITEM " in `text` name what follows them.
 Typeset typeset(const std::string& text, const std::string& name) {
-  const fs::path folder = fs::path(EOMGEN_BINARY_DIR) / "print_test" / name;
+  const fs::path folder = fs::path(test::build_folder()) / "print_test" / name;
   fs::create_directories(folder);
   std::ofstream(folder / "document.tex") << text;
   // A log line of 79 characters would break the words that are looked for.

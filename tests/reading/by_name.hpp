@@ -8,6 +8,7 @@
 #include "reading/alphabet.hpp"
 #include "reading/reading.hpp"
 #include "reading/zero_test.hpp"
+#include "support/folders.hpp"
 
 namespace eomgen::test {
 
@@ -58,7 +59,7 @@ inline Sum over(const Sum& a, const Sum& b) { return a * reading::power(b, -1); 
 /// Equal for all values of the symbols, by proof.
 inline bool same(const Sum& a, const Sum& b) { return reading::zero_test(a - b) == reading::Zero::proven; }
 
-inline std::string shipped(const std::string& name) { return std::string(EOMGEN_SOURCE_DIR) + "/models/" + name + ".toml"; }
+inline std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
 
 /// A model that outlives its mechanics.
 struct System {

@@ -2,6 +2,7 @@
 // Coordinates have ranges: a start outside is refused, a run that leaves one is told.
 #include <doctest/doctest.h>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -17,7 +18,7 @@ std::string radial(double r, double r_dot) {
 }
 
 test::Finished run_text(const std::string& text) {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/radial.toml";
+  const std::string path = test::build_folder() + "/radial.toml";
   test::write_text(path, text);
   return test::run_model(path);
 }

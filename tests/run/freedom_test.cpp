@@ -2,6 +2,7 @@
 // Models that leave nothing to integrate are told so, at the constraint that takes the last freedom.
 #include <doctest/doctest.h>
 
+#include "support/folders.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -15,7 +16,7 @@ std::string planar(const std::string& second) {
 }
 
 void check_refused(const std::string& text, const char* message) {
-  const std::string path = std::string(EOMGEN_BINARY_DIR) + "/freedom.toml";
+  const std::string path = test::build_folder() + "/freedom.toml";
   test::write_text(path, text);
   try {
     cli::derive_model(path, cli::ApproachChoice::automatic);

@@ -1,3 +1,4 @@
+#include "support/folders.hpp"
 #include "support/schema.hpp"
 
 #include <doctest/doctest.h>
@@ -19,7 +20,7 @@ namespace {
 using valijson::adapters::NlohmannJsonAdapter;
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(EOMGEN_SOURCE_DIR) / "docs" / "schema";
+const fs::path folder = fs::path(test::source_folder()) / "docs" / "schema";
 constexpr const char* ending = ".schema.json";
 
 nlohmann::json read_schema(const std::string& schema_name) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cli/simulate.hpp"
+#include "support/folders.hpp"
 
 namespace eomgen::test {
 
@@ -55,7 +56,7 @@ struct Finished {
   }
 };
 
-inline std::string model_path(const std::string& name) { return std::string(EOMGEN_SOURCE_DIR) + "/models/" + name + ".toml"; }
+inline std::string model_path(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
 
 inline std::string read_text(const std::string& path) {
   std::ifstream file(path, std::ios::binary);

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <filesystem>
 
+#include "support/folders.hpp"
 #include "verify/certificate.hpp"
 
 using namespace eomgen;
@@ -15,7 +16,7 @@ namespace {
 
 std::vector<fs::path> shipped_models() {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(fs::path(EOMGEN_SOURCE_DIR) / "models"))
+  for (const auto& entry : fs::directory_iterator(fs::path(test::source_folder()) / "models"))
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
   return files;
