@@ -24,7 +24,7 @@ bool is_leaf(const derive::Conserved& c) { return c.name.starts_with("integral."
 /// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
 bool is_kept(const SteadyProblem& p, const Quantity& quantity) {
   const linear::Tape tape = p.flow->tape({quantity.expression});
-  for (const std::uint64_t seed : {21, 22, 23}) {
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
     linear::Setting<Precise> setting = p.setting;
     const auto z = linear::beside(*p.flow, p.z, setting, seed);
     if (!z) return false;
@@ -110,7 +110,7 @@ bool can_be_held(const SteadyProblem& p, const Quantity& quantity) {
   const linear::Flow& flow = *p.flow;
   const linear::Symmetry symmetry = linear::find_symmetry(flow, p.z, p.setting, 1);
   const linear::Tape tape = flow.tape({quantity.expression});
-  for (const std::uint64_t seed : {31, 32}) {
+  for (const std::uint64_t seed : {31U, 32U}) {
     linear::Setting<Precise> setting = p.setting;
     const auto z = linear::beside(flow, p.z, setting, seed);
     if (!z) return false;

@@ -68,7 +68,7 @@ bool does_no_work(const double* force, const std::vector<double>& y) {
 
 class Search {
  public:
-  Search(Mechanics& m, const system::EquationSystem& s) : m_(m), s_(s), dag_(*m.dag), n_(s.free.size()) {
+  Search(Mechanics& m, const system::EquationSystem& s) : s_(s), dag_(*m.dag), n_(s.free.size()) {
     symbolic::Substitution imposed = impose(m), written = write_out(m);
     const auto all = [&](const Vec3& v) { return Vec3{written(imposed(v[0])), written(imposed(v[1])), written(imposed(v[2]))}; };
     for (const mechanics::PointMass& mass : m.masses) {
@@ -200,7 +200,6 @@ class Search {
     return sum;
   }
 
-  Mechanics& m_;
   const system::EquationSystem& s_;
   Dag& dag_;
   std::size_t n_;

@@ -56,7 +56,7 @@ bool all_finite(const std::vector<double>& list) {
 }  // namespace
 
 Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& program)
-    : program_(program), rhs_(program.functions.front()), divided_(rhs_) {
+    : rhs_(program.functions.front()), divided_(rhs_) {
   divided_.results = {{"denominators", {}}};
   divided_.places.clear();
   for (const Divisor& d : divisors(rhs_, program, mechanics)) {

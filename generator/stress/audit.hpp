@@ -49,7 +49,6 @@ class Auditor {
   void look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample, const std::vector<double>& u);
   void look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<const Sample*>& samples);
 
-  const program::Program& program_;
   const program::Function& rhs_;
   program::Function divided_;  // the same code; its one result are the denominators
   Audit audit_;
