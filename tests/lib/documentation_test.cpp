@@ -11,7 +11,7 @@
 namespace {
 
 std::string text_of(const std::string& path) {
-  std::ifstream file(test::source_folder() + "/" + path, std::ios::binary);
+  std::ifstream file(eomgen::test::source_folder() + "/" + path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();

@@ -23,7 +23,7 @@ bool allowed(const std::string& included, const std::string& header) {
 
 TEST_CASE("runtime headers: own headers and the standard library only, Eigen in the projection only, MIT, no globals") {
   int headers = 0;
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(test::source_folder() + "/lib/eom")) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(eomgen::test::source_folder() + "/lib/eom")) {
     if (!entry.is_regular_file()) continue;
     const std::string name = entry.path().filename().string();
     CAPTURE(name);

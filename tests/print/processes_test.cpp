@@ -24,7 +24,7 @@ std::string output_of(const std::string& command) {
 
 TEST_CASE("every shipped model prints equal bytes in fresh processes") {
   int models = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(eomgen::test::source_folder() + "/models")) {
     if (entry.path().extension() != ".toml") continue;
     CAPTURE(entry.path().filename().string());
     const std::string command = std::string(PRINT_EVERYTHING) + " '" + entry.path().string() + "' ";

@@ -20,7 +20,7 @@ namespace {
 using valijson::adapters::NlohmannJsonAdapter;
 namespace fs = std::filesystem;
 
-const fs::path folder = fs::path(test::source_folder()) / "docs" / "schema";
+const fs::path folder = fs::path(eomgen::test::source_folder()) / "docs" / "schema";
 constexpr const char* ending = ".schema.json";
 
 nlohmann::json read_schema(const std::string& schema_name) {
