@@ -215,7 +215,8 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
   for (const std::uint32_t i : mechanics.free) {
     if (!try_wrong_ones) break;
     const Real right = lookup.state.qddot[i];
-    lookup.state.qddot[i] = 2 * right + 1;
+    // By as much as its terms, or a small wrong one drowns among them.
+    lookup.state.qddot[i] = right + cln::abs(right) + motion.scale[i] + 1;
     const bool noticed = largest_residual(form, *mechanics.dag, lookup, motion, judge) > 1e-9;
     lookup.state.qddot[i] = right;
     if (!noticed) return 1;
