@@ -1,8 +1,6 @@
 #include "support/folders.hpp"
 #include "support/schema.hpp"
 
-#include <doctest/doctest.h>
-
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -55,15 +53,6 @@ std::vector<std::string> schema_names() {
   }
   std::sort(names.begin(), names.end());
   return names;
-}
-
-void check_schema(const nlohmann::json& document, const std::string& schema_name) {
-  const std::vector<std::string> errors = schema_errors(document, schema_name);
-  if (errors.empty()) return;
-  std::string report = "the document breaks docs/schema/" + schema_name + ending + "\n";
-  for (const std::string& error : errors) report += "  " + error + "\n";
-  report += document.dump(2);
-  FAIL_CHECK(report);
 }
 
 }  // namespace support

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "commands.hpp"
+
+#include <stdio.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <exception>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <map>
+#include <sstream>
+#include <string_view>
+
+#include "cli/command.hpp"
+#include "error.hpp"
+#include "mutate.hpp"
+#include "support/folders.hpp"
+#include "support/schema.hpp"
+
+namespace eomgen::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What is printed meanwhile, in place of the stream. glibc lets a stream be exchanged.
+class Caught {
+ public:
+  explicit Caught(FILE*& stream) : stream_(stream), before_(stream) { stream = open_memstream(&text_, &size_); }
+  Caught(const Caught&) = delete;
+  Caught& operator=(const Caught&) = delete;
+  ~Caught() {
+    std::fclose(std::exchange(stream_, before_));
+    std::free(text_);
+  }
+  std::string text() {
+    std::fflush(stream_);
+    return {text_, size_};
+  }
+
+ private:
+  FILE*& stream_;
+  FILE* before_;
+  char* text_ = nullptr;
+  std::size_t size_ = 0;
+};
+
+/// Where the models and results of this process lie; compiled code too, which nobody needs again.
+class Scratch {
+ public:
+  Scratch() {
+    std::string pattern = (fs::temp_directory_path() / "eomgen-fuzz-XXXXXX").string();
+    if (mkdtemp(pattern.data()) == nullptr) std::abort();
+    folder_ = pattern;
+    setenv("EOMGEN_CACHE_DIR", (folder_ / "cache").c_str(), 1);
+  }
+  Scratch(const Scratch&) = delete;
+  Scratch& operator=(const Scratch&) = delete;
+  ~Scratch() {
+    std::error_code ignored;
+    fs::remove_all(folder_, ignored);
+  }
+  void clear() const {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) fs::remove_all(entry);
+  }
+  std::string operator/(const std::string& name) const { return (folder_ / name).string(); }
+
+ private:
+  fs::path folder_;
+};
+
+[[noreturn]] void found(const std::string& what, const Words& words) {
+  std::string call = "eomgen";
+  for (const std::string& word : words) call += " " + word;
+  std::cerr << "found: " << what << "\n  by: " << call << "\n" << std::flush;
+  std::abort();
+}
+
+struct Result {
+  int code = 0;
+  std::string out;
+};
+
+Result call(const Words& words) {
+  Caught out(stdout), err(stderr);
+  CLI::App app{"", "eomgen"};
+  cli::Common common;
+  std::map<const CLI::App*, std::function<int(const cli::Common&)>> actions;
+  for (const cli::Command& command : cli::commands()) {
+    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+    sub->add_flag("--json", common.json);
+    actions[sub] = command.declare(*sub);
+  }
+  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+  const int code = actions.at(app.get_subcommands().front())(common);
+  return {code, out.text()};
+}
+
+void check_document(const Result& result, const Words& words) {
+  const nlohmann::json document = nlohmann::json::parse(result.out, nullptr, false);
+  if (document.is_discarded()) found("no JSON document: " + result.out, words);
+  for (const std::string& error : support::schema_errors(document, words.front())) found("schema: " + error, words);
+}
+
+/// The derivations of a model disagree, its code cannot be compiled: defects of ours, whatever the model is.
+bool is_ours(const Error& error) {
+  return error.fault() == Fault::tool || error.remedy().find("defect of eomgen") != std::string::npos || error.message().find("internal") != std::string::npos;
+}
+
+/// The call of a text, and where its model begins.
+std::size_t chosen(const std::vector<Words>& calls, std::string_view text) {
+  std::size_t number = text.size();
+  if (text.size() > 1 && text[0] == '#' && text[1] >= '0' && text[1] <= '9') number = static_cast<std::size_t>(text[1] - '0');
+  return number % calls.size();
+}
+
+std::vector<std::string> shipped() {
+  std::vector<std::string> result;
+  std::vector<fs::path> files;
+  for (const char* folder : {"models", "tests/fuzz/seeds"}) {
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(test::source_folder()) / folder)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    std::ifstream stream(file);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    result.push_back(text.str());
+  }
+  return result;
+}
+
+}  // namespace
+
+const std::vector<Words>& derive_calls() {
+  static const std::vector<Words> all{
+      {"check", "--json"},
+      {"derive", "--show", "all", "--json"},
+      {"derive", "--show", "equations,constraints,reactions,friction,conserved,routh", "--approach", "I", "--format", "text"},
+      {"verify", "--no-compile", "--points", "3", "--json"},
+      {"emit", "-o", "OUT", "--with", "jac,jac_p,mass,constraints,reactions,outputs,events,energy", "--json"},
+      {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
+      {"emit", "-o", "OUT", "--target", "latex", "--json"},
+      {"emit", "-o", "OUT", "--target", "c", "--with", "taylor,momenta", "--json"},
+  };
+  return all;
+}
+
+const std::vector<Words>& run_calls() {
+  static const std::vector<Words> all{
+      {"run", "--max-steps", "2000", "--out", "OUT", "--every", "0.1", "--json"},
+      {"run", "--max-steps", "2000", "--no-error-estimate", "--plot", "OUT", "--json"},
+      {"run", "--max-steps", "500", "--solver", "radau5", "--no-error-estimate", "--json"},
+      {"run", "--max-steps", "500", "--t-end", "1", "--solver", "ggl", "--json"},
+      {"linearize", "--json"},
+      {"equilibria", "--json"},
+      {"inverse", "--json"},
+      {"verify", "--points", "3", "--json"},
+  };
+  return all;
+}
+
+std::string try_command(const std::vector<Words>& calls, const std::string& text) {
+  static const Scratch scratch;
+  scratch.clear();
+  Words words = calls[chosen(calls, text)];
+  const std::string model = scratch / "model.toml";
+  std::ofstream(model) << text;
+  for (std::string& word : words) {
+    if (word == "OUT") word = scratch / "out";
+  }
+  words.insert(words.begin() + 1, model);
+  try {
+    const Result result = call(words);
+    if (result.code != 0 && result.code != 3) found("exit code " + std::to_string(result.code) + "\n" + result.out, words);
+    if (std::find(words.begin(), words.end(), "--json") != words.end()) check_document(result, words);
+    return "";
+  } catch (const Error& error) {
+    if (error.message().empty() || error.remedy().empty()) found(std::string("an error without a remedy: ") + error.what(), words);
+    if (is_ours(error)) found(error.what(), words);
+    return error.what();
+  } catch (const std::exception& error) {
+    found(std::string("internal: ") + error.what(), words);
+  }
+}
+
+std::string mutate(const std::vector<Words>& calls, const std::string& text, unsigned seed) {
+  static const Mutator mutator(shipped());
+  Random random(seed);
+  random.discard(3);  // seeds in a row begin alike
+  const bool numbered = text.size() > 3 && text[0] == '#' && text[2] == '\n';
+  const std::string first = numbered && random() % 4 != 0 ? text.substr(0, 3) : "#" + std::to_string(random() % calls.size()) + "\n";
+  return first + mutator(numbered ? text.substr(3) : text, random);
+}
+
+}  // namespace eomgen::fuzz
