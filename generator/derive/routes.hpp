@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The registry of fast routes: each derives the same EquationSystem its own way. They share the Mechanics and nothing
-// else; verify holds them against one another and against the judge.
+// The registry of fast routes: each derives the same EquationSystem its own way. No route includes
+// another; what several are made of (bodies, trees, Euler and Lagrange's equations) has files of its own, and the
+// certificate tells which pairs share code. verify holds them against one another and against the judge.
 #pragma once
 
 #include <optional>

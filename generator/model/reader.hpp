@@ -131,7 +131,7 @@ private:
   void read_particles();
   std::uint32_t place_named(const Value& value, const std::string& what);
 
-  // read_forces.cpp, force_kinds.cpp: [[force]]
+  // read_forces.cpp: [[force]]
   void declare_forces();
   void read_forces();
   Force read_force(const Value& table, const std::string& name);
@@ -197,7 +197,7 @@ private:
   void read_events();
   void read_stop(Scene& scene, const Value& value);
 
-  // read_scenes.cpp, scene_values.cpp, scene_outputs.cpp: [scene.NAME]
+  // read_scenes.cpp, scene_values.cpp: [scene.NAME]
   void read_scenes();
   std::vector<const Entry*> merged(const Entry& scene, std::vector<std::string>& from) const;
   void read_scene(const Entry& entry);

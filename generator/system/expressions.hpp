@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every expression of an EquationSystem, once: what rewrites or searches all of them cannot forget one.
+// Every expression of an EquationSystem, once: what rewrites or searches all of them cannot forget one. Left out are
+// `redundant`, which the start alone reads (its psi is an output too), and `apart`, which is made of modes.
 #pragma once
 
 #include "system/equation_system.hpp"
