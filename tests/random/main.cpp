@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// random_mechanisms PROGRAM FROM TO: every seed's model through the program; a line for each that breaks a promise, and the sum.
+// random_mechanisms PROGRAM --print SEED | --shrink SEED: the text of one; the smallest text that breaks the same promise.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "random/trial.hpp"
+
+namespace {
+
+using namespace eomgen::random_models;
+
+std::uint64_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
+
+// 0: all kept their promises, 1: some did not.
+int try_seeds(const std::string& program, const std::string& folder, std::uint64_t from, std::uint64_t to) {
+  std::map<std::string, std::size_t> features;
+  std::size_t tried = 0, refused = 0, failed = 0;
+  double slowest = 0;
+  for (std::uint64_t seed = from; seed <= to; ++seed) {
+    const Mechanism m = mechanism(seed);
+    const Trial trial = try_model(program, folder, m.text, {});
+    ++tried;
+    refused += trial.refusal.empty() ? 0 : 1;
+    if (trial.refusal.empty()) {
+      for (const std::string& feature : m.features) ++features[feature];
+    }
+    slowest = std::max(slowest, trial.slowest);
+    if (trial.findings.empty()) continue;
+    ++failed;
+    for (const Finding& finding : trial.findings) std::printf("seed %llu: %s: %s\n", static_cast<unsigned long long>(seed), finding.command.c_str(), finding.what.c_str());
+    std::fflush(stdout);
+  }
+  std::printf("features of those that are mechanisms:");
+  for (const auto& [feature, count] : features) std::printf(" %s %zu;", feature.c_str(), count);
+  std::printf("\n%zu random mechanisms: %zu kept every promise, %zu are no mechanism and were refused, %zu failed; slowest command %.1f s\n", tried,
+              tried - refused - failed, refused, failed, slowest);
+  // A generator whose models are refused tests nothing.
+  return failed == 0 && 4 * refused <= tried ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int count, char** words) {
+  if (count != 4) {
+    std::fputs("usage: random_mechanisms PROGRAM FROM TO\n       random_mechanisms PROGRAM --print SEED\n       random_mechanisms PROGRAM --shrink SEED\n", stderr);
+    return 2;
+  }
+  const std::string program = std::filesystem::absolute(words[1]).string(), second = words[2];
+  std::string folder = (std::filesystem::temp_directory_path() / "random_mechanisms_XXXXXX").string();
+  if (::mkdtemp(folder.data()) == nullptr) return 4;
+  int status = 0;
+  if (second == "--print") {
+    std::fputs(mechanism(number(words[3])).text.c_str(), stdout);
+  } else if (second == "--shrink") {
+    std::fputs(shrink(program, folder, mechanism(number(words[3])).text, {}).c_str(), stdout);
+  } else {
+    status = try_seeds(program, folder, number(words[2]), number(words[3]));
+  }
+  std::filesystem::remove_all(folder);
+  return status;
+}

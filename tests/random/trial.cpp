@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "random/trial.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "support/process.hpp"
+
+namespace eomgen::random_models {
+namespace {
+
+using test::ChildResult;
+using Json = nlohmann::json;
+
+// What a model may be refused for, by `check` or at the start of `run`: it is no mechanism, or none at its start. Everything else is a finding.
+const std::vector<std::string>& refusals() {
+  static const std::vector<std::string> texts{
+      "nothing is left to move",            // locked
+      "contradict",                         // constraints that cannot hold together
+      "follows from",                       // one that says what others say
+      "the start breaks constraint",        // an assembly that cannot be closed from its guess
+      "cannot be satisfied",
+      "has no mass",                        // a coordinate that nothing with inertia moves along
+      "no inertia",
+  };
+  return texts;
+}
+
+// A run may end early for what is true of the mechanism.
+const std::vector<std::string>& outcomes() {
+  static const std::vector<std::string> names{"chart_left", "singular_mass_matrix", "step_too_small"};
+  return names;
+}
+
+// The power balance of a run at rtol 1e-9 over 0.3 s; constraints are projected to rounding.
+constexpr double balance_tolerance = 1e-7, constraint_tolerance = 1e-8;
+
+bool among(const std::string& text, const std::vector<std::string>& parts) {
+  return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) { return text.find(part) != std::string::npos; });
+}
+
+std::string message(const ChildResult& result) {
+  std::istringstream lines(result.err);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find("error") != std::string::npos) return line;
+  }
+  return result.in_time ? "no message" : "out of time";
+}
+
+class Attempt {
+ public:
+  Attempt(const std::string& program, const std::string& folder, const Limits& limits) : program_(program), folder_(folder), limits_(limits) {}
+
+  Trial operator()(const std::string& text) {
+    std::ofstream(folder_ + "/m.toml", std::ios::binary) << text;
+    if (!command("check", {})) return trial_;
+    command("derive", {"--show", "all"});
+    if (command("run", {})) inspect_run();
+    command("linearize", {});
+    return trial_;
+  }
+
+ private:
+  // Whether it did what it was asked for. A shell sets the limits: they die with the command.
+  bool command(const std::string& name, const std::vector<std::string>& options) {
+    test::ChildCommand call;
+    const std::string memory = limits_.megabytes > 0 ? "ulimit -v " + std::to_string(limits_.megabytes * 1024L) + "; " : "";
+    call.arguments = {"/bin/sh", "-c", "ulimit -t " + std::to_string(limits_.seconds) + "; " + memory + "exec \"$@\"", "sh", program_, name, "m.toml", "--json"};
+    call.arguments.insert(call.arguments.end(), options.begin(), options.end());
+    call.folder = folder_;
+    call.limit = 30.0 * limits_.seconds;  // of the clock, on a machine that is busy
+    result_ = test::run_child(call);
+    trial_.slowest = std::max(trial_.slowest, result_.seconds);
+    if (result_.status == 0) return true;
+    const std::string said = message(result_);
+    if (result_.status == 2 && (name != "derive") && among(said, refusals())) {
+      trial_.refusal = said;
+    } else if (result_.status == 3 && name == "run" && told_outcome()) {
+      return false;
+    } else if (result_.status == 2 && name == "linearize" && said.find("internal") == std::string::npos) {
+      return false;  // a state without slope, a start on a kink: it is told
+    } else {
+      trial_.findings.push_back({name, "exit code " + std::to_string(result_.status) + ": " + said});
+    }
+    return false;
+  }
+
+  bool told_outcome() const {
+    const Json document = Json::parse(result_.out, nullptr, false);
+    return !document.is_discarded() && document.contains("outcome") && among(document["outcome"].get<std::string>(), outcomes());
+  }
+
+  void inspect_run() {
+    const Json document = Json::parse(result_.out, nullptr, false);
+    if (document.is_discarded()) {
+      trial_.findings.push_back({"run", "its JSON document cannot be read"});
+      return;
+    }
+    const auto number = [&](const char* key) { return document.contains(key) && document[key].is_number() ? document[key].get<double>() : 0.0; };
+    if (number("power_balance") > balance_tolerance) trial_.findings.push_back({"run", "power balance open: " + std::to_string(number("power_balance"))});
+    if (number("constraint_drift") > constraint_tolerance) trial_.findings.push_back({"run", "constraints drift: " + std::to_string(number("constraint_drift"))});
+  }
+
+  std::string program_, folder_;
+  Limits limits_;
+  Trial trial_;
+  ChildResult result_;
+};
+
+// Sections as they stand, each from its heading to the next.
+std::vector<std::string> sections(const std::string& text) {
+  std::vector<std::string> result;
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (result.empty() || line.starts_with("[")) result.emplace_back();
+    result.back() += line + "\n";
+  }
+  return result;
+}
+
+std::string joined(const std::vector<std::string>& parts) {
+  std::string text;
+  for (const std::string& part : parts) text += part;
+  return text;
+}
+
+// The command and the first words of the message, without names and numbers.
+std::string signature(const Trial& trial) {
+  if (trial.findings.empty()) return "";
+  std::string text = trial.findings.front().command + ": ";
+  for (const char c : trial.findings.front().what) {
+    if (c < '0' || c > '9') text += c;
+  }
+  return text.substr(0, 60);
+}
+
+}  // namespace
+
+Trial try_model(const std::string& program, const std::string& folder, const std::string& text, const Limits& limits) {
+  return Attempt(program, folder, limits)(text);
+}
+
+std::string shrink(const std::string& program, const std::string& folder, std::string text, const Limits& limits) {
+  const std::string wanted = signature(try_model(program, folder, text, limits));
+  for (bool smaller = true; smaller;) {
+    smaller = false;
+    const std::vector<std::string> parts = sections(text);
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+      std::vector<std::string> fewer = parts;
+      fewer.erase(fewer.begin() + static_cast<std::ptrdiff_t>(i));
+      const std::string candidate = joined(fewer);
+      if (signature(try_model(program, folder, candidate, limits)) != wanted) continue;
+      text = candidate;
+      smaller = true;
+      break;
+    }
+  }
+  return text;
+}
+
+}  // namespace eomgen::random_models
