@@ -5,6 +5,7 @@
 #include <cln/rational.h>
 
 #include <sstream>
+#include <string_view>
 
 #include "print/printer.hpp"
 
@@ -22,6 +23,69 @@ std::string number_element(const cln::cl_I& value) {
 }
 std::string row(const std::string& inside) { return "<mrow>" + inside + "</mrow>"; }
 std::string op(const std::string& sign) { return "<mo>" + sign + "</mo>"; }
+// Without `form` a browser takes a sign at the beginning of a <math> for a prefix, and closes the gap behind it.
+std::string infix(const std::string& sign) { return "<mo form=\"infix\">" + sign + "</mo>"; }
+
+constexpr const char* apply_function = "&#x2061;";
+// MathML Core has no gap around the invisible operators; a thin one stands where TeX puts it.
+constexpr const char* thin_behind = " lspace=\"0\" rspace=\"0.167em\"";
+std::string invisible(const char* sign, bool gap) { return std::string("<mo") + (gap ? thin_behind : "") + ">" + sign + "</mo>"; }
+
+bool begins(const std::string& text, std::string_view with) { return text.starts_with(with); }
+/// A function with its argument, sin x or sin^2 x; not a fraction or a power that has one inside.
+bool is_function(const std::string& text) {
+  return (begins(text, "<mrow><mi>") || begins(text, "<mrow><msup><mi>")) && text.find(apply_function) < text.find("</mrow>");
+}
+bool ends_with_bracket(const std::string& text) { return text.ends_with(")</mo></mrow></mrow>"); }
+/// A name of several letters, which is upright and would run together with its neighbour.
+bool is_word(const std::string& text) {
+  for (const std::string_view start : {"<mi>", "<msub><mi>", "<msubsup><mi>", "<msup><mi>"}) {
+    if (!begins(text, start)) continue;
+    const std::string name = text.substr(start.size(), text.find("</mi>") - start.size());
+    return name.size() > 1 && static_cast<unsigned char>(name[0]) < 0x80;
+  }
+  return false;
+}
+bool gap_between(const std::string& left, const std::string& right) {
+  return is_function(right) || (is_function(left) && !ends_with_bracket(left)) || is_word(left) || is_word(right);
+}
+
+/// Brackets as high as a line; as high as what is inside only where that has fractions or rows.
+std::string bracketed(const std::string& inside) {
+  const bool high = inside.find("<mfrac") != std::string::npos || inside.find("<mtable") != std::string::npos;
+  const std::string attribute = high ? "" : " stretchy=\"false\"";
+  return row("<mo" + attribute + ">(</mo>" + inside + "<mo" + attribute + ">)</mo>");
+}
+
+// MathML Core knows no mathvariant but "normal": bold and script letters are characters of their own.
+std::string utf8(unsigned code) {
+  std::string text;
+  if (code < 0x10000) {
+    text += static_cast<char>(0xe0 | (code >> 12));
+  } else {
+    text += static_cast<char>(0xf0 | (code >> 18));
+    text += static_cast<char>(0x80 | ((code >> 12) & 0x3f));
+  }
+  text += static_cast<char>(0x80 | ((code >> 6) & 0x3f));
+  text += static_cast<char>(0x80 | (code & 0x3f));
+  return text;
+}
+std::string in_alphabet(std::string_view word, unsigned capital_a, unsigned small_a, std::string_view gaps, const unsigned* instead) {
+  std::string text;
+  for (const char c : word) {
+    if (const std::size_t gap = gaps.find(c); gap != std::string_view::npos) text += utf8(instead[gap]);
+    else if (c >= 'A' && c <= 'Z') text += utf8(capital_a + static_cast<unsigned>(c - 'A'));
+    else if (c >= 'a' && c <= 'z') text += utf8(small_a + static_cast<unsigned>(c - 'a'));
+    else text += c;
+  }
+  return text;
+}
+std::string bold(std::string_view word) { return in_alphabet(word, 0x1d400, 0x1d41a, "", nullptr); }
+// Some script letters were there before the alphabet, and stand elsewhere in Unicode.
+std::string script(std::string_view word) {
+  static constexpr unsigned elsewhere[] = {0x212c, 0x2130, 0x2131, 0x210b, 0x2110, 0x2112, 0x2133, 0x211b, 0x212f, 0x210a, 0x2134};
+  return in_alphabet(word, 0x1d49c, 0x1d4b6, "BEFHILMRego", elsewhere);
+}
 
 std::string function_name(Op function) {
   switch (function) {
@@ -73,21 +137,30 @@ class MathmlStyle final : public Style {
                     op("&lt;") + args[1].text + "</mtd></mtr><mtr><mtd>" + args[3].text +
                     "</mtd><mtd><mtext>else</mtext></mtd></mtr></mtable>"),
                 Piece::sum};
-      default: return {row("<mi>" + function_name(function) + "</mi>" + op("&#x2061;") + arguments(args)), Piece::call};
+      default: return {row("<mi>" + function_name(function) + "</mi>" + applied_to(args)), Piece::call};
     }
   }
   Piece call_power(Op function, const std::vector<Piece>& args, const std::string& exponent) const override {
-    return {row("<msup><mi>" + function_name(function) + "</mi>" + exponent + "</msup>" + op("&#x2061;") + arguments(args)), Piece::call};
+    return {row("<msup><mi>" + function_name(function) + "</mi>" + exponent + "</msup>" + applied_to(args)), Piece::call};
   }
   Piece power(const Piece& base, const std::string& exponent) const override {
-    return {"<msup>" + row(base.text) + row(exponent) + "</msup>", Piece::call};
+    // An index and an exponent stand above one another.
+    static constexpr std::string_view open = "<msub>", close = "</msub>";
+    if (begins(base.text, open) && base.text.ends_with(close)) {
+      const std::string inside = base.text.substr(open.size(), base.text.size() - open.size() - close.size());
+      return {"<msubsup>" + inside + row(exponent) + "</msubsup>", Piece::call};
+    }
+    return {"<msup>" + (begins(base.text, "<mi>") || begins(base.text, "<mn>") ? base.text : row(base.text)) + row(exponent) + "</msup>", Piece::call};
   }
   Piece fraction(const Piece& above, const Piece& below) const override {
     return {"<mfrac>" + row(above.text) + row(below.text) + "</mfrac>", Piece::call};
   }
   Piece product(const std::vector<Piece>& factors) const override {
     std::string text;
-    for (const Piece& factor : factors) text += (text.empty() ? "" : op("&#x2062;")) + factor.text;
+    for (std::size_t i = 0; i < factors.size(); ++i) {
+      if (i > 0) text += invisible("&#x2062;", gap_between(factors[i - 1].text, factors[i].text));
+      text += factors[i].text;
+    }
     return {row(text), Piece::product};
   }
   Piece rate(const Piece& inside) const override {
@@ -106,12 +179,12 @@ class MathmlStyle final : public Style {
             Piece::product};
   }
   Piece differential(const Piece& a) const override { return {row("<mi>d</mi>" + a.text), Piece::atom}; }
-  std::string bracket(const std::string& inside) const override { return row(op("(") + inside + op(")")); }
-  std::string plus() const override { return op("+"); }
-  std::string minus() const override { return op("−"); }
+  std::string bracket(const std::string& inside) const override { return bracketed(inside); }
+  std::string plus() const override { return infix("+"); }
+  std::string minus() const override { return infix("−"); }
   std::string leading_minus() const override { return "<mo form=\"prefix\">−</mo>"; }
-  std::string equals() const override { return op("="); }
-  std::string at_least() const override { return op("≥"); }
+  std::string equals() const override { return infix("="); }
+  std::string at_least() const override { return infix("≥"); }
   std::string comma() const override { return op(",") + "<mspace width=\"1em\"/>"; }
   std::string whole(const std::vector<std::string>& pieces, const std::vector<Start>&) const override {
     static const std::string open = "<math displaystyle=\"true\">", close = "</math>";
@@ -124,22 +197,25 @@ class MathmlStyle final : public Style {
     }
     return result + close;
   }
-  std::string open_rate() const override { return "<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + op("("); }
-  std::string close_rate() const override { return op(")"); }
+  std::string open_rate() const override { return "<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + open_bracket(); }
+  std::string close_rate() const override { return close_bracket(); }
+  // What is broken over elements: each would be stretched alone.
+  std::string open_bracket() const override { return "<mo stretchy=\"false\">(</mo>"; }
+  std::string close_bracket() const override { return "<mo stretchy=\"false\">)</mo>"; }
 
  private:
   static std::string letter(const std::string& word) {
     if (word.back() == '~') {
       return "<mover accent=\"true\">" + letter(word.substr(0, word.size() - 1)) + "<mo>~</mo></mover>";
     }
-    if (word.starts_with("cal ")) return "<mi mathvariant=\"script\">" + word.substr(4) + "</mi>";
-    if (word.starts_with("bold ")) return "<mi mathvariant=\"bold\">" + word.substr(5) + "</mi>";
+    if (word.starts_with("cal ")) return "<mi>" + script(word.substr(4)) + "</mi>";
+    if (word.starts_with("bold ")) return "<mi>" + bold(word.substr(5)) + "</mi>";
     if (word.starts_with("det ")) {
       return row("<mi>det</mi>" + op("(") + "<msub><mi>" + word.substr(4) + "</mi>" + row("<mi>i</mi><mi>k</mi>") + "</msub>" + op(")"));
     }
     if (word == "...") return op("…");
     if (word == "metric a") return "<mi>a</mi>";
-    if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "<mi mathvariant=\"bold\">" + word + "</mi>";
+    if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "<mi>" + bold(word) + "</mi>";
     if (word == "ds^2") return "<mi>d</mi><msup><mi>s</mi><mn>2</mn></msup>";
     if (const std::string_view symbol = greek(word); !symbol.empty()) return "<mi>" + std::string(symbol) + "</mi>";
     return "<mi>" + word + "</mi>";
@@ -149,11 +225,11 @@ class MathmlStyle final : public Style {
     for (const std::string& part : parts) result += part;
     return result;
   }
-  static std::string arguments(const std::vector<Piece>& args) {
-    if (args.size() == 1 && args[0].binding >= Piece::atom) return args[0].text;
+  static std::string applied_to(const std::vector<Piece>& args) {
+    if (args.size() == 1 && args[0].binding >= Piece::atom) return invisible(apply_function, true) + args[0].text;
     std::string inside;
     for (std::size_t i = 0; i < args.size(); ++i) inside += (i > 0 ? op(",") : "") + args[i].text;
-    return row(op("(") + inside + op(")"));
+    return invisible(apply_function, false) + bracketed(inside);
   }
 };
 

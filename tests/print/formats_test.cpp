@@ -106,6 +106,21 @@ TEST_CASE("what `all` shows is there in three formats, and MathML is well-formed
   }
 }
 
+TEST_CASE("MathML: a gap stands between a function and its argument, and between factors that would run together") {
+  using print::Format;
+  const std::string gap = " lspace=\"0\" rspace=\"0.167em\"";
+  const std::string applied = "<mo" + gap + ">&#x2061;</mo>", times = "<mo" + gap + ">&#x2062;</mo>";
+  const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+  CHECK(has(expression("a*cos(x)", Format::mathml), "<mi>a</mi>" + times + "<mrow><mi>cos</mi>" + applied + "<mi>x</mi></mrow>"));
+  CHECK(has(expression("sin(x)*y", Format::mathml), times + "<mrow><mi>sin</mi>"));  // y sin x
+  // Nothing runs together where a bracket or two letters meet.
+  CHECK(has(expression("sin(x + y)", Format::mathml), "<mi>sin</mi><mo>&#x2061;</mo><mrow><mo stretchy=\"false\">("));
+  CHECK(has(expression("a*b", Format::mathml), "<mi>a</mi><mo>&#x2062;</mo><mi>b</mi>"));
+  // Signs are infix also where a browser begins a line, and a <math>, with them.
+  CHECK(has(expression("a - b", Format::mathml), "<mo form=\"infix\">−</mo>"));
+  CHECK(has(expression("-a", Format::mathml), "<mo form=\"prefix\">−</mo>"));
+}
+
 TEST_CASE("brackets stand where they are needed, and only there") {
   using print::Format;
   CHECK(expression("a/(b*c)", Format::text) == "a/(b c)");

@@ -35,13 +35,18 @@ constexpr double rows_of_a_page = 300;
 
 std::string text(const Json& value) { return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump(); }
 
-void add_model(Html& html, const model::Model& model, const Json& found) {
+// What a reader looks for first: the mechanism, moving.
+void add_head(Html& html, const model::Model& model, bool moving) {
   html.heading(1, model.title.empty() ? model.id : model.title);
   html.paragraph(model.id + ".toml", "quiet");
   if (!model.notes.empty()) html.paragraph(model.notes);
-  std::string source;
-  for (const std::string& line : model.lines) source += line + "\n";
-  html.preformatted("The model file", source);
+  if (!moving) return;
+  html.markup("<canvas id=\"scene\" width=\"1100\" height=\"800\"></canvas>\n<div class=\"bar\"><button id=\"play\">Play</button>"
+              "<input id=\"time\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"time\"><span id=\"clock\"></span></div>");
+  html.paragraph("Drag to turn the view.", "quiet");
+}
+
+void add_model(Html& html, const model::Model& model, const Json& found) {
   html.heading(2, "Coordinates and parameters");
   std::vector<std::vector<std::string>> coordinates, parameters, forces;
   for (const Json& c : found["coordinates"]) {
@@ -55,6 +60,9 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
     forces.push_back({text(f["name"]), text(f["conservative"]), text(f["potential"])});
   }
   if (!forces.empty()) html.table({"force", "conservative", "potential"}, forces);
+  std::string source;
+  for (const std::string& line : model.lines) source += line + "\n";
+  html.preformatted("The model file", source);
 }
 
 void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<derive::Conserved>& conserved) {
@@ -92,16 +100,13 @@ void add_certificate(Html& html, const verify::Certificate& certificate) {
   for (const verify::Comparison& c : certificate.comparisons) {
     rows.push_back({c.a, c.b, fmt::format("{:.1e}", c.max_relative_difference), fmt::format("{:.0e}", c.tolerance), c.shares_code ? "shares code" : "independent"});
   }
+  html.markup("<details><summary>The comparisons, one by one</summary>");
   html.table({"this", "against", "largest difference", "allowed", ""}, rows, {2, 3});
+  html.markup("</details>");
 }
 
-void add_run(Html& html, const Simulation& simulation, const Json& run, const RecordedMotion& motion, bool moving) {
+void add_run(Html& html, const Simulation& simulation, const Json& run, const RecordedMotion& motion) {
   html.heading(2, "The run: scene " + simulation.scene.name);
-  if (moving) {
-    html.markup("<canvas id=\"scene\" width=\"1100\" height=\"800\"></canvas>\n<div class=\"bar\"><button id=\"play\">Play</button>"
-                "<input id=\"time\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"time\"><span id=\"clock\"></span></div>");
-    html.paragraph("Drag to turn the view.", "quiet");
-  }
   html.markup(motion.plots(simulation.derived->model));
   html.table({"", ""}, {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
                         {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
@@ -152,10 +157,11 @@ int execute(const Options& options, const Common& common) {
   const Json run = RunReport{simulation, true}.json();
   const std::string animation = motion.animation(model);
   Html html;
-  add_model(html, model, examine(model));
+  add_head(html, model, !animation.empty());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved);
+  add_run(html, simulation, run, motion);
+  add_model(html, model, examine(model));
   add_certificate(html, simulation.certificate);
-  add_run(html, simulation, run, motion, !animation.empty());
   const std::filesystem::path path(file);
   write_results(path.has_parent_path() ? path.parent_path().string() : ".",
                 {{path.filename().string(), page(model.title.empty() ? model.id : model.title, html.text(), animation)}});
