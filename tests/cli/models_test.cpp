@@ -33,7 +33,7 @@ TEST_CASE("new: names that are no names are refused, and nothing is written") {
 
 TEST_CASE("MODEL is a path, with or without .toml, or a name in models/; a folder of that name is not in the way") {
   const Folder folder;
-  const std::string path = test::source_folder() + "/models/P2_planar_pendulum";
+  const std::string path = source_folder() + "/models/P2_planar_pendulum";
   for (const std::string& model : {std::string("P2_planar_pendulum"), std::string("P2_planar_pendulum.toml"), path, path + ".toml"}) {
     CHECK(document(folder, {"check", model})["model"] == "P2_planar_pendulum");
   }
