@@ -150,13 +150,13 @@ const std::vector<Words>& derive_calls() {
 
 const std::vector<Words>& run_calls() {
   static const std::vector<Words> all{
-      {"run", "--max-steps", "2000", "--out", "OUT", "--every", "0.1", "--json"},
-      {"run", "--max-steps", "2000", "--no-error-estimate", "--plot", "OUT", "--json"},
+      {"run", "--max-steps", "2000", "--out", "OUT.csv", "--every", "0.1", "--json"},
+      {"run", "--max-steps", "2000", "--no-error-estimate", "--plot", "OUT.svg", "--json"},
       {"run", "--max-steps", "500", "--solver", "radau5", "--no-error-estimate", "--json"},
       {"run", "--max-steps", "500", "--t-end", "1", "--solver", "ggl", "--json"},
       {"linearize", "--json"},
       {"equilibria", "--json"},
-      {"inverse", "--json"},
+      {"inverse", "--max-steps", "2000", "--out", "OUT.csv", "--json"},
       {"verify", "--points", "3", "--json"},
   };
   return all;
@@ -169,7 +169,7 @@ std::string try_command(const std::vector<Words>& calls, const std::string& text
   const std::string model = scratch / "model.toml";
   std::ofstream(model) << text;
   for (std::string& word : words) {
-    if (word == "OUT") word = scratch / "out";
+    if (word.starts_with("OUT")) word = scratch / ("out" + word.substr(3));
   }
   words.insert(words.begin() + 1, model);
   try {

@@ -12,7 +12,7 @@ namespace eomgen::fuzz {
 
 using Words = std::vector<std::string>;
 
-/// Calls without their model; a word "OUT" becomes a path in a folder that is thrown away.
+/// Calls without their model; a word that begins with "OUT" becomes a path in a folder that is thrown away.
 const std::vector<Words>& derive_calls();  // classify, show, verify, emit
 const std::vector<Words>& run_calls();     // run for some steps, linearise, find equilibria, invert
 

@@ -118,7 +118,7 @@ std::string other_token(const std::string& text, const std::string& source, Rand
 }
 
 std::string extreme_number(const std::string& text, Random& random) {
-  static constexpr std::array numbers{"0", "1", "2", "3", "0.5", "1e-9", "1e9", "1e-300", "1e300", "0.1", "1/3", "7", "64", "1000000007", "pi", "-1"};
+  static constexpr std::array numbers{"0", "1", "2", "3", "0.5", "-1", "0.1", "0.3", "1/3", "7", "64", "pi", "-0.5", "10", "1e-3", "1e4", "1e-9", "1e9", "1e300"};
   std::vector<Token> all = tokens(text);
   std::erase_if(all, [](const Token& token) { return token.kind != Kind::number; });
   return all.empty() ? text : exchanged(text, any(all, random), any(numbers, random));

@@ -32,6 +32,7 @@ struct Options {
   std::string model, scene = "default", out;
   std::vector<std::string> constraints, set;
   std::optional<double> t_end, every, rtol, atol;
+  std::size_t max_steps = 0;
 };
 
 /// What the forces are asked of: constraints by label; those that read q = f(t) if none are named.
@@ -215,6 +216,7 @@ void along_a_run(const Options& options, const run::Overrides& overrides, std::u
   request.scene = options.scene;
   request.overrides = overrides;
   request.estimate = false;
+  request.max_steps = options.max_steps;
   request.seed = seed;
   request.prepare = [&](Derived& derived) {
     const std::vector<std::string> labels = chosen_constraints(derived.mechanics, options.constraints);
@@ -304,6 +306,7 @@ Execute declare_inverse(CLI::App& app) {
   app.add_option("--every", options->every, "interval of the rows")->check(positive_number());
   app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")->check(number_not_negative());
   app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")->check(number_not_negative());
+  app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")->check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--out", options->out, "the CSV file; without it MODEL_inverse.csv in this folder");
   return [options](const Common& common) { return execute(*options, common); };
 }
