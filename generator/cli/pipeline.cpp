@@ -209,7 +209,7 @@ std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approac
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::RouteEntry& route : derive::routes()) {
-      if (auto system = route.derive(derived->mechanics, a)) derived->candidates.push_back(std::move(*system));
+      if (auto system = derive::derive_where_worth(route, derived->mechanics, a)) derived->candidates.push_back(std::move(*system));
     }
   }
   derived->conserved = derive::conserved_quantities(derived->mechanics, derived->candidates);
@@ -231,7 +231,10 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   Stopwatch watch;
   verify::Subjects subjects;
   subjects.systems = verify::all_routes(derived.mechanics);
+  constexpr std::size_t large = 16;  // coordinates
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+    // With nothing to eliminate the approaches are one: a large system is not looked at twice.
+    if (approach == system::Approach::one && derived.mechanics.fixed.empty() && derived.mechanics.q.size() > large) continue;
     const reading::ReadingForm form = reading::derive_reading(derived.mechanics, approach);
     // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
     if (form.by_parts) continue;
@@ -293,8 +296,8 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
   for (const model::Event& event : model.events) {
     context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
   }
-  const reading::ReadingForm form = reading::derive_reading(derived.mechanics, system::Approach::two);
-  for (const print::Item& item : print::render(derived.mechanics, form, {"singular"})) context.singular.push_back(item.text);
+  const reading::ReadingForm none;  // singular sets need no equations
+  for (const print::Item& item : print::render(derived.mechanics, none, {"singular"})) context.singular.push_back(item.text);
   context.start_time = scene.t0;
   for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
   for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);

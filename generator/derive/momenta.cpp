@@ -99,29 +99,35 @@ class Search {
     }
   }
 
-  std::optional<Conserved> component(bool angular, std::size_t k) {
+  /// `repeats`: whether this expression is of no interest, which is far easier to see than that it is conserved.
+  template <class Repeats>
+  std::optional<Conserved> component(bool angular, std::size_t k, const Repeats& repeats) {
     const std::vector<Ref> d = displacement(angular, k);
     if (mechanics::vanishes(dag_, d) || !may_be_conserved(d)) return std::nullopt;
-    const Certainty certainty = vanishing(dag_, conditions(d));
-    if (certainty == Certainty::no) return std::nullopt;
     Conserved result;
     const std::string along = "E" + std::to_string(k + 1);
     result.name = (angular ? "angular_momentum." : "linear_momentum.") + along;
     result.title = (angular ? "angular momentum about the origin along " : "linear momentum along ") + along;
-    result.certainty = certainty;
-    Ref expression = dag_.zero(), magnitude = dag_.zero();
+    Ref expression = dag_.zero();
     for (std::size_t p = 0; p < r_.size(); ++p) {
       const Vec3 of{d[3 * p], d[3 * p + 1], d[3 * p + 2]};
       expression = dag_.add(expression, dag_.mul(mass_[p], dot(dag_, of, v_[p])));
-      Ref squares = dot(dag_, v_[p], v_[p]);
-      if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
-      magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
     }
     for (std::size_t b = 0; b < H_.size(); ++b) {
       const std::size_t row = 3 * (r_.size() + b);
       expression = dag_.add(expression, dot(dag_, Vec3{d[row], d[row + 1], d[row + 2]}, H_[b]));
-      if (angular) magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
     }
+    if (repeats(expression)) return std::nullopt;
+    const Certainty certainty = vanishing(dag_, conditions(d));
+    if (certainty == Certainty::no) return std::nullopt;
+    result.certainty = certainty;
+    Ref magnitude = dag_.zero();
+    for (std::size_t p = 0; p < r_.size(); ++p) {
+      Ref squares = dot(dag_, v_[p], v_[p]);
+      if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
+      magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
+    }
+    for (std::size_t b = 0; b < H_.size() && angular; ++b) magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
     result.expression = expression;
     result.magnitude = magnitude;
     return result;
@@ -223,8 +229,9 @@ std::vector<Conserved> conserved_momenta(Mechanics& m, const system::EquationSys
   Search search(m, s);
   for (const bool angular : {false, true}) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<Conserved> c = search.component(angular, k);
-      if (!c || mechanics::vanishes(*m.dag, {c->expression}) || repeats(*m.dag, all, c->expression, *m.dag)) continue;
+      const std::optional<Conserved> c = search.component(
+          angular, k, [&](Ref expression) { return mechanics::vanishes(*m.dag, {expression}) || repeats(*m.dag, all, expression, *m.dag); });
+      if (!c) continue;
       found.push_back(*c);
       all.push_back(*c);
     }

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/routes.hpp"
 
+#include <algorithm>
+#include <string_view>
+
 #include "derive/articulated.hpp"
 #include "derive/christoffel.hpp"
 #include "derive/expanded.hpp"
@@ -26,5 +29,33 @@ constexpr RouteEntry entries[] = {
 }  // namespace
 
 std::span<const RouteEntry> routes() { return entries; }
+
+namespace {
+
+/// Whether most of the mass matrix is filled, as along a chain; branches near the root leave it empty.
+bool is_full(const mechanics::Mechanics& m, const system::EquationSystem& s) {
+  constexpr std::size_t share = 4;
+  const auto filled = std::count_if(s.M.begin(), s.M.end(), [&](symbolic::Ref r) { return !m.dag->is_zero(r); });
+  return static_cast<std::size_t>(filled) * share > s.M.size();
+}
+
+bool is_for_trees(mechanics::Mechanics& m, system::Approach approach) {
+  if (const auto s = articulated(m, approach)) return is_full(m, *s);
+  const auto s = recursive(m, approach);
+  return s && is_full(m, *s);
+}
+
+}  // namespace
+
+std::optional<system::EquationSystem> derive_where_worth(const RouteEntry& route, mechanics::Mechanics& m, system::Approach approach) {
+  constexpr std::size_t large = 16, very_large = 32;  // coordinates
+  const std::string_view name = route.name;
+  if ((name == "lagrange" || name == "jacobian") && m.q.size() > large && is_for_trees(m, approach)) return std::nullopt;
+  if (name == "recursive" && m.q.size() > very_large) {
+    const auto linear = articulated(m, approach);
+    if (linear && is_full(m, *linear)) return std::nullopt;
+  }
+  return route.derive(m, approach);
+}
 
 }  // namespace eomgen::derive

@@ -21,4 +21,8 @@ struct RouteEntry {
 
 std::span<const RouteEntry> routes();
 
+/// The same, and nothing where a tree is so large that another route is cheaper by far: full matrices are left to small systems
+/// (docs/theory.md, "Routes").
+std::optional<system::EquationSystem> derive_where_worth(const RouteEntry& route, mechanics::Mechanics& mechanics, system::Approach approach);
+
 }  // namespace eomgen::derive

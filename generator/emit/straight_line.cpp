@@ -25,6 +25,9 @@ using Expression = Expressions::Expression;
 // Shorter values that are used once are written where they are used.
 constexpr std::size_t longest_inline = 64;
 
+// Instructions of a function that stays whole, and of a part of a longer one.
+constexpr std::size_t longest_function = 3000, longest_part = 1000;
+
 // Of a function that has been told that its angles are near, and found that they are not.
 constexpr int code_too_far = -1;
 
@@ -38,14 +41,17 @@ class Printer {
     const bool packs = std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.pack > 0; });
     text_.near_first = packs && dialect_.near_first && is_rhs();
     declare_names();
+    divide();
     count_uses();
     test_ready(-1);
     for (std::size_t i = 0; i < function_.code.size(); ++i) {
+      if (i > 0 && part_[i] != part_[i - 1]) close_part(part_[i - 1]);
       statement(i);
       test_ready(static_cast<std::ptrdiff_t>(i));
     }
     write_results();
-    text_.body = unused_arguments() + using_declarations() + loads() + body_;
+    if (leaves_.size() == 1) text_.body = unused_arguments() + using_declarations() + loads(leaves_[0]) + body_;
+    else close_part(leaves_.size() - 1);
     return std::move(text_);
   }
 
@@ -61,12 +67,45 @@ class Printer {
     }
   }
 
-  void use(const Operand& operand, bool repeated) {
+  /// Which part each instruction is in; sines and cosines that are computed together stay so.
+  void divide() {
+    const auto& code = function_.code;
+    part_.assign(code.size(), 0);
+    std::size_t parts = 1;
+    const bool long_one = code.size() > longest_function && function_.name != "taylor_next";
+    for (std::size_t i = 0, since = 0; long_one && i < code.size(); ++i, ++since) {
+      const bool together = i > 0 && code[i].pack != 0 && code[i].pack == code[i - 1].pack;
+      if (since >= longest_part && !together) {
+        ++parts;
+        since = 0;
+      }
+      part_[i] = parts - 1;
+    }
+    leaves_.resize(parts);
+    kept_.assign(code.size(), false);
+    if (parts == 1) return;
+    text_.work = table_.declare("work");
+    text_.code = table_.declare("code");
+  }
+  void close_part(std::size_t part) {
+    text_.parts.push_back(all_arguments() + using_declarations() + loads(leaves_[part]) + body_ + (part + 1 < leaves_.size() ? "  return 0;\n" : ""));
+    body_.clear();
+    printed_section_.clear();
+  }
+
+  void use(const Operand& operand, bool repeated, std::size_t part) {
     if (operand.slot == Slot::value) {
       uses_[operand.index] += repeated ? 2 : 1;
+      if (part != part_[operand.index]) kept_[operand.index] = true;
     } else {
-      leaves_.insert({operand.slot, operand.index});
+      leaves_[part].insert({operand.slot, operand.index});
     }
+  }
+  std::size_t part_of(const program::PivotTest& test) const {
+    std::size_t part = 0;
+    for (const Operand* operand : {&test.pivot, &test.scale})
+      if (operand->slot == Slot::value) part = std::max(part, part_[operand->index]);
+    return part;
   }
   void count_uses() {
     uses_.assign(function_.code.size(), 0);
@@ -75,12 +114,12 @@ class Printer {
       const bool same_angle = instruction.pack != 0 && i > 0 && function_.code[i - 1].pack == instruction.pack &&
                               function_.code[i - 1].lane == instruction.lane;
       if (same_angle) continue;  // the pack names it once
-      for (const Operand& operand : instruction.operands) use(operand, repeats_operands(instruction.op));
+      for (const Operand& operand : instruction.operands) use(operand, repeats_operands(instruction.op), part_[i]);
     }
     for (const auto& [name, entries] : function_.results) {
-      for (const Operand& operand : entries) use(operand, false);
+      for (const Operand& operand : entries) use(operand, false, leaves_.size() - 1);
     }
-    for (const auto& test : function_.pivots) use(test.pivot, true), use(test.scale, true);
+    for (const auto& test : function_.pivots) use(test.pivot, true, part_of(test)), use(test.scale, true, part_of(test));
   }
 
   /// "{3}_ddot" -> "phi_ddot".
@@ -118,6 +157,13 @@ class Printer {
     if (!instruction.section.empty()) section_ = instruction.section;
     if (instruction.pack > text_.packs) open_pack(index);
     const Expression e = instruction.pack == 0 ? expressions_.of(instruction) : from_pack(instruction);
+    if (kept_[index]) {
+      const std::string place = fmt::format("{}[{}]", text_.work, kept_count_++);
+      text_.work_size = kept_count_;
+      line(fmt::format("{} = {};", place, e.text));
+      expressions_.set(index, {place, Expression::atom});
+      return;
+    }
     std::string name = suggested(instruction.name);
     const bool trig = instruction.op == Op::sin || instruction.op == Op::cos;
     if (name.empty() && trig) name = trig_name(instruction);
@@ -248,7 +294,13 @@ class Printer {
 
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
   bool is_used(Slot slot) const {
-    return std::any_of(leaves_.begin(), leaves_.end(), [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
+    return std::any_of(leaves_[0].begin(), leaves_[0].end(), [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
+  }
+  /// Of a part, which has all arguments of the function whether it needs them or not.
+  std::string all_arguments() const {
+    std::string result = text_.near_first ? fmt::format("  (void){};", guarded_) : "";
+    for (const Argument& argument : arguments(function_.name, text_, names_)) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", argument.name);
+    return result + fmt::format(" (void){};\n", text_.work);
   }
   /// The ABI gives these two functions no inputs: they see the defaults.
   bool takes_inputs() const { return function_.name != "mass" && function_.name != "constraints"; }
@@ -272,11 +324,12 @@ class Printer {
     return result.empty() ? "" : wrapped(result, "  ") + "\n";
   }
 
-  std::string loads() const {
+  using Leaves = std::set<std::pair<Slot, std::uint32_t>>;
+  std::string loads(const Leaves& leaves) const {
     std::string result;
     const auto load = [&](Slot slot, auto&& value) {
       std::string list;
-      for (const auto& [leaf_slot, index] : leaves_) {
+      for (const auto& [leaf_slot, index] : leaves) {
         if (leaf_slot != slot) continue;
         list += fmt::format("{} {} = {}", list.empty() ? fmt::format("  const {}", dialect_.real) : ",",
                             expressions_.size_of({slot, index, false}).text, value(index));
@@ -313,12 +366,25 @@ class Printer {
   NameTable table_;
   FunctionText text_;
   std::vector<std::uint32_t> uses_;
-  std::set<std::pair<Slot, std::uint32_t>> leaves_;
+  std::vector<std::size_t> part_;  // of each instruction
+  std::vector<bool> kept_;         // values that a later part needs
+  std::size_t kept_count_ = 0;
+  std::vector<Leaves> leaves_;     // of each part
   std::string body_, section_, printed_section_, sine_, cosine_, guarded_;
   std::size_t temporaries_ = 0;
 };
 
 }  // namespace
+
+std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments, const std::string& real) {
+  std::string result = fmt::format("  {} {}[{}];\n", real, text.work, text.work_size);
+  for (std::size_t k = 1; k <= text.parts.size(); ++k) {
+    const std::string call = fmt::format("{}_part{}({}, {})", name, k, arguments, text.work);
+    if (k == text.parts.size()) result += fmt::format("  return {};\n", call);
+    else result += fmt::format("  {}{} = {};\n  if ({} != 0) return {};\n", k == 1 ? "int " : "", text.code, call, text.code, text.code);
+  }
+  return result;
+}
 
 FunctionText print_function(const program::Function& function, const ModelNames& names, const EmissionContext& context,
                             const Dialect& dialect) {

@@ -43,7 +43,15 @@ struct FunctionText {
   std::uint32_t packs = 0;           // of sines and cosines that are computed together
   bool near_first = false;           // it takes a first argument `guarded`; where that is 0 it may return -1: too far
   std::string guarded;
+  /// Of a long function: bodies of the parts that it calls one after the other, each with its own arguments and an array that keeps
+  /// what later parts need; a compiler's time grows faster than the length of a function. `body` is empty then.
+  std::vector<std::string> parts;
+  std::string work, code;      // names of the array and of what a part returns
+  std::size_t work_size = 1;
 };
+
+/// "NAME_part2(t, x, .., work)" for every part, and what returns where one of them does not return 0.
+std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments, const std::string& real);
 
 /// `checks_finite`: code 5 where an entry of the results' lower half is not finite.
 FunctionText print_function(const program::Function& function, const ModelNames& names, const EmissionContext& context,

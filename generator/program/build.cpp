@@ -22,7 +22,8 @@ struct Candidate {
   std::size_t index = 0;  // into the candidates
   std::unique_ptr<AbiFunctions> functions;
   WantedFunction rhs;
-  std::vector<Polynomials> starts;  // as derived; multiplied out
+  Polynomials raw;                  // as it comes out of the derivation
+  std::vector<Polynomials> starts;  // of what is cheap enough: cleared up; multiplied out
   Polynomials best;
   Operations operations;  // raw, then optimised
   std::size_t raw_cost = 0;
@@ -43,10 +44,13 @@ Polynomials optimised(const std::vector<Polynomials>& graphs) {
   }
 }
 
-/// The function as it was derived, and with small products multiplied out.
-std::vector<Polynomials> starts(const AbiFunctions& functions, const WantedFunction& wanted) {
+Polynomials as_derived(const AbiFunctions& functions, const WantedFunction& wanted) {
   const system::EquationSystem& system = functions.system();
-  const Polynomials graph = from_dag(*system.dag, wanted, system.free, system.integrals);
+  return from_dag(*system.dag, wanted, system.free, system.integrals);
+}
+
+/// The function as it was derived, and with small products multiplied out.
+std::vector<Polynomials> starts(const Polynomials& graph) {
   constexpr std::size_t worth_expanding = 3000;  // nodes; larger systems gain nothing by it
   std::vector<Polynomials> result = {tested(flatten(graph, false))};
   if (graph.size() < worth_expanding) result.push_back(tested(flatten(expand(graph), false)));
@@ -81,13 +85,14 @@ std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>&
   std::vector<Candidate> result;
   for (std::size_t i = 0; i < systems.size(); ++i) {
     for (const Ties ties : {Ties::ascending, Ties::descending}) {
-      if (ties == Ties::descending && systems[i].free.size() + systems[i].active.size() < 2) continue;
+      // Where the route has solved its equations itself there is nothing to order.
+      if (ties == Ties::descending && (systems[i].solution || systems[i].free.size() + systems[i].active.size() < 2)) continue;
       Candidate candidate;
       candidate.index = i;
       candidate.functions = std::make_unique<AbiFunctions>(systems[i], request.fix, ties, hold);
       candidate.rhs = candidate.functions->rhs();
-      candidate.starts = starts(*candidate.functions, candidate.rhs);
-      candidate.best = candidate.starts[0];
+      candidate.raw = as_derived(*candidate.functions, candidate.rhs);
+      candidate.best = tested(flatten(candidate.raw, false));
       candidate.operations = count_operations(candidate.best);
       candidate.raw_cost = candidate.operations.cost();
       result.push_back(std::move(candidate));
@@ -104,6 +109,7 @@ std::size_t choose(std::vector<Candidate>& candidates) {
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     Candidate& candidate = candidates[i];
     if (static_cast<double>(candidate.raw_cost) > worth_optimising * static_cast<double>(cheapest)) continue;
+    candidate.starts = starts(candidate.raw);
     candidate.best = optimised(candidate.starts);
     candidate.operations = count_operations(candidate.best);
     if (!best || candidate.operations.cost() < candidates[*best].operations.cost()) best = i;
@@ -181,7 +187,7 @@ Program build_program(std::vector<system::EquationSystem>& systems, const Reques
   program.holonomic = system.holonomic;
   program.functions.push_back(finished(chosen.best, chosen.rhs));
   const auto add = [&](const WantedFunction& wanted) {
-    const std::vector<Polynomials> graphs = starts(*chosen.functions, wanted);
+    const std::vector<Polynomials> graphs = starts(as_derived(*chosen.functions, wanted));
     program.functions.push_back(finished(request.optimise ? optimised(graphs) : graphs[0], wanted));
   };
   for (const std::string& name : request.with) {

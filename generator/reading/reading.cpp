@@ -2,6 +2,8 @@
 #include "reading/reading.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <unordered_map>
 
 #include "mechanics/dependent.hpp"
 #include "reading/approaches.hpp"
@@ -67,6 +69,22 @@ void leave_by_parts(const Mechanics& m, ReadingForm& form) {
   }
 }
 
+/// At most so many terms has what is written out; sines that combine make fewer of them.
+double most_terms(const symbolic::Dag& dag, symbolic::Ref expression) {
+  std::unordered_map<std::uint32_t, double> count;
+  for (const symbolic::Ref r : dag.reachable({expression})) {
+    const symbolic::Node& node = dag[r];
+    const auto of = [&](std::size_t i) { return count.at(node.args[i].id); };
+    double terms = 1;
+    if (node.op == symbolic::Op::add || node.op == symbolic::Op::sub) terms = of(0) + of(1);
+    if (node.op == symbolic::Op::mul) terms = of(0) * of(1);
+    if (node.op == symbolic::Op::neg || node.op == symbolic::Op::div) terms = of(0);
+    if (node.op == symbolic::Op::power) terms = std::pow(of(0), node.payload);
+    count.emplace(r.id, terms);
+  }
+  return count.at(expression.id);
+}
+
 }  // namespace
 
 ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
@@ -74,13 +92,17 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
   ReadingForm form;
   form.approach = approach;
   Bridge bridge(m);
+  // What would be too long is not begun: along chains of relative rotations it grows exponentially.
+  constexpr double longest = 12000, longest_of_spins = 200000;
+  const double terms = m.spins.empty() ? 0 : most_terms(*m.dag, m.kinetic);
   try {
+    if (terms > longest) throw TermBudget();
     if (approach == system::Approach::one) approach_one(m, bridge, form);
     else approach_two(m, bridge, form);
   } catch (const TermBudget&) {
     leave_by_parts(m, form);
   }
-  add_spins(m, bridge, form);
+  if (terms <= longest_of_spins) add_spins(m, bridge, form);
   add_constraints(m, bridge, form);
   return form;
 }

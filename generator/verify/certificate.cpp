@@ -50,10 +50,14 @@ std::string Certificate::summary() const {
 }
 
 std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics) {
+  constexpr std::size_t large = 16;  // coordinates
   std::vector<system::EquationSystem> systems;
   for (const derive::RouteEntry& route : derive::routes())
-    for (const system::Approach approach : {system::Approach::one, system::Approach::two})
-      if (auto system = route.derive(mechanics, approach)) systems.push_back(std::move(*system));
+    for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+      // With nothing to eliminate the approaches are one: a large system is not looked at twice.
+      if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
+      if (auto system = derive::derive_where_worth(route, mechanics, approach)) systems.push_back(std::move(*system));
+    }
   return systems;
 }
 

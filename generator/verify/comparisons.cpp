@@ -192,15 +192,21 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
 double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion, const Judge& judge) {
   Lookup sized = at;
   for (std::size_t i = 0; i < sized.state.qddot.size(); ++i) sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
-  double largest = 0;
+  std::vector<Ref> roots;  // of each residual: itself, then its terms
+  std::vector<std::size_t> first;
   for (const Ref residual : form.residuals) {
-    std::vector<Ref> roots{residual};
+    first.push_back(roots.size());
+    roots.push_back(residual);
     top_level_terms(dag, residual, roots);
-    const std::vector<Real> value = symbolic::evaluate(dag, roots, at, judge.digits());
-    const std::vector<Real> size = symbolic::evaluate(dag, roots, sized, judge.digits());
+  }
+  first.push_back(roots.size());
+  const std::vector<Real> value = symbolic::evaluate(dag, roots, at, judge.digits());
+  const std::vector<Real> size = symbolic::evaluate(dag, roots, sized, judge.digits());
+  double largest = 0;
+  for (std::size_t r = 0; r + 1 < first.size(); ++r) {
     Real scale = 0;
-    for (std::size_t i = 1; i < value.size(); ++i) scale = scale + cln::max(cln::abs(value[i]), cln::abs(size[i]));
-    largest = std::max(largest, relative(value[0], scale));
+    for (std::size_t i = first[r] + 1; i < first[r + 1]; ++i) scale = scale + cln::max(cln::abs(value[i]), cln::abs(size[i]));
+    largest = std::max(largest, relative(value[first[r]], scale));
   }
   return largest;
 }

@@ -3,9 +3,11 @@
 
 #include <cln/real.h>
 
+#include <algorithm>
 #include <set>
 
 #include "verify/plain_forces.hpp"
+#include "verify/standing.hpp"
 #include "verify/uses.hpp"
 
 namespace eomgen::verify {
@@ -15,9 +17,6 @@ namespace {
 // Highest derivative of a function of time that an expression can ask for: a residual needs the second, an expression
 // such as ddt(d_ddot) two more.
 constexpr std::size_t function_orders = 4;
-
-/// Size of a vector, as the sum of its components' sizes.
-Real length(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()); }
 
 /// All mixed slopes of `jet` on the levels 1 .. top: the top-th time derivative.
 Jet nested_slope(Jet jet, unsigned top) {
@@ -190,108 +189,44 @@ Real Judge::constant(model::NodeId expression, const std::vector<Real>& paramete
   return Interpreter(model_, std::move(environment), precision_).scalar(expression).real();
 }
 
+Judge::~Judge() = default;
+
+// Whether two states differ in accelerations and constraint forces at most.
 namespace {
 
-/// sum over particles of d(m v)/dt . dr/dq_i. In curvilinear coordinates d(m v)/dt is itself a sum that may cancel
-/// (of a free particle, to nothing), so that the size of a term is that of its factors:
-/// |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all the rest|).
-void add_inertia(const model::Model& model, const State& state, Interpreter& now, std::vector<Residual>& sums) {
-  Interpreter& by_q = now.by_coordinates(false);
-  Interpreter& later = now.along_time();
-  Interpreter& twice = later.along_time();
-  const std::size_t n = sums.size();
-  for (const Mass& point : masses(model)) {
-    const Vector v = slope(twice.place(point.place), twice.level(), 0);  // v + a eps
-    const Jet mass = later.scalar(point.mass);
-    const Vector rate = slope(mass * v, later.level(), 0);
-    const Vector r = by_q.place(point.place);
-    Vector rest = rate;
-    Real size = 0;
-    std::vector<Vector> tangent;
-    for (std::size_t i = 0; i < n; ++i) {
-      tangent.push_back(slope(r, by_q.level(), i));
-      const Vector part = mass.value(later.level()) * Jet(state.qddot[i]) * tangent.back();
-      rest = rest - part;
-      size = size + length(part);
-    }
-    size = size + length(rest);
-    for (std::size_t i = 0; i < n; ++i) sums[i].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
-  }
+bool same(const std::vector<Real>& a, const std::vector<Real>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Real& x, const Real& y) { return cln::equal(x, y); });
 }
 
-/// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as of particles.
-void add_rotations(const model::Model& model, const State& state, Interpreter& now, std::vector<Residual>& sums) {
-  Interpreter& later = now.along_time();
-  const std::size_t n = sums.size();
-  for (const model::Body& body : model.bodies) {
-    const Vector H = inertia_times(body, later, later.angular_velocity(body.frame));
-    const Vector rate = slope(H, later.level(), 0);
-    Vector rest = rate;
-    Real size = 0;
-    std::vector<Vector> turn;
-    for (std::size_t i = 0; i < n; ++i) {
-      turn.push_back(now.virtual_rotation(body.frame, i));
-      const Vector part = Jet(state.qddot[i]) * inertia_times(body, now, turn.back());
-      rest = rest - part;
-      size = size + length(part);
-    }
-    // The axes turn: what cancels in dH/dt is of the size of w x H, also where nothing is left of it.
-    size = size + length(rest) + length(H) * length(now.angular_velocity(body.frame));
-    for (std::size_t i = 0; i < n; ++i) sums[i].add(dot(rate, turn[i]).real(), size * length(turn[i]));
-  }
-}
-
-/// d(dT/dqdot_i)/dt along the path.
-std::vector<Real> momentum_rates(const model::Model& model, Interpreter& now, std::size_t n) {
-  Interpreter& later = now.along_time();
-  Interpreter& varied = later.by_coordinates(true);
-  const Jet T = varied.scalar(model.energy.kinetic);
-  std::vector<Real> rates;
-  for (std::size_t i = 0; i < n; ++i) rates.push_back(T.slope(varied.level(), n + i).slope(later.level(), 0).real());
-  return rates;
-}
-
-/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model gives as such. The size of the first term is
-/// that of its part in qddot and that of the rest.
-void add_energies(const model::Model& model, Interpreter& now, Interpreter& unaccelerated, std::vector<Residual>& sums) {
-  const std::size_t n = sums.size();
-  if (model.energy.kinetic != model::no_node) {
-    const std::vector<Real> rate = momentum_rates(model, now, n), rest = momentum_rates(model, unaccelerated, n);
-    Interpreter& by_q = now.by_coordinates(false);
-    const Jet T = by_q.scalar(model.energy.kinetic);
-    for (std::size_t i = 0; i < n; ++i) {
-      sums[i].add(rate[i], cln::abs(rate[i] - rest[i]) + cln::abs(rest[i]));
-      sums[i].add(-T.slope(by_q.level(), i).real());
-    }
-  }
-  if (model.energy.potential != model::no_node) {
-    Interpreter& by_q = now.by_coordinates(false);
-    const Jet U = by_q.scalar(model.energy.potential);
-    for (std::size_t i = 0; i < n; ++i) sums[i].add(U.slope(by_q.level(), i).real());
-  }
+bool same_place(const State& a, const State& b) {
+  return cln::equal(a.t, b.t) && same(a.q, b.q) && same(a.qdot, b.qdot) && same(a.parameters, b.parameters) && same(a.inputs, b.inputs) &&
+         same(a.integrals, b.integrals);
 }
 
 }  // namespace
 
+Standing& Judge::standing(const State& state) const {
+  if (!standing_ || !same_place(standing_->state, state)) standing_ = std::make_unique<Standing>(*this, state);
+  return *standing_;
+}
+
 std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Real>& lambda, Margin* margin) const {
-  Interpreter now = interpreter(state, margin);
-  std::vector<Residual> sums(state.q.size());
-  State coasting = state;
-  coasting.qddot.assign(state.q.size(), Real(0));
-  Interpreter unaccelerated = interpreter(coasting);
-  add_inertia(model_, state, now, sums);
-  add_rotations(model_, state, now, sums);
-  add_energies(model_, now, unaccelerated, sums);
-  subtract_forces(model_, precision_, now, sums);
-  subtract_friction(state, now, sums);
+  Standing& at = standing(state);
+  std::vector<Residual> sums = at.inertia().at(state.qddot);
+  for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.rest()[i].value, at.rest()[i].scale);
+  subtract_friction(state, at.now(), sums);
   // A joint may keep a body from turning that nothing turns: then every term of an equation is rounding, which is 0 beside the others.
   Real least = 0;
   if (!model_.joints.empty())
     for (const Real& force : lambda) least = cln::max(least, cln::abs(force) / 10000000000u);
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    const std::vector<Real> f = row(k, now, sums.size());
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(-lambda[k] * f[i], cln::abs(lambda[k] * f[i]) + least * cln::abs(f[i]));
+    const std::vector<Real>& f = at.row(k);
+    for (std::size_t i = 0; i < sums.size(); ++i) {
+      if (cln::zerop(f[i])) continue;
+      sums[i].add(-lambda[k] * f[i], cln::abs(lambda[k] * f[i]) + least * cln::abs(f[i]));
+    }
   }
+  if (margin != nullptr) margin->kink = std::min(margin->kink, at.margin().kink);
   return sums;
 }
 
@@ -332,37 +267,23 @@ void Judge::subtract_contact(const model::Touch& touch, const std::array<Real, 3
   if (touch.other_frame > 0) act(touch.other_place, touch.other_frame, touch.other_arm, -1);
 }
 
-std::vector<Real> Judge::row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const {
-  const bool positions = holonomic_[constraint];
-  Interpreter& varied = now.by_coordinates(!positions);
-  const Jet value = varied.scalar(psi_[constraint]);
-  std::vector<Real> result;
-  for (std::size_t i = 0; i < coordinates; ++i)
-    result.push_back(value.slope(varied.level(), positions ? i : coordinates + i).real());
-  return result;
-}
-
 ConstraintValues Judge::constraint_values(const State& state, Margin* margin) const {
-  Interpreter now = interpreter(state, margin);
-  Interpreter& later = now.along_time();
+  Standing& at = standing(state);
   ConstraintValues values;
   for (std::size_t k = 0; k < psi_.size(); ++k) {
-    const Jet rate = later.scalar(psi_[k]);
-    if (holonomic_[k]) {
-      values.psi.push_back(rate.real());
-      values.psi_dot.push_back(rate.slope(later.level(), 0).real());
-      if (!state.qddot.empty()) {
-        Interpreter& twice = later.along_time();
-        const Jet both = twice.scalar(psi_[k]).slope(twice.level(), 0);
-        values.psi_ddot.push_back(both.slope(later.level(), 0).real());
-      }
-    } else {
-      values.psi.push_back(0);
-      values.psi_dot.push_back(rate.real());
-      if (!state.qddot.empty()) values.psi_ddot.push_back(rate.slope(later.level(), 0).real());
+    const Standing::Along& along = at.along(k);
+    values.psi.push_back(along.psi);
+    values.psi_dot.push_back(along.rate);
+    values.gradient.push_back(at.row(k));
+    if (state.qddot.empty()) continue;
+    Real second = at.second(k);  // with no accelerations
+    for (std::size_t i = 0; i < state.qddot.size(); ++i) {
+      const Real& slope = values.gradient.back()[i];
+      if (!cln::zerop(slope)) second = second + slope * state.qddot[i];
     }
-    values.gradient.push_back(row(k, now, state.q.size()));
+    values.psi_ddot.push_back(second);
   }
+  if (margin != nullptr) margin->kink = std::min(margin->kink, at.margin().kink);
   return values;
 }
 

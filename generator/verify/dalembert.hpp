@@ -12,6 +12,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -63,9 +64,12 @@ struct EnergyValues {
   Real rate_scale = 0;
 };
 
+class Standing;
+
 class Judge {
  public:
   Judge(const model::Model& model, int digits);
+  ~Judge();
 
   const model::Model& model() const { return model_; }
   const Precision& precision() const { return precision_; }
@@ -102,7 +106,8 @@ class Judge {
   Real integral_value(std::uint32_t integral, const State& state) const;
   void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;
   void subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now, std::vector<Residual>& sums) const;
-  std::vector<Real> row(std::size_t constraint, Interpreter& now, std::size_t coordinates) const;
+  /// What does not depend on accelerations and constraint forces, kept for the last state that was asked about.
+  Standing& standing(const State& state) const;
 
   const model::Model& model_;
   int digits_;
@@ -111,6 +116,7 @@ class Judge {
   std::vector<bool> holonomic_;
   std::set<std::size_t> implied_;
   std::optional<GaussLegendre> quadrature_;  // where the model has integrals
+  mutable std::unique_ptr<Standing> standing_;
 };
 
 }  // namespace eomgen::verify

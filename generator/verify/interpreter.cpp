@@ -39,7 +39,7 @@ Interpreter& Interpreter::along_time() {
   if (later_) return *later_;
   Environment later = environment_;
   const unsigned level = ++later.level;
-  later.t = Jet::variable(level, later.t, 0, 1);
+  later.t = Jet::variable(level, later.t, 0);
   for (auto* group : {&later.coordinates, &later.functions, &later.integrals})
     for (std::vector<Jet>& orders : *group) {
       for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
@@ -57,11 +57,23 @@ Interpreter& Interpreter::by_coordinates(bool rates) {
   const std::size_t n = seeded.coordinates.size();
   for (std::size_t i = 0; i < n; ++i) {
     std::vector<Jet>& orders = seeded.coordinates[i];
-    orders[0] = Jet::variable(level, orders[0], i, rates ? 2 * n : n);
-    if (rates) orders[1] = Jet::variable(level, orders[1], n + i, 2 * n);
+    orders[0] = Jet::variable(level, orders[0], i);
+    if (rates) orders[1] = Jet::variable(level, orders[1], n + i);
   }
   kept = child(std::move(seeded));
   return *kept;
+}
+
+Interpreter& Interpreter::by_rates() {
+  if (by_rates_) return *by_rates_;
+  Environment seeded = environment_;
+  const unsigned level = ++seeded.level;
+  for (std::size_t i = 0; i < seeded.coordinates.size(); ++i) {
+    Jet& rate = seeded.coordinates[i][1];
+    rate = Jet::variable(level, rate, i);
+  }
+  by_rates_ = child(std::move(seeded));
+  return *by_rates_;
 }
 
 Interpreter& Interpreter::by_leaf(const Node& node) {
@@ -69,7 +81,7 @@ Interpreter& Interpreter::by_leaf(const Node& node) {
   if (kept) return *kept;
   Environment seeded = environment_;
   const unsigned level = ++seeded.level;
-  const auto vary = [&](Jet& value) { value = Jet::variable(level, value, 0, 1); };
+  const auto vary = [&](Jet& value) { value = Jet::variable(level, value, 0); };
   const auto vary_order = [&](std::vector<Jet>& orders) {
     if (node.order >= orders.size()) refuse(node, "this derivative is of too high an order");
     vary(orders[node.order]);

@@ -66,6 +66,8 @@ class Interpreter {
   /// Every coordinate (and, if `rates`, every velocity) on a new level: d/dq_i is slope(level(), i), d/dqdot_i is
   /// slope(level(), n + i).
   Interpreter& by_coordinates(bool rates);
+  /// Every velocity alone on a new level: d/dqdot_i is slope(level(), i).
+  Interpreter& by_rates();
   /// The same environment, in which Op::extension is that of `spring`.
   Interpreter for_spring(const model::Spring& spring) const;
 
@@ -94,7 +96,7 @@ class Interpreter {
   const model::Spring* spring_;
   std::unordered_map<model::NodeId, Jet> scalars_;
   std::unordered_map<model::NodeId, Vector> vectors_;
-  std::unique_ptr<Interpreter> later_, by_q_, by_q_and_rates_;
+  std::unique_ptr<Interpreter> later_, by_q_, by_q_and_rates_, by_rates_;
   std::map<Leaf, std::unique_ptr<Interpreter>> by_leaf_;
 };
 

@@ -12,7 +12,7 @@ namespace eomgen::verify {
 
 struct Jet::Dual {
   Jet value;
-  std::vector<Jet> slopes;
+  Slopes slopes;
 };
 
 namespace {
@@ -30,25 +30,43 @@ void require(bool ok, const char* why) {
 
 }  // namespace
 
-Jet Jet::on_level(unsigned level, Jet value, std::vector<Jet> slopes) {
-  if (std::all_of(slopes.begin(), slopes.end(), [](const Jet& s) { return s.exactly_zero(); })) return value;
+Jet Jet::with(unsigned level, Jet value, Slopes slopes) {
+  if (slopes.empty()) return value;
   Jet jet;
   jet.level_ = level;
   jet.dual_ = std::make_shared<const Dual>(Dual{std::move(value), std::move(slopes)});
   return jet;
 }
 
-Jet Jet::variable(unsigned level, Jet value, std::size_t direction, std::size_t directions) {
-  std::vector<Jet> slopes(directions);
-  slopes[direction] = Jet(1);
-  return on_level(level, std::move(value), std::move(slopes));
+Jet Jet::on_level(unsigned level, Jet value, std::vector<Jet> slopes) {
+  Slopes kept;
+  for (std::size_t i = 0; i < slopes.size(); ++i) {
+    if (!slopes[i].exactly_zero()) kept.emplace_back(static_cast<std::uint32_t>(i), std::move(slopes[i]));
+  }
+  return with(level, std::move(value), std::move(kept));
+}
+
+Jet Jet::variable(unsigned level, Jet value, std::size_t direction) {
+  return with(level, std::move(value), {{static_cast<std::uint32_t>(direction), Jet(1)}});
 }
 
 const Jet& Jet::value(unsigned level) const { return level_ == level && dual_ ? dual_->value : *this; }
 
+const Jet::Slopes& Jet::slopes(unsigned level) const {
+  static const Slopes none;
+  return level_ == level && dual_ ? dual_->slopes : none;
+}
+
 const Jet& Jet::slope(unsigned level, std::size_t direction) const {
-  if (level_ != level || !dual_ || direction >= dual_->slopes.size()) return zero_jet();
-  return dual_->slopes[direction];
+  const Slopes& all = slopes(level);
+  const auto found = std::lower_bound(all.begin(), all.end(), direction, [](const auto& slope, std::size_t wanted) { return slope.first < wanted; });
+  return found == all.end() || found->first != direction ? zero_jet() : found->second;
+}
+
+std::vector<std::size_t> Jet::directions(unsigned level) const {
+  std::vector<std::size_t> result;
+  for (const auto& slope : slopes(level)) result.push_back(slope.first);
+  return result;
 }
 
 const Real& Jet::real() const {
@@ -61,10 +79,29 @@ bool Jet::exactly_zero() const {
   return !dual_ && cln::zerop(real_) && cln::instanceof(real_, cln::cl_RA_ring);
 }
 
-std::size_t Jet::directions(const Jet& a, const Jet& b, unsigned level) {
-  const std::size_t na = a.level_ == level && a.dual_ ? a.dual_->slopes.size() : 0;
-  const std::size_t nb = b.level_ == level && b.dual_ ? b.dual_->slopes.size() : 0;
-  return std::max(na, nb);
+Jet::Slopes Jet::combine(const Jet& a, const Jet* ka, const Jet& b, const Jet* kb, unsigned level) {
+  const Slopes &left = a.slopes(level), &right = b.slopes(level);
+  Slopes result;
+  result.reserve(left.size() + right.size());
+  const auto keep = [&](std::uint32_t direction, Jet slope) {
+    if (!slope.exactly_zero()) result.emplace_back(direction, std::move(slope));
+  };
+  const auto scaled = [](const Jet& slope, const Jet* by) { return by == nullptr ? slope : slope * *by; };
+  auto i = left.begin();
+  auto j = right.begin();
+  while (i != left.end() || j != right.end()) {
+    if (j == right.end() || (i != left.end() && i->first < j->first)) {
+      keep(i->first, scaled(i->second, ka));
+      ++i;
+    } else if (i == left.end() || j->first < i->first) {
+      keep(j->first, scaled(j->second, kb));
+      ++j;
+    } else {
+      keep(i->first, scaled(i->second, ka) + scaled(j->second, kb));
+      ++i, ++j;
+    }
+  }
+  return result;
 }
 
 Jet operator+(const Jet& a, const Jet& b) {
@@ -72,18 +109,15 @@ Jet operator+(const Jet& a, const Jet& b) {
   if (b.exactly_zero()) return a;
   if (!a.dual_ && !b.dual_) return a.real_ + b.real_;
   const unsigned level = std::max(a.level_, b.level_);
-  std::vector<Jet> slopes(Jet::directions(a, b, level));
-  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = a.slope(level, i) + b.slope(level, i);
-  return Jet::on_level(level, a.value(level) + b.value(level), std::move(slopes));
+  return Jet::with(level, a.value(level) + b.value(level), Jet::combine(a, nullptr, b, nullptr, level));
 }
 
 Jet operator-(const Jet& a, const Jet& b) {
   if (b.exactly_zero()) return a;
   if (!a.dual_ && !b.dual_) return a.real_ - b.real_;
   const unsigned level = std::max(a.level_, b.level_);
-  std::vector<Jet> slopes(Jet::directions(a, b, level));
-  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = a.slope(level, i) - b.slope(level, i);
-  return Jet::on_level(level, a.value(level) - b.value(level), std::move(slopes));
+  const Jet minus(-1);
+  return Jet::with(level, a.value(level) - b.value(level), Jet::combine(a, nullptr, b, &minus, level));
 }
 
 Jet operator*(const Jet& a, const Jet& b) {
@@ -92,9 +126,7 @@ Jet operator*(const Jet& a, const Jet& b) {
   const unsigned level = std::max(a.level_, b.level_);
   const Jet& a0 = a.value(level);
   const Jet& b0 = b.value(level);
-  std::vector<Jet> slopes(Jet::directions(a, b, level));
-  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = a0 * b.slope(level, i) + a.slope(level, i) * b0;
-  return Jet::on_level(level, a0 * b0, std::move(slopes));
+  return Jet::with(level, a0 * b0, Jet::combine(a, &b0, b, &a0, level));
 }
 
 Jet operator/(const Jet& a, const Jet& b) {
@@ -107,16 +139,19 @@ Jet operator/(const Jet& a, const Jet& b) {
   const unsigned level = std::max(a.level_, b.level_);
   const Jet& b0 = b.value(level);
   const Jet quotient = a.value(level) / b0;
-  std::vector<Jet> slopes(Jet::directions(a, b, level));
-  for (std::size_t i = 0; i < slopes.size(); ++i)
-    slopes[i] = (a.slope(level, i) - quotient * b.slope(level, i)) / b0;
-  return Jet::on_level(level, quotient, std::move(slopes));
+  const Jet minus = -quotient;
+  Jet::Slopes slopes = Jet::combine(a, nullptr, b, &minus, level);
+  for (auto& slope : slopes) slope.second = slope.second / b0;
+  return Jet::with(level, quotient, std::move(slopes));
 }
 
 Jet chain(const Jet& x, Jet value, const Jet& derivative) {
-  std::vector<Jet> slopes(x.dual_->slopes.size());
-  for (std::size_t i = 0; i < slopes.size(); ++i) slopes[i] = x.dual_->slopes[i] * derivative;
-  return Jet::on_level(x.level_, std::move(value), std::move(slopes));
+  Jet::Slopes slopes;
+  for (const auto& [direction, slope] : x.dual_->slopes) {
+    Jet moved = slope * derivative;
+    if (!moved.exactly_zero()) slopes.emplace_back(direction, std::move(moved));
+  }
+  return Jet::with(x.level_, std::move(value), std::move(slopes));
 }
 
 std::pair<Jet, Jet> sin_cos(const Jet& x, const Precision& p) {

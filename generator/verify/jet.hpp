@@ -7,13 +7,14 @@
 // coefficient that is read off; no formula is ever differentiated. Levels are tags: a jet of a lower level is constant
 // for the higher ones, so nested derivatives cannot be confused with one another.
 //
-// Exact rationals stay exact, and what is exactly 0 costs nothing.
+// Exact rationals stay exact, and what is exactly 0 costs nothing: slopes are kept by direction, those that are exactly 0 are not kept.
 #pragma once
 
 #include <cln/float.h>
 #include <cln/real.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <memory>
 #include <stdexcept>
 #include <utility>
@@ -44,12 +45,14 @@ class Jet {
   /// are exactly 0.
   static Jet on_level(unsigned level, Jet value, std::vector<Jet> slopes);
   /// value + eps_direction
-  static Jet variable(unsigned level, Jet value, std::size_t direction, std::size_t directions);
+  static Jet variable(unsigned level, Jet value, std::size_t direction);
 
   unsigned level() const { return level_; }
   const Jet& value(unsigned level) const;                    // without the eps of `level`
   const Jet& slope(unsigned level, std::size_t direction) const;
   const Real& real() const;                                  // without any eps
+  /// The directions of `level` along which it has a slope, ascending.
+  std::vector<std::size_t> directions(unsigned level) const;
   bool exactly_zero() const;
 
  private:
@@ -59,7 +62,11 @@ class Jet {
   friend Jet operator*(const Jet& a, const Jet& b);
   friend Jet operator/(const Jet& a, const Jet& b);
   friend Jet chain(const Jet& x, Jet value, const Jet& derivative);
-  static std::size_t directions(const Jet& a, const Jet& b, unsigned level);
+  using Slopes = std::vector<std::pair<std::uint32_t, Jet>>;  // ascending by direction, none exactly 0
+  static Jet with(unsigned level, Jet value, Slopes slopes);
+  const Slopes& slopes(unsigned level) const;
+  /// a.slope * ka + b.slope * kb along every direction of either; a factor that is null counts as 1.
+  static Slopes combine(const Jet& a, const Jet* ka, const Jet& b, const Jet* kb, unsigned level);
 
   unsigned level_ = 0;
   Real real_ = 0;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small dense linear systems over CLN reals.
+// Linear systems over CLN reals.
 #pragma once
 
-#include <utility>
+#include <cmath>
 #include <vector>
 
 #include "verify/jet.hpp"
@@ -10,21 +10,19 @@
 namespace eomgen::verify {
 
 struct Solution {
-  std::vector<std::vector<Real>> columns;  // of X; empty where the matrix is singular to working precision
+  std::vector<Real> unknowns;  // empty where the matrix is singular to working precision
   /// Ratio of the extreme pivots after rows and columns were scaled to 1: a measure of the condition. Infinite where
   /// the matrix is singular.
   double condition = 1;
+  std::vector<std::vector<double>> inverse;  // the sizes of its columns' entries, where asked for
 
-  bool exists() const { return !columns.empty(); }
-  const std::vector<Real>& x() const { return columns.front(); }
+  bool exists() const { return !std::isinf(condition); }
+  const std::vector<Real>& x() const { return unknowns; }
 };
 
-/// A X = B with A n x n, row-major, B by columns (one at least); Gaussian elimination with complete pivoting of the
-/// scaled matrix.
-Solution solve(std::vector<Real> A, std::vector<std::vector<Real>> B);
-/// A x = b
-inline Solution solve(std::vector<Real> A, std::vector<Real> b) {
-  return solve(std::move(A), std::vector<std::vector<Real>>{std::move(b)});
-}
+/// A x = b with A n x n, row-major; parts that do not hang together each alone, by Gaussian elimination with complete pivoting of the
+/// scaled matrix. Large parts are eliminated in binary64 and refined: each residual, in all digits, takes off as many digits as binary64
+/// has beyond the condition; where that does not converge, elimination in all digits it is.
+Solution solve(std::vector<Real> A, std::vector<Real> b, bool with_inverse = false);
 
 }  // namespace eomgen::verify

@@ -35,19 +35,14 @@ Motion motion_at(const Judge& judge, const State& at) {
   std::vector<Real> row_scale;
   for (std::size_t i = 0; i < n; ++i) row_scale.push_back(rest[i].scale);
   for (std::size_t k = 0; k < m; ++k) row_scale.push_back(cln::abs(right[n + k]));
-  std::vector<std::vector<Real>> columns{std::move(right)};  // and the inverse
-  for (std::size_t i = 0; i < size; ++i) {
-    columns.emplace_back(size, Real(0));
-    columns.back()[i] = 1;
-  }
-  const Solution solution = solve(std::move(matrix), std::move(columns));
+  const Solution solution = solve(std::move(matrix), std::move(right), true);
   if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
   motion.lambda = no_forces;
   for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
-    for (std::size_t k = 0; k < size; ++k) scale = scale + cln::abs(solution.columns[k + 1][i]) * row_scale[k];
+    for (std::size_t k = 0; k < size; ++k) scale = scale + Real(cln::cl_DF(solution.inverse[k][i])) * row_scale[k];
     if (i < n) motion.scale.push_back(scale);
   }
   if (!judge.model().joints.empty()) {  // as of system_values

@@ -3,6 +3,8 @@
 
 #include <cln/real.h>
 
+#include <set>
+
 #include "verify/uses.hpp"
 
 namespace eomgen::verify {
@@ -107,7 +109,7 @@ class Forces {
   void apply(const Vector& force, const Vector& r) {
     Real size = 0;
     for (const Jet& component : force) size = size + cln::abs(component.real());
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
+    for (const std::size_t i : directions({&r[0], &r[1], &r[2]})) {
       const Vector tangent = slope(r, by_q_.level(), i);
       Real length = 0;
       for (const Jet& component : tangent) length = length + cln::abs(component.real());
@@ -117,10 +119,22 @@ class Forces {
   /// M . dw/dqdot_i
   void turn(const Vector& moment, std::uint32_t frame) {
     const auto size = [](const Vector& v) { return Real(cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real())); };
-    for (std::size_t i = 0; i < sums_.size(); ++i) {
+    std::vector<const Jet*> components;
+    std::array<Vector, 3> axes;
+    for (std::size_t k = 0; k < 3; ++k) axes[k] = by_q_.axis(frame, k);
+    for (const Vector& axis : axes)
+      for (const Jet& component : axis) components.push_back(&component);
+    for (const std::size_t i : directions(components)) {
       const Vector rotation = now_.virtual_rotation(frame, i);
       sums_[i].add(-dot(moment, rotation).real(), size(moment) * size(rotation));
     }
+  }
+  /// The coordinates that move any of these.
+  std::set<std::size_t> directions(const std::vector<const Jet*>& jets) const {
+    std::set<std::size_t> result;
+    for (const Jet* jet : jets)
+      for (const std::size_t i : jet->directions(by_q_.level())) result.insert(i);
+    return result;
   }
   /// What the inertia of a body adds to Newton's attraction, and the moment, eq. (7.72).
   void attract_extended(const model::CentralGravity& gravity, const model::Body& body) {
@@ -134,7 +148,7 @@ class Forces {
   }
   /// F dx/dq_i of one component
   void work(const Jet& force, const Jet& x) {
-    for (std::size_t i = 0; i < sums_.size(); ++i) sums_[i].add(-(force * x.slope(by_q_.level(), i)).real());
+    for (const std::size_t i : x.directions(by_q_.level())) sums_[i].add(-(force * x.slope(by_q_.level(), i)).real());
   }
   /// Newton's attraction along d, on both ends.
   void attract(const Jet& strength, const Vector& d, const Vector& d_by_q) {

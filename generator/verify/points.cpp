@@ -164,7 +164,9 @@ State Points::draw() {
 
 /// The least change, measured by the scales, that removes the defect: W A^T (A W A^T)^-1 (-defect).
 std::vector<Real> Points::correction(const State& state, bool rates) const {
-  ConstraintValues c = judge_.constraint_values(state);
+  State at = state;
+  at.qddot.clear();  // nobody asks for psi_ddot here
+  ConstraintValues c = judge_.constraint_values(at);
   const std::size_t n = choices_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
   for (std::size_t k = c.gradient.size(); k-- > 0;) {
@@ -180,17 +182,22 @@ std::vector<Real> Points::correction(const State& state, bool rates) const {
     weight.push_back(scale * scale);
   }
   std::vector<Real> gram(rows * rows, Real(0)), right;
-  for (std::size_t i = 0; i < rows; ++i) {
-    right.push_back(-defect[i]);
-    for (std::size_t k = 0; k < rows; ++k)
-      for (std::size_t j = 0; j < n; ++j)
-        gram[i * rows + k] = gram[i * rows + k] + c.gradient[i][j] * weight[j] * c.gradient[k][j];
+  for (const Real& value : defect) right.push_back(-value);
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<std::size_t> bound;  // constraints that it is in
+    for (std::size_t i = 0; i < rows; ++i)
+      if (!cln::zerop(c.gradient[i][j])) bound.push_back(i);
+    for (const std::size_t i : bound) {
+      const Real scaled = c.gradient[i][j] * weight[j];
+      for (const std::size_t k : bound) gram[i * rows + k] = gram[i * rows + k] + scaled * c.gradient[k][j];
+    }
   }
   const Solution y = solve(std::move(gram), std::move(right));
   if (!y.exists() || y.condition > singular_constraints) throw Unfit("the constraints lose rank");
   std::vector<Real> change(n, Real(0));
   for (std::size_t j = 0; j < n; ++j)
-    for (std::size_t i = 0; i < rows; ++i) change[j] = change[j] + weight[j] * c.gradient[i][j] * y.x()[i];
+    for (std::size_t i = 0; i < rows; ++i)
+      if (!cln::zerop(c.gradient[i][j])) change[j] = change[j] + weight[j] * c.gradient[i][j] * y.x()[i];
   return change;
 }
 

@@ -23,7 +23,7 @@ namespace {
 constexpr double worst_condition = 1e8;
 
 struct Solved {
-  std::vector<std::vector<Real>> inverse;  // columns of [M A^T; A 0]^-1, where asked for
+  std::vector<std::vector<double>> inverse;  // sizes of the columns of [M A^T; A 0]^-1, where asked for
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
   std::vector<Real> inertia;  // the diagonal of M
@@ -69,12 +69,7 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     matrix[(n + *k) * size + n + *k] = 1;
     right[n + *k] = 0;
   }
-  std::vector<std::vector<Real>> columns{right};
-  for (std::size_t i = 0; i < size && with_inverse; ++i) {
-    columns.emplace_back(size, Real(0));
-    columns.back()[i] = 1;
-  }
-  Solution solution = solve(std::move(matrix), std::move(columns));
+  Solution solution = solve(std::move(matrix), right, with_inverse);
   out.condition = solution.condition;
   if (!solution.exists() || solution.condition > worst_condition) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < n; ++i) out.qddot.push_back(solution.x()[i]);
@@ -84,7 +79,7 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     out.qddot = symbolic::evaluate(*s.dag, s.solution->qddot, lookup, digits);
     out.lambda = symbolic::evaluate(*s.dag, s.solution->lambda, lookup, digits);
   }
-  out.inverse.assign(solution.columns.begin() + 1, solution.columns.end());
+  out.inverse = std::move(solution.inverse);
   return out;
 }
 
@@ -109,7 +104,7 @@ std::vector<double> propagate(const Solved& solved, const std::vector<double>& r
   std::vector<double> scale(row_scale.size(), 0.0);
   for (std::size_t k = 0; k < scale.size(); ++k)
     for (std::size_t i = 0; i < scale.size(); ++i)
-      scale[i] += std::fabs(cln::double_approx(solved.inverse[k][i])) * row_scale[k];
+      scale[i] += solved.inverse[k][i] * row_scale[k];
   return scale;
 }
 

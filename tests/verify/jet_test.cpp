@@ -19,7 +19,7 @@ Real at(int numerator, int denominator) { return p.round(cln::cl_RA(numerator) /
 
 /// f', f'' at x, read from two nested levels.
 std::pair<Real, Real> derivatives(const std::function<Jet(const Jet&)>& f, const Real& x) {
-  const Jet once = Jet::variable(1, Jet(x), 0, 1);
+  const Jet once = Jet::variable(1, Jet(x), 0);
   const Jet twice = Jet::on_level(2, once, {Jet(1)});
   const Jet y = f(twice);
   return {y.slope(2, 0).real(), y.slope(2, 0).slope(1, 0).real()};
@@ -66,7 +66,7 @@ TEST_CASE("jets: first and second derivatives of every elementary function are t
 TEST_CASE("jets: products, quotients and compositions nest without confusing the levels") {
   // f = x y / (x + y^2) with x on level 1, y on level 2: the mixed derivative
   const Real x = at(3, 2), y = at(-4, 5);
-  const Jet X = Jet::variable(1, Jet(x), 0, 1), Y = Jet::variable(2, Jet(y), 0, 1);
+  const Jet X = Jet::variable(1, Jet(x), 0), Y = Jet::variable(2, Jet(y), 0);
   const Jet f = X * Y / (X + Y * Y);
   const Real n = x + y * y;
   CHECK(near(f.value(2).slope(1, 0).real(), y * y * y / (n * n), 55));
@@ -78,7 +78,7 @@ TEST_CASE("jets: atan2 has the derivatives of the angle in every quadrant") {
   for (const int sx : {-1, 1})
     for (const int sy : {-1, 1}) {
       const Real x = at(7 * sx, 10), y = at(2 * sy, 5), square = x * x + y * y;
-      const Jet X = Jet::variable(1, Jet(x), 0, 2), Y = Jet::variable(1, Jet(y), 1, 2);
+      const Jet X = Jet::variable(1, Jet(x), 0), Y = Jet::variable(1, Jet(y), 1);
       const Jet angle = atan2(Y, X, p);
       CHECK(near(angle.slope(1, 0).real(), -y / square, 55));
       CHECK(near(angle.slope(1, 1).real(), x / square, 55));
@@ -90,11 +90,11 @@ TEST_CASE("jets: what has no derivative is refused, what is exactly zero stays s
   CHECK_THROWS_AS(Jet(1) / Jet(), Singular);
   CHECK_THROWS_AS(log(Jet(-1), p), Singular);
   CHECK_THROWS_AS(sqrt(Jet(-1), p), Singular);
-  CHECK_THROWS_AS(sqrt(Jet::variable(1, Jet(0), 0, 1), p), Singular);
-  CHECK_THROWS_AS(asin(Jet::variable(1, Jet(1), 0, 1), p), Singular);
+  CHECK_THROWS_AS(sqrt(Jet::variable(1, Jet(0), 0), p), Singular);
+  CHECK_THROWS_AS(asin(Jet::variable(1, Jet(1), 0), p), Singular);
   CHECK_THROWS_AS(atan2(Jet(), Jet(), p), Singular);
   CHECK_THROWS_AS(power(Jet(-2), Jet(Real(cln::cl_RA(1) / 2)), p), Singular);
-  const Jet x = Jet::variable(3, Jet(at(1, 3)), 0, 4);
+  const Jet x = Jet::variable(3, Jet(at(1, 3)), 0);
   CHECK((Jet() * x).exactly_zero());
   CHECK((x - x).level() == 0);
   CHECK(power(Jet(Real(cln::cl_RA(2) / 3)), Jet(3), p).real() == cln::cl_RA(8) / 27);

@@ -126,3 +126,30 @@ TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a sing
   CHECK(near(good.x()[0], 2 / r(1e-20), 55));
   CHECK(!solve({r(1), r(2), r(2), r(4)}, std::vector<Real>{r(1), r(1)}).exists());
 }
+
+TEST_CASE("solve: large systems, whole or in parts that do not hang together, have all digits") {
+  const Precision p(60);
+  const auto entry = [&](std::size_t i, std::size_t k) { return p.round(Real(1) / (1 + static_cast<int>((7 * i + 3 * k) % 11)) + (i == k ? 5 : 0)); };
+  for (const std::size_t part : {std::size_t{40}, std::size_t{20}, std::size_t{1}}) {  // blocks of this size
+    constexpr std::size_t n = 40;
+    std::vector<Real> A(n * n, Real(0)), b(n, Real(0));
+    for (std::size_t i = 0; i < n; ++i)
+      for (std::size_t k = 0; k < n; ++k) {
+        if (i / part != k / part) continue;
+        A[i * n + k] = entry(i, k) * cln::expt(Real(2), cln::cl_I(static_cast<int>(i) - 2 * static_cast<int>(k)));
+        b[i] = b[i] + A[i * n + k] * p.round(Real(static_cast<int>(k) + 1) / 7);
+      }
+    const Solution found = solve(A, b, true);
+    REQUIRE(found.exists());
+    for (std::size_t k = 0; k < n; ++k) CHECK(near(found.x()[k], p.round(Real(static_cast<int>(k) + 1) / 7), 54));
+    for (const std::size_t column : {std::size_t{0}, n - 1}) {  // sizes of the inverse
+      std::vector<Real> unit(n, Real(0));
+      unit[column] = 1;
+      const Solution inverse = solve(A, unit);
+      for (std::size_t i = 0; i < n; ++i) {
+        const double size = std::fabs(cln::double_approx(inverse.x()[i]));
+        CHECK(std::fabs(found.inverse[column][i] - size) <= 1e-9 * size);
+      }
+    }
+  }
+}

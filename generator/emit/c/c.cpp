@@ -41,10 +41,23 @@ std::string prototype(const std::string& name, const FilePart& part) {
 }
 
 /// The function; where it tries near angles first, what it is made of and the one for far angles before it.
-std::string definition(const std::string& name, const program::Function& function, const FunctionText& text,
+std::string definition(const std::string& name, const program::Function& function, FunctionText text,
                        const ModelNames& names, bool internal) {
   const char* linkage = internal ? "static " : "";
   const auto head = [&](const std::string& what) { return function_head(what, function, text, names, "double"); };
+  if (!text.parts.empty()) {
+    const std::string guard = text.near_first ? fmt::format("int {}, ", text.guarded) : "";
+    const std::string list = guard + argument_list(arguments(function.name, text, names), "double");
+    std::string parts;
+    for (std::size_t k = 0; k < text.parts.size(); ++k) {
+      parts += fmt::format("#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\nstatic int {}_part{}({}, double* {})\n{{\n{}}}\n\n", name, k + 1,
+                           list, text.work, text.parts[k]);
+    }
+    const std::string handed = (text.near_first ? text.guarded + ", " : "") + argument_names(function, text, names);
+    text.body = calls_of_parts(name, text, handed, "double");
+    text.parts.clear();
+    return parts + definition(name, function, text, names, internal);
+  }
   if (!text.near_first) return fmt::format("{}{}\n{{\n{}}}\n", linkage, head(name), text.body);
   const std::string arguments = argument_names(function, text, names);
   std::string inner = head(name + "_from");

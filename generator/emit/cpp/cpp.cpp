@@ -120,8 +120,14 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
       entry.emplace_back("head", wrapped(fmt::format("int {}({})", part.name, part.arguments), std::string(part.name.size() + 5, ' ')));
       entry.emplace_back("body", part.body);
     } else {
-      const FunctionText text = print_function(*part.function, names, context, dialect);
+      FunctionText text = print_function(*part.function, names, context, dialect);
       packs = packs || text.packs > 0;
+      for (std::size_t k = 0; k < text.parts.size(); ++k) {
+        const std::string list = argument_list(arguments(part.function->name, text, names), "Real");
+        const std::string head = fmt::format("#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\nint {}_part{}({}, Real* {})", part.name, k + 1, list, text.work);
+        functions.push_back({{"purpose", fmt::format("Part {} of {}.", k + 1, part.name)}, {"head", head}, {"body", text.parts[k]}});
+      }
+      if (!text.parts.empty()) text.body = calls_of_parts(part.name, text, argument_names(*part.function, text, names), "Real");
       entry.emplace_back("head", function_head(part.name, *part.function, text, names, "Real"));
       entry.emplace_back("body", text.body);
     }

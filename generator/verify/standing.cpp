@@ -1,0 +1,203 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/standing.hpp"
+
+#include <cln/real.h>
+
+#include <set>
+
+#include "verify/plain_forces.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+/// Size of a vector, as the sum of its components' sizes.
+Real length(const Vector& v) { return cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()); }
+
+Vector slope(const Vector& v, unsigned level, std::size_t i) {
+  return {v[0].slope(level, i), v[1].slope(level, i), v[2].slope(level, i)};
+}
+
+/// The coordinates that move any of the vectors.
+std::vector<std::size_t> directions(const std::vector<Vector>& vectors, unsigned level) {
+  std::set<std::size_t> result;
+  for (const Vector& v : vectors)
+    for (const Jet& component : v)
+      for (const std::size_t i : component.directions(level)) result.insert(i);
+  return {result.begin(), result.end()};
+}
+
+State without_accelerations(State state) {
+  state.qddot.assign(state.q.size(), Real(0));
+  return state;
+}
+
+}  // namespace
+
+// In curvilinear coordinates the rate of a momentum is itself a sum that may cancel (of a free particle, to nothing), so that the size of
+// a term is that of its factors: |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all the rest|).
+void Inertia::add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent, const std::vector<Vector>& momentum) {
+  std::vector<Real> longest, size;
+  for (const Vector& t : tangent) longest.push_back(length(t));
+  for (const Vector& p : momentum) size.push_back(length(p));
+  for (std::size_t i = 0; i < along.size(); ++i)
+    for (std::size_t k = 0; k < along.size(); ++k) {
+      Entry& entry = rows_[along[i]][along[k]];
+      entry.value = entry.value + dot(momentum[k], tangent[i]).real();
+      entry.size = entry.size + size[k] * longest[i];
+    }
+}
+
+void Inertia::add_energy(std::size_t i, std::size_t k, const Real& entry) {
+  Real& sum = rows_[i][k].energy;
+  sum = sum + entry;
+}
+
+std::vector<Residual> Inertia::at(const std::vector<Real>& qddot) const {
+  std::vector<Residual> sums(rows_.size());
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    Real energy = 0;
+    for (const auto& [k, entry] : rows_[i]) {
+      if (cln::zerop(qddot[k])) continue;
+      energy = energy + entry.energy * qddot[k];
+      sums[i].add(entry.value * qddot[k], entry.size * cln::abs(qddot[k]));
+    }
+    sums[i].add(energy);
+  }
+  return sums;
+}
+
+Standing::Standing(const Judge& judge, const State& at)
+    : state(without_accelerations(at)), judge_(judge), model_(judge.model()), now_(judge.interpreter(state, &margin_)),
+      row_(judge.constraints().size()), along_(judge.constraints().size()), second_(judge.constraints().size()) {}
+
+const Inertia& Standing::inertia() {
+  look();
+  return *inertia_;
+}
+
+const std::vector<Residual>& Standing::rest() {
+  look();
+  return rest_;
+}
+
+void Standing::look() {
+  if (inertia_) return;
+  Inertia inertia(state.q.size());
+  inertia_ = std::move(inertia);
+  rest_.assign(state.q.size(), {});
+  add_particles();
+  add_rotations();
+  add_energies();
+  subtract_forces(model_, judge_.precision(), now_, rest_);
+}
+
+/// sum over particles of d(m v)/dt . dr/dq_i
+void Standing::add_particles() {
+  Interpreter& by_q = now_.by_coordinates(false);
+  Interpreter& later = now_.along_time();
+  Interpreter& twice = later.along_time();
+  for (const Mass& point : masses(model_)) {
+    const Vector v = slope(twice.place(point.place), twice.level(), 0);  // v + a eps
+    const Jet mass = later.scalar(point.mass);
+    const Vector rate = slope(mass * v, later.level(), 0);
+    const Jet m = mass.value(later.level());
+    const Vector r = by_q.place(point.place);
+    const std::vector<std::size_t> along = directions({r}, by_q.level());
+    std::vector<Vector> tangent, momentum;
+    for (const std::size_t i : along) {
+      tangent.push_back(slope(r, by_q.level(), i));
+      momentum.push_back(m * tangent.back());
+    }
+    inertia_->add(along, tangent, momentum);
+    const Real size = length(rate);
+    for (std::size_t i = 0; i < along.size(); ++i) rest_[along[i]].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
+  }
+}
+
+/// sum over bodies of dH/dt . dw/dqdot_i, eq. (9.39); sizes as of particles.
+void Standing::add_rotations() {
+  Interpreter& by_q = now_.by_coordinates(false);
+  Interpreter& later = now_.along_time();
+  for (const model::Body& body : model_.bodies) {
+    const Vector H = inertia_times(body, later, later.angular_velocity(body.frame));
+    const Vector rate = slope(H, later.level(), 0);
+    const std::vector<std::size_t> along = directions({by_q.axis(body.frame, 0), by_q.axis(body.frame, 1), by_q.axis(body.frame, 2)}, by_q.level());
+    std::array<Vector, 3> J;  // its columns in space
+    for (std::size_t k = 0; k < 3; ++k) {
+      Vector unit;
+      unit[k] = Jet(1);
+      J[k] = inertia_times(body, now_, unit);
+    }
+    std::vector<Vector> turn, momentum;
+    for (const std::size_t i : along) {
+      turn.push_back(now_.virtual_rotation(body.frame, i));
+      momentum.push_back(turn.back()[0] * J[0] + turn.back()[1] * J[1] + turn.back()[2] * J[2]);
+    }
+    inertia_->add(along, turn, momentum);
+    // The axes turn: what cancels in dH/dt is of the size of w x H, also where nothing is left of it.
+    const Real size = length(rate) + length(H) * length(now_.angular_velocity(body.frame));
+    for (std::size_t i = 0; i < along.size(); ++i) rest_[along[i]].add(dot(rate, turn[i]).real(), size * length(turn[i]));
+  }
+}
+
+/// d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of the energies that the model gives as such. The size of the first term is
+/// that of its part in qddot and that of the rest.
+void Standing::add_energies() {
+  if (model_.energy.kinetic != model::no_node) {
+    Interpreter& later = now_.along_time().by_rates();
+    const Jet momenta = later.scalar(model_.energy.kinetic);
+    const unsigned time = now_.along_time().level();
+    for (const std::size_t i : momenta.directions(later.level()))
+      rest_[i].add(momenta.slope(later.level(), i).slope(time, 0).real());
+    Interpreter& once = now_.by_rates();
+    Interpreter& twice = once.by_rates();
+    const Jet T = twice.scalar(model_.energy.kinetic);
+    for (const std::size_t i : T.directions(twice.level())) {
+      const Jet& p = T.slope(twice.level(), i);
+      for (const std::size_t k : p.directions(once.level())) inertia_->add_energy(i, k, p.slope(once.level(), k).real());
+    }
+    Interpreter& by_q = now_.by_coordinates(false);
+    const Jet at = by_q.scalar(model_.energy.kinetic);
+    for (const std::size_t i : at.directions(by_q.level())) rest_[i].add(-at.slope(by_q.level(), i).real());
+  }
+  if (model_.energy.potential != model::no_node) {
+    Interpreter& by_q = now_.by_coordinates(false);
+    const Jet U = by_q.scalar(model_.energy.potential);
+    for (const std::size_t i : U.directions(by_q.level())) rest_[i].add(U.slope(by_q.level(), i).real());
+  }
+}
+
+const std::vector<Real>& Standing::row(std::size_t constraint) {
+  if (row_[constraint]) return *row_[constraint];
+  const bool positions = judge_.holonomic(constraint);
+  Interpreter& varied = positions ? now_.by_coordinates(false) : now_.by_rates();
+  const Jet value = varied.scalar(judge_.constraints()[constraint]);
+  std::vector<Real> result(state.q.size(), Real(0));
+  for (const std::size_t i : value.directions(varied.level())) result[i] = value.slope(varied.level(), i).real();
+  return row_[constraint].emplace(std::move(result));
+}
+
+const Standing::Along& Standing::along(std::size_t constraint) {
+  if (along_[constraint]) return *along_[constraint];
+  Interpreter& later = now_.along_time();
+  const Jet value = later.scalar(judge_.constraints()[constraint]);
+  Along result;
+  if (judge_.holonomic(constraint)) {
+    result.psi = value.real();
+    result.rate = value.slope(later.level(), 0).real();
+  } else {
+    result.rate = value.real();
+  }
+  return along_[constraint].emplace(std::move(result));
+}
+
+const Real& Standing::second(std::size_t constraint) {
+  if (second_[constraint]) return *second_[constraint];
+  Interpreter& later = now_.along_time();
+  const model::NodeId expression = judge_.constraints()[constraint];
+  if (!judge_.holonomic(constraint)) return second_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
+  Interpreter& twice = later.along_time();
+  return second_[constraint].emplace(twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());
+}
+
+}  // namespace eomgen::verify
