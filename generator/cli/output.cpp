@@ -11,7 +11,18 @@
 
 namespace eomgen::cli {
 
-void print_document(const nlohmann::ordered_json& document) {
+namespace {
+
+void drop_signs_of_zeros(nlohmann::ordered_json& document) {
+  if (document.is_number_float()) document = unsigned_zero(document.get<double>());
+  if (!document.is_structured()) return;
+  for (auto& part : document) drop_signs_of_zeros(part);
+}
+
+}  // namespace
+
+void print_document(nlohmann::ordered_json document) {
+  drop_signs_of_zeros(document);
   fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
@@ -38,6 +49,6 @@ void require_writable(const std::string& option, const std::string& path) {
   }
 }
 
-std::string shortest(double value) { return fmt::format("{}", value); }
+std::string shortest(double value) { return fmt::format("{}", unsigned_zero(value)); }
 
 }  // namespace eomgen::cli

@@ -10,8 +10,11 @@
 
 namespace eomgen::cli {
 
-/// To standard output. Bytes that are no UTF-8 (of a path, say) are replaced, numbers that are not finite are null.
-void print_document(const nlohmann::ordered_json& document);
+/// Of a result: 0 has no sign.
+inline double unsigned_zero(double value) { return value == 0 ? 0 : value; }
+
+/// To standard output. Bytes that are no UTF-8 (of a path, say) are replaced, numbers that are not finite are null, -0 is 0.
+void print_document(nlohmann::ordered_json document);
 
 /// emit::write_files for a folder that the user named: what is wrong with it is wrong input.
 std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files);

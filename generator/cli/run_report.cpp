@@ -50,7 +50,7 @@ std::string final_values(const Simulation& simulation) {
     const auto found = std::find_if(result.error_estimate.begin(), result.error_estimate.end(),
                                     [&name = name](const auto& e) { return e.first == name; });
     const std::string error = found == result.error_estimate.end() ? "" : fmt::format("   +- {:.1e}", found->second);
-    out += fmt::format("  {:<24} {:>24}{}\n", name, value, error);
+    out += fmt::format("  {:<24} {:>24}{}\n", name, unsigned_zero(value), error);
   }
   return out;
 }

@@ -131,7 +131,7 @@ std::string text_of(const run::Sensitivities& found, const std::vector<std::stri
   std::string out = fmt::format("\nsensitivities     of the state at t = {}, by {}: {}\n", found.t, found.solver, eom::name(found.outcome));
   for (const run::Sensitivity& s : found.list) {
     for (std::size_t i = 0; i < states.size(); ++i) {
-      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", states[i], s.of, s.value[i], s.error.empty() ? "" : fmt::format("   +- {:.1e}", s.error[i]));
+      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", states[i], s.of, unsigned_zero(s.value[i]), s.error.empty() ? "" : fmt::format("   +- {:.1e}", s.error[i]));
     }
   }
   return found.estimate_note.empty() ? out : out + "  " + found.estimate_note + "\n";

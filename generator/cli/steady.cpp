@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "cli/interrupt.hpp"
 #include "cli/simulate.hpp"
+#include "derive/imposition.hpp"
+#include "symbolic/calculus.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -137,10 +140,58 @@ SteadyProblem steady_problem(const std::string& command, const std::string& mode
   return p;
 }
 
+Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
+  Derived& d = *p.derived;
+  const model::Model& model = d.model;
+  symbolic::Dag& dag = *d.mechanics.dag;
+  symbolic::Substitution imposed = derive::impose(d.mechanics), written = derive::write_out(d.mechanics);
+  const auto fails = [&](std::vector<symbolic::Ref> list, symbolic::Ref energy) {
+    for (const symbolic::Symbol& s : p.flow->symbols()) {
+      if (s.order == 0) list.push_back(symbolic::partial(dag, s)(written(imposed(energy))));
+    }
+    for (symbolic::Ref& r : list) r = written(imposed(r));
+    try {
+      p.flow->sloped(p.flow->tape(list), z, p.setting);
+      return false;
+    } catch (const std::domain_error&) {
+      return true;
+    }
+  };
+  for (std::size_t i = 0; i < model.forces.size(); ++i) {
+    if (fails(d.mechanics.force_components[i], d.mechanics.potential_by_force[i])) {
+      return {model.where(model.forces[i].span), fmt::format("'{}' has", model.forces[i].name)};
+    }
+  }
+  for (const model::NodeId energy : {model.energy.kinetic, model.energy.potential}) {
+    if (energy == model::no_node || !fails({}, mechanics::lower_scalar(d.mechanics, energy))) continue;
+    return {model.where(model.arena[energy].span), "this energy has"};
+  }
+  for (const mechanics::Constraint& c : d.mechanics.constraints) {
+    if (!fails({c.psi}, dag.zero())) continue;
+    for (const model::Constraint& written_one : model.constraints) {
+      if (written_one.name == c.name) return {model.where(written_one.span), fmt::format("'{}' has", c.name)};
+    }
+  }
+  return {model.where(model.scene(p.scene.name).span), "the equations of motion have"};
+}
+
+double shown(const Precise& x) {
+  constexpr int nothing = 40;  // no model has lengths or rates of this size
+  return linear::magnitude(x) < linear::tiny<Precise>(nothing) ? 0.0 : linear::to_double(x);
+}
+
+nlohmann::ordered_json eigenvalue_json(const linear::Eigenvalue& e) {
+  nlohmann::ordered_json result{{"re", e.re}, {"im", e.im}};
+  if (!e.holds()) result["error"] = e.error;
+  if (!e.in_binary64) result["in_binary64"] = false;
+  return result;
+}
+
 std::string eigenvalue_text(const linear::Spectrum& spectrum, std::size_t i) {
   const linear::Eigenvalue& e = spectrum.values[i];
-  if (e.im == 0) return fmt::format("{:.10g}", e.re);
-  return fmt::format("{:.10g} {} {:.10g}i", e.re, e.im < 0 ? "-" : "+", std::abs(e.im));
+  const std::string doubt = e.holds() ? "" : e.in_binary64 ? fmt::format("   (good to {:.1g} only)", e.error) : "   (not confirmed by binary64)";
+  if (e.im == 0) return fmt::format("{:.10g}{}", e.re, doubt);
+  return fmt::format("{:.10g} {} {:.10g}i{}", e.re, e.im < 0 ? "-" : "+", std::abs(e.im), doubt);
 }
 
 }  // namespace eomgen::cli

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 
@@ -29,7 +30,18 @@ struct SteadyProblem {
 SteadyProblem steady_problem(const std::string& command, const std::string& model, const std::string& scene,
                              const run::Overrides& overrides, std::optional<double> at, std::uint64_t seed);
 
-/// "-1.5 +- 2i", or "0.3".
+/// What has no slope at a state: a force, an energy or a constraint of the model, "'F' has"; else "the equations of motion have".
+struct Source {
+  Where where;
+  std::string what;
+};
+Source without_slope(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
+
+/// For results: 0 has no sign, and what many digits left of it is 0.
+double shown(const linear::Precise& x);
+
+/// "-1.5 +- 2i", or "0.3", with what its digits are good for where that is less than usual.
+nlohmann::ordered_json eigenvalue_json(const linear::Eigenvalue& eigenvalue);
 std::string eigenvalue_text(const linear::Spectrum& spectrum, std::size_t i);
 
 }  // namespace eomgen::cli

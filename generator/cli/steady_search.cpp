@@ -28,7 +28,12 @@ bool is_kept(const SteadyProblem& p, const Quantity& quantity) {
     linear::Setting<Precise> setting = p.setting;
     const auto z = linear::beside(*p.flow, p.z, setting, seed);
     if (!z) return false;
-    const linear::Sloped<Precise> s = tape.at<Precise>(p.flow->lookup(*z, setting));
+    linear::Sloped<Precise> s;
+    try {
+      s = p.flow->sloped(tape, *z, setting);
+    } catch (const std::domain_error&) {
+      return false;  // it has no value everywhere: it can be no invariant
+    }
     const linear::Field<Precise> field = p.flow->at(*z, setting);
     Precise rate = s.slope(0, z->size() - 1), size(0);
     for (std::size_t i = 0; i < field.X.rows; ++i) {
@@ -106,15 +111,14 @@ void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
 }
 
 /// A conserved quantity that none of the coordinates feels which the motion does not feel: it can be held beside them.
-bool can_be_held(const SteadyProblem& p, const Quantity& quantity) {
+bool can_be_held(const SteadyProblem& p, const linear::Symmetry& symmetry, const Quantity& quantity) {
   const linear::Flow& flow = *p.flow;
-  const linear::Symmetry symmetry = linear::find_symmetry(flow, p.z, p.setting, 1);
   const linear::Tape tape = flow.tape({quantity.expression});
   for (const std::uint64_t seed : {31U, 32U}) {
     linear::Setting<Precise> setting = p.setting;
     const auto z = linear::beside(flow, p.z, setting, seed);
     if (!z) return false;
-    linear::Matrix<Precise> slope = tape.at<Precise>(flow.lookup(*z, setting)).slope;
+    linear::Matrix<Precise> slope = flow.sloped(tape, *z, setting).slope;
     const linear::Matrix<Precise> along = slope * linear::tangent(flow.at(*z, setting), symmetry.chart);
     for (std::size_t k = 0; k < along.cols; ++k) {
       const bool kept = k < symmetry.retained.size() && symmetry.retained[k];
@@ -122,6 +126,20 @@ bool can_be_held(const SteadyProblem& p, const Quantity& quantity) {
     }
   }
   return true;
+}
+
+/// The start, or a state beside it where the start itself has no slopes: what is looked for is the same around it.
+linear::State<Precise> place_with_field(const SteadyProblem& p) {
+  try {
+    p.flow->at(p.z, p.setting);
+    return p.z;
+  } catch (const std::domain_error&) {
+    linear::Setting<Precise> setting = p.setting;
+    for (std::uint64_t seed = 500; seed < 510; ++seed) {
+      if (auto z = linear::beside(*p.flow, p.z, setting, seed)) return *z;
+    }
+    throw;
+  }
 }
 
 [[noreturn]] void refuse_hold(const std::string& name, const std::string& why) {
@@ -156,9 +174,12 @@ void hold(SteadyMotions& result, const SteadyRequest& request, linear::SearchReq
   };
   for (const auto& [name, value] : request.hold) add(output_named(p, name), linear::number<Precise>(Precise(value)), "as asked for");
   if (!request.hold.empty()) return;
-  for (const Quantity& momentum : chosen(p, false)) {
-    if (!can_be_held(p, momentum)) continue;
-    add(momentum, p.flow->tape({momentum.expression}).at<Precise>(p.flow->lookup(p.z, p.setting)).value[0], "conserved: its value at the start");
+  const std::vector<Quantity> momenta = chosen(p, false);
+  if (momenta.empty()) return;
+  const linear::Symmetry symmetry = linear::find_symmetry(*p.flow, place_with_field(p), p.setting, 1);
+  for (const Quantity& momentum : momenta) {
+    if (!can_be_held(p, symmetry, momentum)) continue;
+    add(momentum, p.flow->tape({momentum.expression}).values<Precise>(p.flow->lookup(p.z, p.setting))[0], "conserved: its value at the start");
   }
 }
 
@@ -168,6 +189,19 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
     const std::string& name = result.problem.flow->names()[s.chart.independent[k]];
     if (!s.retained[k] && request.hold.contains(name)) refuse_hold(name, "nothing feels it, and it advances in a steady motion");
   }
+}
+
+/// Nothing was found, and starts ended where the equations have no value: that is the answer.
+void require_ends(const SteadyMotions& result) {
+  const linear::SearchResult& search = result.search;
+  if (!search.points.empty() || search.refused == 0) return;
+  const SteadyProblem& p = result.problem;
+  linear::State<Precise> z;
+  for (const double x : search.refused_at) z.push_back(linear::number<Precise>(Precise(x)));
+  const Source source = without_slope(p, z);
+  throw Error(command, source.where,
+              fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})", search.refused, source.what, search.reason),
+              "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
 }
 
 void judge(SteadyMotions& result, const SteadyRequest& request) {
@@ -194,6 +228,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     hold(result, request, search);
     result.search = linear::find_steady_motions(search);
     require_not_ignored(result, request);
+    require_ends(result);
     if (!result.search.symmetry.autonomous) {
       throw Error(command, Where{model.file, 0, 0, 1, ""}, "the accelerations depend on t: no motion stays what it is",
                   "eomgen linearize gives A(t) along a motion");
@@ -204,9 +239,8 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     }
     judge(result, request);
   } catch (const std::domain_error& error) {
-    throw Error(command, model.where(model.scene(request.scene).span),
-                fmt::format("the equations of motion have no slope at the start of this scene: {}", error.what()),
-                "begin the search at another start");
+    const Source source = without_slope(p, p.z);
+    throw Error(command, source.where, fmt::format("{} no slope at the start of this scene: {}", source.what, error.what()), "begin the search at another start");
   }
   return result;
 }

@@ -26,41 +26,48 @@ class Search {
     rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals), rounded(r_.setting.leaf)};
   }
 
+  // Once as it is. If families are among what is found, once more with what they leave open held; what stands alone stays.
   void run() {
-    all_starts(Until::first_point);
-    hold_families();
-    result_.converged = 0;
-    if (result_.held.empty()) {
-      all_starts(Until::end);
-    } else {
-      const std::vector<FoundPoint> member = std::exchange(result_.points, {});
-      all_starts(Until::end);
-      result_.released = result_.points.empty();
-      if (result_.released) result_.points = member;
+    all_starts();
+    std::vector<FoundPoint> alone, members;
+    for (FoundPoint& point : result_.points) (point.family == 0 ? alone : members).push_back(std::move(point));
+    result_.points = std::move(alone);
+    if (!members.empty()) {
+      hold_families(members.front().z);
+      const std::size_t before = result_.points.size();
+      members_ = 0;
+      result_.converged = result_.refused = 0;
+      all_starts();
+      result_.released = result_.points.size() == before;
+      if (result_.released) result_.points.push_back(members.front());
     }
-    std::sort(result_.points.begin(), result_.points.end(), [this](const FoundPoint& a, const FoundPoint& b) { return before(a.z, b.z); });
+    std::sort(result_.points.begin(), result_.points.end(), [this](const FoundPoint& a, const FoundPoint& b) { return this->before(a.z, b.z); });
   }
 
  private:
-  enum class Until { first_point, end };
+  static constexpr std::size_t enough_members = 3;  // of families, while nothing is held for them
 
-  void all_starts(Until until) {
+  void all_starts() {
     std::vector<double> targets;
     for (const Precise& t : held_->targets) targets.push_back(to_double(t));
     std::vector<State<double>> seen;
     for (std::size_t k = 0; k < r_.starts; ++k) {
       if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
-      const auto rough = rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
-      if (!rough) continue;
+      const RoughEnd rough = rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
+      if (!rough.reason.empty() && result_.refused++ == 0) {
+        result_.reason = rough.reason;
+        result_.refused_at = rough.z;
+      }
+      if (!rough.found) continue;
       ++result_.converged;
       State<Precise> z;
-      for (const double x : *rough) z.push_back(number<Precise>(Precise(x)));
+      for (const double x : rough.z) z.push_back(number<Precise>(Precise(x)));
       wrap(z);
       const auto known = [&](const State<double>& s) { return is_same(s, z); };
       if (std::any_of(seen.begin(), seen.end(), known)) continue;
       seen.push_back(rounded(z));
+      if (rough.open && result_.held.empty() && members_ >= enough_members) continue;
       polish(z);
-      if (until == Until::first_point && !result_.points.empty()) return;
     }
   }
 
@@ -70,8 +77,8 @@ class Search {
     return result;
   }
 
-  std::optional<State<Precise>> steady(const State<Precise>& z) const {
-    return steady_state(flow_, symmetry_, z, r_.setting, [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
+  std::optional<Steady> steady(const State<Precise>& z) const {
+    return find_steady(flow_, symmetry_, z, r_.setting, [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
       value = Matrix<Precise>(held_->targets.size(), 1);
       slope = Matrix<Precise>(held_->targets.size(), at.size());
       if (held_->targets.empty()) return;
@@ -81,18 +88,32 @@ class Search {
     });
   }
 
+  /// What was held from the beginning.
+  void hold_own(const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) const {
+    value = Matrix<Precise>(r_.targets.size(), 1);
+    slope = Matrix<Precise>(r_.targets.size(), at.size());
+    if (r_.targets.empty()) return;
+    const Sloped<Precise> s = held_->at(at, r_.setting);  // first, and then what families leave open
+    for (std::size_t k = 0; k < r_.targets.size(); ++k) {
+      value(k, 0) = s.value[k] - r_.targets[k];
+      for (std::size_t d = 0; d < s.slope.cols; ++d) slope(k, d) = s.slope(k, d);
+    }
+  }
+
   void polish(State<Precise> rough) {
     for (const std::size_t i : ignored_positions(symmetry_)) rough[i] = r_.start[i];
-    std::optional<State<Precise>> z = steady(rough);
-    if (!z) return;
-    normalise(*z);
+    std::optional<Steady> found = steady(rough);
+    if (!found) return;
+    State<Precise>& z = found->z;
+    normalise(z);
     for (std::size_t i = 0; i < n_; ++i) {
-      const double q = to_double((*z)[i]);
+      const double q = to_double(z[i]);
       if (!(q > r_.ranges[i].lower && q < r_.ranges[i].upper)) return;
     }
-    const auto known = [&](const FoundPoint& p) { return is_same(rounded(p.z), *z); };
+    const auto known = [&](const FoundPoint& p) { return is_same(rounded(p.z), z); };
     if (std::any_of(result_.points.begin(), result_.points.end(), known)) return;
-    result_.points.push_back({*z, open_directions(*z).cols});
+    result_.points.push_back({z, found->off, family_directions(z).cols});
+    if (result_.points.back().family > 0) ++members_;
   }
 
   bool is_same(const State<double>& a, const State<Precise>& b) const {
@@ -152,7 +173,7 @@ class Search {
       take_if_steady(z, other);
     }
     for (std::size_t k = 0; k < r_.euler.size(); ++k) {
-      const auto sign = [&](const State<Precise>& at) { return regular_[k].at<Precise>(flow_.lookup(at, r_.setting)).value[0]; };
+      const auto sign = [&](const State<Precise>& at) { return regular_[k].values<Precise>(flow_.lookup(at, r_.setting))[0]; };
       if (!cln::minusp(sign(z))) continue;
       const auto& [a, b, c] = r_.euler[k].places;
       const Precise pi = cln::pi(precise_format());
@@ -174,7 +195,7 @@ class Search {
   // A name of the same attitude; not where something that is held, or a force, tells the names apart.
   void take_if_steady(State<Precise>& z, const State<Precise>& other) const {
     const auto found = steady(other);
-    if (found && is_same(rounded(other), *found)) z = other;
+    if (found && is_same(rounded(other), found->z)) z = other;
   }
 
   /// Directions along which steady motions with what is held go on, as columns.
@@ -198,11 +219,40 @@ class Search {
     return Elimination<Precise>(columns_of(J, columns), tiny<Precise>(40), tiny<Precise>(60)).null_space();
   }
 
-  // Positions that are retained, then speeds, one for each direction that is open at the first point, at their start values.
-  void hold_families() {
-    if (result_.points.empty()) return;
-    const Matrix<Precise> N = open_directions(result_.points.front().z);
-    if (N.cols == 0) return;
+  /// Of the open directions those along which steady motions do go on: a multiple root opens directions too, and is alone.
+  Matrix<Precise> family_directions(const State<Precise>& z) const {
+    const Matrix<Precise> N = open_directions(z);
+    if (N.cols == 0) return N;
+    Matrix<Precise> together(N.rows, 1);  // in no special direction
+    for (std::size_t i = 0; i < N.rows; ++i) {
+      for (std::size_t k = 0; k < N.cols; ++k) together(i, 0) = together(i, 0) + number<Precise>(Precise(1 + 0.3 * random_number(77, k))) * N(i, k);
+    }
+    if (goes_on(z, together, 0)) return N;
+    std::vector<std::size_t> kept;
+    for (std::size_t k = 0; k < N.cols; ++k) {
+      if (goes_on(z, N, k)) kept.push_back(k);
+    }
+    return columns_of(N, kept);
+  }
+
+  bool goes_on(const State<Precise>& z, const Matrix<Precise>& N, std::size_t k) const {
+    Precise size(0);
+    for (std::size_t i = 0; i < N.rows; ++i) size = std::max(size, magnitude(N(i, k)) / (Precise(1) + magnitude(z[i])));
+    if (is_zero(size)) return false;
+    State<Precise> beside = z;
+    const Precise step = tiny<Precise>(3) / size;
+    for (std::size_t i = 0; i < N.rows; ++i) beside[i] = beside[i] + step * N(i, k);
+    const std::optional<Steady> found = find_steady(flow_, symmetry_, beside, r_.setting, own_);
+    if (!found) return false;
+    for (std::size_t i = 0; i < N.rows; ++i) {  // it must not fall back: along a family the way back is as long as the square of the step
+      if (magnitude(found->z[i] - beside[i]) > tiny<Precise>(3) / 4 * (Precise(1) + magnitude(z[i]))) return false;
+    }
+    return true;
+  }
+
+  // Positions that are retained, then speeds, one for each direction that is open at a member, at their start values.
+  void hold_families(const State<Precise>& member) {
+    const Matrix<Precise> N = family_directions(member);
     Matrix<Precise> chosen;
     for (const std::size_t i : symmetry_.chart.independent) {
       const Matrix<Precise> more = stacked(chosen, rows_of(N, {i}));
@@ -235,7 +285,9 @@ class Search {
   SearchResult& result_;
   const Symmetry& symmetry_;
   std::optional<Held> held_;
+  Extra own_ = [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) { hold_own(at, value, slope); };
   Setting<double> rough_;
+  std::size_t members_ = 0;
   std::vector<bool> turns_;
   std::vector<Tape> regular_;
 };
@@ -244,7 +296,14 @@ class Search {
 
 SearchResult find_steady_motions(const SearchRequest& request) {
   SearchResult result;
-  const auto start = projected(request.flow, request.start, request.setting);
+  std::optional<State<Precise>> start;
+  try {
+    start = projected(request.flow, request.start, request.setting);
+  } catch (const std::domain_error&) {  // it has no field; the search needs a place that has one
+    Setting<Precise> setting = request.setting;
+    for (std::uint64_t seed = 500; !start && seed < 510; ++seed) start = beside(request.flow, request.start, setting, seed);
+    if (!start) throw;
+  }
   require_domain(start.has_value(), "the start does not satisfy the constraints");
   result.symmetry = find_symmetry(request.flow, *start, request.setting, request.seed);
   if (result.symmetry.autonomous) Search(request, result).run();

@@ -34,6 +34,7 @@ struct SearchRequest {
 
 struct FoundPoint {
   State<Precise> z;
+  double off = 0;          // Steady::off
   std::size_t family = 0;  // dimensions of the family of steady motions that it is one of, before anything was held for it
 };
 
@@ -43,6 +44,9 @@ struct SearchResult {
   bool released = false;             // with them held nothing was found; the points are members of their families
   std::vector<FoundPoint> points;    // in the order of their entries
   std::size_t converged = 0;         // starts that led to some point
+  std::size_t refused = 0;           // starts whose way ended where the equations have no value or no slope
+  std::string reason;                // of the first of them
+  State<double> refused_at;          // and where
 };
 
 /// Throws std::domain_error where the start has no field.

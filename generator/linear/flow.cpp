@@ -81,12 +81,12 @@ Tape Flow::tape(std::vector<Ref> expressions) const { return {*system_.dag, std:
 
 template <class T>
 std::vector<T> Flow::leaf(const State<T>& z, const Setting<T>& setting) const {
-  return leaf_tape_->at<T>(lookup(z, setting)).value;
+  return leaf_tape_->values<T>(lookup(z, setting));
 }
 
 template <class T>
 Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
-  const Sloped<T> s = tape_->at<T>(lookup(z, setting));
+  const Sloped<T> s = sloped(*tape_, z, setting);
   Field<T> field;
   differentiate(s, z, field);
   constrain(s, z, setting, field);
@@ -152,7 +152,7 @@ void Flow::constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& se
     for (std::size_t d = 0; d < width; ++d) field.phi_slope(k, d) = s.slope(psi0 + k, d);
   }
   if (!leaf_.empty()) {
-    const Sloped<T> leaf = leaf_tape_->at<T>(lookup(z, setting));
+    const Sloped<T> leaf = sloped(*leaf_tape_, z, setting);
     for (std::size_t k = 0; k < leaf_.size(); ++k) {
       field.phi(h + k, 0) = leaf.value[k] - setting.leaf.at(k);
       for (std::size_t d = 0; d < width; ++d) field.phi_slope(h + k, d) = leaf.slope(k, d);

@@ -53,6 +53,11 @@ class Flow {
   template <class T>
   std::vector<T> leaf(const State<T>& z, const Setting<T>& setting) const;
 
+  /// Values and slopes of a tape. Where a formula has none but its limits from all sides agree, these: the root in |v| v at rest, a
+  /// distance that goes through 0. Throws std::domain_error where they do not.
+  template <class T>
+  Sloped<T> sloped(const Tape& tape, const State<T>& z, const Setting<T>& setting) const;
+
   /// Other expressions of the system, with slopes by z.
   Tape tape(std::vector<Ref> expressions) const;
   template <class T>

@@ -11,6 +11,7 @@ constexpr int most_steps = 80;
 constexpr double longest_step = 0.7;  // of an entry, against 1 and its size
 constexpr double settled = 1e-11;
 constexpr double rank_tolerance = 1e-9;
+constexpr double least_row = 1e-6;  // of the largest slope
 constexpr std::size_t plain_attitudes = 81;  // Euler parameters of -1, 0, 1
 
 struct Equations {
@@ -45,8 +46,9 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
   return e;
 }
 
-/// The least step, with entries measured against 1 and their size, rows against their largest slope.
-std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z) {
+/// The least step, with entries measured against 1 and their size, rows against their largest slope; where that all but vanishes, beside
+/// other rows, it counts no more: its value would be a rounding made large.
+std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, bool& open) {
   const auto rows = static_cast<Eigen::Index>(e.value.size()), columns = static_cast<Eigen::Index>(z.size() - 1);
   Eigen::MatrixXd J(rows, columns);
   Eigen::VectorXd r(rows), scale(columns);
@@ -54,7 +56,10 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z) 
   for (Eigen::Index i = 0; i < rows; ++i) {
     r(i) = e.value[static_cast<std::size_t>(i)];
     for (Eigen::Index j = 0; j < columns; ++j) J(i, j) = e.slope[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * scale(j);
-    const double size = J.row(i).cwiseAbs().maxCoeff();
+  }
+  const double least = least_row * (rows > 0 ? J.cwiseAbs().maxCoeff() : 0);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const double size = std::max(J.row(i).cwiseAbs().maxCoeff(), least);
     if (size > 0) {
       J.row(i) /= size;
       r(i) /= size;
@@ -64,6 +69,7 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z) 
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(rank_tolerance);
   solver.compute(J);
+  open = solver.rank() < columns;
   return solver.solve(r);
 }
 
@@ -81,21 +87,23 @@ void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>
 
 }  // namespace
 
-std::optional<State<double>> rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
-                                                const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
-  State<double> z = start;
+RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start, const Setting<double>& setting,
+                            const Held& held, const std::vector<double>& targets) {
+  RoughEnd end{start, false, false, {}};
+  State<double>& z = end.z;
   try {
     for (int k = 0; k < most_steps; ++k) {
-      const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z);
-      if (!move || !move->allFinite()) return std::nullopt;
+      const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z, end.open);
+      if (!move || !move->allFinite()) return end;
       const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
       for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
-      if (size < settled) return z;
+      end.found = size < settled;
+      if (end.found) return end;
     }
-  } catch (const std::domain_error&) {
-    return std::nullopt;
+  } catch (const std::domain_error& error) {
+    end.reason = error.what();
   }
-  return std::nullopt;
+  return end;
 }
 
 State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns, std::size_t k) {

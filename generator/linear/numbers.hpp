@@ -37,13 +37,17 @@ inline Precise magnitude(const Precise& x) { return cln::abs(x); }
 inline bool is_zero(double x) { return x == 0; }
 inline bool is_zero(const Precise& x) { return cln::zerop(x); }
 inline double to_double(double x) { return x; }
-inline double to_double(const Precise& x) { return cln::double_approx(x); }
+/// 0 below the normal numbers, where CLN would throw.
+inline double to_double(const Precise& x) {
+  static const Precise least = cln::cl_float(cln::expt(cln::cl_RA(1) / 2, 1022), cln::float_format(20));
+  return cln::abs(x) < least ? 0.0 : cln::double_approx(x);
+}
 
 template <class T>
 T number(const Precise& x);
 template <>
 inline double number<double>(const Precise& x) {
-  return cln::double_approx(x);
+  return to_double(x);
 }
 template <>
 inline Precise number<Precise>(const Precise& x) {

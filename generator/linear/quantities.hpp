@@ -22,7 +22,7 @@ class Held {
 
   template <class T>
   Sloped<T> at(const State<T>& z, const Setting<T>& setting) const {
-    return tape_.at<T>(flow_.lookup(z, setting));
+    return flow_.sloped(tape_, z, setting);
   }
 
  private:

@@ -1,181 +1,193 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/spectrum.hpp"
 
-#include <cln/complex.h>
-
 #include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
+#include <complex>
+
+#include "linear/qr.hpp"
 
 namespace eomgen::linear {
 namespace {
 
-using cln::cl_N;
+// Pivots below these parts of scaled rows are 0: far from rounding, far from anything that a model has.
+constexpr int most_rank_digits = 60, rank_margin = 5;
+constexpr int root_digits = 18;                // parts of a root below these are 0
+constexpr double printed = 1e-12;              // what an eigenvalue is good for
+constexpr double well_told = 1e-6;             // condition from which binary64 tells eigenvalues one by one
+constexpr double rounding_factor = 100;        // of binary64's QR, on n eps |A|
 
-// Coefficients and roots below these parts of what they could be are 0; the points are known to some 150 digits.
-constexpr int rounding_digits = 90, zero_digits = 60, root_digits = 18, converged_digits = 26;
-constexpr int most_rounds = 600;
+Precise least(const Precise& x, const Precise& y) { return x < y ? x : y; }
+double re(const Root& r) { return to_double(cln::realpart(r.value)); }
+double im(const Root& r) { return to_double(cln::imagpart(r.value)); }
+Precise size_of(const cln::cl_N& x) { return cln::abs(x); }
 
-// To Hessenberg form by eliminations with row pivots, which keeps the eigenvalues.
-void to_hessenberg(Matrix<Precise>& A) {
-  const std::size_t n = A.rows;
-  for (std::size_t k = 1; k + 1 < n; ++k) {
-    std::size_t pivot = k;
-    for (std::size_t i = k + 1; i < n; ++i) {
-      if (magnitude(A(i, k - 1)) > magnitude(A(pivot, k - 1))) pivot = i;
-    }
-    if (is_zero(A(pivot, k - 1))) continue;
-    for (std::size_t j = 0; j < n && pivot != k; ++j) std::swap(A(pivot, j), A(k, j));
-    for (std::size_t j = 0; j < n && pivot != k; ++j) std::swap(A(j, pivot), A(j, k));
-    for (std::size_t i = k + 1; i < n; ++i) {
-      const Precise factor = A(i, k - 1) / A(k, k - 1);
-      if (is_zero(factor)) continue;
-      for (std::size_t j = 0; j < n; ++j) A(i, j) = A(i, j) - factor * A(k, j);
-      for (std::size_t j = 0; j < n; ++j) A(j, k) = A(j, k) + factor * A(j, i);
-    }
+/// An exact 2 would have a root of a few digits.
+Matrix<Precise> as_floats(Matrix<Precise> A) {
+  for (Precise& x : A.a) {
+    if (!is_zero(x)) x = number<Precise>(x);
   }
+  return A;
 }
 
-Precise power(const Precise& x, std::size_t n) { return cln::expt(x, cln::cl_I(static_cast<unsigned long>(n))); }
-
-Precise largest_row(const Matrix<Precise>& A) {
-  Precise largest(0);
-  for (std::size_t i = 0; i < A.rows; ++i) {
-    Precise sum(0);
-    for (std::size_t j = 0; j < A.cols; ++j) sum = sum + magnitude(A(i, j));
-    largest = std::max(largest, sum);
+/// With columns N of the null space and the unit vectors of the pivots as a basis, A is [0, *; 0, what this returns].
+Matrix<Precise> without_null_space(const Matrix<Precise>& A, const Elimination<Precise>& e) {
+  std::vector<std::size_t> pivots = e.pivot_columns(), open;
+  std::sort(pivots.begin(), pivots.end());
+  for (std::size_t j = 0; j < A.cols; ++j) {
+    if (!std::binary_search(pivots.begin(), pivots.end(), j)) open.push_back(j);
   }
-  return largest;
+  const Matrix<Precise> N = e.null_space(), across = Elimination<Precise>(rows_of(N, open), Precise(0)).solve(rows_of(columns_of(A, pivots), open));
+  Matrix<Precise> rest = columns_of(rows_of(A, pivots), pivots);
+  const Matrix<Precise> taken = rows_of(N, pivots) * across;
+  for (std::size_t i = 0; i < rest.a.size(); ++i) rest.a[i] = rest.a[i] - taken.a[i];
+  return rest;
 }
 
-/// What cancels leaves a rounding of products of k entries; that is taken away. Returns the size of the largest root, but for a factor of
-/// twice the degree: the largest |c_k|^(1/k).
-double clean(std::vector<Precise>& c, const Matrix<Precise>& A) {
-  const Precise norm = largest_row(A);
-  double largest = 0;
-  for (std::size_t k = 1; k < c.size(); ++k) {
-    if (magnitude(c[k]) <= tiny<Precise>(rounding_digits) * power(norm, k)) c[k] = Precise(0);
-    else largest = std::max(largest, std::exp(to_double(cln::ln(magnitude(c[k]))) / static_cast<double>(k)));
-  }
-  return largest;
-}
-
-std::size_t trailing_zeros(const std::vector<Precise>& c, double scale) {
-  const auto vanishes = [&](std::size_t k) { return magnitude(c[k]) <= tiny<Precise>(zero_digits) * power(number<Precise>(Precise(scale)), k); };
+/// Zeros, by ranks: what is left has none.
+std::size_t split_zeros(Matrix<Precise>& A, int known) {
+  const int rank_digits = std::min(most_rank_digits, known - rank_margin), floor_digits = std::min(100, known - rank_margin);
   std::size_t zeros = 0;
-  while (zeros + 1 < c.size() && vanishes(c.size() - 1 - zeros)) ++zeros;
+  while (A.rows > 0) {
+    const Precise nothing = tiny<Precise>(known) * largest_row(A);
+    for (Precise& x : A.a) {
+      if (magnitude(x) <= nothing) x = Precise(0);
+    }
+    const Elimination<Precise> e(A, tiny<Precise>(rank_digits), tiny<Precise>(floor_digits));
+    if (e.rank() == A.rows) break;
+    zeros += A.rows - e.rank();
+    A = without_null_space(A, e);
+  }
   return zeros;
 }
 
-double larger_part(const cl_N& x) {
-  return std::max(std::abs(cln::double_approx(cln::realpart(x))), std::abs(cln::double_approx(cln::imagpart(x))));
-}
-
-/// Where the search begins: binary64's eigenvalues, the smallest left out for the zeros, each a little beside its place.
-std::vector<cl_N> guesses(const Matrix<Precise>& A, std::size_t zeros, double scale) {
-  const auto n = static_cast<Eigen::Index>(A.rows);
-  Eigen::MatrixXd M(n, n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    for (Eigen::Index j = 0; j < n; ++j) M(i, j) = to_double(A(static_cast<std::size_t>(i), static_cast<std::size_t>(j)));
-  }
-  const Eigen::VectorXcd found = Eigen::EigenSolver<Eigen::MatrixXd>(M, false).eigenvalues();
-  std::vector<std::complex<double>> all(found.data(), found.data() + found.size());
-  std::stable_sort(all.begin(), all.end(), [](const auto& a, const auto& b) { return std::abs(a) > std::abs(b); });
-  std::vector<cl_N> result;
-  for (std::size_t k = 0; k + zeros < all.size(); ++k) {
-    const double size = std::max(std::abs(all[k]), 1e-8 * scale), angle = 2.4 * static_cast<double>(k) + 0.7;
-    const std::complex<double> z = all[k] + 1e-6 * size * std::complex<double>(std::cos(angle), std::sin(angle));
-    result.push_back(cln::complex(cln::cl_float(z.real(), precise_format()), cln::cl_float(z.imag(), precise_format())));
-  }
-  return result;
-}
-
-// All roots together (Ehrlich and Aberth): simple ones with third order, multiple ones linearly.
-void find_roots(const std::vector<Precise>& c, std::vector<cl_N>& z) {
-  const double enough = std::pow(10.0, -converged_digits);
-  for (int round = 0; round < most_rounds; ++round) {
-    bool still = true;
-    for (std::size_t k = 0; k < z.size(); ++k) {
-      cl_N p = c[0], d = cl_N(0);
-      for (std::size_t i = 1; i <= z.size(); ++i) {
-        d = d * z[k] + p;
-        p = p * z[k] + c[i];
+// What a Jordan block spreads into, and equal roots: as near to one another as their errors. The mean is known far better than each.
+void merge(std::vector<Root>& list, std::vector<Precise>& error, const Precise& norm) {
+  const std::size_t n = list.size();
+  std::vector<std::size_t> leader(n);
+  for (std::size_t i = 0; i < n; ++i) leader[i] = i;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const Precise reach = Precise(1000) * std::max(error[i], error[j]);
+      if (size_of(list[i].value - list[j].value) > least(reach, Precise(1) / 1000 * size_of(list[i].value))) continue;
+      const std::size_t from = leader[j], to = leader[i];
+      for (std::size_t& l : leader) {
+        if (l == from) l = to;
       }
-      if (cln::zerop(p)) continue;
-      cl_N repulsion = 0;
-      for (std::size_t j = 0; j < z.size(); ++j) {
-        if (j != k && !cln::zerop(z[k] - z[j])) repulsion = repulsion + cl_N(1) / (z[k] - z[j]);
-      }
-      const cl_N below = d - p * repulsion;
-      if (cln::zerop(below)) continue;
-      const cl_N step = p / below;
-      z[k] = z[k] - step;
-      still = still && larger_part(step) <= enough * larger_part(z[k]);
     }
-    if (still) return;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (leader[i] != i) continue;
+    cln::cl_N sum = 0;
+    int count = 0;
+    for (std::size_t j = 0; j < n; ++j) {
+      if (leader[j] != i) continue;
+      sum = sum + list[j].value;
+      ++count;
+    }
+    if (count == 1) continue;
+    const cln::cl_N mean = sum / cln::cl_N(count);
+    Precise spread(0);
+    for (std::size_t j = 0; j < n; ++j) {
+      if (leader[j] == i) spread = std::max(spread, size_of(list[j].value - mean));
+    }
+    for (std::size_t j = 0; j < n; ++j) {
+      if (leader[j] != i) continue;
+      list[j].value = mean;
+      list[j].condition = Precise(0);
+      // The mean moves with the square of what each moves by, and at least by a rounding.
+      const bool wide = spread > tiny<Precise>(10) * size_of(mean);  // then it may as well be several
+      error[j] = wide ? spread : spread * spread / norm + tiny<Precise>(known_digits) * norm;
+    }
   }
 }
 
-// The polynomial is real: what rounding has told apart is made conjugate again.
-void pair_up(std::vector<Eigenvalue>& values) {
-  for (const Eigenvalue& a : values) {
-    if (!(a.im > 0)) continue;
-    const auto distance = [&a](const Eigenvalue& b) { return b.im < 0 ? std::hypot(a.re - b.re, a.im + b.im) : HUGE_VAL; };
-    const auto partner = std::min_element(values.begin(), values.end(),
-                                          [&](const Eigenvalue& x, const Eigenvalue& y) { return distance(x) < distance(y); });
-    if (distance(*partner) <= 1e-12 * std::hypot(a.re, a.im)) *partner = {a.re, -a.im};
+using Complex = std::complex<double>;
+
+/// What binary64 says of the same matrix, scaled to size 1.
+class Binary64 {
+ public:
+  Binary64(const Matrix<Precise>& A, const Precise& norm) : M_(static_cast<Eigen::Index>(A.rows), static_cast<Eigen::Index>(A.cols)), norm_(norm) {
+    for (Eigen::Index i = 0; i < M_.rows(); ++i) {
+      for (Eigen::Index j = 0; j < M_.cols(); ++j) M_(i, j) = to_double(A(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) / norm);
+    }
+    const Eigen::VectorXcd found = Eigen::EigenSolver<Eigen::MatrixXd>(M_, false).eigenvalues();
+    free_.assign(found.data(), found.data() + found.size());
+    rounding_ = rounding_factor * static_cast<double>(A.rows) * 2.3e-16;
   }
+
+  /// One of its eigenvalues, which no other root has, is as near as roundings allow; where they allow anything, the matrix is
+  /// singular there within its roundings.
+  bool has(const Root& r) {
+    const Complex at = {to_double(cln::realpart(r.value) / norm_), to_double(cln::imagpart(r.value) / norm_)};
+    const double condition = to_double(r.condition);
+    if (condition < well_told) {
+      const Eigen::Index n = M_.rows();
+      Eigen::MatrixXd shifted(2 * n, 2 * n);  // M - at, as real numbers
+      shifted << M_, Eigen::MatrixXd::Zero(n, n), Eigen::MatrixXd::Zero(n, n), M_;
+      for (Eigen::Index i = 0; i < n; ++i) {
+        shifted(i, i) -= at.real();
+        shifted(n + i, n + i) -= at.real();
+        shifted(i, n + i) = at.imag();
+        shifted(n + i, i) = -at.imag();
+      }
+      return !(rounding_ * Eigen::PartialPivLU<Eigen::MatrixXd>(shifted).inverse().norm() < 1);
+    }
+    const auto nearest = std::min_element(free_.begin(), free_.end(), [&at](const Complex& a, const Complex& b) { return std::abs(a - at) < std::abs(b - at); });
+    if (nearest == free_.end() || std::abs(*nearest - at) > rounding_ / condition) return false;
+    free_.erase(nearest);
+    return true;
+  }
+
+ private:
+  Eigen::MatrixXd M_;
+  Precise norm_;
+  std::vector<Complex> free_;
+  double rounding_ = 0;
+};
+
+Eigenvalue rounded(const Root& r, const Precise& error) {
+  Eigenvalue value{re(r), im(r), to_double(error), true};
+  const double size = to_double(size_of(r.value)), nothing = std::max(size * std::pow(10.0, -root_digits), std::min(value.error, size * printed));
+  if (std::abs(value.re) <= nothing) value.re = 0;
+  if (std::abs(value.im) <= nothing) value.im = 0;
+  return value;
 }
 
 }  // namespace
 
-std::vector<Precise> characteristic_polynomial(Matrix<Precise> H) {
-  to_hessenberg(H);
-  const std::size_t n = H.rows;
-  // p_k of the leading k x k block, lowest power first.
-  std::vector<std::vector<Precise>> p{{Precise(1)}};
-  for (std::size_t k = 1; k <= n; ++k) {
-    std::vector<Precise> next(k + 1, Precise(0));
-    for (std::size_t i = 0; i < k; ++i) {
-      next[i + 1] = next[i + 1] + p[k - 1][i];
-      next[i] = next[i] - H(k - 1, k - 1) * p[k - 1][i];
-    }
-    Precise below(1);
-    for (std::size_t i = 1; i < k; ++i) {
-      below = below * H(k - i, k - i - 1);
-      if (is_zero(below)) break;
-      const Precise factor = below * H(k - i - 1, k - 1);
-      for (std::size_t j = 0; j < p[k - i - 1].size(); ++j) next[j] = next[j] - factor * p[k - i - 1][j];
-    }
-    p.push_back(std::move(next));
-  }
-  return {p[n].rbegin(), p[n].rend()};
+bool Eigenvalue::holds() const { return in_binary64 && error <= printed * std::hypot(re, im); }
+bool Spectrum::holds() const {
+  return std::all_of(values.begin(), values.end(), [](const Eigenvalue& e) { return e.holds(); });
 }
 
-std::size_t zero_eigenvalues(const Matrix<Precise>& A) {
-  std::vector<Precise> c = characteristic_polynomial(A);
-  const double scale = clean(c, A);
-  return trailing_zeros(c, scale);
+std::size_t zero_eigenvalues(const Matrix<Precise>& A, int known) {
+  Matrix<Precise> rest = as_floats(A);
+  return split_zeros(rest, known);
 }
 
-Spectrum spectrum(const Matrix<Precise>& A) {
+Spectrum spectrum(const Matrix<Precise>& A, int known) {
   Spectrum result;
-  std::vector<Precise> c = characteristic_polynomial(A);
-  const double scale = clean(c, A);
-  result.zeros = trailing_zeros(c, scale);
-  c.resize(c.size() - result.zeros);
-  std::vector<cl_N> z;
-  if (c.size() > 1) {
-    z = guesses(A, result.zeros, scale);
-    find_roots(c, z);
+  Matrix<Precise> rest = as_floats(A);
+  result.zeros = split_zeros(rest, known);
+  rest = balanced(std::move(rest));
+  const Precise norm = largest_row(rest);
+  Roots found = roots(rest);
+  require_domain(found.complete, "the iteration for its eigenvalues does not end");
+  std::vector<Precise> error;
+  for (const Root& r : found.list) {
+    const Precise backward = r.residual + tiny<Precise>(known) * norm;
+    error.push_back(is_zero(r.condition) ? norm : least(norm, backward / r.condition));
   }
-  for (const cl_N& root : z) {
-    Eigenvalue value{cln::double_approx(cln::realpart(root)), cln::double_approx(cln::imagpart(root))};
-    const double size = std::hypot(value.re, value.im) * std::pow(10.0, -root_digits);
-    if (std::abs(value.re) <= size) value.re = 0;
-    if (std::abs(value.im) <= size) value.im = 0;
-    result.values.push_back(value);
+  if (!found.list.empty()) {
+    Binary64 other(rest, norm);
+    merge(found.list, error, norm);
+    for (std::size_t i = 0; i < found.list.size(); ++i) {
+      result.values.push_back(rounded(found.list[i], error[i]));
+      result.values.back().in_binary64 = other.has(found.list[i]);
+    }
   }
-  pair_up(result.values);
   result.values.resize(result.values.size() + result.zeros);
   std::stable_sort(result.values.begin(), result.values.end(),
                    [](const Eigenvalue& a, const Eigenvalue& b) { return a.re != b.re ? a.re > b.re : a.im > b.im; });

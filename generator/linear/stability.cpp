@@ -62,7 +62,7 @@ StabilityTest::StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::ve
 
 StabilityTest::Slopes StabilityTest::slopes(const Function& function, const Linearisation& l) const {
   const std::size_t size = 2 * flow_.coordinates();
-  const Sloped<Precise> s = function.gradient.at<Precise>(flow_.lookup(l.z, l.setting));
+  const Sloped<Precise> s = flow_.sloped(function.gradient, l.z, l.setting);
   Slopes result{Matrix<Precise>(1, size), Matrix<Precise>(size, size)};
   for (std::size_t i = 0; i < size; ++i) {
     result.first(0, i) = s.value[i + 1];
@@ -142,16 +142,23 @@ std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady,
 Verdict StabilityTest::operator()(const Linearisation& l) const {
   const std::vector<std::size_t> entries = retained_entries(l);
   const Matrix<Precise> A = columns_of(rows_of(l.A, entries), entries);
-  const Spectrum s = spectrum(A);
-  if (!s.values.empty() && s.values.front().re > 0) return {Stability::unstable, "an eigenvalue has a positive real part"};
-  const auto falling = static_cast<std::size_t>(std::count_if(s.values.begin(), s.values.end(), [](const Eigenvalue& e) { return e.re < 0; }));
+  const Spectrum s = spectrum(A, l.known);
+  const auto rises = [](const Eigenvalue& e) { return e.in_binary64 && e.re > e.error; };
+  const auto falls = [](const Eigenvalue& e) { return e.in_binary64 && e.re < -e.error; };
+  if (std::any_of(s.values.begin(), s.values.end(), rises)) return {Stability::unstable, "an eigenvalue has a positive real part"};
+  const auto falling = static_cast<std::size_t>(std::count_if(s.values.begin(), s.values.end(), falls));
   if (falling + s.zeros == s.values.size()) {
     if (s.zeros == 0) return {Stability::stable, "all eigenvalues have negative real parts"};
     const auto along = falling > 0 ? family(flow_, l, A) : std::nullopt;
     if (along && *along == s.zeros) return {Stability::stable, "a family of steady motions that attracts: all other eigenvalues have negative real parts"};
   }
   for (const Function& energy : energies_) {
-    if (definite(l, entries, energy)) return {Stability::stable, "the second variation of '" + energy.name + "' at fixed momenta is definite"};
+    bool decides = false;
+    try {
+      decides = definite(l, entries, energy);
+    } catch (const std::domain_error&) {  // it has no second variation here
+    }
+    if (decides) return {Stability::stable, "the second variation of '" + energy.name + "' at fixed momenta is definite"};
   }
   return {Stability::unknown, "no eigenvalue has a positive real part, and no conserved quantity that is known decides"};
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/tape.hpp"
 
+#include <cln/exception.h>
+
 #include <algorithm>
 #include <map>
 
@@ -40,27 +42,31 @@ struct Functions<Precise> {
   static Precise power(const Precise& x, long n) { return cln::expt(x, cln::cl_I(n)); }
 };
 
-/// A value and its partial derivatives by the operands.
+/// A value and its partial derivatives by the operands; or why there are none.
 template <class T>
 struct Local {
   T value{0};
   std::array<T, 4> slope{T(0), T(0), T(0), T(0)};
+  const char* no_slope = nullptr;
 };
 
+constexpr const char* on_an_edge = "it lies on the edge of abs, sign, min, max or if";
+
+/// `moves`: what is compared does.
 template <class T>
-Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves) {
+Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
   const bool one = op == Op::abs || op == Op::sign;
   const T gap = one ? x[0] : x[0] - x[1];
-  // Decided once, in the digits at hand: exactly on the edge there is no slope.
-  require_domain(!moves || magnitude(gap) > tiny<T>(13) * (magnitude(x[0]) + magnitude(one ? T(1) : x[1])),
-                 "it lies on the edge of abs, sign, min, max or if");
   const bool below = gap < T(0);
+  // Decided once, in the digits at hand: exactly on the edge there is no slope.
+  const bool met = moves && !(magnitude(gap) > tiny<T>(edge) * (magnitude(x[0]) + magnitude(one ? T(1) : x[1])));
+  const char* const no_slope = met ? on_an_edge : nullptr;
   switch (op) {
-    case Op::abs: return {magnitude(x[0]), {below ? T(-1) : T(1)}};
-    case Op::sign: return {is_zero(gap) ? T(0) : below ? T(-1) : T(1), {}};
-    case Op::min: return below ? Local<T>{x[0], {T(1), T(0)}} : Local<T>{x[1], {T(0), T(1)}};
-    case Op::max: return below ? Local<T>{x[1], {T(0), T(1)}} : Local<T>{x[0], {T(1), T(0)}};
-    default: return below ? Local<T>{x[2], {T(0), T(0), T(1), T(0)}} : Local<T>{x[3], {T(0), T(0), T(0), T(1)}};
+    case Op::abs: return {magnitude(x[0]), {below ? T(-1) : T(1)}, no_slope};
+    case Op::sign: return {is_zero(gap) ? T(0) : below ? T(-1) : T(1), {}, no_slope};
+    case Op::min: return below ? Local<T>{x[0], {T(1), T(0)}, no_slope} : Local<T>{x[1], {T(0), T(1)}, no_slope};
+    case Op::max: return below ? Local<T>{x[1], {T(0), T(1)}, no_slope} : Local<T>{x[0], {T(1), T(0)}, no_slope};
+    default: return below ? Local<T>{x[2], {T(0), T(0), T(1), T(0)}, no_slope} : Local<T>{x[3], {T(0), T(0), T(0), T(1)}, no_slope};
   }
 }
 
@@ -69,10 +75,11 @@ Local<T> arcs(Op op, const T& x) {
   using F = Functions<T>;
   if (op == Op::atan) return {F::atan2(x, T(1)), {T(1) / (T(1) + x * x)}};
   const T square = (T(1) - x) * (T(1) + x);
-  require_domain(square > T(0), "asin or acos at 1 or beyond");
+  require_domain(!(square < T(0)), "asin or acos beyond 1");
   const T root = F::sqrt(square);
-  if (op == Op::asin) return {F::atan2(x, root), {T(1) / root}};
-  return {F::atan2(root, x), {T(-1) / root}};
+  const T value = op == Op::asin ? F::atan2(x, root) : F::atan2(root, x);
+  if (is_zero(root)) return {value, {}, "asin or acos at 1"};
+  return {value, {T(op == Op::asin ? 1 : -1) / root}};
 }
 
 template <class T>
@@ -106,7 +113,7 @@ Local<T> of_function(Op op, const T& x, bool moves) {
     case Op::sqrt: {
       require_domain(!(x < T(0)), "sqrt of a negative number");
       const T v = F::sqrt(x);
-      require_domain(!moves || !is_zero(v), "sqrt of 0 has no slope");
+      if (moves && is_zero(v)) return {v, {}, "sqrt of 0 has no slope"};
       return {v, {moves ? T(1) / (T(2) * v) : T(0)}};
     }
     case Op::sin: return {F::sin(x), {F::cos(x)}};
@@ -133,8 +140,8 @@ Local<T> of_function(Op op, const T& x, bool moves) {
 }
 
 template <class T>
-Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
-  if (symbolic::is_kink(op)) return kinked(op, x, moves[0] || moves[1] || moves[2] || moves[3]);
+Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves, int edge) {
+  if (symbolic::is_kink(op)) return kinked(op, x, moves[0] || moves[1], edge);
   switch (op) {
     case Op::add: case Op::sub: case Op::mul: case Op::div: case Op::neg: case Op::power: case Op::pow:
       return arithmetic(op, payload, x, moves);
@@ -173,45 +180,100 @@ Tape::Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> direction
   for (const Ref r : roots) roots_.push_back(place.at(r));
 }
 
+/// What each step gave; where it has no value or no slope, why.
 template <class T>
-Sloped<T> Tape::at(const std::function<T(const Symbol&)>& lookup) const {
-  std::vector<T> value(steps_.size());
-  Matrix<T> slope(moving_, directions_);
+struct Tape::Run {
+  std::vector<T> value;
+  Matrix<T> slope;  // of the steps that move
+  std::vector<std::string> reasons;
+  std::vector<std::uint32_t> no_value, no_slope;  // per step: 0, or 1 + a place in `reasons`
+
+  std::uint32_t because(const std::string& reason) {
+    reasons.push_back(reason);
+    return static_cast<std::uint32_t>(reasons.size());
+  }
+};
+
+template <class T>
+Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, bool slopes) const {
+  Run<T> r{std::vector<T>(steps_.size()), Matrix<T>(slopes ? moving_ : 0, directions_), {}, std::vector<std::uint32_t>(steps_.size(), 0),
+           std::vector<std::uint32_t>(steps_.size(), 0)};
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     const Step& step = steps_[k];
-    if (step.op == Op::constant) value[k] = number<T>(dag_.value(nodes_[k]));
-    if (step.op == Op::pi) value[k] = Functions<T>::pi();
+    if (step.op == Op::constant) r.value[k] = number<T>(dag_.value(nodes_[k]));
+    if (step.op == Op::pi) r.value[k] = Functions<T>::pi();
     if (step.op == Op::symbol) {
-      value[k] = lookup(dag_.symbol_of(nodes_[k]));
-      if (step.moves) slope(step.place, step.direction) = T(1);
+      r.value[k] = lookup(dag_.symbol_of(nodes_[k]));
+      if (step.moves && slopes) r.slope(step.place, step.direction) = T(1);
     }
     if (step.arity == 0) continue;
     std::array<T, 4> x{T(0), T(0), T(0), T(0)};
-    std::array<bool, 4> moves{};
+    std::array<bool, 4> moves{}, needed{};
     for (std::uint8_t i = 0; i < step.arity; ++i) {
-      x[i] = value[step.args[i]];
+      x[i] = r.value[step.args[i]];
       moves[i] = steps_[step.args[i]].moves;
+      needed[i] = step.op != Op::select || i < 2;
     }
-    const Local<T> here = local(step.op, step.payload, x, moves);
-    value[k] = here.value;
+    if (step.op == Op::select) needed[x[0] < x[1] ? 2 : 3] = true;
+    for (std::uint8_t i = 0; i < step.arity && r.no_value[k] == 0; ++i) {
+      if (needed[i]) r.no_value[k] = r.no_value[step.args[i]];
+    }
+    if (r.no_value[k] != 0) continue;
+    Local<T> here;
+    try {
+      here = local(step.op, step.payload, x, moves, edge);
+    } catch (const std::domain_error& error) {
+      r.no_value[k] = r.because(error.what());
+      continue;
+    } catch (const cln::runtime_exception&) {
+      r.no_value[k] = r.because("a number that is too large");
+      continue;
+    }
+    r.value[k] = here.value;
+    if (!slopes) continue;
+    if (here.no_slope != nullptr && step.moves) r.no_slope[k] = r.because(here.no_slope);
     for (std::uint8_t i = 0; i < step.arity; ++i) {
-      if (!moves[i] || is_zero(here.slope[i])) continue;
+      if (!moves[i] || !needed[i]) continue;
+      if (r.no_slope[k] == 0) r.no_slope[k] = r.no_slope[step.args[i]];
+      if (is_zero(here.slope[i])) continue;
       for (std::size_t d = 0; d < directions_; ++d) {
-        const T& inner = slope(steps_[step.args[i]].place, d);
-        if (!is_zero(inner)) slope(step.place, d) = slope(step.place, d) + here.slope[i] * inner;
+        const T& inner = r.slope(steps_[step.args[i]].place, d);
+        if (!is_zero(inner)) r.slope(step.place, d) = r.slope(step.place, d) + here.slope[i] * inner;
       }
     }
   }
+  return r;
+}
+
+template <class T>
+Sloped<T> Tape::at(const std::function<T(const Symbol&)>& lookup, int edge) const {
+  const Run<T> r = run(lookup, edge, true);
   Sloped<T> result{{}, Matrix<T>(roots_.size(), directions_)};
   for (std::size_t i = 0; i < roots_.size(); ++i) {
     const Step& step = steps_[roots_[i]];
-    result.value.push_back(value[roots_[i]]);
-    for (std::size_t d = 0; step.moves && d < directions_; ++d) result.slope(i, d) = slope(step.place, d);
+    for (const std::uint32_t reason : {r.no_value[roots_[i]], r.no_slope[roots_[i]]}) {
+      if (reason != 0) throw std::domain_error(r.reasons[reason - 1]);
+    }
+    result.value.push_back(r.value[roots_[i]]);
+    for (std::size_t d = 0; step.moves && d < directions_; ++d) result.slope(i, d) = r.slope(step.place, d);
   }
   return result;
 }
 
-template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&) const;
-template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&) const;
+template <class T>
+std::vector<T> Tape::values(const std::function<T(const Symbol&)>& lookup) const {
+  const Run<T> r = run(lookup, 0, false);
+  std::vector<T> result;
+  for (const std::uint32_t root : roots_) {
+    if (const std::uint32_t reason = r.no_value[root]; reason != 0) throw std::domain_error(r.reasons[reason - 1]);
+    result.push_back(r.value[root]);
+  }
+  return result;
+}
+
+template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&, int) const;
+template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&, int) const;
+template std::vector<double> Tape::values(const std::function<double(const Symbol&)>&) const;
+template std::vector<Precise> Tape::values(const std::function<Precise(const Symbol&)>&) const;
 
 }  // namespace eomgen::linear

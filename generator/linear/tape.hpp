@@ -26,9 +26,13 @@ class Tape {
   /// Directions are symbols: slopes are partial derivatives.
   Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> directions);
 
-  /// Throws std::domain_error where something has no value or no slope: outside of a domain, at the root of 0, on the edge of abs.
+  /// Throws std::domain_error where a root has no value or no slope: outside of a domain, at the root of 0, on the edge of abs. A branch
+  /// of `if` that is not taken needs neither. `edge`: digits within which a kink counts as met.
   template <class T>
-  Sloped<T> at(const std::function<T(const Symbol&)>& lookup) const;
+  Sloped<T> at(const std::function<T(const Symbol&)>& lookup, int edge = 13) const;
+  /// Values alone: the root of 0 has one, and so has the edge of abs.
+  template <class T>
+  std::vector<T> values(const std::function<T(const Symbol&)>& lookup) const;
 
  private:
   struct Step {
@@ -41,6 +45,11 @@ class Tape {
     std::uint32_t direction = 0;          // of a symbol that moves
   };
 
+  template <class T>
+  struct Run;
+  template <class T>
+  Run<T> run(const std::function<T(const Symbol&)>& lookup, int edge, bool slopes) const;
+
   const Dag& dag_;
   std::vector<Step> steps_;
   std::vector<Ref> nodes_;            // of steps_
@@ -48,7 +57,9 @@ class Tape {
   std::size_t directions_, moving_ = 0;
 };
 
-extern template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&) const;
-extern template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&) const;
+extern template Sloped<double> Tape::at(const std::function<double(const Symbol&)>&, int) const;
+extern template Sloped<Precise> Tape::at(const std::function<Precise(const Symbol&)>&, int) const;
+extern template std::vector<double> Tape::values(const std::function<double(const Symbol&)>&) const;
+extern template std::vector<Precise> Tape::values(const std::function<Precise(const Symbol&)>&) const;
 
 }  // namespace eomgen::linear

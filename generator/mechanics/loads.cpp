@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces: what has a potential goes into U, everything else becomes a load at a point or a generalised force.
+#include "mechanics/direction.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
+#include "symbolic/polynomial.hpp"
 
 namespace eomgen::mechanics {
 namespace {
@@ -89,6 +91,14 @@ class ForceReader {
   void add(const model::Damper& damper) {
     const Vec3 a = lower_.vector(damper.a), b = lower_.vector(damper.b);
     const Vec3 along = lower_.subtract(a, b);
+    if (const auto w = direction(lower_, dag_, m_.q.size(), along)) {
+      // Points that may meet: c (w . v)/(w . w) w with the line w between them has a value there too.
+      const Ref size = symbolic::tidy(dag_, lower_.dot(*w, *w)), rate = lower_.dot(*w, lower_.ddt(along, force_->span));
+      const Ref pull = dag_.div(dag_.mul(lower_.scalar(damper.coefficient), symbolic::simpler(dag_, rate, 60)), size);
+      load(lower_.scale(dag_.neg(pull), *w), a);
+      load(lower_.scale(pull, *w), b);
+      return;
+    }
     const Ref distance = lower_.norm(along);
     const Ref rate = lower_.ddt(distance, force_->span);
     const Ref tension = dag_.mul(lower_.scalar(damper.coefficient), rate);

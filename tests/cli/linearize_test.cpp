@@ -44,10 +44,10 @@ TEST_CASE("linearize: another parameter, another time") {
 
 TEST_CASE("linearize: what has no slope, contacts, wrong names and times are told with a remedy") {
   const Folder folder;
-  folder.write("edge.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = \"-x - abs(x_dot)*x_dot\" }\n"
+  folder.write("edge.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = \"-x - abs(x_dot)\" }\n"
                             "[scene.default]\ninitial = { x = 1 }\n");
   const std::string edge = expect(2, folder, {"linearize", "edge.toml"}).err;
-  CHECK(contains(edge, "edge.toml:8:"));
+  CHECK(contains(edge, "edge.toml:6:"));
   CHECK(contains(edge, "the edge of abs"));
   CHECK(contains(expect(2, folder, {"linearize", "bouncing_ball"}).err, "linearise a copy"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--scene", "defualt"}).err, "did you mean 'default'?"));

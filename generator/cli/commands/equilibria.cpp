@@ -41,11 +41,11 @@ json to_json(const SteadyMotions& found, const Options& options) {
   json points = json::array(), held = json::array();
   for (const SteadyMotion& point : found.points) {
     json values = json::object(), eigenvalues = json::array();
-    for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = linear::to_double(point.l.z[i]);
-    for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back({{"re", e.re}, {"im", e.im}});
+    for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = shown(point.l.z[i]);
+    for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
     points.push_back({{"kind", linear::name(point.l.kind)}, {"values", values}, {"eigenvalues", eigenvalues},
                       {"structural_zeros", point.l.structural_zeros}, {"stable", to_json(point.verdict)}, {"reason", point.verdict.reason},
-                      {"family", point.family}});
+                      {"family", point.family}, {"off", point.l.off}});
   }
   for (const HeldValue& h : found.held) held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
   return {{"format", 1},
@@ -54,20 +54,24 @@ json to_json(const SteadyMotions& found, const Options& options) {
           {"held_in_vain", found.search.released},
           {"starts", options.starts},
           {"converged", found.search.converged},
+          {"refused", found.search.refused},
           {"certificate", found.problem.certificate}};
 }
 
 std::string text(const SteadyMotion& point, const std::vector<std::string>& names) {
   std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), to_text(point.verdict), point.verdict.reason);
   if (point.family > 0) out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
+  if (point.l.off > 0) out += fmt::format("  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n", point.l.off);
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (!linear::is_zero(point.l.z[i])) out += fmt::format("  {:<24} {:>24}\n", names[i], linear::to_double(point.l.z[i]));
+    const bool rest = point.l.kind == linear::Kind::equilibrium && 2 * i >= names.size();  // rates, all 0
+    if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], shown(point.l.z[i]));
   }
   out += "  eigenvalues";
   for (std::size_t i = 0; i < point.l.spectrum.values.size(); ++i) {
     const linear::Eigenvalue& e = point.l.spectrum.values[i];
     if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;  // of a pair one is shown
     out += e.im == 0 ? fmt::format("  {:.8g}", e.re) : fmt::format("  {:.8g} +- {:.8g}i", e.re, e.im);
+    if (!e.holds()) out += " (in doubt)";
   }
   return out + fmt::format("  and {} zeros, {} of them structural\n", point.l.spectrum.zeros, point.l.structural_zeros);
 }
@@ -77,6 +81,9 @@ std::string text(const SteadyMotions& found, const Options& options) {
                                 found.points.empty() ? "no equilibrium and no steady motion" : fmt::format("{} equilibria and steady motions", found.points.size()));
   for (const HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
   for (const SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
+  if (found.search.refused > 0) {
+    out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n", found.search.refused, found.search.reason);
+  }
   return out + fmt::format("\nsearch            {} starts, of which {} led to one; what a coordinate system does not cover is not found\ncertificate       {}\n",
                            options.starts, found.search.converged, found.problem.certificate);
 }

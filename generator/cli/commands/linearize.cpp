@@ -47,9 +47,10 @@ struct Answer {
   }
   std::size_t accidental() const { return l.spectrum.zeros - l.structural_zeros; }
   std::string what() const {
+    const std::string off = l.off > 0 ? fmt::format(" but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one", l.off) : "";
     switch (l.kind) {
-      case linear::Kind::equilibrium: return "an equilibrium";
-      case linear::Kind::steady: return "a steady motion: only coordinates that nothing feels advance";
+      case linear::Kind::equilibrium: return "an equilibrium" + off;
+      case linear::Kind::steady: return "a steady motion" + off + ": only coordinates that nothing feels advance";
       case linear::Kind::motion: break;
     }
     return l.symmetry.autonomous ? "neither an equilibrium nor a steady motion: A(t) along the motion, at this instant"
@@ -61,7 +62,7 @@ json rows(const linear::Matrix<linear::Precise>& A) {
   json result = json::array();
   for (std::size_t i = 0; i < A.rows; ++i) {
     json row = json::array();
-    for (std::size_t j = 0; j < A.cols; ++j) row.push_back(linear::to_double(A(i, j)));
+    for (std::size_t j = 0; j < A.cols; ++j) row.push_back(shown(A(i, j)));
     result.push_back(row);
   }
   return result;
@@ -69,8 +70,8 @@ json rows(const linear::Matrix<linear::Precise>& A) {
 
 json to_json(const Answer& a) {
   json eigenvalues = json::array(), point = json::object();
-  for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back({{"re", e.re}, {"im", e.im}});
-  for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = linear::to_double(a.l.z[i]);
+  for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
+  for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = shown(a.l.z[i]);
   return {{"format", 1},
           {"kind", linear::name(a.l.kind)},
           {"autonomous", a.l.symmetry.autonomous},
@@ -81,6 +82,8 @@ json to_json(const Answer& a) {
           {"A", rows(a.l.A)},
           {"B", rows(a.l.B)},
           {"eigenvalues", eigenvalues},
+          {"eigenvalues_hold", a.l.spectrum.holds()},
+          {"off", a.l.off},
           {"structural_zeros", a.l.structural_zeros},
           {"other_zeros", a.accidental()},
           {"ignorable", a.ignorable()},
@@ -97,7 +100,7 @@ std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>
   out += "\n";
   for (std::size_t i = 0; i < A.rows; ++i) {
     out += fmt::format("  {:<{}}", rows[i], width);
-    for (std::size_t j = 0; j < A.cols; ++j) out += fmt::format(" {:>14.7g}", linear::to_double(A(i, j)));
+    for (std::size_t j = 0; j < A.cols; ++j) out += fmt::format(" {:>14.7g}", shown(A(i, j)));
     out += "\n";
   }
   return out;
@@ -106,9 +109,9 @@ std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>
 std::string text(const Answer& a) {
   const auto& chart = a.l.symmetry.chart;
   std::string out = fmt::format("{}, scene {}, t = {}: {}\n\n", a.problem.derived->model.id, a.problem.scene.name, a.problem.t, a.what());
-  for (const std::size_t i : chart.independent) out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], linear::to_double(a.l.z[i]));
+  for (const std::size_t i : chart.independent) out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], shown(a.l.z[i]));
   for (const std::size_t i : chart.dependent) {
-    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], linear::to_double(a.l.z[i]));
+    out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], shown(a.l.z[i]));
   }
   out += matrix_text("A", a.l.A, a.states(), a.states());
   if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());
@@ -132,9 +135,8 @@ int execute(const Options& options, const Common& common) {
       fmt::print("{}", text(answer));
     }
   } catch (const std::domain_error& error) {
-    const model::Model& model = problem.derived->model;
-    throw Error("linearize", model.where(model.scene(options.scene).span),
-                fmt::format("the equations of motion have no slope at this state: {}", error.what()),
+    const Source source = without_slope(problem, problem.z);
+    throw Error("linearize", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
                 "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
   }
   return 0;

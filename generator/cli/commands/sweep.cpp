@@ -66,7 +66,7 @@ std::string field(std::string text) {
   return quoted + "\"";
 }
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", value) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value)) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
 
 class Sweep {
  public:

@@ -3,7 +3,7 @@
 // Rows go to F.csv.partial; finish(outcome) adds the line "# outcome: NAME" and renames it to F.csv in one go, after an
 // interruption or a failure too. Without finish the .partial file stays, with whole lines (a kill that falls into the
 // middle of a write may cut the last one). Numbers have 17 significant
-// digits, as printf's %.17g gives in the C locale, whatever the locale is.
+// digits, as printf's %.17g gives in the C locale, whatever the locale is; -0 is 0.
 #pragma once
 
 #include <cerrno>
@@ -94,7 +94,7 @@ class CsvWriter {
 
   void append_number(double value) {
     char text[40];
-    const auto end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17);
+    const auto end = std::to_chars(text, text + sizeof text, value == 0 ? 0.0 : value, std::chars_format::general, 17);
     lines_.append(text, end.ptr);
   }
 

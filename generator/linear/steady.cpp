@@ -1,0 +1,244 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "linear/steady.hpp"
+
+#include <algorithm>
+
+namespace eomgen::linear {
+namespace {
+
+struct Equations {
+  Matrix<Precise> value, slope;
+};
+
+void add(Equations& e, const Matrix<Precise>& value, const Matrix<Precise>& slope) {
+  e.value = stacked(std::move(e.value), value);
+  e.slope = stacked(std::move(e.slope), slope);
+}
+
+Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z, const State<Precise>& start,
+                           const Setting<Precise>& setting, const Extra& extra) {
+  const Field<Precise> field = flow.at(z, setting);
+  Equations e{field.phi, field.phi_slope};
+  e.slope.cols = field.phi_slope.cols;
+  add(e, rows_of(field.X, symmetry.constant), rows_of(field.slope, symmetry.constant));
+  for (const std::size_t i : ignored_positions(symmetry)) {
+    Matrix<Precise> value(1, 1), slope(1, field.slope.cols);
+    value(0, 0) = z[i] - start[i];
+    slope(0, i) = Precise(1);
+    add(e, value, slope);
+  }
+  if (extra) {
+    Matrix<Precise> value, slope;
+    extra(z, value, slope);
+    if (value.rows > 0) add(e, value, slope);
+  }
+  return e;
+}
+
+/// Of the terms of an equation, as far as its slopes tell.
+Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
+  Precise size(1);
+  for (std::size_t j = 0; j < e.slope.cols; ++j) size = size + magnitude(e.slope(i, j)) * (Precise(1) + magnitude(z[j]));
+  return size;
+}
+
+/// Every equation holds in so many digits, against the size of its terms.
+bool holds(const Equations& e, const State<Precise>& z, int digits_of_it = 90) {
+  for (std::size_t i = 0; i < e.value.rows; ++i) {
+    if (magnitude(e.value(i, 0)) > tiny<Precise>(digits_of_it) * size_of(e, i, z)) return false;
+  }
+  return true;
+}
+
+/// What counts as no pivot and as no row or column, as powers of 1/10.
+struct Rank {
+  int cutoff, floor;
+};
+
+std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry, const State<Precise>& start,
+                                     const Setting<Precise>& setting, const Extra& extra, const Rank& rank) {
+  constexpr int most_steps = 40, exact = 120;
+  State<Precise> z = start;
+  for (int step = 0; step < most_steps; ++step) {
+    Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
+    for (std::size_t i = 0; i < e.slope.rows; ++i) e.slope(i, e.slope.cols - 1) = Precise(0);  // t stays
+    const Matrix<Precise> move = Elimination<Precise>(e.slope, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
+    bool done = true;
+    for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+      z[i] = z[i] - move(i, 0);
+      if (magnitude(move(i, 0)) > Precise(1000) * (Precise(1) + magnitude(start[i]))) return std::nullopt;
+      done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[i]));
+    }
+    if (done) return holds(steady_equations(flow, symmetry, z, start, setting, extra), z) ? std::optional(z) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+/// What Newton's iteration is given, of a place where it starts near a root.
+struct Problem {
+  const Flow& flow;
+  const Symmetry& symmetry;
+  const State<Precise>& start;
+  const Setting<Precise>& setting;
+  const Extra& extra;
+
+  Equations at(const State<Precise>& z) const {
+    Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
+    for (std::size_t i = 0; i < e.slope.rows; ++i) e.slope(i, e.slope.cols - 1) = Precise(0);  // t stays
+    return e;
+  }
+};
+
+Precise inner(const Matrix<Precise>& a, const Matrix<Precise>& b, const State<Precise>& z) {
+  Precise sum(0);
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+    const Precise scale = Precise(1) + magnitude(z[i]);
+    sum = sum + a(i, 0) * b(i, 0) / (scale * scale);
+  }
+  return sum;
+}
+
+Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
+  Precise largest(0);
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) largest = std::max(largest, magnitude(move(i, 0)) / (Precise(1) + magnitude(z[i])));
+  return largest;
+}
+
+// At a root of multiplicity m Newton's steps shrink by 1 - 1/m each, all alike: once they do, the rest of the way is their sum.
+std::optional<Steady> multiple_root(const Problem& p) {
+  constexpr int most_steps = 400, exact = 130, cutoff = 130, floor = 150;
+  State<Precise> z = p.start;
+  std::optional<Matrix<Precise>> before;
+  Precise ratio_before(0);
+  for (int step = 0; step < most_steps; ++step) {
+    const Equations e = p.at(z);
+    const Matrix<Precise> move = Elimination<Precise>(e.slope, tiny<Precise>(cutoff), tiny<Precise>(floor)).solve(e.value);
+    const Precise size = largest_move(move, z);
+    if (step > 0 && holds(e, z, exact)) {
+      const double digits_of_z = -to_double(cln::ln(size + tiny<Precise>(known_digits))) / std::log(10.0) - 2;
+      return Steady{z, 0, std::clamp(static_cast<int>(digits_of_z), 20, known_digits)};
+    }
+    if (size > Precise(1) / 100) return std::nullopt;
+    Precise factor(1);
+    const Precise last = before ? inner(*before, *before, z) : Precise(0);
+    if (cln::plusp(last)) {
+      const Precise ratio = inner(move, *before, z) / last;
+      const bool settled = magnitude(ratio - ratio_before) < Precise(1) / 50 && ratio > Precise(1) / 4 && ratio < Precise(97) / 100;
+      ratio_before = ratio;
+      if (settled) factor = Precise(1) / (Precise(1) - ratio);
+    }
+    before = move;
+    if (factor != Precise(1)) before.reset(), ratio_before = Precise(0);
+    for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] = z[i] - factor * move(i, 0);
+  }
+  return std::nullopt;
+}
+
+/// By how much of themselves, at least, the numbers of the setting would have to differ for each equation to hold: the largest.
+Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
+  const Equations e = p.at(z);
+  const Precise change = tiny<Precise>(50);
+  std::vector<Precise> moved_by(e.value.rows, Precise(0));
+  const auto add = [&](std::vector<Precise> Setting<Precise>::*list) {
+    for (std::size_t k = 0; k < (p.setting.*list).size(); ++k) {
+      if (is_zero((p.setting.*list)[k])) continue;
+      Setting<Precise> other = p.setting;
+      (other.*list)[k] = (other.*list)[k] * (Precise(1) + change);
+      const Equations there = steady_equations(p.flow, p.symmetry, z, p.start, other, p.extra);
+      for (std::size_t i = 0; i < moved_by.size(); ++i) moved_by[i] = moved_by[i] + magnitude(there.value(i, 0) - e.value(i, 0)) / change;
+    }
+  };
+  add(&Setting<Precise>::parameters);
+  add(&Setting<Precise>::inputs);
+  Precise largest(0);
+  for (std::size_t i = 0; i < moved_by.size(); ++i) {
+    const Precise value = magnitude(e.value(i, 0));
+    if (value <= tiny<Precise>(90) * size_of(e, i, z)) continue;
+    if (!(moved_by[i] > value)) return Precise(1);
+    largest = std::max(largest, value / moved_by[i]);
+  }
+  return largest;
+}
+
+// The least squares of the equations have a minimum that is 0 but for roundings of what is given.
+std::optional<Steady> rounded_root(const Problem& p) {
+  constexpr int most_steps = 60, exact = 100;
+  constexpr double roundings = 1e-12;
+  State<Precise> z = p.start;
+  for (int step = 0; step < most_steps; ++step) {
+    Equations e = p.at(z);
+    for (std::size_t i = 0; i < e.value.rows; ++i) {
+      const Precise size = size_of(e, i, z);
+      e.value(i, 0) = e.value(i, 0) / size;
+      for (std::size_t j = 0; j < e.slope.cols; ++j) e.slope(i, j) = e.slope(i, j) / size;
+    }
+    const Matrix<Precise> back = transposed(e.slope);
+    const Matrix<Precise> move = Elimination<Precise>(back * e.slope, tiny<Precise>(10), tiny<Precise>(14)).solve(back * e.value);
+    for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] = z[i] - move(i, 0);
+    const Precise size = largest_move(move, z);
+    if (size > Precise(1) / 100) return std::nullopt;
+    if (size > tiny<Precise>(exact)) continue;
+    const double off = to_double(distance_in_numbers(p, z));
+    return off < roundings ? std::optional(Steady{z, off, known_digits}) : std::nullopt;
+  }
+  return std::nullopt;
+}
+
+// What is 0 but for the way that led there.
+void snap(const Problem& p, Steady& found) {
+  State<Precise> z = found.z;
+  bool changed = false;
+  for (std::size_t i = 0; i + 1 < z.size(); ++i) {
+    if (is_zero(z[i]) || magnitude(z[i]) > tiny<Precise>(std::min(40, found.known / 2))) continue;
+    z[i] = number<Precise>(Precise(0));
+    changed = true;
+  }
+  if (!changed || found.off > 0) return;
+  try {
+    if (!holds(p.at(z), z, 120)) return;
+    found.z = z;
+  } catch (const std::domain_error&) {
+    return;
+  }
+}
+
+}  // namespace
+
+// In a family of steady motions the slopes lose rank there, and all but lose it beside: such pivots count as none. Where that
+// throws an equation away that is needed, the iteration does not end, and smaller pivots count.
+std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
+                                           const Setting<Precise>& setting, const Extra& extra) {
+  for (const Rank rank : {Rank{5, 11}, Rank{10, 14}, Rank{20, 30}}) {
+    try {
+      if (auto found = newton(flow, symmetry, z, setting, extra, rank)) return found;
+    } catch (const std::domain_error&) {
+      continue;
+    }
+  }
+  return std::nullopt;
+}
+
+std::optional<Steady> find_steady(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z, const Setting<Precise>& setting,
+                                  const Extra& extra) {
+  constexpr int near = 7;     // digits in which the equations hold where such a root is looked for
+  constexpr int exact = 140;  // and in which they do at the end of Newton's way to a simple one
+  std::optional<Steady> found;
+  State<Precise> start = z;
+  if (const auto plain = steady_state(flow, symmetry, z, setting, extra)) {
+    found = Steady{*plain, 0, known_digits};
+    start = *plain;
+  }
+  const Problem p{flow, symmetry, start, setting, extra};
+  try {
+    const Equations e = p.at(start);
+    if (found ? !holds(e, start, exact) : holds(e, start, near)) {
+      if (const auto root = multiple_root(p)) found = root;
+    }
+    if (!found && holds(e, start, near)) found = rounded_root(p);
+  } catch (const std::domain_error&) {  // where these led; the plain one stays
+  }
+  if (found) snap(p, *found);
+  return found;
+}
+
+}  // namespace eomgen::linear
