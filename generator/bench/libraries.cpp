@@ -24,8 +24,9 @@ using Clock = std::chrono::steady_clock;
 
 bool is_cpp(const Library& library) { return std::string(library.file).ends_with(".cpp"); }
 
-emit::Recipe recipe_of(const Library& library) {
+emit::Recipe recipe_of(const Library& library, const std::atomic<bool>* interrupt) {
   emit::Recipe recipe;
+  recipe.interrupt = interrupt;
   recipe.name = library.name;
   recipe.files = {{library.file, library.text}, {"task.h", adapter::task_h}};
   recipe.flags = {is_cpp(library) ? "-std=c++17" : "-std=c11", "-O2", "-fPIC", "-shared"};
@@ -163,7 +164,7 @@ LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<
     }
     std::shared_ptr<Loaded> loaded;
     try {
-      loaded = std::make_shared<Loaded>(emit::build_library(recipe_of(library)).path);
+      loaded = std::make_shared<Loaded>(emit::build_library(recipe_of(library, request.interrupt)).path);
     } catch (const Error& error) {
       found.left_out.emplace_back(library.name, why_not(library, error.what()));
       continue;

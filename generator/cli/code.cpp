@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "cli/interrupt.hpp"
+#include "cli/output.hpp"
+#include "error.hpp"
 #include "program/kinks.hpp"
 #include "program/taylor.hpp"
 
@@ -67,7 +70,7 @@ run::Code CompiledCode::for_run() const {
   return code;
 }
 
-CompiledCode compile(const program::Program& program, const emit::EmissionContext& context) {
+CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again) {
   const std::string name = emit::mangled_id(context.id);
   std::string source, header;
   for (const emit::EmittedFile& file : emit::emit(program, context, "cpp")) {
@@ -75,7 +78,12 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
     if (file.name == name + ".h") header = file.text;
   }
   if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
-  return {emit::compile_and_load(source, header, name), program};
+  emit::Compiled compiled = emit::compile_and_load(source, header, name, &Interrupt::flag());
+  if (!compiled.note.empty() && !again) {
+    tell(format_warning({{}, compiled.note + "; what is compiled now is kept in a private one, for this run alone",
+                         "chmod 700 a folder of your own, or name one in EOMGEN_CACHE_DIR"}));
+  }
+  return {std::move(compiled), program};
 }
 
 CompiledCode compile_for_check(Derived& derived, const program::Program& program) {

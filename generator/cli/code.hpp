@@ -30,7 +30,7 @@ class CompiledCode {
 };
 
 /// Emits C with `context` and compiles it (cached by content).
-CompiledCode compile(const program::Program& program, const emit::EmissionContext& context);
+CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again = false);
 
 /// The same without a certificate, which is being made from it.
 CompiledCode compile_for_check(Derived& derived, const program::Program& program);

@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "cli/output.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
@@ -40,9 +42,25 @@ std::vector<std::string> models_in(const std::vector<fs::path>& folders) {
   return names;
 }
 
+/// A file beside the one that was named, whose name differs in a letter or two; empty if there is none.
+std::string nearest_file(const fs::path& path) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : fs::path("."), none)) {
+    if (entry.path().extension() == ".toml" && entry.is_regular_file(none)) names.push_back(entry.path().filename().string());
+  }
+  std::sort(names.begin(), names.end());
+  const std::string typed = path.filename().string();
+  const auto found = [&](const std::string& name) { return name.empty() ? std::optional<std::string>() : model::nearest(name, names); };
+  auto meant = found(typed);
+  if (!meant && !path.has_extension()) meant = found(typed + ".toml");
+  return meant ? (path.parent_path() / *meant).string() : "";
+}
+
 /// The model that was meant, as it would be typed; empty if none is near.
 std::string nearest(const std::string& typed, const std::vector<fs::path>& folders) {
   const fs::path path(typed);
+  if (const std::string file = nearest_file(path); !file.empty()) return file;
   const std::string name = path.extension() == ".toml" ? path.stem().string() : path.filename().string();
   const std::vector<std::string> names = models_in(path.has_parent_path() ? std::vector{path.parent_path()} : folders);
   std::string meant = model::nearest(name, names).value_or("");
@@ -76,8 +94,18 @@ std::string locate_model(const std::string& name) {
               hint.empty() ? "eomgen new NAME writes a starter model" : fmt::format("did you mean {}?", hint));
 }
 
+std::string documentation(const std::string& page) {
+  std::error_code none;
+  const fs::path program = fs::read_symlink("/proc/self/exe", none);
+  for (fs::path folder = program.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
+    if (const fs::path installed = folder / "share" / "doc" / "eomgen" / page; fs::is_regular_file(installed, none)) return installed.string();
+    if (const fs::path source = folder / "docs" / page; fs::is_regular_file(source, none)) return source.string();
+  }
+  return "docs/" + page;
+}
+
 void tell_warnings(const model::Model& model) {
-  for (const Warning& warning : model.warnings) fmt::print(stderr, "{}", format_warning(warning));
+  for (const Warning& warning : model.warnings) tell(format_warning(warning));
 }
 
 model::Model load_model(const std::string& name) {

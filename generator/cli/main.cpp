@@ -1,12 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <map>
+#include <memory>
 #include <new>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "cli/command.hpp"
+#include "cli/locate.hpp"
+#include "cli/output.hpp"
 #include "cli/usage.hpp"
 
 namespace {
@@ -17,16 +26,41 @@ using eomgen::cli::Common;
 constexpr int exit_internal = 4;
 
 int report(const eomgen::Error& error) {
-  fmt::print(stderr, "{}", error.what());
+  // Messages name a page as the source tree has it; here it is told where it is.
+  std::string text = error.what();
+  const std::string page = "docs/model-format.md";
+  if (const std::size_t at = text.find(page); at != std::string::npos) text.replace(at, page.size(), eomgen::cli::documentation("model-format.md"));
+  eomgen::cli::tell(text);
   return error.exit_code();
+}
+
+int output_lost() {
+  eomgen::cli::tell("error: standard output could not be written\n  remedy: see to space on that disk, or to the program that reads it\n");
+  return exit_internal;
+}
+
+/// A standard stream that is closed would give its number to the first file that is opened, and messages would go into
+/// results. What is written to standard output then fails, and is told; what is told is lost, and nothing else is.
+void take_closed_streams() {
+  for (const auto& [stream, way] : {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    const int taken = open("/dev/null", way);
+    if (taken >= 0 && taken != stream) {
+      dup2(taken, stream);
+      close(taken);
+    }
+  }
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that is gone is a failure of that place, told like a full disk
 }
 
 }  // namespace
 
 int main(int argc, char** argv) try {
+  take_closed_streams();
   CLI::App app{"eomgen: equations of motion of mechanical systems, from a text model", "eomgen"};
   app.set_version_flag("--version", EOMGEN_VERSION);
   app.require_subcommand(1);
+  app.formatter(std::make_shared<eomgen::cli::HelpPage>());
   Common common;
   std::map<const CLI::App*, std::function<int(const Common&)>> actions;
   std::vector<std::string> names;
@@ -39,26 +73,27 @@ int main(int argc, char** argv) try {
     actions[sub] = command.declare(*sub);
     names.emplace_back(command.name);
   }
-  eomgen::cli::require_command({argv, static_cast<std::size_t>(argc)}, names);
+  std::vector<std::string> words = eomgen::cli::with_help({argv, static_cast<std::size_t>(argc)});
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  eomgen::cli::require_command(pointers, names);
   try {
-    app.parse(argc, argv);
+    app.parse(static_cast<int>(pointers.size()), pointers.data());
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return report(eomgen::cli::usage_error(error, app));
   }
   const int code = actions.at(app.get_subcommands().front())(common);
   // A full disk or a closed pipe loses results; that is a failure, not a silence.
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    fmt::print(stderr, "error: standard output could not be written\n");
-    return exit_internal;
-  }
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return output_lost();
   return code;
 } catch (const eomgen::Error& error) {
   return report(error);
 } catch (const std::bad_alloc&) {
-  fmt::print(stderr, "error: out of memory\n  remedy: make the model smaller\n");
+  eomgen::cli::tell("error: out of memory\n  remedy: make the model smaller\n");
   return exit_internal;
 } catch (const std::exception& error) {
-  fmt::print(stderr, "error: internal: {}\n  remedy: please report this, with the model\n", error.what());
+  if (std::ferror(stdout) != 0) return output_lost();  // what prints throws
+  eomgen::cli::tell(fmt::format("error: internal: {}\n  remedy: please report this, with the model\n", error.what()));
   return exit_internal;
 }

@@ -2,14 +2,116 @@
 #include "cli/output.hpp"
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstdio>
+#include <eom/output/whole_file.hpp>
 #include <filesystem>
+#include <system_error>
 
 #include "emit/write_files.hpp"
 #include "error.hpp"
 
 namespace eomgen::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Endings that say what a file holds; others (.out, .2026, none) say nothing.
+constexpr std::array telling_endings{
+    ".csv", ".tsv", ".svg", ".png", ".jpg", ".jpeg", ".gif", ".bmp", ".pdf",  ".ps",  ".eps",   ".html", ".htm", ".xml", ".json",
+    ".toml", ".yaml", ".md", ".tex", ".c",   ".h",    ".cpp", ".hpp", ".py",  ".m",    ".mat", ".npy",   ".npz",  ".h5",  ".hdf5",
+    ".xls", ".xlsx", ".ods", ".zip", ".gz",  ".doc",  ".docx", ".webp", ".mp4"};
+
+std::string lowered(std::string text) {
+  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+struct Identity {
+  bool there = false;
+  dev_t device = 0;
+  ino_t inode = 0;
+  mode_t mode = 0;
+};
+
+Identity identity(const std::string& path) {
+  struct stat found {};
+  if (::stat(path.c_str(), &found) != 0) return {};
+  return {true, found.st_dev, found.st_ino, found.st_mode};
+}
+
+bool same_file(const Identity& a, const Identity& b) { return a.there && b.there && a.device == b.device && a.inode == b.inode; }
+
+bool is_device(const Identity& place) { return place.there && S_ISCHR(place.mode); }
+
+/// The path that a file will have; equal for two names of one file that is not there yet.
+std::string final_path(const std::string& path) {
+  std::error_code none;
+  const fs::path absolute = fs::absolute(path, none);
+  const fs::path resolved = fs::weakly_canonical(absolute, none);
+  return (resolved.empty() ? absolute : resolved).string();
+}
+
+[[noreturn]] void refuse(const Place& place, const std::string& what, const std::string& remedy) {
+  throw Error("cli", {}, fmt::format("{} {}: {}", place.option, place.path.empty() ? "''" : place.path, what), remedy);
+}
+
+void require_ending(const Place& place) {
+  if (place.ending.empty()) return;
+  const std::string ending = lowered(fs::path(place.path).extension().string());
+  if (ending == place.ending || (place.ending == ".html" && ending == ".htm")) return;
+  if (std::find(telling_endings.begin(), telling_endings.end(), ending) == telling_endings.end()) return;
+  const std::string stem = fs::path(place.path).replace_extension(place.ending).string();
+  refuse(place, fmt::format("this option writes {}, and the name says {}", place.ending.substr(1), ending.substr(1)), "name it " + stem);
+}
+
+void require_writable(const Place& place, const std::string& model_file) {
+  // As it is opened: what a link such as /dev/stdout leads to need not have a path.
+  const Identity opened = identity(place.path);
+  if (opened.there && !S_ISREG(opened.mode) && !S_ISDIR(opened.mode)) {
+    if (::access(place.path.c_str(), W_OK) != 0) refuse(place, "this may not be written to", "choose another place");
+    return;  // written through
+  }
+  std::string path = place.path;
+  try {
+    path = eom::WholeFile::followed(place.path).string();
+  } catch (const std::system_error&) {
+    refuse(place, "the links lead in a circle", "choose another name");
+  }
+  const Identity target = identity(path);
+  if (target.there && S_ISDIR(target.mode)) refuse(place, "this is a folder, not a file", "name a file in it");
+  if (!model_file.empty() && same_file(target, identity(model_file))) {
+    refuse(place, "this is the model's own file, which the results would replace", "choose another name");
+  }
+  if (target.there && ::access(path.c_str(), W_OK) != 0) refuse(place, "this file may not be written to", "choose another name, or chmod u+w it");
+  const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
+  const std::string name = fs::path(path).filename().string();
+  constexpr std::size_t longest_name = 255;  // of Linux's file systems
+  if (name.size() > longest_name) refuse(place, fmt::format("the name has {} bytes, and a file's has at most {}", name.size(), longest_name), "choose a shorter one");
+  std::error_code ignored;  // what cannot be looked at cannot be written either, and access says so
+  if (!fs::is_directory(folder, ignored)) refuse(place, "there is no folder " + folder.string(), "make the folder first");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(place, "the folder " + folder.string() + " may not be written to", "choose another folder");
+}
+
+template <typename Write>
+auto writing(Write write) {
+  try {
+    return write();
+  } catch (const std::system_error& error) {  // the writer is part of the runtime, which knows no Error
+    throw Error("cli", {}, error.what(), "see to space on that disk and to your rights there", emit::fault_of_writing(error.code()));
+  }
+}
+
+eom::WholeFile open(const std::string& path) {
+  return writing([&] { return path == "-" ? eom::WholeFile::standard_output() : eom::WholeFile(path); });
+}
+
+}  // namespace
 
 namespace {
 
@@ -26,27 +128,95 @@ void print_document(nlohmann::ordered_json document) {
   fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
 }
 
-std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files) {
-  try {
-    return emit::write_files(folder, files);
-  } catch (const Error& error) {
-    throw Error(error.stage(), error.where(), error.message(), error.remedy(), Fault::input);
+void tell(std::string_view text) noexcept {
+  std::fwrite(text.data(), 1, text.size(), stderr);
+  std::fflush(stderr);
+}
+
+bool is_standard_output(const std::string& path) {
+  if (path.empty()) return false;
+  if (path == "-") return true;
+  struct stat standard {};
+  const Identity place = identity(path);
+  return place.there && ::fstat(STDOUT_FILENO, &standard) == 0 && standard.st_dev == place.device && standard.st_ino == place.inode &&
+         path != "/dev/null";
+}
+
+void require_places(const std::vector<Place>& places, const std::string& model_file, bool json) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const Place& place = places[i];
+    if (place.path.empty()) refuse(place, "names no file", "name one, or - for standard output");
+    const bool standard = is_standard_output(place.path);
+    if (standard && json) refuse(place, "standard output has the JSON document already", "name a file, or leave --json out");
+    for (std::size_t j = 0; j < i; ++j) {
+      const Place& other = places[j];
+      const Identity here = identity(place.path);
+      const bool same = (standard && is_standard_output(other.path)) || (!is_device(here) && same_file(here, identity(other.path))) ||
+                        (!here.there && final_path(place.path) == final_path(other.path));
+      if (same) refuse(place, fmt::format("{} writes to the same place", other.option), "give each a file of its own");
+    }
+    if (place.path == "-") continue;
+    require_ending(place);
+    if (!standard || same_file(identity(place.path), identity(model_file))) require_writable(place, model_file);
   }
 }
 
-void require_writable(const std::string& option, const std::string& path) {
-  namespace fs = std::filesystem;
-  std::error_code ignored;  // what cannot be looked at cannot be written either, and access says so
-  const fs::path target(path);
-  const fs::path folder = target.has_parent_path() ? target.parent_path() : fs::path(".");
-  const auto fail = [&](const std::string& what, const char* remedy) {
-    throw Error("cli", {}, fmt::format("{} {}: {}", option, path, what), remedy);
-  };
-  if (path.empty() || fs::is_directory(target, ignored)) fail("this is a folder, not a file", "name a file in it");
-  if (!fs::is_directory(folder, ignored)) fail("there is no folder " + folder.string(), "make the folder first");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) {
-    fail("the folder " + folder.string() + " may not be written to", "choose another folder");
+void require_folder(const std::string& folder) {
+  std::error_code none;
+  const std::string ending = lowered(fs::path(folder).extension().string());
+  const bool of_a_file = std::find(telling_endings.begin(), telling_endings.end(), ending) != telling_endings.end();
+  const Place place{"--out", folder, ""};
+  if (folder == "-") refuse(place, "several files do not fit into standard output", "name a folder for them");
+  if (fs::exists(folder, none) && !fs::is_directory(folder, none)) refuse(place, "this is a file, and a folder is asked", "name a folder; the files have their own names");
+  if (of_a_file && !fs::is_directory(folder, none)) refuse(place, fmt::format("a folder is asked, and the name says {}", ending.substr(1)), "name a folder; the files have their own names");
+}
+
+std::uint64_t write_text(const std::string& path, const std::string& text) {
+  eom::WholeFile file = open(path);
+  return writing([&] {
+    try {
+      file.write(text);
+      file.finish();
+    } catch (const std::system_error&) {
+      file.discard();  // it could be made again: nothing is kept of it
+      throw;
+    }
+    return file.bytes();
+  });
+}
+
+TableFile::TableFile(const std::string& path, std::span<const std::string> columns)
+    : writer_(writing([&] { return eom::CsvWriter(open(path), columns); })) {}
+void TableFile::row(double t, std::span<const double> values) {
+  writing([&] { writer_.row(t, values); });
+}
+void TableFile::finish(eom::Outcome outcome) {
+  writing([&] { writer_.finish(outcome); });
+}
+
+std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files, const std::string& model_file) {
+  for (const emit::EmittedFile& file : files) {
+    const std::string path = (fs::path(folder) / file.name).string();
+    if (same_file(identity(path), identity(model_file))) {
+      throw Error("cli", {}, fmt::format("{} is the model's own file, which the results would replace", path), "choose another folder");
+    }
   }
+  return emit::write_files(folder, files);
+}
+
+void print_readable(std::string_view text, bool output_taken) {
+  if (output_taken) {
+    tell(text);
+  } else {
+    fmt::print("{}", text);
+  }
+}
+
+std::string size_text(double bytes) {
+  constexpr std::array units{"bytes", "kB", "MB", "GB", "TB"};
+  std::size_t unit = 0;
+  for (; bytes >= 1000 && unit + 1 < units.size(); ++unit) bytes /= 1000;
+  return unit == 0 ? fmt::format("{:.0f} {}", bytes, units[unit]) : fmt::format("{:.3g} {}", bytes, units[unit]);
 }
 
 std::string shortest(double value) { return fmt::format("{}", unsigned_zero(value)); }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cli/operations.hpp"
+#include "cli/output.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -26,6 +27,7 @@ bool is_final(const Simulation& simulation, const std::string& name) {
   for (const model::Coordinate& c : simulation.derived->model.coordinates) {
     if (name == c.name || name == c.name + "_dot") return true;
   }
+  if (name.ends_with("_ddot") && simulation.scene.t1 == simulation.scene.t0) return true;
   const auto& wanted = simulation.scene.outputs;
   return name == "energy" || name.starts_with("reaction.") || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
@@ -143,6 +145,12 @@ nlohmann::ordered_json RunReport::json() const {
                             {"factorisations", cost.factorisations}, {"newton_iterations", cost.newton_iterations},
                             {"newton_failures", cost.newton_failures}};
   }
+  Json written = Json::array();
+  for (const WrittenFile& file : files) {
+    written.push_back({{"path", file.path}, {"bytes", file.bytes}});
+    if (file.rows) written.back()["rows"] = *file.rows;
+  }
+  document["files"] = written;
   if (sensitivities) document["sensitivities"] = json_of(*sensitivities, state_names(derived));
   if (!estimate_wanted) return document;
   Json estimate = nullptr;
@@ -187,6 +195,9 @@ std::string RunReport::text() const {
                                      seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
                                      compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
                                      charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
+  for (const WrittenFile& file : files) {
+    out += line("wrote", fmt::format("{} ({}{})", file.path, file.rows ? fmt::format("{} rows, ", *file.rows) : "", size_text(static_cast<double>(file.bytes))));
+  }
   if (sensitivities) out += text_of(*sensitivities, state_names(derived));
   return out;
 }

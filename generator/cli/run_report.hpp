@@ -5,16 +5,25 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "cli/sensitivities.hpp"
 #include "cli/simulate.hpp"
 
 namespace eomgen::cli {
 
+/// A file that the run wrote.
+struct WrittenFile {
+  std::string path;
+  std::optional<std::uint64_t> rows;  // of a table
+  std::uint64_t bytes = 0;
+};
+
 struct RunReport {
   const Simulation& simulation;
   bool estimate_wanted = true;  // else the document has no error_estimate
   std::optional<run::Sensitivities> sensitivities = {};  // where they were asked for
+  std::vector<WrittenFile> files = {};
 
   std::string text() const;
   nlohmann::ordered_json json() const;

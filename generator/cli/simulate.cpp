@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "error.hpp"
 #include "program/kinks.hpp"
@@ -62,6 +63,9 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
     if (!contact.restitution.empty()) add(contact.restitution);
   }
   for (const std::string& name : scene.outputs) add(name);
+  if (scene.t1 == scene.t0) {
+    for (const model::Coordinate& c : derived.model.coordinates) add(c.name + "_ddot");
+  }
   return names;
 }
 
@@ -71,6 +75,10 @@ bool energy_is_conserved(const Derived& derived) {
 }
 
 }  // namespace
+
+double row_interval(const run::Scene& scene) {
+  return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
+}
 
 std::vector<std::string> state_names(const Derived& derived) {
   std::vector<std::string> names;
@@ -194,7 +202,7 @@ Simulation simulate(const SimulationRequest& request) {
   run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
   allow_charts(run, charts);
   if (request.begin) {
-    run.every = request.rows ? (scene.t1 - scene.t0) / *request.rows : scene.every > 0 ? scene.every : (scene.t1 - scene.t0) / default_rows;
+    run.every = request.rows ? std::max((scene.t1 - scene.t0) / *request.rows, std::numeric_limits<double>::min()) : row_interval(scene);
     request.begin(*derived, scene, functions.output_names);
   }
   run.row = request.row;

@@ -52,6 +52,7 @@ struct Simulation {
 
 /// Rows of a file or plot where no interval is given.
 inline constexpr double default_rows = 500;
+double row_interval(const run::Scene& scene);
 
 Simulation simulate(const SimulationRequest& request);
 

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <utility>
 
+#include "cli/locate.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
@@ -20,6 +23,14 @@ CLI::Validator number(const char* what, Accept accept) {
           },
           ""};
 }
+
+/// What others call it.
+constexpr std::pair<const char*, const char*> other_words[] = {
+    {"simulate", "run"},   {"sim", "run"},       {"integrate", "run"},   {"solve", "run"},        {"plot", "run"},          {"init", "new"},      {"create", "new"},
+    {"start", "new"},      {"generate", "emit"}, {"codegen", "emit"},    {"compile", "emit"},     {"export", "emit"},       {"latex", "emit"},    {"equations", "derive"},
+    {"eom", "derive"},     {"show", "derive"},   {"print", "derive"},    {"validate", "check"},   {"lint", "check"},        {"info", "check"},    {"test", "verify"},
+    {"prove", "verify"},   {"benchmark", "bench"}, {"scan", "sweep"},    {"grid", "sweep"},       {"eigenvalues", "linearize"}, {"linearise", "linearize"},
+    {"stability", "equilibria"}, {"equilibrium", "equilibria"}, {"html", "report"}, {"models", "list"}, {"ls", "list"}, {"solvers", "list"}};
 
 // The command whose options were being read; the program itself before there is one.
 const CLI::App& where(const CLI::App& app) {
@@ -44,7 +55,17 @@ Error unexpected(const CLI::App& app) {
     return Error("usage", {}, fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
   }
   const std::string name = option->substr(0, option->find('='));
-  const std::string hint = model::did_you_mean(name, flags_of(app));
+  std::string hint = model::did_you_mean(name, flags_of(app));
+  if (hint.empty() && app.get_parent() != nullptr) {  // one of the program itself, also by its first letter
+    for (const std::string& flag : flags_of(*app.get_parent())) {
+      if (flag == name || (name.size() == 2 && flag.size() > 2 && flag[2] == name[1])) hint = fmt::format("did you mean 'eomgen {}'?", flag);
+    }
+  }
+  if (hint.empty() && name.size() == 2) {  // the first letter of a longer one
+    for (const std::string& flag : flags_of(app)) {
+      if (hint.empty() && flag.size() > 2 && flag[2] == name[1]) hint = fmt::format("did you mean '{}'?", flag);
+    }
+  }
   return Error("usage", {}, fmt::format("there is no option {}", model::quote(name)), hint.empty() ? help : hint + " " + help);
 }
 
@@ -70,6 +91,11 @@ CLI::Validator whole_number(unsigned long long least, unsigned long long most) {
           ""};
 }
 
+CLI::Option* add_place(CLI::App& app, const std::string& flags, std::string& target, const std::string& help) {
+  const auto named = [](const std::string& path) { return path.empty() ? std::string("'' names no file; - is standard output") : std::string(); };
+  return app.add_option(flags, target, help)->check(CLI::Validator(named, ""));
+}
+
 CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::string>& target, const std::string& help,
                       char delimiter) {
   return app.add_option(flag, target, help)->delimiter(delimiter)->allow_extra_args(false);
@@ -85,7 +111,36 @@ void require_command(std::span<char* const> words, const std::vector<std::string
   if (words.size() < 2 || words[1][0] == '-') return;
   const std::string word = words[1];
   if (std::find(commands.begin(), commands.end(), word) != commands.end()) return;
-  throw Error("usage", {}, fmt::format("there is no command {}", model::quote(word)), choice_of(word, commands));
+  std::error_code none;
+  if (word.ends_with(".toml") || std::filesystem::is_regular_file(word, none)) {
+    throw Error("usage", {}, fmt::format("a command is missing before {}", model::quote(word)),
+                fmt::format("eomgen check {0} says what the model is, eomgen derive {0} shows its equations, eomgen run {0} integrates it", word));
+  }
+  std::string hint = choice_of(word, commands);
+  for (const auto& [other, meant] : other_words) {
+    if (word == other) hint = fmt::format("did you mean '{}'? {}", meant, hint);
+  }
+  throw Error("usage", {}, fmt::format("there is no command {}", model::quote(word)), hint);
+}
+
+std::vector<std::string> with_help(std::span<char* const> words) {
+  std::vector<std::string> result(words.begin(), words.end());
+  if (result.size() < 2 || result[1] != "help") return result;
+  result.erase(result.begin() + 1);
+  if (result.size() > 2) result.resize(2);
+  result.emplace_back("--help");
+  return result;
+}
+
+std::string HelpPage::make_help(const CLI::App* app, std::string name, CLI::AppFormatMode mode) const {
+  const std::string page = CLI::Formatter::make_help(app, std::move(name), mode);
+  if (app->get_parent() != nullptr) return page + fmt::format("\nMore: {}\n", documentation("commands.md"));
+  constexpr const char* examples =
+      "Examples:\n"
+      "  eomgen new pendulum                               a commented model to start from: pendulum.toml\n"
+      "  eomgen derive pendulum.toml                       its equations of motion\n"
+      "  eomgen run pendulum.toml --out pendulum.csv       its motion, as a table\n\n";
+  return examples + page + fmt::format("\nDocumentation: {}; the format of models: {}\n", documentation("commands.md"), documentation("model-format.md"));
 }
 
 Error usage_error(const CLI::ParseError& error, const CLI::App& app) {

@@ -120,6 +120,7 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
     const model::Definition& definition = m.model->definitions[i];
     if (!definition.vector) add(definition.name, m.scalar_definition[i]);
   }
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) add(m.model->coordinates[i].name + "_ddot", m.qddot[i]);
 }
 
 // A multiplier in an event is the reaction of that constraint, an expression where the constraint is eliminated.

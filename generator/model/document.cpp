@@ -5,6 +5,9 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
+
+#include "model/names.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -171,6 +174,34 @@ const char* kind_name(Value::Kind kind) {
   return "a value";
 }
 
+namespace {
+
+// key = 9,81 and key = 9.81 m/s^2: what is wrong is the value, not the file.
+void refuse_bare_value(const Source& source, std::size_t at) {
+  const std::string& text = source.text();
+  at = std::min(at, text.size());
+  const std::size_t begin = at == 0 ? 0 : text.rfind('\n', at - 1) + 1;
+  const std::size_t end = std::min(text.find('\n', begin), text.size());
+  const std::string line = text.substr(begin, end - begin);
+  const std::size_t equals = line.find('=');
+  if (equals == std::string::npos || line.find_first_of("\"'[{#", equals) != std::string::npos) return;
+  const std::size_t first = line.find_first_not_of(" \t", equals + 1), last = line.find_last_not_of(" \t\r");
+  if (first == std::string::npos || last < first) return;
+  const std::string value = line.substr(first, last - first + 1);
+  const auto digit = [](char c) { return c >= '0' && c <= '9'; };
+  const Span span = source.span(begin + first, value.size());
+  const std::size_t comma = value.find(',');
+  if (comma != std::string::npos && comma > 0 && comma + 1 < value.size() && digit(value[comma - 1]) && digit(value[comma + 1])) {
+    std::string meant = value;
+    meant[comma] = '.';
+    source.fail(span, "a comma is no decimal point", fmt::format("write {}", meant.find(' ') == std::string::npos ? meant : '"' + meant + '"'));
+  }
+  if (value.size() > 100 || value.find(',') != std::string::npos) return;
+  source.fail(span, fmt::format("{} is no TOML value: units and expressions are texts", quote(value)), fmt::format("write it in quotes: \"{}\"", value));
+}
+
+}  // namespace
+
 Value read_document(const Source& source) {
   try {
     const toml::table table = toml::parse(source.text());
@@ -178,8 +209,10 @@ Value read_document(const Source& source) {
     root.span = source.span(0, 1);
     return root;
   } catch (const toml::parse_error& error) {
+    const std::size_t at = offset_of(source, error.source().begin);
+    refuse_bare_value(source, at);
     source.fail(
-        source.span(offset_of(source, error.source().begin), 1), clean_description(error.description()),
+        source.span(at, 1), clean_description(error.description()),
         "a model is a TOML 1.0 file: key = value, [section], [[entry]]; texts in quotes (docs/model-format.md)");
   }
 }

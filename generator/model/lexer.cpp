@@ -93,8 +93,13 @@ private:
     }
     Token token{TokenKind::number, text_.text.substr(begin, at_ - begin), begin, at_ - begin, 0, std::nullopt};
     if (letter(peek()) || peek() == '_') {
+      if (const std::string remedy = missing_blank(token); !remedy.empty())
+        fail(begin, at_ - begin + 1, fmt::format("a blank is missing between the number {} and its unit", quote(token.text)), remedy);
+      std::size_t end = at_;
+      while (end < text_.text.size() && (letter(text_.text[end]) || digit(text_.text[end]) || text_.text[end] == '_')) ++end;
+      const std::string_view word = text_.text.substr(at_, end - at_);
       fail(begin, at_ - begin + 1, fmt::format("a name follows the number {} at once", quote(token.text)),
-           fmt::format("there is no implicit multiplication: write {}*{}", token.text, peek()));
+           fmt::format("there is no implicit multiplication: write {}*{}", token.text, word));
     }
     const ExactNumber exact = exact_number(token.text);
     if (!exact.problem.empty())
@@ -102,6 +107,25 @@ private:
     token.value = exact.value;
     if (peek() == '[') bracket(token);
     return token;
+  }
+
+  /// What to write where a unit follows a number at once; empty where what follows is none.
+  std::string missing_blank(const Token& token) const {
+    const std::size_t end = std::min(text_.text.find_first_of(" \t\r\n", at_), text_.text.size());
+    const bool last = text_.text.find_first_not_of(" \t\r\n", end) == std::string_view::npos;
+    const std::string word(text_.text.substr(at_, end - at_));
+    const std::string unit = parse_unit(word) ? word : completed_unit(word).value_or("");
+    const bool a_name = word.size() == 1 || word.find('*') != std::string::npos;  // may be a product
+    if (last && !unit.empty()) {
+      return fmt::format("write \"{}{} {}\"{}", text_.text.substr(0, token.at), token.text, unit,
+                         a_name ? fmt::format("; a product has its sign: {}*{}", token.text, word) : "");
+    }
+    std::size_t letters = at_;
+    while (letters < text_.text.size() && letter(text_.text[letters])) ++letters;
+    const std::string_view first = text_.text.substr(at_, letters - at_);
+    const bool whole = letters == text_.text.size() || std::string_view(" \t)+-,*/").find(text_.text[letters]) != std::string_view::npos;
+    if (!whole || first.size() < 2 || !parse_unit(first)) return "";  // one letter is a name as often
+    return fmt::format("inside of an expression a unit stands in brackets: {0}[{1}]; a product has its sign: {0}*{1}", token.text, first);
   }
 
   void bracket(Token& token) {

@@ -88,8 +88,14 @@ std::optional<std::string> nearest(std::string_view name, const std::vector<std:
   const std::size_t limit = name.size() <= 4 ? 1 : name.size() <= 8 ? 2 : 3;
   std::optional<std::string> best;
   std::size_t best_distance = limit + 1;
+  const auto lowered = [](std::string_view text) {
+    std::string result(text);
+    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return result;
+  };
   for (const std::string& candidate : candidates) {
     if (candidate == name || (name.size() == 1 && candidate.size() == 1)) continue;
+    if (candidate.size() == name.size() && lowered(candidate) == lowered(name)) return candidate;
     const std::size_t distance = edit_distance(name, candidate, limit);
     if (distance < best_distance) {
       best_distance = distance;

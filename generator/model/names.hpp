@@ -49,7 +49,9 @@ const FunctionName* find_function(std::string_view name);
 /// The names of all functions, also ddt, dot, position, ...
 const std::vector<std::string>& function_names();
 
-/// Why a LaTeX string is refused; nothing if it is harmless.
+/// Why a LaTeX string is refused; nothing if it is harmless and LaTeX takes it.
 std::optional<std::string> illegal_tex(std::string_view tex);
+/// Whether it takes the package amssymb.
+bool needs_amssymb(std::string_view tex);
 
 }  // namespace eomgen::model

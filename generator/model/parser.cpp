@@ -53,6 +53,9 @@ private:
            "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 "
            "m/s^2\"");
     }
+    if (token.text == "," && at_ > 0 && at_ + 1 < tokens_.size() && tokens_[at_ - 1].kind == TokenKind::number && tokens_[at_ + 1].kind == TokenKind::number) {
+      fail(token, "a comma is no decimal point", fmt::format("write {}.{}", tokens_[at_ - 1].text, tokens_[at_ + 1].text));
+    }
     fail(token, fmt::format("{} does not fit here", quote(token.text)),
          token.text == ")" ? "there is no open parenthesis for it" : "check the expression up to this place");
   }

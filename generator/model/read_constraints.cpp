@@ -101,6 +101,22 @@ void Reader::read_equations(Constraint& constraint, const Value& value) {
     context.allowed = on_motion | on_velocity;
     context.remedy = "a constraint on velocities is made of velocities, coordinates, functions of time, parameters and t";
   }
+  // Its gradient vanishes where it holds, so that there would be no constraint force.
+  const auto no_power = [&](const Typed& typed, const Value& of) {
+    if (typed.vector || constraint.velocity) return;
+    NodeId id = typed.node;
+    while (model_.arena[id].op == Op::negate || (model_.arena[id].op == Op::divide && resolver_.coordinates_in(model_.arena[id].args[1]).empty()) ||
+           (model_.arena[id].op == Op::multiply && resolver_.coordinates_in(model_.arena[id].args[1]).empty()))
+      id = model_.arena[id].args[0];
+    while (model_.arena[id].op == Op::multiply && resolver_.coordinates_in(model_.arena[id].args[0]).empty()) id = model_.arena[id].args[1];
+    const Node& node = model_.arena[id];
+    if (node.op != Op::power || model_.arena[node.args[1]].op != Op::number || model_.arena[node.args[1]].value <= 1) return;
+    std::string base = of.is(Value::Kind::text) ? of.text : "";
+    const std::size_t hat = base.rfind('^');
+    base = hat != std::string::npos && hat > 1 && base.front() == '(' && base[hat - 1] == ')' && base.find(')') == hat - 1 ? base.substr(1, hat - 2) : "";
+    source_.fail(of.span, fmt::format("{} is a power: its gradient vanishes where it holds, so that it has no force", what),
+                 base.empty() ? "write what is raised to the power" : fmt::format("write \"{}\"", base));
+  };
   const auto with_motion = [&](const Typed& typed, Span span) {
     if (typed.facts & (constraint.velocity ? on_velocity : on_coordinate)) return;
     if (constraint.velocity) {
@@ -113,6 +129,7 @@ void Reader::read_equations(Constraint& constraint, const Value& value) {
   if (!value.is(Value::Kind::array) || value.items.size() == 3) {
     const Typed typed = resolver_.value(value, context);
     with_motion(typed, value.span);
+    no_power(typed, value);
     if (!typed.vector) {
       constraint.psi.push_back(typed.node);
       return;
@@ -130,6 +147,7 @@ void Reader::read_equations(Constraint& constraint, const Value& value) {
   for (const Value& item : value.items) {
     const Typed typed = resolver_.value(item, context);
     with_motion(typed, item.span);
+    no_power(typed, item);
     constraint.psi.push_back(typed.node);
   }
 }

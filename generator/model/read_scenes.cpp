@@ -24,6 +24,13 @@ void Reader::read_scenes() {
     source_.fail(table->entries[max_scenes].span, fmt::format("the model has more than {} scenes", max_scenes),
                  "put further scenes into another file");
   }
+  if (table != nullptr && table->find("default") == nullptr) {
+    for (const Entry& entry : table->entries) {
+      if (!nearest(entry.key, {"default"})) continue;
+      source_.fail(entry.span, fmt::format("there is no scene 'default', and {} is next to it", quote(entry.key)),
+                   "write [scene.default], or add one: it is the scene that runs where none is named");
+    }
+  }
   if (table == nullptr || table->find("default") == nullptr) {
     Scene scene;
     scene.name = "default";
@@ -199,7 +206,9 @@ void Reader::read_initial(Scene& scene, const std::vector<const Entry*>& entries
         model_.coordinates[symbol.index].unit.dimension,
         "start values are made of numbers, parameters, functions at the start, definitions and values given before"};
     if (context.dimension && initial.order == 1) context.dimension = quotient(*context.dimension, dimension_of("s"));
-    initial.value = resolver_.value(entry->value, context).node;
+    const Typed typed = resolver_.value(entry->value, context);
+    initial.value = typed.node;
+    warn_of_degrees(*entry, typed, initial);
     for (const auto& used : resolver_.coordinates_in(initial.value)) {
       if (given.count(used) > 0) continue;
       source_.fail(entry->value.span,
@@ -213,6 +222,16 @@ void Reader::read_initial(Scene& scene, const std::vector<const Entry*>& entries
     if (!guess) given.insert({initial.coordinate, initial.order});
     (guess ? scene.guess : scene.initial).push_back(initial);
   }
+}
+
+// 45 of an angle that is measured in radians: degrees were meant, or a whole number of turns too many.
+void Reader::warn_of_degrees(const Entry& entry, const Typed& typed, const InitialValue& initial) {
+  const Rational turn = Rational(62832) / 10000;
+  const bool angle = model_.coordinates[initial.coordinate].unit.text == "rad";
+  if (!angle || initial.order != 0 || !typed.literal || !typed.constant || cln::abs(*typed.constant) <= turn) return;
+  const std::string written = entry.value.text;
+  resolver_.warn(entry.value.span, fmt::format("'{}' starts at {}: radians?", entry.key, written),
+                 fmt::format("write \"{0} deg\" for degrees, \"{0} rad\" for radians", written));
 }
 
 void Reader::read_solve(Scene& scene, const Value& value) {

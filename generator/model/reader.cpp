@@ -11,6 +11,7 @@
 #include <fstream>
 
 #include "model/content_hash.hpp"
+#include "model/units.hpp"
 
 namespace eomgen::model {
 
@@ -19,8 +20,19 @@ namespace {
 // A model without any unit is not checked for units: its coordinates' metres and radians are then mere words.
 bool states_units(const Value& value, std::string_view section, std::string_view key) {
   if (value.is(Value::Kind::text)) {
-    if (key == "unit" || section == "coordinates") return true;
-    return value.text.find('[') != std::string::npos || trailing_unit(value.text).has_value();
+    // Angles are numbers: a unit of them says nothing of the others.
+    const auto says = [](const std::optional<MeasuredUnit>& unit) { return unit && !is_one(unit->dimension); };
+    if (key == "unit" || section == "coordinates") {
+      const std::optional<MeasuredUnit> unit = parse_unit(value.text);
+      return !unit || says(unit);
+    }
+    for (std::size_t open = 0; (open = value.text.find('[', open)) != std::string::npos; ++open) {
+      const std::size_t close = value.text.find(']', open);
+      if (close == std::string::npos) return true;  // refused later
+      const std::optional<MeasuredUnit> unit = parse_unit(value.text.substr(open + 1, close - open - 1));
+      if (!unit || says(unit)) return true;
+    }
+    return says(trailing_unit(value.text));
   }
   const auto words = [](std::string_view name) {
     return name == "title" || name == "notes" || name == "note" || name == "tex" || name == "name" || name == "scene";

@@ -172,7 +172,7 @@ Typed Resolver::plain_name(const SyntaxNode& node) {
   }
   if (name == "pi") {
     Typed result = make(Op::pi, false, {}, node.span);
-    result.dimension = Dimension{};
+    result.literal = result.pure = true;  // a number as 2 is
     return result;
   }
   if (name == "t") {

@@ -70,7 +70,8 @@ void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& en
       input.signal = read_input_table(entry->value, *symbol);
     } else {
       const Context context{fmt::format("the input '{}'", entry->key), on_time, Shape::scalar, symbol->typed.dimension,
-                            ""};
+                            "a scene gives an input as a function of t and parameters, or as a table; what depends on the state is a [[force]], or a "
+                            "controller's, which hands u to the emitted code at every step (docs/linking.md)"};
       input.signal = resolver_.value(entry->value, context).node;
     }
     scene.inputs.push_back(std::move(input));
@@ -142,7 +143,7 @@ void Reader::check_output(const Value& value) {
   const Symbol* symbol = scope_.find(parts.size() == 1 ? std::string(split_derivative(value.text).base) : parts[0]);
   if (parts.size() == 1 && symbol != nullptr) {
     const std::uint8_t order = split_derivative(value.text).order;
-    if (symbol->kind == SymbolKind::coordinate && order <= 1) return;
+    if (symbol->kind == SymbolKind::coordinate) return;
     if (symbol->kind == SymbolKind::definition && order == 0) {
       if (!model_.definitions[symbol->index].vector) return;
       source_.fail(value.span, fmt::format("the definition '{}' is a vector, and an output is a scalar", value.text),

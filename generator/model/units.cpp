@@ -175,7 +175,29 @@ std::optional<MeasuredUnit> parse_unit(std::string_view text) {
   return UnitParser(text).all();
 }
 
+std::optional<std::string> completed_unit(std::string_view text) {
+  std::string result;
+  for (std::size_t k = 0; k < text.size(); ++k) {
+    const bool after_letter = k > 0 && std::isalpha(static_cast<unsigned char>(text[k - 1])) != 0;
+    const bool raised_sign = text[k] == '-' && k + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[k + 1])) != 0;
+    if (after_letter && (std::isdigit(static_cast<unsigned char>(text[k])) != 0 || raised_sign)) result += '^';
+    if (text.substr(k).starts_with("**")) {
+      result += '^';
+      ++k;
+    } else if (text.substr(k).starts_with("\xc2\xb2") || text.substr(k).starts_with("\xc2\xb3")) {  // superscript 2 and 3
+      result += text[++k] == '\xb2' ? "^2" : "^3";
+    } else if (text.substr(k).starts_with("\xc2\xb7")) {  // a dot in the middle
+      result += '*';
+      ++k;
+    } else {
+      result += text[k] == '.' && after_letter ? '*' : text[k];
+    }
+  }
+  return result != text && parse_unit(result) ? std::optional(result) : std::nullopt;
+}
+
 std::string unit_hint(std::string_view text) {
+  if (const auto meant = completed_unit(text)) return "did you mean '" + *meant + "'?";
   std::vector<std::string> names;
   for (const NamedUnit& unit : units) names.emplace_back(unit.name);
   for (const char* common : {"kg", "mm", "cm", "km", "ms", "kN", "N*m", "m/s", "m/s^2", "rad/s", "N/m", "N*s/m"}) {

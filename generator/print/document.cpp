@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
+#include "model/names.hpp"
 #include "print/formulas.hpp"
 #include "print/render.hpp"
 
@@ -57,6 +58,8 @@ class Document {
 
   std::string write(const ReadingForm& one, const ReadingForm& two) {
     text_ = preamble;
+    const std::string amsmath = "\\usepackage{amsmath}\n";
+    if (uses_amssymb()) text_.insert(text_.find(amsmath) + amsmath.size(), "\\usepackage{amssymb}\n");
     const std::string title = model_.title.empty() ? model_.id : model_.title;
     text_ += "\\section*{" + escape_latex(title) + "}\n";
     if (!model_.notes.empty()) text_ += escape_latex(model_.notes) + "\n\n";
@@ -71,6 +74,10 @@ class Document {
   }
 
  private:
+  bool uses_amssymb() const {
+    const auto in = [](const auto& list) { return std::any_of(list.begin(), list.end(), [](const auto& named) { return model::needs_amssymb(named.tex); }); };
+    return in(model_.parameters) || in(model_.inputs) || in(model_.functions) || in(model_.coordinates);
+  }
   std::string wide(const Formula& f) const { return print(f, notation_, *wide_); }
   std::string narrow(const Formula& f) const { return print(f, notation_, *narrow_); }
   std::string symbol(symbolic::SymbolKind kind, std::size_t index) const {

@@ -118,7 +118,7 @@ std::string latex(const Glyph& glyph) {
       case 1: return "\\dot{" + base + "}";
       case 2: return "\\ddot{" + base + "}";
       case 3: return "\\dddot{" + base + "}";
-      default: return base + "^{(" + std::to_string(glyph.dots) + ")}";
+      default: return (glyph.tex.empty() ? base : "{" + base + "}") + "^{(" + std::to_string(glyph.dots) + ")}";
     }
   };
   if (!glyph.tex.empty()) return glyph.dots == 0 ? "{" + glyph.tex + "}" : dotted(glyph.tex);

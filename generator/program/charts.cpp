@@ -42,7 +42,7 @@ std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& output
   std::vector<std::uint32_t> result;
   for (std::uint32_t i = 0; i < outputs.size(); ++i) {
     const bool momentum = std::any_of(exchanged.begin(), exchanged.end(), [&](const std::string& angle) {
-      return outputs[i] == "momentum." + angle || outputs[i] == "magnitude.momentum." + angle;
+      return outputs[i] == angle + "_ddot" || outputs[i] == "momentum." + angle || outputs[i] == "magnitude.momentum." + angle;
     });
     if (!momentum && std::find(known.begin(), known.end(), outputs[i]) != known.end()) result.push_back(i);
   }

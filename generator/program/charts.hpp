@@ -10,7 +10,7 @@ namespace eomgen::program {
 /// With charts fewer kinks can be held: their bits come after.
 inline constexpr std::size_t most_kinks_with_charts = 10;
 
-/// Which of these outputs a program in second charts can give as they are meant: all but momenta of exchanged angles and what only
+/// Which of these outputs a program in second charts can give as they are meant: all but momenta and accelerations of exchanged angles and what only
 /// the own charts conserve. `known`: outputs of its equations.
 std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& known,
                                           const std::vector<std::string>& exchanged);

@@ -57,7 +57,7 @@ class Watch {
       last_x_.assign(view.x0.begin(), view.x0.end());
       return false;
     }
-    if (request_.every > 0) rows_within(view);
+    if (request_.every > 0 && !rows_within(view)) return false;
     if (request_.progress) {
       request_.progress((view.t1 - request_.scene.t0) / (request_.scene.t1 - request_.scene.t0));
     }
@@ -70,8 +70,15 @@ class Watch {
     if (request_.every > 0 && event.kind == "custom") pending_.emplace_back(event.t, std::vector<double>(x.begin(), x.end()));
   }
 
-  /// Where a coordinate left its range, the run ends with the step before; tells what happened.
+  /// Where a coordinate left its range, the run ends with the step before; tells what happened. Where it was interrupted
+  /// between two rows it ends with the last one.
   void cut(eom::Result& end) const {
+    if (interrupted_) {
+      end.outcome = eom::Outcome::interrupted;
+      end.detail = "while rows were written";
+      end.t = last_t_;
+      end.x = last_x_;
+    }
     if (chart_detail_.empty()) return;
     end.outcome = eom::Outcome::chart_left;
     end.detail = chart_detail_;
@@ -126,12 +133,13 @@ class Watch {
     return false;
   }
 
-  void rows_within(const eom::StepView& view) {
+  /// False where the run was interrupted meanwhile.
+  bool rows_within(const eom::StepView& view) {
     // Multiples of the interval, counted, so that the grid does not drift; a last sliver belongs to the end.
     while (true) {
       const double t = request_.scene.t0 + static_cast<double>(next_) * request_.every;
       rows_of_events(std::min(t, view.t1));
-      if (t > view.t1 || t > request_.scene.t1) return;
+      if (t > view.t1 || t > request_.scene.t1) return true;
       if (t == last_row_) {
         // an event's row stands there already
       } else if (t == view.t1) {
@@ -139,6 +147,12 @@ class Watch {
       } else {
         view.interpolate(t, between_);
         row(t, between_.data());
+        if (request_.interrupt != nullptr && request_.interrupt->load(std::memory_order_relaxed)) {
+          interrupted_ = true;
+          last_t_ = t;
+          last_x_ = between_;
+          return false;
+        }
       }
       ++next_;
     }
@@ -175,6 +189,7 @@ class Watch {
   std::vector<std::pair<double, std::vector<double>>> pending_;  // rows at events of the step that is being made
   std::uint64_t next_ = 1;
   double last_row_ = std::nan("");
+  bool interrupted_ = false;
 };
 
 /// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is false then).
@@ -277,8 +292,9 @@ RunResult integrate_scene(const RunRequest& request) {
     if (resolution && integration.charts().second() == 0) resolution->see(view);
     return watch.step(view);
   };
-  eom::Result end = integration.run(options, see,
-                                    [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); });
+  const bool moves = request.scene.t1 != request.scene.t0;
+  eom::Result end = moves ? integration.run(options, see, [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); })
+                          : eom::Result{eom::Outcome::done, request.scene.t0, integration.initial_state(), {}, ""};
   result.seconds_integrate = seconds_since(start);
   const std::string asked = result.solver;
   watch.cut(end);
@@ -307,7 +323,7 @@ RunResult integrate_scene(const RunRequest& request) {
   result.state = integration.own_state(end);
   tell_parameters(request.scene, result);
   const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
-  if (request.estimate && ended) {
+  if (request.estimate && ended && moves) {
     eom::Result own = end;
     own.x = result.state;
     estimate_error(request, asked, own, options, resolution ? &*resolution : nullptr, result);

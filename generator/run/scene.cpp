@@ -45,7 +45,10 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
     if (found == m.model->parameters.end()) {
       std::vector<std::string> names;
       for (const model::Parameter& p : m.model->parameters) names.push_back(p.name);
-      const std::string hint = model::did_you_mean(name, names);
+      std::string hint = model::did_you_mean(name, names);
+      for (const model::Input& input : m.model->inputs) {
+        if (input.name == name) hint = fmt::format("it is an input: a scene gives it, as inputs = {{ {} = 2 }}", name);
+      }
       throw Error("scene", {}, fmt::format("there is no parameter {} to set", model::quote(name)),
                   hint.empty() ? fmt::format("the parameters are {}", fmt::join(names, ", ")) : hint);
     }
@@ -231,11 +234,11 @@ void require_ranges(const Mechanics& m, const model::Scene& scene, const Scene& 
   }
 }
 
-void require_span(const Mechanics& m, const model::Scene& scene, const Scene& result) {
+void require_span(const Mechanics& m, const model::Scene& scene, const Scene& result, bool at_start) {
   const auto fail = [&](const char* what, const char* remedy) {
     throw Error("scene", m.model->where(scene.span), what, remedy);
   };
-  if (!(result.t1 > result.t0)) fail("the end of the scene must come after its start", "t = [t0, t1] with t1 > t0");
+  if (!(result.t1 > result.t0) && !at_start) fail("the end of the scene must come after its start", "t = [t0, t1] with t1 > t0");
   if (!(result.rtol >= 0 && result.atol >= 0 && result.rtol + result.atol > 0)) {
     fail("tolerances must not be negative, nor both zero", "give rtol = 1e-9 and atol = 1e-12, say");
   }
@@ -311,11 +314,13 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.step = overrides.step.value_or(result.step);
   result.every = overrides.every.value_or(result.every);
   result.solver = overrides.solver.value_or(scene.solver);
-  if (overrides.t_end && !(result.t1 > result.t0)) {
-    throw Error("scene", {}, fmt::format("the run would end at t = {}, before its start at t = {}", result.t1, result.t0),
+  const bool at_start = overrides.at_start && overrides.t_end && result.t1 == result.t0;
+  if (overrides.t_end && !(result.t1 > result.t0) && !at_start) {
+    throw Error("scene", {}, fmt::format("the run would end at t = {}, {} its start{}", result.t1, result.t1 < result.t0 ? "before" : "at",
+                            result.t1 < result.t0 ? fmt::format(" at t = {}", result.t0) : ""),
                 "give a later --t-end");
   }
-  require_span(m, scene, result);
+  require_span(m, scene, result, at_start);
   resolve_inputs(m, scene, value, result);
 
   StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}, {}};
@@ -348,6 +353,9 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
   result.solved = problem.solved;
+  if (scene.initial.empty() && scene.rotations.empty()) {
+    result.solved.insert(result.solved.begin(), "no initial values: all coordinates and rates start at 0" + std::string(problem.solved.empty() ? "" : ", but for those that follow"));
+  }
   result.apart = problem.apart;
   for (const model::Event& event : m.model->events) result.stops.push_back(event.stop);
   for (const std::uint32_t i : scene.stop) result.stops[i] = true;

@@ -22,6 +22,7 @@ struct Overrides {
   std::optional<double> t_end, rtol, atol, step, every;
   std::optional<std::string> solver;
   std::vector<std::string> outputs;  // in place of the scene's, unless empty
+  bool at_start = false;             // t_end may be the start: nothing moves then
   bool exchanges_charts = false;     // a start where coordinates fail is no error: the run goes on in other ones
 };
 

@@ -345,8 +345,14 @@ class StartSolver {
         span = found->second.span;
       }
     }
+    const bool alone = open.find(',') == std::string::npos;  // one unknown or none: nothing else could fix it
     const std::string remedy =
-        !given.empty() && open.empty()
+        alone && !(open.empty() && !given.empty())
+            ? fmt::format("{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",
+                          open.empty() ? "its gradient vanishes there: it has no real solution, or only ones where it has no force"
+                                       : fmt::format("no value of {} was found that meets it: it may have no real solution", open),
+                          given.empty() ? "" : " and what is given")
+        : !given.empty() && open.empty()
             ? fmt::format("give consistent values, or name what may be moved: solve = [one of {}]", given)
             : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve", open);
     throw Error("scene", p_.mechanics.model->where(span),

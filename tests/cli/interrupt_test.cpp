@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Ctrl-C in the middle of a run.
 #include <doctest/doctest.h>
+#include <sys/stat.h>
 
 #include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 
 #include "program.hpp"
@@ -15,13 +17,15 @@ namespace {
 // Far longer than any test may take.
 const Words endless{"run", "P2_planar_pendulum", "--t-end", "1e7", "--every", "0.1", "--out", "a.csv", "--json"};
 
-/// Until there are rows in `name`, at most ten seconds.
-bool wait_for_rows(const Folder& folder, const std::string& name) {
-  for (int k = 0; k < 1000; ++k) {
-    if (folder.has(name) && folder.read(name).size() > 100000) return true;
+/// The file NAME.partial-XXXXXX, once there are rows in it; empty where that takes more than 20 seconds.
+std::string wait_for_rows(const Folder& folder, const std::string& name, std::size_t bytes = 100000) {
+  for (int k = 0; k < 2000; ++k) {
+    for (const std::string& file : folder.names()) {
+      if (file.starts_with(name + ".partial-") && file.size() == name.size() + 15 && folder.read(file).size() > bytes) return file;
+    }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
-  return false;
+  return "";
 }
 
 }  // namespace
@@ -30,7 +34,7 @@ TEST_CASE("an interrupted run keeps its rows, names its outcome and ends with 3"
   for (const int signal : {SIGINT, SIGTERM}) {
     const Folder folder;
     Child child(command(folder, endless));
-    REQUIRE(wait_for_rows(folder, "a.csv.partial"));
+    REQUIRE_FALSE(wait_for_rows(folder, "a.csv").empty());
     child.signal(signal);
     const ChildResult result = child.finish();
     CAPTURE(result.err);
@@ -49,12 +53,13 @@ TEST_CASE("a run that is killed leaves its rows under another name, whole but fo
   const Folder folder;
   folder.write("a.csv", "old");
   Child child(command(folder, endless));
-  REQUIRE(wait_for_rows(folder, "a.csv.partial"));
+  const std::string partial = wait_for_rows(folder, "a.csv");
+  REQUIRE_FALSE(partial.empty());
   child.signal(SIGKILL);
   CHECK(child.finish().status == 128 + SIGKILL);
   CHECK(folder.read("a.csv") == "old");
   // SIGKILL may fall into the middle of a write, which the kernel then cuts between two pages.
-  const std::string text = folder.read("a.csv.partial");
+  const std::string text = folder.read(partial);
   const Table table = read_table(text.substr(0, text.rfind('\n') + 1));
   CHECK(table.outcome.empty());
   CHECK(table.rows.size() > 100);
@@ -63,7 +68,43 @@ TEST_CASE("a run that is killed leaves its rows under another name, whole but fo
 TEST_CASE("what is no terminal gets no progress") {
   const Folder folder;
   Child child(command(folder, endless));
-  REQUIRE(wait_for_rows(folder, "a.csv.partial"));
+  REQUIRE_FALSE(wait_for_rows(folder, "a.csv").empty());
   child.signal(SIGINT);
   CHECK(child.finish().err.empty());
+}
+
+TEST_CASE("Ctrl-C is heeded while one step's rows are written") {
+  const Folder folder;
+  Child child(command(folder, {"run", "P2_planar_pendulum", "--every", "1e-9", "--yes", "--out", "a.csv", "--json"}));
+  REQUIRE_FALSE(wait_for_rows(folder, "a.csv").empty());
+  const auto asked = std::chrono::steady_clock::now();
+  child.signal(SIGINT);
+  const ChildResult result = child.finish();
+  CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(5));  // at once, but on a busy machine
+  CHECK(result.status == 3);
+  const Json run = Json::parse(result.out);
+  CHECK(run["outcome"] == "interrupted");
+  const Table table = read_table(folder.read("a.csv"));
+  CHECK(table.outcome == "interrupted");
+  CHECK(table.rows.back()[0] == run["t"]);
+  CHECK(table.rows.back()[0] - table.rows[table.rows.size() - 2][0] < 2e-9);  // no gap before the end
+}
+
+TEST_CASE("a polite kill is heeded while the compiler hangs, and nothing is left") {
+  const Folder folder;
+  folder.write("cc", "#!/bin/sh\n[ \"$1\" = --version ] && exec echo slow\ntouch working\nsleep 1000\n");
+  REQUIRE(::chmod((folder / "cc").c_str(), 0755) == 0);
+  ChildCommand call = command(folder, {"run", "P2_planar_pendulum"});
+  call.environment["EOMGEN_CC"] = folder / "cc";
+  call.environment["EOMGEN_CACHE_DIR"] = folder / "cache";
+  Child child(call);
+  for (int k = 0; k < 2000 && !folder.has("working"); ++k) std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  REQUIRE(folder.has("working"));
+  child.signal(SIGTERM);
+  const ChildResult result = child.finish();
+  CAPTURE(result.err);
+  CHECK(result.in_time);
+  CHECK(result.status == 3);
+  CHECK(contains(result.err, "interrupted before the run began"));
+  CHECK(std::filesystem::is_empty(folder / "cache"));
 }

@@ -56,7 +56,7 @@ ChildCommand command(const Folder& folder, const Words& words) {
   result.arguments = {EOMGEN_PROGRAM};
   result.arguments.insert(result.arguments.end(), words.begin(), words.end());
   result.folder = folder.path();
-  result.environment = {{"EOMGEN_CACHE_DIR", test::build_folder() + "/test-cache"},
+  result.environment = {{"EOMGEN_CACHE_DIR", test::build_folder() + "/test-code"},
                         {"EOMGEN_MODELS", test::source_folder() + "/models"},
                         {"EOMGEN_CC", std::nullopt},
                         {"CC", std::nullopt}};

@@ -2,6 +2,10 @@
 // Wrong words on the command line: exit code 2 before any work, and what to do instead.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -39,6 +43,13 @@ TEST_CASE("commands and options that are not there: the nearest one is told") {
       {{"emit", P2}, "-o is required", "eomgen emit --help"},
       {{"run", P2, "--rotl", "1e-3"}, "there is no option '--rotl'", "did you mean '--rtol'?"},
       {{"run", P2, "another"}, "'another' is one word too many", "eomgen run --help"},
+      {{"simulate", P2}, "there is no command 'simulate'", "did you mean 'run'?"},
+      {{"Run", P2}, "there is no command 'Run'", "did you mean 'run'?"},
+      {{"init", "p"}, "there is no command 'init'", "did you mean 'new'?"},
+      {{"pendulum.toml"}, "a command is missing before 'pendulum.toml'", "eomgen check pendulum.toml says what the model is"},
+      {{"run", P2, "-v"}, "there is no option '-v'", "did you mean 'eomgen --version'?"},
+      {{"run", P2, "--version"}, "there is no option '--version'", "did you mean 'eomgen --version'?"},
+      {{"run", P2, "-s", "x"}, "there is no option '-s'", "did you mean '--s"},
       {{"check", P2, "--quick"}, "there is no option '--quick'", "eomgen check --help"},
   });
 }
@@ -82,6 +93,8 @@ TEST_CASE("values that cannot be are refused") {
       {{"run", P2, "--step", "0"}, "--step: '0' is not a number greater than 0", "eomgen run --help"},
       {{"run", P2, "--every", "0"}, "--every: '0' is not a number greater than 0", "eomgen run --help"},
       {{"run", P2, "--t-end", "inf"}, "--t-end: 'inf' is not a number", "eomgen run --help"},
+      {{"bench", P2, "--t-end", "0"}, "the run would end at t = 0, at its start", "give a later --t-end"},
+      {{"run", P2, "--t-end", "0", "--sensitivity", "L"}, "there are no derivatives of the end", "give a later --t-end"},
       {{"run", P2, "--t-end", "-1"}, "the run would end at t = -1, before its start at t = 0", "give a later --t-end"},
       {{"run", P2, "--solver", "rk4", "--out", "a.csv"}, "solver 'rk4' takes steps of a fixed size", "give --step H"},
       {{"run", P2, "--set", "m=abc"}, "'m=abc' has no decimal number", "write it as 9.81"},
@@ -113,4 +126,139 @@ TEST_CASE("a list takes one word each time, so that MODEL may stand after it") {
   CHECK(run["final"].contains("potential"));
   expect(0, folder, {"derive", "--show", "equations,metric", P2});
   expect(0, folder, {"emit", "--with", "jac", "--fix", "m", "-o", "out", P2});
+}
+
+TEST_CASE("help: three examples, new first, and where the documentation is; help is a word for it too") {
+  const Folder folder;
+  const std::string help = expect(0, folder, {"--help"}).out;
+  CHECK(help.starts_with("Examples:\n  eomgen new "));
+  const std::size_t examples = help.substr(0, help.find("\n\n")).size();
+  CHECK(std::count(help.begin(), help.begin() + static_cast<std::ptrdiff_t>(examples), '\n') == 3);
+  CHECK(expect(0, folder, {"help"}).out == help);
+  CHECK(expect(0, folder, {"help", "run"}).out == expect(0, folder, {"run", "--help"}).out);
+  CHECK(contains(expect(2, folder, {"help", "simulate"}).err, "did you mean 'run'?"));
+  const std::size_t at = help.find("Documentation: ") + 15;
+  const std::string page = help.substr(at, help.find(';', at) - at);
+  CHECK(page.ends_with("/commands.md"));
+  CHECK(std::filesystem::is_regular_file(page));
+}
+
+TEST_CASE("a file one letter away is named; so is the page that a message sends to") {
+  const Folder folder;
+  folder.write("pendulum.toml", pendulum_text(""));
+  for (const char* typed : {"pendulum.tml", "pendulun.toml", "pendulun", "Pendulum.toml", "./pendulm.toml"}) {
+    CAPTURE(typed);
+    const ChildResult result = expect(2, folder, {"run", typed});
+    CHECK(contains(result.err, "did you mean "));
+    CHECK(contains(result.err, "pendulum.toml?"));
+  }
+  folder.write("none.toml", "format = \n");
+  const std::string told = expect(2, folder, {"check", "none.toml"}).err;
+  const std::size_t end = told.find("model-format.md") + 15, begin = told.rfind('(', end) + 1;
+  CHECK(std::filesystem::is_regular_file(told.substr(begin, end - begin)));
+}
+
+TEST_CASE("-o and --out are one option, of every command that writes") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 0.1]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"));
+  for (const char* option : {"-o", "--out"}) {
+    CAPTURE(option);
+    expect(0, folder, {"run", "p.toml", option, "run.csv"});
+    expect(0, folder, {"sweep", "p.toml", "--grid", "m=1,2", option, "sweep.csv"});
+    expect(0, folder, {"report", "p.toml", option, "page.html"});
+    expect(0, folder, {"emit", "p.toml", option, "code", "--target", "c"});
+    CHECK(folder.names() == Words{"code", "p.toml", "page.html", "run.csv", "sweep.csv"});
+    for (const char* made : {"code", "page.html", "run.csv", "sweep.csv"}) std::filesystem::remove_all(folder / made);
+  }
+  CHECK(expect(0, folder, {"emit", "p.toml", "--print-name"}).out == "p\n");
+  CHECK(folder.names() == Words{"p.toml"});
+}
+
+TEST_CASE("a run of no length gives the state, accelerations and reactions at the start") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [2, 3]\ninitial = { x = 0, y = -1, x_dot = 3, y_dot = 0 }\n"));
+  const Json run = document(folder, {"run", "p.toml", "--t-end", "2", "--out", "a.csv"});
+  CHECK(run["outcome"] == "done");
+  CHECK(run["t"] == 2.0);
+  CHECK(run["steps"] == 0);
+  CHECK(run["final"]["x_dot"] == 3.0);
+  CHECK(run["final"]["y_ddot"].get<double>() == doctest::Approx(9).epsilon(1e-14));  // v^2/L
+  CHECK(run["final"]["x_ddot"].get<double>() == doctest::Approx(0));
+  CHECK(2 * std::abs(run["final"]["reaction.rod"].get<double>()) == doctest::Approx(9.81 + 9).epsilon(1e-14));
+  CHECK(read_table(folder.read("a.csv")).rows.size() == 1);
+  CHECK(contains(expect(0, folder, {"run", "p.toml", "--t-end", "2"}).out, "y_ddot"));
+  // Of the poles of an exchanged chart too, and where a constraint fixes a coordinate.
+  const Json fixed = document(folder, {"run", "P7_moving_sphere", "--t-end", "0"});
+  CHECK(fixed["final"]["R_ddot"].get<double>() == doctest::Approx(0));  // d0 + a sin(w t)
+  expect(0, folder, {"run", "R1_free_body", "--t-end", "0"});
+  expect(0, folder, {"run", "P4_rough_cone", "--t-end", "0"});
+}
+
+TEST_CASE("accelerations are outputs like any other") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0, x_dot = 0 }\noutputs = [\"y_ddot\", \"x_ddot\"]\n"));
+  const Json run = document(folder, {"run", "p.toml", "--out", "a.csv", "--every", "0.001", "--rtol", "1e-11"});
+  const Table table = read_table(folder.read("a.csv"));
+  CHECK(table.at(0, "y_ddot") == doctest::Approx(-9.81));
+  CHECK(table.at(table.rows.size() - 1, "x_ddot") == run["final"]["x_ddot"].get<double>());
+  for (std::size_t i = 1; i + 1 < table.rows.size(); i += 50) {  // by differences of the rates
+    const double by_rates = (table.at(i + 1, "x_dot") - table.at(i - 1, "x_dot")) / 0.002;
+    CHECK(table.at(i, "x_ddot") == doctest::Approx(by_rates).epsilon(1e-4));
+  }
+  CHECK(document(folder, {"run", "p.toml", "--output", "y_ddot"})["final"].contains("y_ddot"));
+  CHECK(contains(expect(2, folder, {"run", "p.toml", "--output", "z_ddot"}).err, "there is no output 'z_ddot'"));
+  expect(0, folder, {"emit", "p.toml", "-o", "code", "--output", "x_ddot"});
+  CHECK(document(folder, {"run", "R1_free_body", "--output", "all", "--t-end", "0.1"})["outcome"] == "done");
+}
+
+TEST_CASE("a scene without initial values says where it starts") {
+  const Folder folder;
+  folder.write("free.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x\"\n");
+  CHECK(contains(expect(0, folder, {"run", "free.toml"}).out, "no initial values: all coordinates and rates start at 0\n"));
+}
+
+TEST_CASE("inputs are in check's list; of an input that is set as a parameter it is told how") {
+  const Folder folder;
+  folder.write("cart.toml", "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 2 }\nG = { unit = \"N\" }\n[coordinates]\nx = \"m\"\n"
+                            "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"0\"\n[[force]]\ngeneralized = { x = \"F + G\" }\n");
+  const Json found = document(folder, {"check", "cart.toml"});
+  REQUIRE(found["inputs"].size() == 2);
+  CHECK(found["inputs"][0] == Json({{"name", "F"}, {"unit", "N"}, {"default", "2"}}));
+  CHECK(found["inputs"][1]["default"] == "0");
+  CHECK(contains(expect(0, folder, {"check", "cart.toml"}).out, "inputs\n  F "));
+  CHECK(contains(expect(2, folder, {"run", "cart.toml", "--set", "F=3"}).err, "it is an input: a scene gives it, as inputs = { F = 2 }"));
+}
+
+TEST_CASE("report: a hundred coordinates have room in its plots") {
+  const Folder folder;
+  std::string text = "format = 1\n[coordinates]\n", kinetic = "0", potential = "0";
+  for (int k = 1; k <= 100; ++k) {
+    const std::string x = "x" + std::to_string(k);
+    text += x + " = {}\n";
+    kinetic += " + " + x + "_dot^2/2";
+    potential += " + " + x + "^2/2";
+  }
+  folder.write("many.toml", text + "[energy]\nkinetic = \"" + kinetic + "\"\npotential = \"" + potential + "\"\n[scene.default]\nt = [0, 0.1]\ninitial = { x1 = 1 }\n");
+  for (const Words& words : {Words{"report", "many.toml"}, Words{"run", "many.toml", "--plot", "a.svg"}}) {
+    ChildCommand call = command(folder, words);
+    call.limit = 120;
+    const ChildResult result = run_child(call);
+    CAPTURE(result.err);
+    CHECK(result.status == 0);
+  }
+  CHECK(contains(folder.read("a.svg"), "x100"));
+}
+
+TEST_CASE("a constraint without a real solution is told as one") {
+  const Folder folder;
+  std::string text = pendulum_text("");
+  text.replace(text.find("x^2 + y^2 - L^2"), 15, "x^2 + y^2 + L^2");
+  folder.write("none.toml", text);
+  const std::string told = expect(2, folder, {"run", "none.toml"}).err;
+  CHECK(contains(told, "the start breaks constraint 'rod'"));
+  CHECK(contains(told, "no real solution"));
+  CHECK_FALSE(contains(told, "fix  by itself"));
+  text.replace(text.find("x^2 + y^2 + L^2"), 15, "(y + L)^2");
+  folder.write("square.toml", text);
+  CHECK(contains(expect(2, folder, {"check", "square.toml"}).err, "write \"y + L\""));
 }

@@ -371,7 +371,7 @@ TEST_CASE("write_files: whole files or none, and errors that name the path") {
     emit::write_files(paths[0], {{"c.txt", "three"}});  // a file is in the way
     FAIL("written");
   } catch (const Error& error) {
-    CHECK(error.fault() == Fault::tool);
+    CHECK(error.fault() == Fault::input);
     CHECK(error.message().find("a.txt") != std::string::npos);
   }
 }

@@ -57,3 +57,17 @@ TEST_CASE("target python: a dict of parameters changes those that depend on them
                        "p = m._parameters({'import': 7, 'numpy': 4}); assert list(p[:2]) == [51, 7], p; "
                        "p = m._parameters([1, 2, 3, 4, 5]); assert list(p) == [1, 2, 3, 4, 5], p");
 }
+
+TEST_CASE("target python: compiled code is kept and loaded only where nobody else can have put it") {
+  if (emit::run_process({"python3", "--version"}).status != 0) return;
+  const Folder folder, shared;
+  const Example e = examples()[0];
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "python"));
+  const std::string use = fmt::format("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m; print(m._library._name)", folder.path,
+                                      emit::mangled_id(e.context.id));
+  const Setting cache("EOMGEN_CACHE_DIR", shared.path);
+  CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));
+  CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));
+  std::filesystem::permissions(shared.path, std::filesystem::perms::all);
+  CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(folder.path));
+}

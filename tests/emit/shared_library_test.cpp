@@ -1,8 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The cache of compiled code, also when something is wrong with it.
 #include <doctest/doctest.h>
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include <atomic>
+#include <chrono>
 
 #include "emit/examples.hpp"
 #include "error.hpp"
@@ -48,7 +54,7 @@ TEST_CASE("cache: compiled once, found the second time, made again for another s
   CHECK_FALSE(emit::compile_and_load(sources().c + "\n", sources().h, "pendulum").cached);
   // nothing is left of the making
   for (const auto& entry : std::filesystem::directory_iterator(cache.path)) {
-    CHECK(entry.path().filename().string().size() == 32);
+    CHECK(entry.path().filename().string().size() == 64);
   }
 }
 
@@ -130,6 +136,100 @@ TEST_CASE("compiled code that fails its self test is refused and not kept") {
 TEST_CASE("cache: a folder that cannot be used is told") {
   const Setting folder("EOMGEN_CACHE_DIR", "/proc/no-such-folder");
   CHECK(failure(sources().c).find("cannot use the cache folder /proc/no-such-folder") != std::string::npos);
+}
+
+TEST_CASE("cache: a folder that another user could have filled is not used, and that is told") {
+  const Folder place;
+  const std::string cache = place.path + "/cache";
+  const Setting setting("EOMGEN_CACHE_DIR", cache);
+  CHECK(load().note.empty());
+  CHECK(std::filesystem::status(cache).permissions() == std::filesystem::perms::owner_all);
+  CHECK(load().cached);
+  const auto refused = [&](const std::string& why) {
+    std::string path;
+    {
+      const emit::Compiled code = load();
+      CHECK_FALSE(code.cached);
+      CHECK(code.note.find(cache) != std::string::npos);
+      CHECK(code.note.find(why) != std::string::npos);
+      CHECK_FALSE(code.path.starts_with(cache));
+      path = code.path;
+      CHECK(std::filesystem::status(std::filesystem::path(path).parent_path()).permissions() == std::filesystem::perms::owner_all);
+    }
+    CHECK_FALSE(std::filesystem::exists(path));  // gone with the code
+  };
+  for (const int mode : {0755, 0770, 0701, 0777}) {
+    REQUIRE(::chmod(cache.c_str(), static_cast<mode_t>(mode)) == 0);
+    refused("others may enter it");
+  }
+  REQUIRE(::chmod(cache.c_str(), 0700) == 0);
+  CHECK(load().cached);
+  std::filesystem::rename(cache, place.path + "/real");
+  std::filesystem::create_symlink("real", cache);
+  refused("it is a link");
+  std::filesystem::remove(cache);
+  if (::geteuid() == 0) {
+    std::filesystem::create_directory(cache);
+    REQUIRE(::chmod(cache.c_str(), 0700) == 0);
+    REQUIRE(::chown(cache.c_str(), 12345, 12345) == 0);
+    refused("it belongs to another user");
+    REQUIRE(::chown(cache.c_str(), 0, 0) == 0);
+    std::filesystem::remove_all(cache);
+  }
+  std::filesystem::rename(place.path + "/real", cache);
+  REQUIRE(::chmod(place.path.c_str(), 0777) == 0);
+  refused("others may put another one in its place");
+  REQUIRE(::chmod(place.path.c_str(), 0700) == 0);
+  // An entry that is a link, or a library that is one, is made anew.
+  const std::filesystem::path library = load().path;
+  std::filesystem::rename(library, place.path + "/planted.so");
+  std::filesystem::create_symlink(place.path + "/planted.so", library);
+  CHECK_FALSE(load().cached);
+  CHECK_FALSE(std::filesystem::is_symlink(library));
+}
+
+TEST_CASE("cache: without a home it is in the folder of temporary files, also where TMPDIR is none, and not one that was there before") {
+  const Folder temporary;
+  const Setting none("EOMGEN_CACHE_DIR", ""), xdg("XDG_CACHE_HOME", ""), home("HOME", "");
+  const Setting there("TMPDIR", temporary.path);
+  const std::string predictable = temporary.path + "/eomgen-" + std::to_string(::geteuid());
+  std::filesystem::create_directory(predictable);
+  REQUIRE(::chmod(predictable.c_str(), 0777) == 0);
+  const emit::Compiled code = load();
+  CHECK_FALSE(code.note.empty());
+  CHECK(std::filesystem::is_empty(predictable));
+  CHECK_FALSE(load().cached);
+  const Setting missing("TMPDIR", temporary.path + "/nowhere");
+  CHECK((load().model.rhs != nullptr));
+}
+
+TEST_CASE("cache: what killed runs left is cleared, what others are working on is not") {
+  const Folder cache;
+  const Setting setting("EOMGEN_CACHE_DIR", cache.path);
+  const auto make = [&](const std::string& name, bool old) {
+    const std::string path = cache.path + "/" + name;
+    std::filesystem::create_directory(path);
+    std::ofstream(path + "/half.c") << "int";
+    if (old) std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+    return path;
+  };
+  const std::string left = make("make-killed", true), new_one = make("make-newone", false), held = make("make-beheld", true);
+  const int file = ::open(held.c_str(), O_RDONLY | O_DIRECTORY);
+  REQUIRE(::flock(file, LOCK_EX) == 0);
+  (void)load();
+  CHECK_FALSE(std::filesystem::exists(left));
+  CHECK(std::filesystem::exists(new_one));
+  CHECK(std::filesystem::exists(held));
+  ::close(file);
+}
+
+TEST_CASE("processes: one that hangs is ended with all that it has started") {
+  const Folder folder;
+  const std::atomic<bool> raised{true};
+  const auto begin = std::chrono::steady_clock::now();
+  const emit::Finished finished = emit::run_process({"/bin/sh", "-c", "sleep 100 & sleep 100"}, &raised);
+  CHECK(finished.interrupted);
+  CHECK(std::chrono::steady_clock::now() - begin < std::chrono::seconds(10));
 }
 
 TEST_CASE("processes: arguments are arguments, never a shell's") {

@@ -56,6 +56,11 @@ touch "$prefix/bin/eomgen"
 
 echo "-- the licence of what is installed lies beside it"
 [[ -n $(find "$prefix" -path '*doc*' -name 'LICENSE*') ]] || refuse "no licence is installed"
+for page in commands.md model-format.md linking.md schema/run.schema.json; do
+  [[ -s "$prefix/share/doc/eomgen/$page" ]] || refuse "the page $page is not installed"
+done
+told=$("$prefix/bin/eomgen" --help) # read to its end, or the pipe closes while it writes
+grep -qF "$prefix/share/doc/eomgen/commands.md" <<<"$told" || refuse "eomgen --help does not tell where the installed documentation is"
 
 echo "-- the program runs from the prefix, with its models"
 [[ -x $prefix/bin/eomgen ]] || refuse "there is no bin/eomgen"

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "eom/output/csv.hpp"
+#include "eom/output/whole_file.hpp"
 
 namespace {
 
@@ -48,7 +49,7 @@ TEST_CASE("csv: t first, 17 significant digits, a trailing line with the outcome
   csv.finish(eom::Outcome::done);
   CHECK(text_of(path) ==
         "t,theta,theta_dot\n0,0.10000000000000001,-2\n0.5,1e-300,inf\n# outcome: done\n");
-  CHECK(!fs::exists(path.string() + ".partial"));
+  CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
 }
 
 TEST_CASE("csv: every number reads back to the same bits, but for the sign of 0") {
@@ -85,15 +86,18 @@ TEST_CASE("csv: without finish the .partial file stays with whole lines, and an 
   const Folder folder("partial");
   const fs::path path = folder.path / "run.csv";
   std::ofstream(path) << "older\n";
+  std::string partial_path;
   {
     eom::CsvWriter csv(path, columns);
     for (int k = 0; k < 10000; ++k) csv.row(k, std::vector<double>{0.1 * k, 0.2});
-    const std::string so_far = text_of(path.string() + ".partial");
+    partial_path = csv.partial();
+    CHECK(partial_path.starts_with(path.string() + ".partial-"));
+    const std::string so_far = text_of(partial_path);
     CHECK(so_far.size() > 100000);  // written along the way, not kept to the end
     CHECK(so_far.back() == '\n');
   }
   CHECK(text_of(path) == "older\n");
-  const std::string partial = text_of(path.string() + ".partial");
+  const std::string partial = text_of(partial_path);
   CHECK(partial.ends_with(",0.20000000000000001\n"));
   CHECK(std::count(partial.begin(), partial.end(), '\n') == 10001);
 }
@@ -118,16 +122,75 @@ TEST_CASE("csv: errors of the file system are thrown with the path") {
   const fs::path nowhere = folder.path / "no_such_folder" / "run.csv";
   CHECK(message([&] { eom::CsvWriter(nowhere, columns); }).find("no_such_folder") != std::string::npos);
 
+  const fs::path folder_there = folder.path / "folder.csv";
+  fs::create_directories(folder_there);
+  CHECK(message([&] { eom::CsvWriter(folder_there, columns); }).find("folder.csv") != std::string::npos);
   const fs::path blocked = folder.path / "blocked.csv";  // a folder of that name is in the way of the rename
-  fs::create_directories(blocked / "inside");
   eom::CsvWriter csv(blocked, columns);
+  fs::create_directories(blocked / "inside");
   CHECK(message([&] { csv.finish(eom::Outcome::done); }).find("blocked.csv") != std::string::npos);
-  CHECK(fs::exists(blocked.string() + ".partial"));
+  CHECK(fs::exists(csv.partial()));
 
-  if (fs::exists("/dev/full")) {  // a device that is always full
-    fs::create_symlink("/dev/full", folder.path / "full.csv.partial");
+  if (fs::exists("/dev/full")) {  // a device that is always full, written through a link
+    fs::create_symlink("/dev/full", folder.path / "full.csv");
     CHECK(message([&] { eom::CsvWriter(folder.path / "full.csv", columns); }).find("full.csv") != std::string::npos);
+    CHECK(fs::is_symlink(folder.path / "full.csv"));
   }
+}
+
+TEST_CASE("csv: two writers to one file do not share what they write, nor follow links that were put there") {
+  const Folder folder("two");
+  const fs::path path = folder.path / "run.csv";
+  std::ofstream(folder.path / "victim") << "mine\n";
+  fs::create_symlink("victim", folder.path / "run.csv.partial");
+  eom::CsvWriter first(path, columns), second(path, columns);
+  CHECK(first.partial() != second.partial());
+  first.row(0, std::vector<double>{1, 1});
+  second.row(0, std::vector<double>{2, 2});
+  first.finish(eom::Outcome::done);
+  CHECK(text_of(path) == "t,theta,theta_dot\n0,1,1\n# outcome: done\n");
+  second.finish(eom::Outcome::done);
+  CHECK(text_of(path) == "t,theta,theta_dot\n0,2,2\n# outcome: done\n");
+  CHECK(text_of(folder.path / "victim") == "mine\n");
+}
+
+TEST_CASE("whole file: links are followed, what is no regular file is written through, and modes stay") {
+  const Folder folder("kinds");
+  fs::create_directories(folder.path / "elsewhere");
+  const fs::path target = folder.path / "elsewhere" / "run.csv", link = folder.path / "run.csv";
+  std::ofstream(target) << "older\n";
+  fs::permissions(target, fs::perms::owner_read | fs::perms::owner_write);
+  fs::create_symlink(fs::path("elsewhere") / "run.csv", link);
+  eom::WholeFile file(link);
+  CHECK(file.partial().starts_with(target.string() + ".partial-"));
+  file.write("new\n");
+  CHECK(text_of(target) == "older\n");
+  file.finish();
+  CHECK(text_of(target) == "new\n");
+  CHECK(fs::is_symlink(link));
+  CHECK(fs::status(target).permissions() == (fs::perms::owner_read | fs::perms::owner_write));
+  // A link to what is not there yet.
+  fs::create_symlink(fs::path("elsewhere") / "later.csv", folder.path / "later");
+  eom::WholeFile later(folder.path / "later");
+  later.write("x");
+  later.finish();
+  CHECK(text_of(folder.path / "elsewhere" / "later.csv") == "x");
+  fs::create_symlink("circle", folder.path / "circle");
+  CHECK_THROWS_AS(eom::WholeFile(folder.path / "circle"), std::system_error);
+  // A device stays one.
+  eom::WholeFile null("/dev/null");
+  CHECK(null.partial().empty());
+  null.write("away");
+  null.finish();
+  CHECK(fs::is_character_file("/dev/null"));
+  // The longest name that a file can have has room for its partial one.
+  eom::WholeFile longest(folder.path / std::string(255, 'n'));
+  longest.write("x");
+  longest.finish();
+  CHECK(text_of(folder.path / std::string(255, 'n')) == "x");
+  eom::WholeFile gone(folder.path / "gone");
+  gone.discard();
+  CHECK_FALSE(fs::exists(folder.path / "gone"));
 }
 
 TEST_CASE("csv: a row of the wrong length, and one after finish, are refused") {

@@ -141,3 +141,13 @@ TEST_CASE("axis: ticks are at 1, 2 or 5 times powers of ten, and zero is labelle
   CHECK(axis.ticks[1].label == "0");
   CHECK(axis.ticks[3].label == "1.0");
 }
+
+TEST_CASE("svg: a legend of a hundred names makes the drawing higher") {
+  eom::Plot plot;
+  plot.height = 320;
+  for (int k = 0; k < 100; ++k) plot.series.push_back({"coordinate" + std::to_string(k), {0, 1}, {0, double(k)}});
+  const std::string text = eom::svg(plot);
+  CHECK(text.find("coordinate99") != std::string::npos);
+  const std::size_t at = text.find("height=\"") + 8;
+  CHECK(std::stoi(text.substr(at)) > 500);
+}

@@ -6,6 +6,10 @@ namespace eomgen::model {
 
 std::vector<WrongModel> wrong_structure() {
   return {
+      {"a constraint that is a square", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"(R - L)^2\"\n"), "15:14",
+       "the constraint 'rod' is a power: its gradient vanishes where it holds, so that it has no force", "write \"R - L\""},
+      {"a constraint that is a square times a parameter", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"-m*(R - L)^2/2\"\n"), "15:14",
+       "the constraint 'rod' is a power: its gradient vanishes where it holds, so that it has no force", "write what is raised to the power"},
       {"an empty file", "", "1:1", "the model has no format", "add format = 1 at the top"},
       {"no format", pendulum({{"format = 1\n", ""}}), "1:1", "the model has no format", "add format = 1 at the top"},
       {"a format of the future", pendulum({{"format = 1", "format = 2"}}), "1:10", "the format '2' is not known",

@@ -81,3 +81,13 @@ TEST_CASE("the document compiles with pdflatex, if it is installed") {
   CHECK(compiles(document(model::read_model(test::source_folder() + "/models/S5_spherical_double_pendulum.toml")), "S5"));
   CHECK(compiles(document(hostile()), "hostile"));
 }
+
+TEST_CASE("the document loads amssymb where a name needs it, and only there") {
+  std::string text = "format = 1\n[coordinates]\nx = { tex = '\\mathfrak{x}' }\ny = { tex = 'y^2' }\n[parameters]\nk = { value = 1, tex = '\\mathbb{K}_1' }\n"
+                     "[energy]\nkinetic = \"x_dot^2 + y_dot^2\"\npotential = \"k*x^2 + y^2\"\n";
+  const std::string with = document(model::read_model_text(text, "m.toml"));
+  CHECK(with.find("\\usepackage{amssymb}") != std::string::npos);
+  for (const char* name : {"\\mathfrak{x}", "\\mathbb{K}_1"}) text.replace(text.find(name), std::string(name).size(), "z");
+  CHECK(document(model::read_model_text(text, "m.toml")).find("amssymb") == std::string::npos);
+  if (std::system("command -v pdflatex > /dev/null 2>&1") == 0) CHECK(compiles(with, "amssymb"));
+}

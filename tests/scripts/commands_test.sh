@@ -14,7 +14,7 @@ options() { grep -oE -- '(^|[ ,`])(-o|--[a-z][a-z-]*)' | grep -oE -- '-.*' | LC_
 chapter() { awk -v title="## $1" '$0 == title { on = 1; next } /^## / { on = 0 } on' "$document"; }
 
 common=$(awk '/^## / { exit } 1' "$document" | options)
-mapfile -t commands < <("$program" --help | awk '/^Subcommands:/ { on = 1; next } on && NF > 0 { print $1 }')
+mapfile -t commands < <("$program" --help | awk '/^Subcommands:/ { on = 1; next } on && /^  [a-z]/ { print $1 }')
 ((${#commands[@]} >= 7)) || refuse "the program shows ${#commands[@]} commands only"
 for command in "${commands[@]}"; do
   if [[ -z $(chapter "$command") ]]; then

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 
 #include "bench/bench.hpp"
@@ -14,6 +13,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/simulate.hpp"
 #include "cli/usage.hpp"
@@ -47,7 +47,7 @@ class Status {
   Status& operator=(const Status&) = delete;
   ~Status() { show(""); }
   void show(const std::string& text) {
-    if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r{:60}\r{}", "", text);
+    if (isatty(STDERR_FILENO) != 0) tell(fmt::format("\r{:60}\r{}", "", text));
   }
 };
 
@@ -118,12 +118,6 @@ std::vector<std::string> solvers_for(const Options& options, const run::Scene& s
   return chosen;
 }
 
-void write_file(const std::string& path, const std::string& text) {
-  if (path.empty()) return;
-  const std::filesystem::path file(path);
-  write_results(file.has_parent_path() ? file.parent_path().string() : ".", {{file.filename().string(), text}});
-}
-
 SimulationRequest simulation_request(const Options& options, const Common& common) {
   SimulationRequest request;
   request.model = options.model;
@@ -140,8 +134,10 @@ SimulationRequest simulation_request(const Options& options, const Common& commo
 }
 
 int execute(const Options& options, const Common& common) {
-  if (!options.csv.empty()) require_writable("--csv", options.csv);
-  if (!options.svg.empty()) require_writable("--svg", options.svg);
+  std::vector<Place> places;
+  if (!options.csv.empty()) places.push_back({"--out", options.csv, ".csv"});
+  if (!options.svg.empty()) places.push_back({"--plot", options.svg, ".svg"});
+  require_places(places, locate_model(options.model), common.json);
   const Simulation simulation = simulate(simulation_request(options, common));
   const Interrupt interrupt;
   const run::Code code = simulation.code.for_run();
@@ -174,13 +170,13 @@ int execute(const Options& options, const Common& common) {
   const std::vector<bench::Row> rows = bench::measure(measured);
   status.show("");
   const BenchReport report{simulation, reference, rows, request.state_names, std::move(left_out), "code compiled with -O2", seconds};
-  write_file(options.csv, report.csv());
+  if (!options.csv.empty()) write_text(options.csv, report.csv());
   const model::Model& model = simulation.derived->model;
-  write_file(options.svg, bench::diagram(rows, model.title.empty() ? model.id : model.title));
+  if (!options.svg.empty()) write_text(options.svg, bench::diagram(rows, model.title.empty() ? model.id : model.title));
   if (common.json) {
     print_document(report.json());
   } else {
-    fmt::print("{}", report.text());
+    print_readable(report.text(), is_standard_output(options.csv) || is_standard_output(options.svg));
   }
   if (Interrupt::flag()) return 3;
   const bool any = std::any_of(rows.begin(), rows.end(), [](const bench::Row& row) { return row.outcome == "done"; });
@@ -198,8 +194,8 @@ Execute declare_bench(CLI::App& app) {
   add_list(app, "--solver", options->solvers, "only these solvers");
   app.add_option("--seconds", options->seconds, "what takes longer is interrupted")->check(positive_number())->capture_default_str();
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
-  app.add_option("--csv", options->csv, "the table as a CSV file");
-  app.add_option("--svg", options->svg, "error over run time as an SVG plot");
+  add_place(app, "-o,--out,--csv", options->csv, "the table as a CSV file");
+  add_place(app, "--plot,--svg", options->svg, "error over run time as an SVG plot");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();
   return [options](const Common& common) { return execute(*options, common); };

@@ -132,6 +132,12 @@ json examine(const model::Model& model) {
     parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[parameters.size()])}});
     every_unit = every_unit && p.unit.dimension.has_value();
   }
+  json inputs = json::array();
+  for (const model::Input& input : model.inputs) {
+    inputs.push_back({{"name", input.name}, {"unit", input.unit.text},
+                      {"default", input.fallback == model::no_node ? "0" : value_of(m, mechanics::lower_scalar(m, input.fallback))}});
+    every_unit = every_unit && input.unit.dimension.has_value();
+  }
   for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
     conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)},
                          {"certainty", derive::name(c.certainty)}});
@@ -140,7 +146,7 @@ json examine(const model::Model& model) {
     warnings.push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
   }
   return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
-          {"dof", m.freedom()}, {"parameters", parameters},
+          {"dof", m.freedom()}, {"parameters", parameters}, {"inputs", inputs},
           {"constraints", constraints_of(m)}, {"joints", joints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
           {"singular", singular_of(m)}, {"charts", charts_of_model(m)},
           {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
@@ -178,6 +184,8 @@ void print_readable(const json& found) {
   fmt::print("  {} degree{} of freedom\n", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s");
   heading("parameters");
   for (const json& p : found["parameters"]) fmt::print("  {:<20} {} {}\n", text(p["name"]), text(p["value"]), text(p["unit"]));
+  if (!found["inputs"].empty()) heading("inputs");
+  for (const json& u : found["inputs"]) fmt::print("  {:<20} {}  ({} where a scene gives none)\n", text(u["name"]), text(u["unit"]), text(u["default"]));
   if (!found["constraints"].empty()) heading("constraints");
   for (const json& c : found["constraints"]) {
     const bool holonomic = c["kind"] == "holonomic";

@@ -115,8 +115,8 @@ void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& 
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(derive::conserved_quantities(mechanics, system));
   const reading::RouthForm form = reading::routh_form(mechanics, cyclic);
-  if (cyclic.empty()) fmt::print(stderr, "no coordinate is cyclic: there is nothing to reduce\n");
-  if (form.by_parts) fmt::print(stderr, "the reduction is too long to be written out, or the momenta do not give the rates\n");
+  if (cyclic.empty()) tell("no coordinate is cyclic: there is nothing to reduce\n");
+  if (form.by_parts) tell("the reduction is too long to be written out, or the momenta do not give the rates\n");
   for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
 }
 

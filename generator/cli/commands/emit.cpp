@@ -35,8 +35,8 @@ program::Request request_of(const Options& options, Derived& derived, const run:
     } else if (name == "outputs") {
       request.outputs.insert(request.outputs.end(), scene.outputs.begin(), scene.outputs.end());
       if (scene.outputs.empty() && options.outputs.empty()) {
-        fmt::print(stderr, "warning: the default scene asks for no outputs, so there is no function for them\n"
-                           "  remedy: name them: --output energy,..\n");
+        tell("warning: the default scene asks for no outputs, so there is no function for them\n"
+           "  remedy: name them: --output energy,..\n");
       }
     } else if (name != "charts") {
       request.with.push_back(name);
@@ -88,13 +88,13 @@ void require_target(const std::string& target) {
 int emit_document(const Options& options, const Common& common) {
   const auto derived = derive_model(options.model, ApproachChoice::automatic);
   if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty()) {
-    fmt::print(stderr, "warning: a document has no functions: --with, --output and --fix change nothing\n");
+    tell("warning: a document has no functions: --with, --output and --fix change nothing\n");
   }
   const reading::ReadingForm one = reading::derive_reading(derived->mechanics, system::Approach::one);
   const reading::ReadingForm two = reading::derive_reading(derived->mechanics, system::Approach::two);
   const std::string name = emit::mangled_id(derived->model.id) + ".tex";
   const std::vector<std::string> files =
-      write_results(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}});
+      write_results(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}}, derived->model.file);
   if (common.json) {
     print_document(json{{"format", 1}, {"files", files}});
   } else {
@@ -108,8 +108,8 @@ void add_all_charts(Derived& derived, program::Program& program, const ChartRequ
   const std::vector<model::SwitchedChart> all = charts_of(derived.mechanics);
   for (const model::SwitchedChart& chart : all) {
     if (chart.refusal.empty()) continue;
-    fmt::print(stderr, "warning: '{}' keeps its chart {}: {}\n  remedy: where that fails use other coordinates, such as euler_parameters or cartesian ones\n",
-               chart.of, chart.own, chart.refusal);
+    tell(fmt::format("warning: '{}' keeps its chart {}: {}\n  remedy: where that fails use other coordinates, such as euler_parameters or cartesian ones\n",
+                     chart.of, chart.own, chart.refusal));
   }
   const std::vector<model::SwitchedChart> charts = exchangeable(all);
   if (charts.empty()) {
@@ -130,6 +130,8 @@ int execute(const Options& options, const Common& common) {
     fmt::print("{}\n", emit::mangled_id(std::filesystem::path(options.model).stem().string()));
     return 0;
   }
+  if (options.folder.empty()) throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");
+  require_folder(options.folder);
   require_target(options.target);
   const FormChoice form = form_choice(options.form);
   require_with(options.with);
@@ -151,7 +153,7 @@ int execute(const Options& options, const Common& common) {
   require_pass(certificate, derived->model);
   const emit::EmissionContext context = emission_context(*derived, program, scene, certificate);
   const std::vector<std::string> files =
-      write_results(options.folder, emit::emit(program, context, options.target));
+      write_results(options.folder, emit::emit(program, context, options.target), derived->model.file);
   const Timings& seconds = derived->seconds;
   if (common.json) {
     json tried = json::array();
@@ -186,7 +188,7 @@ int execute(const Options& options, const Common& common) {
 Execute declare_emit(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("-o", options->folder, "the folder for the sources; it is made if need be")->required();
+  add_place(app, "-o,--out", options->folder, "the folder for the sources; it is made if need be");
   app.add_option("--target", options->target, "cpp, c, python, or latex for a document")->capture_default_str();
   add_list(app, "--with", options->with,
            "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, taylor; charts: second ones");

@@ -100,11 +100,11 @@ int execute(const Options& options, const Common& common) {
   if (isatty(STDERR_FILENO) != 0) {
     request.progress = [&shown](double fraction) {
       shown = true;
-      fmt::print(stderr, "\r{:5.1f} % of the starts ", 100 * fraction);
+      tell(fmt::format("\r{:5.1f} % of the starts ", 100 * fraction));
     };
   }
   const SteadyMotions found = steady_motions(request);
-  if (shown) fmt::print(stderr, "\r{:40}\r", "");
+  if (shown) tell(fmt::format("\r{:40}\r", ""));
   if (common.json) {
     print_document(to_json(found, options));
   } else {

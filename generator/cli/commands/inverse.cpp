@@ -6,16 +6,17 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/ode.hpp>
-#include <eom/output/csv.hpp>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/simulate.hpp"
+#include "cli/table_size.hpp"
 #include "cli/usage.hpp"
 #include "derive/conserved.hpp"
 #include "derive/prescribed_forces.hpp"
@@ -33,6 +34,7 @@ struct Options {
   std::vector<std::string> constraints, set;
   std::optional<double> t_end, every, rtol, atol;
   std::size_t max_steps = 0;
+  bool yes = false;
 };
 
 /// What the forces are asked of: constraints by label; those that read q = f(t) if none are named.
@@ -63,10 +65,10 @@ class Table {
  public:
   Table(const std::string& file, std::vector<std::string> columns) : columns_(std::move(columns)) {
     range_.resize(columns_.size(), {HUGE_VAL, -HUGE_VAL});
-    guarded([&] { csv_.emplace(file, columns_); });
+    csv_.emplace(file, columns_);
   }
   void row(double t, const std::vector<double>& values) {
-    guarded([&] { csv_->row(t, values); });
+    csv_->row(t, values);
     for (std::size_t i = 0; i < values.size(); ++i) {
       range_[i].first = std::min(range_[i].first, values[i]);
       range_[i].second = std::max(range_[i].second, values[i]);
@@ -74,24 +76,16 @@ class Table {
     ++rows_;
   }
   void finish(eom::Outcome outcome) {
-    guarded([&] { csv_->finish(outcome); });
+    csv_->finish(outcome);
   }
   const std::vector<std::string>& columns() const { return columns_; }
   const std::pair<double, double>& range(std::size_t column) const { return range_[column]; }
   std::size_t rows() const { return rows_; }
 
  private:
-  template <typename Write>
-  static void guarded(Write write) {
-    try {
-      write();
-    } catch (const std::runtime_error& error) {
-      throw Error("inverse", {}, error.what(), "see to space on that disk and to your rights there", Fault::tool);
-    }
-  }
   std::vector<std::string> columns_;
   std::vector<std::pair<double, double>> range_;
-  std::optional<eom::CsvWriter> csv_;
+  std::optional<TableFile> csv_;
   std::size_t rows_ = 0;
 };
 
@@ -136,7 +130,10 @@ class Prescribed {
     system_ = derive::lagrange(m_, system::Approach::one);
     result.forces = force_columns(m_, system_, chosen_constraints(m_, options.constraints));
     scene_ = run::resolve_scene(m_, system_, model_.scene(options.scene), overrides);
-    result.table.emplace(result.file, columns_of(model_, result.forces, scene_));
+    const double every = row_interval(scene_);
+    const std::vector<std::string> columns = columns_of(model_, result.forces, scene_);
+    require_size(scene_.t0, scene_.t1, every, columns.size(), options.yes);
+    result.table.emplace(result.file, columns);
     t_ = scene_.t0;
     for (const std::string& name : result.table->columns()) {
       const auto output = std::find_if(system_.outputs.begin(), system_.outputs.end(), [&](const auto& o) { return o.name == name; });
@@ -144,7 +141,6 @@ class Prescribed {
       const bool nothing = derive::vanishing(*m_.dag, {output->value}) != derive::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);
     }
-    const double every = scene_.every > 0 ? scene_.every : (scene_.t1 - scene_.t0) / default_rows;
     integrals_.assign(system_.integrals.size(), 0.0);
     for (std::uint64_t i = 0; result.outcome == eom::Outcome::done; ++i) {
       const double t = scene_.t0 + static_cast<double>(i) * every;
@@ -152,6 +148,10 @@ class Prescribed {
       if (i > 0) advance(last ? scene_.t1 : t, result);
       if (result.outcome == eom::Outcome::done) write_row(result);
       if (last) break;
+      if (Interrupt::flag() && result.outcome == eom::Outcome::done) {
+        result.outcome = eom::Outcome::interrupted;
+        result.detail = fmt::format("at t = {}", t_);
+      }
     }
   }
 
@@ -225,7 +225,9 @@ void along_a_run(const Options& options, const run::Overrides& overrides, std::u
   };
   std::vector<std::size_t> index;
   request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
-    result.table.emplace(result.file, columns_of(derived.model, result.forces, scene));
+    const std::vector<std::string> columns = columns_of(derived.model, result.forces, scene);
+    require_size(scene.t0, scene.t1, row_interval(scene), columns.size(), options.yes);
+    result.table.emplace(result.file, columns);
     for (const std::string& column : result.table->columns()) {
       index.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin()));
     }
@@ -235,6 +237,7 @@ void along_a_run(const Options& options, const run::Overrides& overrides, std::u
     for (const std::size_t i : index) row.push_back(y[i]);
     result.table->row(t, row);
   };
+  request.interrupt = &Interrupt::flag();
   const Simulation simulation = simulate(request);
   result.certificate = simulation.certificate.summary();
   result.outcome = simulation.result.outcome;
@@ -254,29 +257,31 @@ json to_json(const Answer& answer, const model::Model& model, const std::string&
           {"detail", answer.detail}, {"certificate", answer.certificate}};
 }
 
-void print_readable(const json& found) {
-  fmt::print("model        {}, scene {}\n", found["model"].get<std::string>(), found["scene"].get<std::string>());
-  fmt::print("certificate  {}\n", found["certificate"].get<std::string>());
-  fmt::print("outcome      {}{}{}\n\n", found["outcome"].get<std::string>(), found["detail"] == "" ? "" : ": ", found["detail"].get<std::string>());
-  fmt::print("  {:<28} {:>24} {:>24}\n", "force", "least", "greatest");
+std::string readable(const json& found) {
+  std::string out = fmt::format("model        {}, scene {}\n", found["model"].get<std::string>(), found["scene"].get<std::string>());
+  out += fmt::format("certificate  {}\n", found["certificate"].get<std::string>());
+  out += fmt::format("outcome      {}{}{}\n\n", found["outcome"].get<std::string>(), found["detail"] == "" ? "" : ": ", found["detail"].get<std::string>());
+  out += fmt::format("  {:<28} {:>24} {:>24}\n", "force", "least", "greatest");
   for (const auto& [name, range] : found["forces"].items()) {
     const auto shown = [](const json& x) { return x.is_null() ? std::string("-") : shortest(x.get<double>()); };
-    fmt::print("  {:<28} {:>24} {:>24}\n", name, shown(range["min"]), shown(range["max"]));
+    out += fmt::format("  {:<28} {:>24} {:>24}\n", name, shown(range["min"]), shown(range["max"]));
   }
-  fmt::print("\nwrote {} ({} rows)\n", found["file"].get<std::string>(), found["rows"].get<std::size_t>());
+  return out + fmt::format("\nwrote {} ({} rows)\n", found["file"].get<std::string>(), found["rows"].get<std::size_t>());
 }
 
 int execute(const Options& options, const Common& common) {
   run::Overrides overrides;
   overrides.parameters = parse_assignments("inverse", options.set);
   overrides.t_end = options.t_end;
+  overrides.at_start = true;
   overrides.every = options.every;
   overrides.rtol = options.rtol;
   overrides.atol = options.atol;
   const model::Model model = model::read_model(locate_model(options.model));
   Answer answer;
   answer.file = options.out.empty() ? model.id + "_inverse.csv" : options.out;
-  require_writable("--out", answer.file);
+  const Interrupt interrupt;
+  require_places({{"--out", answer.file, ".csv"}}, model.file, common.json);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   if (mechanics.free.empty()) {
     tell_warnings(model);
@@ -289,7 +294,7 @@ int execute(const Options& options, const Common& common) {
   if (common.json) {
     print_document(found);
   } else {
-    print_readable(found);
+    print_readable(readable(found), is_standard_output(answer.file));
   }
   return answer.outcome == eom::Outcome::done || answer.outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }
@@ -307,7 +312,8 @@ Execute declare_inverse(CLI::App& app) {
   app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")->check(number_not_negative());
   app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")->check(number_not_negative());
   app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")->check(whole_number(1, 1'000'000'000'000'000));
-  app.add_option("--out", options->out, "the CSV file; without it MODEL_inverse.csv in this folder");
+  add_place(app, "-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
+  app.add_flag("--yes", options->yes, "writes a table however large it is");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -28,12 +28,13 @@ void require_name(const std::string& name) {
 int execute(const Options& options, const Common& common) {
   require_name(options.name);
   const std::string file = options.name + ".toml";
-  if (std::filesystem::exists(file)) {
+  std::error_code none;
+  if (std::filesystem::exists(std::filesystem::symlink_status(file, none))) {
     throw Error("new", Where{file, 0, 0, 1, ""}, "this file exists already", "choose another name, or remove the file");
   }
   std::string text = starter_text;
   for (std::size_t at; (at = text.find("NAME.")) != std::string::npos;) text.replace(at, 4, options.name);
-  write_results(".", {{file, text}});
+  write_text(file, text);
   if (common.json) {
     print_document(nlohmann::ordered_json{{"format", 1}, {"file", file}});
   } else {

@@ -3,13 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
 #include "cli/examination.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/report/html.hpp"
 #include "cli/report/recorded_motion.hpp"
@@ -137,7 +137,7 @@ void add_run(Html& html, const Simulation& simulation, const Json& run, const Re
 
 int execute(const Options& options, const Common& common) {
   const std::string file = options.out.empty() ? "report.html" : options.out;
-  require_writable("--out", file);
+  require_places({{"--out", file, ".html"}}, locate_model(options.model), common.json);
   RecordedMotion motion;
   SimulationRequest request;
   request.model = options.model;
@@ -162,14 +162,12 @@ int execute(const Options& options, const Common& common) {
   add_run(html, simulation, run, motion);
   add_model(html, model, examine(model));
   add_certificate(html, simulation.certificate);
-  const std::filesystem::path path(file);
-  write_results(path.has_parent_path() ? path.parent_path().string() : ".",
-                {{path.filename().string(), page(model.title.empty() ? model.id : model.title, html.text(), animation)}});
+  write_text(file, page(model.title.empty() ? model.id : model.title, html.text(), animation));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1}, {"model", model.id}, {"scene", simulation.scene.name}, {"outcome", eom::name(outcome)}, {"file", file}});
   } else {
-    fmt::print("wrote {} (outcome of the run: {})\n", file, eom::name(outcome));
+    print_readable(fmt::format("wrote {} (outcome of the run: {})\n", file, eom::name(outcome)), is_standard_output(file));
   }
   return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }
@@ -179,7 +177,7 @@ int execute(const Options& options, const Common& common) {
 Execute declare_report(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("-o,--out", options->out, "the page; without it report.html in this folder");
+  add_place(app, "-o,--out", options->out, "the page; without it report.html in this folder");
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
   app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
   app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());

@@ -3,18 +3,18 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <eom/output/csv.hpp>
 #include <eom/output/svg_plot.hpp>
-#include <filesystem>
 #include <optional>
 
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/run_report.hpp"
 #include "cli/sensitivities.hpp"
 #include "cli/simulate.hpp"
+#include "cli/table_size.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
@@ -26,7 +26,7 @@ struct Options {
   std::optional<double> rtol, atol, step, t_end, every;
   std::optional<std::string> solver;
   std::size_t max_steps = 0;
-  bool no_error_estimate = false, no_charts = false;
+  bool no_error_estimate = false, no_charts = false, yes = false;
 };
 
 run::Overrides overrides_of(const Options& options) {
@@ -37,6 +37,7 @@ run::Overrides overrides_of(const Options& options) {
   o.step = options.step;
   o.every = options.every;
   o.t_end = options.t_end;
+  o.at_start = true;
   o.solver = options.solver;
   o.outputs = options.outputs;
   return o;
@@ -45,7 +46,7 @@ run::Overrides overrides_of(const Options& options) {
 /// Rows to the CSV file and to the plot.
 class Rows {
  public:
-  Rows(const std::string& csv, bool keep, const model::Model& model, const run::Scene& scene,
+  Rows(const std::string& csv, bool keep, bool yes, const model::Model& model, const run::Scene& scene,
        const std::vector<std::string>& code)
       : keep_(keep), coordinates_(model.coordinates.size()) {
     for (const model::Coordinate& c : model.coordinates) {
@@ -57,22 +58,28 @@ class Rows {
       index_.push_back(static_cast<std::size_t>(std::find(code.begin(), code.end(), column) - code.begin()));
     }
     values_.resize(columns_.size());
-    if (!csv.empty()) written([&] { csv_.emplace(csv, columns_); });
+    const double every = row_interval(scene);
+    require_size(scene.t0, scene.t1, every, csv.empty() ? 0 : columns_.size(), yes);
+    // A plot has no use for more points than it can show, and they are kept in memory.
+    stride_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / most_points));
+    if (!csv.empty()) csv_.emplace(csv, columns_);
   }
 
   void operator()(double t, std::span<const double> y) {
     for (std::size_t i = 0; i < index_.size(); ++i) values_[i] = y[index_[i]];
-    if (csv_) written([&] { csv_->row(t, values_); });
-    if (!keep_) return;
+    if (csv_) csv_->row(t, values_);
+    if (!keep_ || rows_++ % stride_ != 0) return;
     t_.push_back(t);
     kept_.push_back(values_);
   }
 
   void finish(eom::Outcome outcome) {
-    if (csv_) written([&] { csv_->finish(outcome); });
+    if (csv_) csv_->finish(outcome);
   }
 
-  void plot(const std::string& file, const std::string& title) const {
+  const eom::CsvWriter* table() const { return csv_ ? &csv_->writer() : nullptr; }
+
+  std::uint64_t plot(const std::string& file, const std::string& title) const {
     eom::Plot plot;
     plot.title = title;
     plot.x_label = "t in s";
@@ -83,30 +90,18 @@ class Rows {
       for (const std::vector<double>& row : kept_) series.y.push_back(row[2 * i]);
       plot.series.push_back(std::move(series));
     }
-    write_text(file, eom::svg(plot));
+    return write_text(file, eom::svg(plot));
   }
 
  private:
-  // The writer is part of the runtime, which knows no Error; a full disk is no defect of ours.
-  template <typename Write>
-  static void written(Write write) {
-    try {
-      write();
-    } catch (const std::runtime_error& error) {
-      throw Error("run", {}, error.what(), "see to space on that disk and to your rights there", Fault::tool);
-    }
-  }
-  static void write_text(const std::string& file, const std::string& text) {
-    const std::filesystem::path path(file);
-    const std::string folder = path.has_parent_path() ? path.parent_path().string() : ".";
-    write_results(folder, {{path.filename().string(), text}});
-  }
+  static constexpr double most_points = 1e5;
 
   std::vector<std::string> columns_;
   std::vector<std::size_t> index_;
+  std::uint64_t rows_ = 0, stride_ = 1;
   std::vector<double> values_, t_;
   std::vector<std::vector<double>> kept_;
-  std::optional<eom::CsvWriter> csv_;
+  std::optional<TableFile> csv_;
   bool keep_ = false;
   std::size_t coordinates_ = 0;
 };
@@ -124,10 +119,10 @@ class Progress {
     if (now - start_ < std::chrono::seconds(2) || now - last_ < std::chrono::milliseconds(200)) return;
     last_ = now;
     shown_ = true;
-    fmt::print(stderr, "\r{:5.1f} % of the time span ", 100 * fraction);
+    tell(fmt::format("\r{:5.1f} % of the time span ", 100 * fraction));
   }
   void wipe() {
-    if (std::exchange(shown_, false)) fmt::print(stderr, "\r{:40}\r", "");
+    if (std::exchange(shown_, false)) tell(fmt::format("\r{:40}\r", ""));
   }
 
  private:
@@ -147,8 +142,10 @@ Simulation simulate_until_interrupted(const SimulationRequest& request) {
 }
 
 int execute(const Options& options, const Common& common) {
-  if (!options.out.empty()) require_writable("--out", options.out);
-  if (!options.plot.empty()) require_writable("--plot", options.plot);
+  std::vector<Place> places;
+  if (!options.out.empty()) places.push_back({"--out", options.out, ".csv"});
+  if (!options.plot.empty()) places.push_back({"--plot", options.plot, ".svg"});
+  require_places(places, locate_model(options.model), common.json);
   SimulationRequest request;
   request.model = options.model;
   request.scene = options.scene;
@@ -168,7 +165,7 @@ int execute(const Options& options, const Common& common) {
   std::optional<Rows> rows;
   if (!options.out.empty() || !options.plot.empty()) {
     request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
-      rows.emplace(options.out, !options.plot.empty(), derived.model, scene, names);
+      rows.emplace(options.out, !options.plot.empty(), options.yes, derived.model, scene, names);
     };
     request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
   }
@@ -176,16 +173,22 @@ int execute(const Options& options, const Common& common) {
   progress.wipe();
   const model::Model& model = simulation.derived->model;
   if (rows) rows->finish(simulation.result.outcome);
-  if (!options.plot.empty()) rows->plot(options.plot, model.title.empty() ? model.id : model.title);
+  std::vector<WrittenFile> files;
+  if (rows && rows->table() != nullptr) files.push_back({options.out, rows->table()->rows(), rows->table()->bytes()});
+  if (!options.plot.empty()) files.push_back({options.plot, std::nullopt, rows->plot(options.plot, model.title.empty() ? model.id : model.title)});
   const eom::Outcome outcome = simulation.result.outcome;
   const bool ended = outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event;
-  RunReport report{simulation, request.estimate, {}};
+  RunReport report{simulation, request.estimate, {}, std::move(files)};
+  if (!options.sensitivity.empty() && ended && simulation.scene.t1 == simulation.scene.t0) {
+    throw Error("run", {}, "nothing moves between t0 and t0: there are no derivatives of the end", "give a later --t-end, or leave --sensitivity out");
+  }
   if (!options.sensitivity.empty() && ended) report.sensitivities = sensitivities(simulation, request, options.sensitivity);
   if (common.json) {
     print_document(report.json());
   } else {
-    fmt::print("{}", report.text());
-    if (!options.sensitivity.empty() && !ended) fmt::print("\nsensitivities     none: the run did not come to its end\n");
+    const bool taken = is_standard_output(options.out) || is_standard_output(options.plot);
+    print_readable(report.text(), taken);
+    if (!options.sensitivity.empty() && !ended) print_readable("\nsensitivities     none: the run did not come to its end\n", taken);
   }
   return ended && (!report.sensitivities || report.sensitivities->outcome == eom::Outcome::done) ? 0 : 3;
 }
@@ -204,8 +207,9 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")->check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
-  app.add_option("--out", options->out, "a CSV file");
-  app.add_option("--plot", options->plot, "an SVG plot of the coordinates over time");
+  add_place(app, "-o,--out", options->out, "the table, a CSV file");
+  add_place(app, "--plot", options->plot, "an SVG plot of the coordinates over time");
+  app.add_flag("--yes", options->yes, "writes a table however large it is");
   add_list(app, "--sensitivity", options->sensitivity, "derivatives of the end by these parameters and values of the start");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();

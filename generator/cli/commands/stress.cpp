@@ -243,7 +243,7 @@ int execute(const Options& options, const Common& common) {
   request.steps_limit = options.steps;
   request.interrupt = &Interrupt::flag();
   const bool terminal = isatty(STDERR_FILENO) != 0;
-  if (terminal) request.progress = [](const std::string& what) { fmt::print(stderr, "\r{:60}\r{}", "", what); };
+  if (terminal) request.progress = [](const std::string& what) { tell(fmt::format("\r{:60}\r{}", "", what)); };
   stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
   request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) { auditor.see(test.name, scene, code, samples); };
   std::vector<Row> rows;
@@ -262,7 +262,7 @@ int execute(const Options& options, const Common& common) {
     if (!why.empty()) left_out.push_back({test.name, why});
   }
   repeat_constraints(simulation.derived->model, rows, left_out);
-  if (terminal) fmt::print(stderr, "\r{:60}\r", "");
+  if (terminal) tell(fmt::format("\r{:60}\r", ""));
   const Json found = document(simulation, rows, left_out, auditor.audit());
   if (common.json) {
     print_document(found);

@@ -41,6 +41,7 @@ run::Overrides overrides_of(const Options& options) {
   o.atol = options.atol;
   o.step = options.step;
   o.t_end = options.t_end;
+  o.at_start = true;
   o.solver = options.solver;
   o.outputs = options.outputs;
   return o;
@@ -72,7 +73,7 @@ class Sweep {
  public:
   Sweep(const Options& options, const Common& common, const model::Model& model)
       : options_(options), seed_(common.seed), grid_(options.grid), file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
-        ledger_((require_writable("--out", file_), file_), key_of(options, model)), resumed_(ledger_.rows().size()) {
+        ledger_((require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_), key_of(options, model)), resumed_(ledger_.rows().size()) {
     const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
     for (const Axis& axis : grid_.axes()) {
       const auto named = [&](const model::Parameter& p) { return p.name == axis.parameter; };
@@ -94,14 +95,17 @@ class Sweep {
       if (!ledger_.rows().contains(i)) open.push_back(i);
     }
     if (!open.empty()) compute(open);
-    if (ledger_.rows().size() < grid_.size()) return false;
+    if (ledger_.rows().size() < grid_.size()) {
+      ledger_.interrupt();
+      return false;
+    }
     ledger_.finish();
     return true;
   }
 
-  nlohmann::ordered_json document(const model::Model& model, bool whole) const {
+  nlohmann::ordered_json document(const model::Model& model) const {
     return {{"format", 1}, {"model", model.id}, {"scene", options_.scene}, {"runs", grid_.size()}, {"done", ended(true)},
-            {"failed", ended(false)}, {"resumed", resumed_}, {"file", whole ? file_ : file_ + ".partial"}};
+            {"failed", ended(false)}, {"resumed", resumed_}, {"file", ledger_.place()}};
   }
 
  private:
@@ -214,16 +218,17 @@ int execute(const Options& options, const Common& common) {
   const model::Model model = model::read_model(locate_model(options.model));
   Sweep sweep(options, common, model);
   const bool whole = sweep.run();
-  const nlohmann::ordered_json found = sweep.document(model, whole);
+  const nlohmann::ordered_json found = sweep.document(model);
   if (common.json) {
     print_document(found);
   } else {
-    fmt::print("model  {}, scene {}\nruns   {}: {} done, {} failed", model.id, options.scene, found["runs"].get<std::size_t>(),
-               found["done"].get<std::size_t>(), found["failed"].get<std::size_t>());
-    if (found["resumed"] != 0) fmt::print(" ({} of them were there)", found["resumed"].get<std::size_t>());
-    fmt::print("\nwrote  {}\n", found["file"].get<std::string>());
+    std::string text = fmt::format("model  {}, scene {}\nruns   {}: {} done, {} failed", model.id, options.scene, found["runs"].get<std::size_t>(),
+                                   found["done"].get<std::size_t>(), found["failed"].get<std::size_t>());
+    if (found["resumed"] != 0) text += fmt::format(" ({} of them were there)", found["resumed"].get<std::size_t>());
+    text += fmt::format("\nwrote  {}\n", found["file"].get<std::string>());
+    print_readable(text, is_standard_output(options.out));
   }
-  if (!whole) fmt::print(stderr, "interrupted: the same command goes on from the rows that are there\n");
+  if (!whole) tell("interrupted: the same command goes on from the rows that are there\n");
   return whole && found["failed"] == 0 ? 0 : 3;
 }
 
@@ -240,7 +245,7 @@ Execute declare_sweep(CLI::App& app) {
   app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the runs")->check(finite_number());
-  app.add_option("--out", options->out, "the CSV file; without it MODEL_sweep.csv in this folder");
+  add_place(app, "-o,--out", options->out, "the table, a CSV file; without it MODEL_sweep.csv in this folder");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--jobs", options->jobs, "processes; without it one for each processor")->check(whole_number(1, 1024));
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");

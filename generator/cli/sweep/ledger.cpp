@@ -1,46 +1,95 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/sweep/ledger.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include <cerrno>
+#include <algorithm>
 #include <charconv>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
+#include <system_error>
 
 #include "cli/output.hpp"
+#include "emit/write_files.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr const char* mark = "# sweep: ";
 
-[[noreturn]] void lost(const std::string& path) {
-  throw Error("sweep", {}, fmt::format("{} cannot be written: {}", model::quote(path), std::strerror(errno)),
-              "see to space on that disk and to your rights there; the same command goes on from what is there", Fault::tool);
+[[noreturn]] void lost(const std::system_error& error) {
+  throw Error("sweep", {}, error.what(), "see to space on that disk and to your rights there; the same command goes on from what is there",
+              emit::fault_of_writing(error.code()));
+}
+
+/// A file that may be read and taken over: regular, one's own, no link, and nobody is writing to it. -1 else.
+int open_own(const std::string& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+  if (file < 0) return -1;
+  struct stat found {};
+  if (::fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == ::geteuid() && ::flock(file, LOCK_SH | LOCK_NB) == 0) return file;
+  ::close(file);
+  return -1;
+}
+
+std::optional<std::string> contents(const std::string& path) {
+  const int file = open_own(path);
+  if (file < 0) return std::nullopt;
+  std::string text;
+  char buffer[1 << 14];
+  for (ssize_t n; (n = ::read(file, buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+  ::close(file);
+  return text;
 }
 
 }  // namespace
 
-Ledger::Ledger(std::string file, std::string key) : file_(std::move(file)), partial_(file_ + ".partial"), key_(std::move(key)) {
-  if (!read(partial_)) {
-    if (std::filesystem::exists(partial_)) {
-      throw Error("sweep", {}, fmt::format("{} is the unfinished table of another sweep", model::quote(partial_)),
+Ledger::Ledger(std::string file, std::string key) : file_(std::move(file)), place_(file_), key_(std::move(key)) {
+  std::error_code none;
+  kept_ = !is_standard_output(file_) && (!fs::exists(file_, none) || fs::is_regular_file(file_, none));
+  if (!kept_) return;
+  for (const Unfinished& table : unfinished()) {
+    if (!table.same) {
+      throw Error("sweep", {}, fmt::format("{} is the unfinished table of another sweep", model::quote(table.path)),
                   "finish that sweep with its own options, remove the file, or write to another one with --out");
     }
-    read(file_);
+    read(table.path);
+    taken_over_.push_back(table.path);
+    place_ = table.path;
   }
+  if (taken_over_.empty()) read(eom::WholeFile::followed(file_).string());
+}
+
+std::vector<Ledger::Unfinished> Ledger::unfinished() const {
+  const fs::path target = eom::WholeFile::followed(file_);
+  const std::string name = eom::WholeFile::shortened(target.filename().string()) + ".partial";
+  std::vector<Unfinished> found;
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(target.has_parent_path() ? target.parent_path() : fs::path("."), none)) {
+    const std::string other = entry.path().filename().string();
+    if (other != name && !(other.starts_with(name + "-") && other.size() == name.size() + 7)) continue;
+    const std::string path = target.has_parent_path() ? entry.path().string() : other;
+    const std::optional<std::string> text = contents(path);
+    if (!text || !text->starts_with(mark)) continue;  // a run's, or somebody's who is writing to it
+    found.push_back({path, text->starts_with(mark + key_ + "\n")});
+  }
+  std::sort(found.begin(), found.end(), [](const Unfinished& a, const Unfinished& b) { return a.path < b.path; });
+  return found;
 }
 
 // Whole lines only: the last may have been cut off.
 bool Ledger::read(const std::string& path) {
-  std::ifstream in(path, std::ios::binary);
-  if (!in) return false;
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  const std::optional<std::string> known = contents(path);
+  if (!known) return false;
+  const std::string& text = *known;
   std::size_t begin = 0, number = 0;
   for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1, ++number) {
     const std::string line = text.substr(begin, end - begin);
@@ -54,34 +103,43 @@ bool Ledger::read(const std::string& path) {
   return number > 0;
 }
 
-void Ledger::set_header(const std::string& header) {
-  if (header_ != header) rows_.clear();  // a table of other columns cannot be gone on with
-  header_ = header;
-  out_.reset(std::fopen((partial_ + ".new").c_str(), "wb"));
-  if (out_ == nullptr) lost(partial_);
-  std::string text = mark + key_ + "\n" + header_ + "\n";
-  for (const auto& [run, line] : rows_) text += line + "\n";
-  write(text);
-  if (std::rename((partial_ + ".new").c_str(), partial_.c_str()) != 0) lost(partial_);
+std::string Ledger::text() const {
+  std::string result = mark + key_ + "\n" + header_ + "\n";
+  for (const auto& [run, line] : rows_) result += line + "\n";
+  return result;
 }
 
-void Ledger::add(std::size_t run, const std::string& line) {
+void Ledger::set_header(const std::string& header) try {
+  if (header_ != header) rows_.clear();  // a table of other columns cannot be gone on with
+  header_ = header;
+  if (!kept_) return;
+  out_.emplace(file_);
+  ::flock(out_->descriptor(), LOCK_EX | LOCK_NB);  // as long as this process is there; where locks are unknown nothing is lost
+  place_ = out_->partial();
+  out_->write(text());
+  for (const std::string& old : taken_over_) ::unlink(old.c_str());
+  taken_over_.clear();
+} catch (const std::system_error& error) {
+  lost(error);
+}
+
+void Ledger::add(std::size_t run, const std::string& line) try {
   rows_[run] = line;
-  write(line + "\n");
+  if (out_) out_->write(line + "\n");
+} catch (const std::system_error& error) {
+  lost(error);
 }
 
 void Ledger::finish() {
-  if (out_ == nullptr) return;  // all was there
-  out_.reset();
-  std::string text = mark + key_ + "\n" + header_ + "\n";
-  for (const auto& [run, line] : rows_) text += line + "\n";
-  const std::filesystem::path path(file_);
-  write_results(path.has_parent_path() ? path.parent_path().string() : ".", {{path.filename().string(), text}});
-  std::filesystem::remove(partial_);
+  if (kept_ && !out_ && taken_over_.empty()) return;  // all was there
+  write_text(file_, text());
+  place_ = file_;
+  if (out_) out_->discard();
+  for (const std::string& old : taken_over_) ::unlink(old.c_str());
 }
 
-void Ledger::write(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() || std::fflush(out_.get()) != 0) lost(partial_);
+void Ledger::interrupt() {
+  if (!kept_ && !header_.empty()) write_text(file_, text());
 }
 
 }  // namespace eomgen::cli

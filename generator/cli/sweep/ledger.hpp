@@ -1,37 +1,49 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of a sweep on disk: rows are added as runs end, in any order, so that a sweep that was cut off goes on where it was; when
-// all are there the file is put in order under its own name.
 #pragma once
 
-#include <cstdio>
+#include <cstddef>
+#include <eom/output/whole_file.hpp>
 #include <map>
-#include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace eomgen::cli {
 
+/// The table of a sweep. While it grows, rows go to FILE.partial-XXXXXX as they come in; finish() writes FILE in the order of the
+/// runs and removes the other. Rows of such a file of the same sweep that was interrupted are taken over, unless the
+/// process that writes it is still there; so are those of FILE if the sweep is done. Links are not followed there, nor
+/// are files of other users read. Where FILE is no regular file nothing is taken over, and the table is written at once.
 class Ledger {
  public:
-  /// FILE.partial, and FILE itself, are read; `key` is what makes two sweeps the same. Throws Error where FILE.partial is of another sweep.
+  /// `key`: what makes two sweeps the same; it stands in the first line. Throws Error where an unfinished table of
+  /// another sweep is in the way.
   Ledger(std::string file, std::string key);
 
-  /// Line of a run that is there, by its number.
-  const std::map<std::size_t, std::string>& rows() const { return rows_; }
-  const std::string& header() const { return header_; }  // "" before there is one
+  const std::map<std::size_t, std::string>& rows() const { return rows_; }  // by the number of the run
+  /// What the columns are called; the file is begun with it. Nothing to do where all rows are there.
   void set_header(const std::string& header);
-  void add(std::size_t run, const std::string& line);  // on disk when it returns
-  void finish();                                        // FILE, in order; FILE.partial is gone
+  void add(std::size_t run, const std::string& line);
+  void finish();
+  /// The rows so far, where no file keeps them for the next time.
+  void interrupt();
+  /// Where the rows are.
+  const std::string& place() const { return place_; }
 
  private:
-  bool read(const std::string& path);
-  void write(const std::string& text);
-
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
+  struct Unfinished {
+    std::string path;
+    bool same = false;  // of this sweep
   };
-  std::string file_, partial_, key_, header_;
+  std::vector<Unfinished> unfinished() const;
+  bool read(const std::string& path);
+  std::string text() const;
+
+  std::string file_, place_, key_, header_;
+  bool kept_ = true;  // in a file of its own while it grows
+  std::vector<std::string> taken_over_;
   std::map<std::size_t, std::string> rows_;
-  std::unique_ptr<std::FILE, Close> out_;
+  std::optional<eom::WholeFile> out_;
 };
 
 }  // namespace eomgen::cli

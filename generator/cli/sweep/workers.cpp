@@ -14,6 +14,7 @@
 #include <cstring>
 #include <utility>
 
+#include "cli/output.hpp"
 #include "error.hpp"
 
 namespace eomgen::cli {
@@ -80,7 +81,7 @@ bool write_all(int pipe, const std::string& text) {
       if (!write_all(pipe, fmt::format("{} {}\n", jobs[i], text))) break;
     }
   } catch (const std::exception& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    tell(fmt::format("{}\n", error.what()));
     status = 1;
   }
   std::fflush(stderr);

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache: KEY/ holds the library and its checksum. A key's folder is made beside and renamed, so that it is there
-// whole or not at all, whoever else is at it; what is in it is believed only if the checksum is right.
+// The cache: KEY/ holds the library and its SHA-256, which tells damage. That nobody else has put anything there is seen to by
+// cache_folder. A key's folder is made beside and renamed, so that it is there whole or not at all, whoever else is at it.
 #include "emit/shared_library/build.hpp"
-
-#include <unistd.h>
 
 #include <chrono>
 #include <cstdlib>
@@ -11,10 +9,12 @@
 #include <fstream>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
-#include "emit/shared_library/checksum.hpp"
+#include "emit/shared_library/cache_folder.hpp"
 #include "emit/shared_library/process.hpp"
 #include "error.hpp"
+#include "model/content_hash.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -24,13 +24,6 @@ namespace fs = std::filesystem;
 std::string environment(const char* name) {
   const char* value = std::getenv(name);
   return value == nullptr ? "" : value;
-}
-
-fs::path cache_folder() {
-  if (const std::string own = environment("EOMGEN_CACHE_DIR"); !own.empty()) return own;
-  if (const std::string xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) return fs::path(xdg) / "eomgen";
-  if (const std::string home = environment("HOME"); !home.empty()) return fs::path(home) / ".cache" / "eomgen";
-  return fs::temp_directory_path() / ("eomgen-" + std::to_string(::getuid()));
 }
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("compile", {}, what, remedy, Fault::tool); }
@@ -96,19 +89,11 @@ void write_file(const fs::path& path, const std::string& text) {
 
 /// The library of a cache entry that is whole.
 bool is_whole(const fs::path& entry, const std::string& name) {
+  if (!is_own_folder(entry) || !is_own_file(entry / (name + ".so"))) return false;
   const auto library = read_file(entry / (name + ".so"));
   const auto sum = read_file(entry / "checksum");
-  return library && sum && checksum(*library) == *sum;
+  return library && sum && model::content_hash(*library) == *sum;
 }
-
-/// A folder that is removed again unless it is handed on.
-struct Workplace {
-  fs::path path;
-  ~Workplace() {
-    std::error_code ignored;
-    fs::remove_all(path, ignored);
-  }
-};
 
 void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe& recipe) {
   for (const auto& [name, text] : recipe.files) write_file(folder / name, text);
@@ -117,12 +102,13 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
   command.insert(command.end(), recipe.flags.begin(), recipe.flags.end());
   for (const std::string& argument : {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()}) command.push_back(argument);
   command.insert(command.end(), recipe.libraries.begin(), recipe.libraries.end());
-  const Finished finished = run_process(command);
+  const Finished finished = run_process(command, recipe.interrupt);
+  if (finished.interrupted) throw Error("compile", {}, "interrupted while the compiler worked", "nothing was computed that could be kept", Fault::numerical);
   if (!finished.started || finished.status != 0) {
     constexpr std::size_t shown = 4000;
     fail("`" + compiler.name + "` failed on " + recipe.what + ":\n" + finished.output.substr(0, shown), recipe.remedy);
   }
-  write_file(folder / "checksum", checksum(read_file(library).value_or("")));
+  write_file(folder / "checksum", model::content_hash(read_file(library).value_or("")));
 }
 
 /// Puts `made` in the place of `entry`; another process that was faster has made the same.
@@ -152,25 +138,26 @@ Built build_library(const Recipe& recipe, const std::function<void(const std::st
   key += compiler.name + '\0' + compiler.version;
   for (const std::string& flag : recipe.flags) key += '\0' + flag;
   for (const std::string& library : recipe.libraries) key += '\0' + library;
-  const fs::path folder = cache_folder();
-  const fs::path entry = folder / checksum(key);
+  const CacheFolder cache = cache_folder();
+  const fs::path entry = cache.path / model::content_hash(key);
   const std::string file = recipe.name + ".so";
   const std::string library = (entry / file).string();
+  Built built{library, true, 0, cache.passing, cache.why};
 
-  if (is_whole(entry, recipe.name)) return {library, true, 0};
-  std::error_code failed;
-  fs::create_directories(folder, failed);
-  std::string place = (folder / "make-XXXXXX").string();
-  if (failed || ::mkdtemp(place.data()) == nullptr) {
-    fail("cannot use the cache folder " + folder.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to");
+  if (!cache.passing && is_whole(entry, recipe.name)) return built;
+  if (!cache.passing) clear_leftovers(cache.path, workplace_name);
+  try {
+    const Workplace workplace(cache.path, workplace_name);
+    const auto begin = std::chrono::steady_clock::now();
+    compile_into(workplace.path(), compiler, recipe);
+    built.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    if (examine) examine((workplace.path() / file).string());
+    put_in_place(workplace.path(), entry, recipe.name);
+  } catch (const std::system_error&) {
+    fail("cannot use the cache folder " + cache.path.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to");
   }
-  const Workplace workplace{place};
-  const auto begin = std::chrono::steady_clock::now();
-  compile_into(workplace.path, compiler, recipe);
-  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  if (examine) examine((workplace.path / file).string());
-  put_in_place(workplace.path, entry, recipe.name);
-  return {library, false, seconds};
+  built.cached = false;
+  return built;
 }
 
 }  // namespace eomgen::emit

@@ -4,7 +4,8 @@
 
 namespace eomgen::emit {
 
-Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name) {
+Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
+                          const std::atomic<bool>* interrupt) {
   Recipe recipe;
   recipe.name = name;
   recipe.files = {{name + ".c", c_source}, {name + ".h", header}};
@@ -14,9 +15,10 @@ Compiled compile_and_load(const std::string& c_source, const std::string& header
   recipe.libraries = {"-lm"};
   recipe.what = "emitted code";
   recipe.remedy = "check the compiler (EOMGEN_CC, CC); if it is in order, please report the model";
+  recipe.interrupt = interrupt;
   // Loaded once before it is kept: code that fails its self test does not reach the cache.
   const Built built = build_library(recipe, [&name](const std::string& path) { LoadedModel(path, name); });
-  return {LoadedModel(built.path, name), built.path, built.cached, built.seconds};
+  return {LoadedModel(built.path, name), built.path, built.cached, built.seconds, built.folder, built.note};
 }
 
 }  // namespace eomgen::emit

@@ -3,6 +3,7 @@
 // compiler and flags are compiled once.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <string>
 
@@ -57,16 +58,22 @@ class LoadedModel {
   void* handle_ = nullptr;
 };
 
+class Workplace;
+
 struct Compiled {
   LoadedModel model;
   std::string path;      // of the library in the cache
   bool cached = false;   // it was there already
   double seconds = 0;    // of the compiler
+  std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
+  std::string note = {};                         // why
 };
 
 /// Compiles `c_source` (NAME.c; `header` is NAME.h) into the cache unless it is there whole, and loads it. The cache:
 /// $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen or ~/.cache/eomgen. The compiler: $EOMGEN_CC, $CC, cc or gcc.
 /// Throws Error{Fault::tool}: no compiler (with the command that installs one), a failed one (with what it said).
-Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name);
+/// `interrupt` ends the compiler.
+Compiled compile_and_load(const std::string& c_source, const std::string& header, const std::string& name,
+                          const std::atomic<bool>* interrupt = nullptr);
 
 }  // namespace eomgen::emit

@@ -1,38 +1,33 @@
 // SPDX-License-Identifier: MIT
 // A table of numbers in a file. In: column names, rows of (t, values). Out: F.csv, whole or not at all.
-// Rows go to F.csv.partial; finish(outcome) adds the line "# outcome: NAME" and renames it to F.csv in one go, after an
-// interruption or a failure too. Without finish the .partial file stays, with whole lines (a kill that falls into the
-// middle of a write may cut the last one). Numbers have 17 significant
-// digits, as printf's %.17g gives in the C locale, whatever the locale is; -0 is 0.
+// Rows go to F.csv.partial-XXXXXX (whole_file.hpp); finish(outcome) adds the line "# outcome: NAME" and renames it to F.csv in
+// one go, after an interruption or a failure too. Without finish the partial file stays, with whole lines (a kill that
+// falls into the middle of a write may cut the last one). Numbers have 17 significant digits, as printf's %.17g gives in
+// the C locale, whatever the locale is; -0 is 0.
 #pragma once
 
-#include <cerrno>
 #include <charconv>
 #include <cstddef>
-#include <cstdio>
-#include <cstring>
+#include <cstdint>
+#include <exception>
 #include <filesystem>
-#include <memory>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "eom/outcome.hpp"
+#include "eom/output/whole_file.hpp"
 
 namespace eom {
 
 class CsvWriter {
  public:
-  /// Opens path + ".partial" and writes the header line: t, then columns. Throws std::runtime_error with the path.
-  CsvWriter(std::filesystem::path path, std::span<const std::string> columns)
-      : path_(std::move(path)), partial_(path_), columns_(columns.size()) {
-    partial_ += ".partial";
-    file_.reset(std::fopen(partial_.string().c_str(), "wb"));
-    if (file_ == nullptr) fail("open", partial_, std::strerror(errno));
-    std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // lines are gathered here, so that only whole ones reach the file
+  /// Opens the file and writes the header line: t, then columns. Throws std::system_error with the path.
+  CsvWriter(const std::filesystem::path& path, std::span<const std::string> columns) : CsvWriter(WholeFile(path), columns) {}
+  CsvWriter(WholeFile file, std::span<const std::string> columns)
+      : path_(file.path()), partial_(file.partial()), columns_(columns.size()), file_(std::move(file)) {
     lines_.reserve(2 * flush_size);
     lines_ += 't';
     for (const std::string& column : columns) append_name(column);
@@ -44,8 +39,11 @@ class CsvWriter {
   CsvWriter& operator=(const CsvWriter&) = delete;
 
   ~CsvWriter() {
-    if (file_ == nullptr) return;
-    std::fwrite(lines_.data(), 1, lines_.size(), file_.get());  // a failure cannot be told any more
+    if (finished_) return;
+    try {
+      file_.write(lines_);
+    } catch (const std::exception&) {  // cannot be told any more
+    }
   }
 
   /// One line: t and as many values as there are columns. Throws std::invalid_argument for another number of values.
@@ -59,38 +57,35 @@ class CsvWriter {
       append_number(value);
     }
     lines_ += '\n';
+    ++rows_;
     if (lines_.size() >= flush_size) flush();
   }
 
   /// Hands the lines written so far to the operating system.
   void flush() {
-    if (file_ == nullptr) throw std::logic_error(path_.string() + ": written to after finish");
-    const std::size_t written = std::fwrite(lines_.data(), 1, lines_.size(), file_.get());
-    if (written != lines_.size()) fail("write", partial_, std::strerror(errno));
-    lines_.clear();
+    if (finished_) throw std::logic_error(path_.string() + ": written to after finish");
+    const std::string lines = std::exchange(lines_, {});  // what fails is not tried again
+    file_.write(lines);
+    lines_.reserve(2 * flush_size);
   }
 
-  /// The trailing line, then the rename. Throws std::runtime_error with the path; the .partial file then stays.
+  /// The trailing line, then the rename. Throws std::system_error with the path; the partial file then stays.
   void finish(Outcome outcome) {
     lines_ += "# outcome: ";
     lines_ += name(outcome);
     lines_ += '\n';
     flush();
-    if (std::fclose(file_.release()) != 0) fail("close", partial_, std::strerror(errno));
-    std::error_code error;
-    std::filesystem::rename(partial_, path_, error);
-    if (error) fail("rename to its final name", partial_, error.message());
+    finished_ = true;
+    file_.finish();
   }
+
+  /// Where the rows are until finish; empty where they are written through.
+  const std::string& partial() const { return partial_; }
+  std::uint64_t rows() const { return rows_; }
+  std::uint64_t bytes() const { return file_.bytes(); }
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const { std::fclose(file); }
-  };
   static constexpr std::size_t flush_size = 1 << 16;
-
-  [[noreturn]] static void fail(const char* action, const std::filesystem::path& path, const std::string& why) {
-    throw std::runtime_error(std::string("cannot ") + action + " " + path.string() + ": " + why);
-  }
 
   void append_number(double value) {
     char text[40];
@@ -111,10 +106,12 @@ class CsvWriter {
   }
 
   std::filesystem::path path_;
-  std::filesystem::path partial_;
+  std::string partial_;
   std::size_t columns_;
-  std::unique_ptr<std::FILE, Close> file_;
+  WholeFile file_;
   std::string lines_;
+  std::uint64_t rows_ = 0;
+  bool finished_ = false;
 };
 
 }  // namespace eom

@@ -74,7 +74,11 @@ class Drawing {
     left_ = 78;
     right_ = plot_.width - 22;
     top_ = (plot_.title.empty() ? 16 : 44) + legend_height;
-    bottom_ = plot_.height - (plot_.x_label.empty() ? 36 : 56);
+    const double below = plot_.x_label.empty() ? 36 : 56;
+    height_ = plot_.height;
+    // A legend of many rows makes the drawing higher, not the axes lower than can be read.
+    if (legend_rows_ > 1) height_ = std::max(height_, static_cast<int>(top_ + least_height + below));
+    bottom_ = height_ - below;
     if (right_ - left_ < 40 || bottom_ - top_ < 40) throw std::invalid_argument("svg plot: too small for its legend");
     make_axes();
     if (!note(y_).empty()) top_ += 16;
@@ -135,7 +139,7 @@ class Drawing {
 
   void open() {
     const std::string width = std::to_string(plot_.width);
-    const std::string height = std::to_string(plot_.height);
+    const std::string height = std::to_string(height_);
     out_ += "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" + width + "\" height=\"" + height +
             "\" viewBox=\"0 0 " + width + " " + height +
             "\" role=\"img\" font-family=\"system-ui, 'Segoe UI', Helvetica, Arial, sans-serif\" font-size=\"12.5\" "
@@ -199,7 +203,7 @@ class Drawing {
     if (!plot_.title.empty())
       text(left_, 28, "font-size=\"17\" font-weight=\"600\" fill=\"#111\"", escaped(plot_.title));
     if (!plot_.x_label.empty())
-      text(0.5 * (left_ + right_), plot_.height - 14, "text-anchor=\"middle\" font-size=\"13.5\"", escaped(plot_.x_label));
+      text(0.5 * (left_ + right_), height_ - 14, "text-anchor=\"middle\" font-size=\"13.5\"", escaped(plot_.x_label));
     if (!plot_.y_label.empty()) {
       const double middle = 0.5 * (top_ + bottom_);
       text(0, 0, ("text-anchor=\"middle\" font-size=\"13.5\" transform=\"translate(18 " + number(middle) + ") rotate(-90)\"").c_str(),
@@ -281,7 +285,10 @@ class Drawing {
     int row;
   };
 
+  static constexpr double least_height = 160;  // of the axes
+
   const Plot& plot_;
+  int height_ = 0;
   double left_ = 0, right_ = 0, top_ = 0, bottom_ = 0;
   Axis x_, y_;
   std::vector<Entry> legend_;

@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: MIT
+// A file that is there whole or not at all. In: a path, bytes. Out: the file, replaced in one go by finish().
+// Bytes go to a new file of unpredictable name beside the result, PATH.partial-XXXXXX, made with O_EXCL: nobody can have
+// put a link there, and two writers never share one. Without finish it stays, so that what a killed program had written
+// can be found. Symbolic links are followed: what they point to is replaced, the link stays. What is no regular file (a
+// terminal, a pipe, /dev/full), and what is open as this process's standard output or error, is written through.
+#pragma once
+
+#include <fcntl.h>
+#include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+
+namespace eom {
+
+class WholeFile {
+ public:
+  /// Throws std::system_error with the path and the system's reason, as every other function here.
+  explicit WholeFile(const std::filesystem::path& path) : path_(path) {
+    struct stat found {};
+    const bool there = ::stat(path.c_str(), &found) == 0;
+    if (there && S_ISDIR(found.st_mode)) fail("open", path_, EISDIR);
+    if (there && open_through(found)) return;
+    target_ = followed(path);
+    const std::filesystem::path folder = target_.has_parent_path() ? target_.parent_path() : std::filesystem::path(".");
+    partial_ = (folder / (shortened(target_.filename().string()) + ".partial-XXXXXX")).string();
+    file_ = ::mkostemp(partial_.data(), O_CLOEXEC);
+    if (file_ < 0) fail("open", path_, errno);
+    if (::fchmod(file_, there ? found.st_mode & 0777 : new_file_mode()) != 0) abandon("open", errno);
+  }
+
+  /// This process's standard output, under the name "standard output".
+  static WholeFile standard_output() {
+    WholeFile file;
+    file.path_ = "standard output";
+    file.file_ = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 3);
+    if (file.file_ < 0) fail("open", file.path_, errno);
+    return file;
+  }
+
+  WholeFile(WholeFile&& other) noexcept
+      : path_(std::move(other.path_)), target_(std::move(other.target_)), partial_(std::exchange(other.partial_, {})),
+        file_(std::exchange(other.file_, -1)), bytes_(other.bytes_) {}
+  WholeFile& operator=(WholeFile&&) = delete;
+  ~WholeFile() {
+    if (file_ >= 0) ::close(file_);
+  }
+
+  void write(std::string_view text) {
+    if (file_ < 0) throw std::logic_error(path_.string() + ": written to after finish");
+    while (!text.empty()) {
+      const ssize_t n = ::write(file_, text.data(), text.size());
+      if (n < 0 && errno == EINTR) continue;
+      if (n < 0) fail("write", path_, errno);
+      text.remove_prefix(static_cast<std::size_t>(n));
+      bytes_ += static_cast<std::uint64_t>(n);
+    }
+  }
+
+  /// Puts the file in its place; where that fails, the partial one stays.
+  void finish() {
+    if (::close(std::exchange(file_, -1)) != 0) fail("close", path_, errno);
+    if (partial_.empty()) return;
+    if (::rename(partial_.c_str(), target_.c_str()) != 0) fail("rename to its final name", partial_, errno);
+    partial_.clear();
+  }
+
+  /// Nothing stays of it.
+  void discard() {
+    if (file_ >= 0) ::close(std::exchange(file_, -1));
+    if (!partial_.empty()) ::unlink(std::exchange(partial_, {}).c_str());
+  }
+
+  const std::filesystem::path& path() const { return path_; }
+  /// Where the bytes are until finish; empty where they are written through.
+  const std::string& partial() const { return partial_; }
+  std::uint64_t bytes() const { return bytes_; }
+  int descriptor() const { return file_; }
+
+  /// Where `path` leads to: links are followed, also one to what is not there yet.
+  static std::filesystem::path followed(std::filesystem::path path) {
+    constexpr int most_links = 40;  // as the system has it
+    for (int links = 0;; ++links) {
+      std::error_code none;
+      const std::filesystem::path next = std::filesystem::read_symlink(path, none);
+      if (none) return path;
+      if (links == most_links) fail("open", path, ELOOP);
+      path = next.is_absolute() ? next : path.parent_path() / next;
+    }
+  }
+
+  /// The name of a file, cut so that ".partial-XXXXXX" fits behind it.
+  static std::string shortened(const std::string& name) {
+    constexpr std::size_t longest = 255 - 15;
+    return name.substr(0, longest);
+  }
+
+ private:
+  WholeFile() = default;
+
+  /// Opens what is not to be replaced; false where it is a file like any other.
+  bool open_through(const struct stat& found) {
+    for (const int own : {STDOUT_FILENO, STDERR_FILENO}) {
+      struct stat standard {};
+      if (::fstat(own, &standard) != 0 || standard.st_dev != found.st_dev || standard.st_ino != found.st_ino) continue;
+      if (S_ISCHR(found.st_mode)) continue;  // the same device, opened anew, is as good
+      file_ = ::fcntl(own, F_DUPFD_CLOEXEC, 3);
+      if (file_ < 0) fail("open", path_, errno);
+      return true;
+    }
+    if (S_ISREG(found.st_mode)) return false;
+    do file_ = ::open(path_.c_str(), O_WRONLY | O_CLOEXEC | O_NOCTTY);
+    while (file_ < 0 && errno == EINTR);
+    if (file_ < 0) fail("open", path_, errno);
+    return true;
+  }
+
+  static ::mode_t new_file_mode() {
+    const ::mode_t mask = ::umask(0);
+    ::umask(mask);
+    return 0666 & ~mask;
+  }
+
+  [[noreturn]] void abandon(const char* action, int reason) {
+    discard();
+    fail(action, path_, reason);
+  }
+  [[noreturn]] static void fail(const char* action, const std::filesystem::path& path, int reason) {
+    throw std::system_error(reason, std::generic_category(), std::string("cannot ") + action + " " + path.string());
+  }
+
+  std::filesystem::path path_, target_;
+  std::string partial_;
+  int file_ = -1;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace eom
