@@ -94,7 +94,7 @@ json contacts_of(const mechanics::Mechanics& m) {
 
 json singular_of(const mechanics::Mechanics& m) {
   json result = json::array();
-  for (const print::Item& item : print::render(m, reading::derive_reading(m, system::Approach::two), {"singular"})) {
+  for (const print::Item& item : print::render(m, reading::ReadingForm{}, {"singular"})) {
     result.push_back({{"set", item.text}, {"approach", item.role}});
   }
   return result;
