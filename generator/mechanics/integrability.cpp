@@ -239,7 +239,7 @@ class Classifier {
       try {
         std::vector<Row> rows;
         for (const Form& form : forms) rows.push_back(space_.values(form, point));
-        const Selection independent = select_independent(rows, std::vector<bool>(rows.size(), true), independent_part());
+        const Selection independent = select_independent(rows, std::vector<Turn>(rows.size(), Turn::last), independent_part());
         if (independent.rest.empty()) return true;
       } catch (const std::domain_error&) {  // this point says nothing
       }
