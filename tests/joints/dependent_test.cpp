@@ -71,3 +71,15 @@ TEST_CASE("Bricard's mechanism falls in the same way by scalar products and by d
   }
   CHECK(moved > 0.1);
 }
+
+TEST_CASE("Bennett's loop keeps its energy and all four of its equations") {
+  const Finished run = run_text("bennett", bennett_by_products());
+  CHECK(run.simulation.certificate.pass);
+  CHECK(run.drift("energy") < 1e-9);
+  CHECK(run.simulation.result.constraint_drift < 1e-10);
+  // tan((pi - p)/2) tan(s/2) = sin((beta + alpha)/2)/sin((beta - alpha)/2) (Bennett 1903).
+  for (std::size_t row = 0; row < run.rows.size(); ++row) {
+    const double u = (M_PI - run.rows.at(row, "p")) / 2, v = run.rows.at(row, "s") / 2;
+    CHECK(std::abs(std::sin(u) * std::sin(v) * std::sin(0.2) - std::cos(u) * std::cos(v) * std::sin(0.9)) < 1e-10);
+  }
+}

@@ -93,6 +93,12 @@ TEST_CASE("Bricard's mechanism moves, though it has as many constraints as coord
   }
 }
 
+TEST_CASE("Bennett's loop moves, though scalar products say more than it has coordinates") {
+  const Built built(bennett_by_products());
+  CHECK(built.m.constraints.size() == 4);
+  CHECK(built.m.freedom() == 1);
+}
+
 TEST_CASE("three parallel cranks move a platform if they are equal for all values of the parameters") {
   const Built built(cranks({"L", "L", "L"}, "L = 1\n"));
   CHECK(built.m.freedom() == 1);

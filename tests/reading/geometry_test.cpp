@@ -170,7 +170,7 @@ TEST_CASE("a determinant of masses that vanishes nowhere is no singular set, one
   };
   System arm(model::read_model_text(parameters + body("A", "m", "J", "l*A.e1", "a") + body("B", "M", "K", "L*A.e1 + l*B.e1", "a + b"), "arm"));
   CHECK(reading::singular_sets(arm.mechanics).empty());
-  // Two particles at one distance from one another on a line that turns with both angles: a bar that is straight has no inertia across.
+  // Stretched or folded, an arm of two massless bars cannot move its mass along itself.
   System folded(model::read_model_text(parameters + "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"l*(cos(a)*E1 + sin(a)*E2) + L*(cos(b)*E1 + sin(b)*E2)\"\n", "folded"));
   CHECK_FALSE(reading::singular_sets(folded.mechanics).empty());
 }

@@ -114,4 +114,55 @@ inline std::string bricard_by_distances() {
   return text + "[scene.default]\nt = [0, 1]\ninitial = { " + start + " }\nrtol = 1e-11\natol = 1e-13\n";
 }
 
+/// Bennett's loop: two arms that turn about fixed hinges, and what a coupler between their tips says in scalar products: four equations for two
+/// coordinates, of which one is independent.
+inline std::string bennett_by_products() {
+  return R"toml(format = 1
+[parameters]
+m = "1 kg"
+g = "9.81 m/s^2"
+a = "1 m"
+alpha = "0.7 rad"
+beta = "1.1 rad"
+b = "a*sin(beta)/sin(alpha)"
+[coordinates]
+p = "rad"
+s = "rad"
+[definitions]
+x1 = "cos(p)*E1 + sin(p)*E2"
+h1 = "cos(beta)*E3 + sin(beta)*cross(x1, E3)"
+g2 = "cos(alpha)*E3 + sin(alpha)*cross(E1, E3)"
+x2 = "cos(s)*E1 + sin(s)*cross(g2, E1)"
+h2 = "cos(beta)*g2 + sin(beta)*cross(x2, g2)"
+[[particle]]
+name = "P"
+mass = "m"
+position = "b*x1"
+[[particle]]
+name = "Q"
+mass = "m"
+position = "a*E1 + b*x2"
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "length"
+holonomic = "dot(Q - P, Q - P) - a^2"
+[[constraint]]
+name = "twist"
+holonomic = "dot(h1, h2) - cos(alpha)"
+[[constraint]]
+name = "across1"
+holonomic = "dot(Q - P, h1)"
+[[constraint]]
+name = "across2"
+holonomic = "dot(Q - P, h2)"
+[scene.default]
+t = [0, 2]
+initial = { p = 0.5, p_dot = 1 }
+guess = { s = 1.58 }
+rtol = 1e-11
+atol = 1e-13
+)toml";
+}
+
 }  // namespace eomgen::test
