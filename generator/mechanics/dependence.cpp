@@ -92,27 +92,39 @@ void require_same_rates(const Mechanics& m, const Closure& closure, const Bound&
 /// Whether d . u is the same for all multipliers u with the same forces: d is a combination of the columns of A.
 class Determined {
  public:
-  Determined(const std::vector<Row>& rows, std::size_t coordinates) : columns_(coordinates, Row(rows.size())) {
-    for (std::size_t k = 0; k < rows.size(); ++k) {
-      for (std::size_t i = 0; i < coordinates; ++i) columns_[i][k] = rows[k][i];
+  Determined(const std::vector<Row>& rows, std::size_t coordinates) {
+    for (std::size_t i = 0; i < coordinates; ++i) {
+      Row column;
+      for (const Row& row : rows) column.push_back(row[i]);
+      const cl_R size = length(column);
+      Row left = beside(beside(column));  // twice, for the digits
+      const cl_R rest = length(left);
+      if (cln::zerop(size) || rest < size * small(dependent_digits)) continue;
+      for (cl_R& x : left) x = x / rest;
+      basis_.push_back(std::move(left));
     }
-    // An independent choice of them says the same, and is made once.
-    const std::vector<Turn> any(columns_.size(), Turn::last);
-    std::vector<Row> chosen;
-    for (const std::size_t i : select_independent(columns_, any, small(dependent_digits)).kept) chosen.push_back(columns_[i]);
-    columns_ = std::move(chosen);
   }
   bool operator()(const Row& component) const {
-    std::vector<Row> with = columns_;
-    with.push_back(component);
-    std::vector<Turn> turns(with.size(), Turn::always);
-    turns.back() = Turn::last;
-    const std::vector<std::size_t> kept = select_independent(with, turns, small(dependent_digits)).kept;
-    return std::find(kept.begin(), kept.end(), columns_.size()) == kept.end();
+    const cl_R size = length(component);
+    return cln::zerop(size) || length(beside(component)) < size * small(dependent_digits);
   }
 
  private:
-  std::vector<Row> columns_;
+  static cl_R length(const Row& row) {
+    cl_R square = 0;
+    for (const cl_R& x : row) square = square + x * x;
+    return cln::sqrt(square);
+  }
+  Row beside(Row row) const {
+    for (const Row& e : basis_) {
+      cl_R part = 0;
+      for (std::size_t i = 0; i < row.size(); ++i) part = part + e[i] * row[i];
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = row[i] - part * e[i];
+    }
+    return row;
+  }
+
+  std::vector<Row> basis_;  // orthonormal
 };
 
 void find_determined(Mechanics& m, const Closure& closure, const Configuration& at) {
@@ -145,7 +157,7 @@ void require_normal_forces(const Mechanics& m) {
   }
 }
 
-bool is_needed(const Constraint& c) { return c.need == Need::holds; }
+bool is_repeated(const Constraint& c) { return c.need == Need::redundant; }
 
 /// Configurations near the start: it may be a singular one itself; elsewhere the rank is that of the mechanism.
 std::vector<Configuration> around(Closure& closure, const Configuration& start) {
@@ -159,7 +171,6 @@ std::vector<Configuration> around(Closure& closure, const Configuration& start) 
 // Of the equations of a loop those that follow from the others at every configuration, whatever the parameters are.
 void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const std::vector<Configuration>& points) {
   const Bound of = bound(m);
-  if (select_independent(rows_of(closure, of, start), of.turns, small(dependent_digits)).rest.empty()) return;
   Selection chosen;
   for (const Configuration& at : points) {
     Selection here = select_independent(rows_of(closure, of, at), of.turns, small(dependent_digits));
@@ -182,26 +193,31 @@ void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const s
   }
 }
 
+bool is_regular_at(const Mechanics& m, const Closure& closure, const Configuration& start) {
+  const Bound of = bound(m);
+  return select_independent(rows_of(closure, of, start), of.turns, small(dependent_digits)).rest.empty();
+}
+
 }  // namespace
 
 void drop_dependent_equations(Mechanics& m, Lowering& lower) {
-  const auto joint = [&](std::uint32_t k) { return of_joint(m, k); };
-  const bool left_out = !std::all_of(m.constraints.begin(), m.constraints.end(), is_needed);
-  const bool joints = std::any_of(m.active.begin(), m.active.end(), joint);
-  if (!left_out && !joints && m.active.size() < 2) return;
+  const bool repeated = std::any_of(m.constraints.begin(), m.constraints.end(), is_repeated);
+  const bool joints = std::any_of(m.active.begin(), m.active.end(), [&](std::uint32_t k) { return of_joint(m, k); });
+  if (!repeated && !joints && m.active.size() < 2) return;
   Closure closure(m, lower);
-  if (!left_out && !joints && closure.is_regular()) return;
+  if (!repeated && !joints && closure.is_regular()) return;
   const std::optional<Configuration> start = closure.start();
   if (!start) {
     const bool exact = joints || m.freedom() <= 0;
     if (exact && closure.gap() > 0 && closure.gap() < looks_redundant) refuse_inexact(m, closure);
     return;  // no configuration: the start of a run will tell
   }
-  const std::size_t before = m.active.size();
+  const bool regular = is_regular_at(m, closure, *start);
+  if (regular && !repeated) return;
   const std::vector<Configuration> points = around(closure, *start);
   if (points.empty()) return;
-  drop_at(m, closure, *start, points);
-  if (!left_out && m.active.size() == before) return;
+  if (!regular) drop_at(m, closure, *start, points);
+  if (std::none_of(m.constraints.begin(), m.constraints.end(), is_repeated)) return;
   for (const Configuration& at : points) find_determined(m, closure, at);
   require_normal_forces(m);
 }

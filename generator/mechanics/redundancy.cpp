@@ -92,6 +92,19 @@ std::optional<Combination> combination(const Rows& rows, const std::vector<std::
   return result;
 }
 
+/// Whether the rows of a combination are as many as the columns that they have: then every row is a combination of them, which says nothing.
+bool spans_all(const Rows& rows, const std::vector<std::size_t>& independent, const Combination& of, std::size_t k) {
+  std::vector<std::size_t> parts{k};
+  for (std::size_t a = 0; a < independent.size(); ++a) {
+    if (cln::abs(of.coefficients[a]) >= small(25)) parts.push_back(independent[a]);
+  }
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i + 1 < rows[k].size(); ++i) {
+    columns += std::any_of(parts.begin(), parts.end(), [&](std::size_t row) { return cln::abs(rows[row][i]) > small(25); }) ? 1 : 0;
+  }
+  return columns > 0 && parts.size() > columns;
+}
+
 /// "2 a - b/3"; empty where a coefficient is not a simple number.
 std::string named(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
                   const std::vector<std::size_t>& independent, const Combination& at, const Combination& elsewhere) {
@@ -146,16 +159,14 @@ Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints,
 /// What a constraint is left with, when all of its equations follow from others.
 using Refusals = std::map<std::string, Error>;
 
-}  // namespace
-
-void drop_repeated_equations(Mechanics& m) {
+Refusals drop_repeated(Mechanics& m) {
   std::vector<std::uint32_t> constraints;  // what is given in positions comes first, so that the others are blamed
   for (const bool holonomic : {true, false}) {
     for (const std::uint32_t k : m.active) {
       if (m.constraints[k].holonomic() == holonomic && !model_constraint(m, m.constraints[k]).joint) constraints.push_back(k);
     }
   }
-  if (constraints.empty()) return;
+  if (constraints.empty()) return {};
   FormSpace space(m, FormSpace::Where::anywhere);
   std::vector<Ref> entries;
   for (const std::uint32_t k : constraints) {
@@ -176,14 +187,14 @@ void drop_repeated_equations(Mechanics& m) {
       continue;  // outside the domain of a function: another point
     }
   }
-  if (at.size() < 2) return;  // no values: the start will tell
+  if (at.size() < 2) return {};  // no values: the start will tell
   std::vector<std::size_t> independent;
   std::array<Span, 2> spans;
   Refusals refusals;
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     if (spans[0].holds(at[0][k]) && spans[1].holds(at[1][k])) {
       const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
-      if (here && there) {
+      if (here && there && !spans_all(at[0], independent, *here, k)) {
         Constraint& constraint = m.constraints[constraints[k]];
         Error why = refusal(m, constraints, k, independent, *here, *there);
         if (!here->same_rate || !may_repeat(m, constraint)) throw why;
@@ -196,10 +207,20 @@ void drop_repeated_equations(Mechanics& m) {
     independent.push_back(k);
     for (std::size_t point = 0; point < spans.size(); ++point) spans[point].add(at[point][k]);
   }
-  for (const auto& [name, why] : refusals) {
-    const auto needed = [&, &whole = name](const Constraint& c) { return c.name == whole && c.need == Need::holds; };
-    const bool unit = std::any_of(m.model->constraints.begin(), m.model->constraints.end(), [&, &whole = name](const auto& c) { return c.name == whole && c.unit; });
-    if (!unit && std::none_of(m.constraints.begin(), m.constraints.end(), needed)) throw why;
+  return refusals;
+}
+
+}  // namespace
+
+void drop_repeated_equations(Mechanics& m) {
+  const Refusals refusals = drop_repeated(m);
+  for (const model::Constraint& whole : m.model->constraints) {
+    if (whole.joint || whole.unit) continue;
+    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.need == Need::holds; };
+    if (std::any_of(m.constraints.begin(), m.constraints.end(), needed)) continue;
+    const auto why = refusals.find(whole.name);
+    if (why != refusals.end()) throw why->second;
+    throw Error("mechanics", m.model->where(whole.span), "constraint '" + whole.name + "' follows from the constraints before it", "remove it");
   }
 }
 
