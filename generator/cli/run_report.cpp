@@ -32,10 +32,14 @@ bool is_final(const Simulation& simulation, const std::string& name) {
   return name == "energy" || name.starts_with("reaction.") || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
-/// Components of joints that the motion leaves open, and so are not in `final`.
+/// Components of joints, and forces of constraints, that the motion leaves open, and so are not in `final`.
 std::vector<std::string> undetermined(const Simulation& simulation) {
   const mechanics::Mechanics& m = simulation.derived->mechanics;
   std::vector<std::string> names;
+  for (const mechanics::Constraint& c : m.constraints) {
+    const auto same = [&](const model::Joint& joint) { return joint.name == c.name; };
+    if (!c.determined && std::none_of(m.model->joints.begin(), m.model->joints.end(), same)) names.push_back("reaction." + c.label);
+  }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     for (std::size_t j = 0; j < m.joints[i].determined.size(); ++j) {
       if (!m.joints[i].determined[j]) names.push_back(fmt::format("reaction.{}.{}", m.model->joints[i].name, j + 1));

@@ -20,7 +20,10 @@ class Classifier {
     result_.name = m_.model->forces[force_].name;
     const Ref known = m_.potential_by_force[force_];
     if (!dag_.is_zero(known)) result_.potential = known;
-    if (std::all_of(Q_.begin(), Q_.end(), [&](Ref q) { return dag_.is_zero(q); })) {
+    if (std::holds_alternative<model::Dry>(m_.model->forces[force_].kind)) {
+      result_.conservative = Verdict::no;
+      say("it is friction");
+    } else if (std::all_of(Q_.begin(), Q_.end(), [&](Ref q) { return dag_.is_zero(q); })) {
       result_.conservative = Verdict::yes;
       result_.in_energy = true;
       result_.domain = domain_of(m_, {known});

@@ -19,6 +19,12 @@ struct Finish {
   Ref operator()(Ref r) { return written(imposed(r)); }
 };
 
+symbolic::Substitution at_rest(const Mechanics& m, const EquationSystem& s) {
+  std::map<Symbol, Ref> zero;
+  for (const std::uint32_t i : s.free) zero[coordinate(i, 1)] = m.dag->zero();
+  return {*m.dag, std::move(zero)};
+}
+
 void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
   Dag& dag = *m.dag;
   symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
@@ -32,12 +38,7 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
       s.A.push_back(constraint.holonomic() ? finish(symbolic::partial(dag, coordinate(i, 0))(psi)) : finish(constraint.gradient[i]));
     }
     const Ref rate = constraint.holonomic() ? bias(psi) : finish.imposed(m.velocity_form(constraint));  // A qdot + b
-    symbolic::Substitution at_rest(dag, [&] {
-      std::map<Symbol, Ref> zero;
-      for (const std::uint32_t i : s.free) zero[coordinate(i, 1)] = dag.zero();
-      return zero;
-    }());
-    s.b.push_back(finish(at_rest(rate)));
+    s.b.push_back(finish(at_rest(m, s)(rate)));
     s.gamma.push_back(finish(bias(rate)));
   }
 }
@@ -46,9 +47,12 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
 void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (m.constraints[k].need != mechanics::Need::redundant) continue;
-    const Ref psi = finish.imposed(m.constraints[k].psi);
-    system::Watched watched{k, finish(psi), {}, finish(symbolic::explicit_time(*m.dag, m.model->functions.size())(psi))};
-    for (const std::uint32_t i : s.free) watched.A.push_back(finish(symbolic::partial(*m.dag, coordinate(i, 0))(psi)));
+    const mechanics::Constraint& c = m.constraints[k];
+    const std::uint8_t order = c.holonomic() ? 0 : 1;
+    const Ref psi = finish.imposed(c.holonomic() ? c.psi : m.velocity_form(c));
+    const Ref b = c.holonomic() ? symbolic::explicit_time(*m.dag, m.model->functions.size())(psi) : at_rest(m, s)(psi);
+    system::Watched watched{k, finish(psi), {}, finish(b)};
+    for (const std::uint32_t i : s.free) watched.A.push_back(finish(symbolic::partial(*m.dag, coordinate(i, order))(psi)));
     s.redundant.push_back(std::move(watched));
   }
 }
@@ -74,11 +78,12 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   }
 }
 
-/// Multipliers; of joints the force on B and the moment about its point instead, as far as the motion determines them.
+/// Multipliers; of joints the force on B and the moment about its point instead. Both as far as the motion determines them.
 void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
   Dag& dag = *m.dag;
   for (const system::Reaction& reaction : s.reactions) {
     const auto of = [&](const mechanics::JointReaction& j) { return reaction.constraint >= j.first && reaction.constraint < j.first + j.equations(); };
+    if (!m.constraints[reaction.constraint].determined) continue;
     if (std::none_of(m.joints.begin(), m.joints.end(), of)) s.outputs.push_back({"reaction." + reaction.label, reaction.value});
   }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
@@ -91,7 +96,7 @@ void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
     }
   }
   for (const mechanics::Constraint& c : m.constraints) {
-    if (c.need == mechanics::Need::redundant) s.outputs.push_back({system::watched_prefix + c.label, c.psi});
+    if (c.need == mechanics::Need::redundant) s.outputs.push_back({system::watched_prefix + c.label, c.holonomic() ? c.psi : m.velocity_form(c)});
   }
 }
 

@@ -4,6 +4,7 @@
 #include <cln/float.h>
 #include <cln/rational.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -25,6 +26,10 @@ constexpr int steps = 120;               // Newton's steps halve the distance wh
 constexpr int closed_digits = 38;        // |psi| of a configuration
 constexpr double longest_step = 0.7;     // of a coordinate, in units of its scale: angles of 40 degrees
 constexpr double other_values = 0.04;    // how far parameters are varied, relative
+
+constexpr int plain_steps = 40;               // of Newton's method in binary64
+constexpr double plain_tolerance = 1e-10;     // of psi then
+constexpr double plainly_independent = 1e-7;  // a row's part outside the span of the others
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 cl_R exact(double value) { return cln::cl_float(cl_R(cln::rational(cl_R(value))), cln::float_format(digits)); }
@@ -52,7 +57,7 @@ std::vector<double> scales(const Mechanics& m, const std::vector<cl_R>& q) {
 
 }  // namespace
 
-Selection select_independent(const std::vector<Row>& rows, const std::vector<bool>& first, const cl_R& tolerance) {
+Selection select_independent(const std::vector<Row>& rows, const std::vector<Turn>& turns, const cl_R& tolerance) {
   // A row that only the last step towards the constraints keeps from being 0.
   const cl_R vanishing = small(25);
   std::vector<Row> left = rows;
@@ -60,12 +65,12 @@ Selection select_independent(const std::vector<Row>& rows, const std::vector<boo
   for (const Row& row : rows) length.push_back(cln::sqrt(dot(row, row)));
   std::vector<bool> used(rows.size(), false);
   Selection result;
-  for (const bool turn : {true, false}) {
+  for (const Turn turn : {Turn::always, Turn::first, Turn::last}) {
     for (;;) {
       std::optional<std::size_t> best;
       cl_R largest = tolerance;
       for (std::size_t k = 0; k < rows.size(); ++k) {
-        if (used[k] || first[k] != turn || length[k] < vanishing) continue;
+        if (used[k] || turns[k] != turn || length[k] < vanishing) continue;
         const cl_R part = cln::sqrt(dot(left[k], left[k])) / length[k];
         // Equal parts of different rows differ by rounding: the first of them wins by a hair.
         if (part > largest * cl_R(cln::cl_RA(1000001) / 1000000)) largest = part, best = k;
@@ -90,6 +95,7 @@ Closure::Closure(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const Constraint& c = m.constraints[k];
     for (const Ref slope : c.gradient) all_.push_back(written(slope));
+    rates_.push_back(written(c.rate));
     if (!c.holonomic() || c.unilateral || c.need == Need::identity) continue;
     bound_.push_back(k);
     psi_.push_back(written(c.psi));
@@ -151,26 +157,95 @@ void Closure::set_parameters(Configuration& at, std::uint64_t seed) const {
   for (std::uint32_t i = 0; i < value.size(); ++i) settle_one(i);
 }
 
-std::optional<Configuration> Closure::start() {
+/// What the default scene gives; `open` is false of such coordinates. The others are 0.
+Configuration Closure::given(std::vector<bool>& open) const {
   const model::Scene& scene = m_.model->scenes.front();
   Configuration at;
   at.q.assign(m_.q.size(), exact(0));
-  std::vector<bool> open(m_.q.size(), true), all(m_.q.size(), true);
-  gap_ = 0;
+  open.assign(m_.q.size(), true);
+  set_parameters(at, 0);
+  at.t = values({lower_.scalar(scene.t0)}, at)[0];
+  symbolic::Substitution written = write_out(m_);
+  for (const auto* list : {&scene.guess, &scene.initial}) {
+    for (const model::InitialValue& given : *list) {
+      if (given.order > 0) continue;
+      at.q[given.coordinate] = values({written(lower_.scalar(given.value))}, at)[0];
+      if (list == &scene.initial) open[given.coordinate] = false;
+    }
+  }
+  for (std::uint32_t i = 0; i < at.parameters.size(); ++i) {
+    if (const auto& q = m_.model->parameters[i].start_of) at.parameters[i] = at.q[*q];
+  }
+  return at;
+}
+
+bool Closure::is_regular() {
+  const auto n = static_cast<Eigen::Index>(m_.q.size()), count = static_cast<Eigen::Index>(psi_.size());
+  std::vector<Ref> roots = psi_;
+  roots.insert(roots.end(), gradient_.begin(), gradient_.end());
   try {
-    set_parameters(at, 0);
-    at.t = values({lower_.scalar(scene.t0)}, at)[0];
-    symbolic::Substitution written = write_out(m_);
-    for (const auto* list : {&scene.guess, &scene.initial}) {
-      for (const model::InitialValue& given : *list) {
-        if (given.order > 0) continue;
-        at.q[given.coordinate] = values({written(lower_.scalar(given.value))}, at)[0];
-        if (list == &scene.initial) open[given.coordinate] = false;
+    std::vector<bool> open;
+    const Configuration start = given(open);
+    std::vector<double> q, parameters;
+    for (const cl_R& x : start.q) q.push_back(cln::double_approx(x));
+    for (const cl_R& x : start.parameters) parameters.push_back(cln::double_approx(x));
+    const double t = cln::double_approx(start.t);
+    const auto lookup = [&](const Symbol& s) {
+      switch (s.kind) {
+        case SymbolKind::parameter: return parameters[s.index];
+        case SymbolKind::coordinate: return s.order > 0 ? std::nan("") : q[s.index];
+        case SymbolKind::time: return t;
+        case SymbolKind::integral: return 0.0;
+        default: return std::nan("");
+      }
+    };
+    const auto matrix = [&](const std::vector<double>& v, std::size_t from, Eigen::Index rows) {
+      return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(v.data() + from, rows, n).eval();
+    };
+    bool closed = count == 0;
+    for (int step = 0; step < plain_steps && !closed; ++step) {
+      const std::vector<double> v = symbolic::evaluate(*m_.dag, roots, lookup);
+      const Eigen::VectorXd psi = Eigen::Map<const Eigen::VectorXd>(v.data(), count);
+      Eigen::MatrixXd A = matrix(v, psi_.size(), count);
+      if (!psi.allFinite() || !A.allFinite()) return false;
+      closed = psi.cwiseAbs().maxCoeff() <= plain_tolerance * std::max(1.0, A.cwiseAbs().maxCoeff());
+      for (Eigen::Index i = 0; i < n; ++i) {
+        if (!open[static_cast<std::size_t>(i)]) A.col(i).setZero();
+      }
+      const Eigen::VectorXd move = A.completeOrthogonalDecomposition().solve(psi);
+      for (Eigen::Index i = 0; i < n && !closed; ++i) q[static_cast<std::size_t>(i)] -= move(i);
+    }
+    if (!closed) return false;
+    const std::vector<double> v = symbolic::evaluate(*m_.dag, all_, lookup);
+    Eigen::MatrixXd A = matrix(v, 0, static_cast<Eigen::Index>(m_.constraints.size()));
+    if (!A.allFinite()) return false;
+    for (Eigen::Index k = A.rows(); k-- > 0;) {
+      const Constraint& c = m_.constraints[static_cast<std::size_t>(k)];
+      const double length = A.row(k).norm();
+      if (c.unilateral || c.need != Need::holds) {
+        if (k + 1 < A.rows()) A.row(k) = A.row(A.rows() - 1).eval();
+        A.conservativeResize(A.rows() - 1, Eigen::NoChange);
+      } else if (length == 0) {
+        return false;
+      } else {
+        A.row(k) /= length;
       }
     }
-    for (std::uint32_t i = 0; i < at.parameters.size(); ++i) {
-      if (const auto& q = m_.model->parameters[i].start_of) at.parameters[i] = at.q[*q];
-    }
+    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
+    qr.setThreshold(plainly_independent);
+    qr.compute(A.transpose());
+    return qr.rank() == A.rows();
+  } catch (const std::exception&) {  // outside the domain of a function
+    return false;
+  }
+}
+
+std::optional<Configuration> Closure::start() {
+  std::vector<bool> open;
+  const std::vector<bool> all(m_.q.size(), true);
+  gap_ = 0;
+  try {
+    const Configuration at = given(open);
     // Where coordinates that are not given have no slope at 0, a point beside it.
     Configuration found = at;
     if (settle(found, open)) return found;
@@ -206,7 +281,7 @@ std::optional<Configuration> Closure::near(const Configuration& from, std::uint6
 bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
   const std::size_t n = m_.q.size(), count = psi_.size();
   const std::vector<double> scale = scales(m_, at.q);
-  const std::vector<bool> none(count, false);
+  const std::vector<Turn> none(count, Turn::last);
   const cl_R dependent = small(6);
   std::vector<Ref> roots = psi_;
   roots.insert(roots.end(), gradient_.begin(), gradient_.end());

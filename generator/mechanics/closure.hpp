@@ -19,23 +19,30 @@ struct Configuration {
   cln::cl_R t = 0;
 };
 
+/// Which rows are asked first.
+enum class Turn { always, first, last };
+
 /// Rows of a matrix that are independent, chosen one after another: the one with the largest part outside the span of those before it
-/// (relative to its length); all of `first` before any other. Ties go to the first.
+/// (relative to its length), turn after turn. Ties go to the first.
 struct Selection {
   std::vector<std::size_t> kept, rest;  // ascending
 };
-Selection select_independent(const std::vector<Row>& rows, const std::vector<bool>& first, const cln::cl_R& tolerance);
+Selection select_independent(const std::vector<Row>& rows, const std::vector<Turn>& turns, const cln::cl_R& tolerance);
 
 class Closure {
  public:
   Closure(Mechanics& mechanics, Lowering& lower);
 
+  /// In binary64, cheaply: whether the constraints hold and are independent at the start of the default scene. False says nothing.
+  bool is_regular();
   /// At the start of the default scene: what it does not give follows from the constraints.
   std::optional<Configuration> start();
   /// Another configuration, not far away; with other values of the parameters, if asked.
   std::optional<Configuration> near(const Configuration& from, std::uint64_t seed, bool other_parameters);
   /// d psi/d q of all constraints (coefficients of velocities) by all coordinates.
   std::vector<Row> rows(const Configuration& at) const;
+  /// b of all constraints: d psi/d t at fixed q, or what is there at rest.
+  std::vector<cln::cl_R> rates(const Configuration& at) const { return values(rates_, at); }
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, const Configuration& at) const;
 
   /// Of the last search that failed: by how much an equation that looks redundant does not hold, and which; 0 if that was not why.
@@ -43,6 +50,7 @@ class Closure {
   std::uint32_t gap_at() const { return gap_at_; }
 
  private:
+  Configuration given(std::vector<bool>& open) const;
   bool settle(Configuration& at, const std::vector<bool>& moves);
   void set_parameters(Configuration& at, std::uint64_t seed) const;
   double uniform(std::uint64_t& state) const;
@@ -53,6 +61,7 @@ class Closure {
   std::vector<Ref> psi_;              // of these, functions of time written out
   std::vector<Ref> gradient_;         // of these
   std::vector<Ref> all_;              // rows of all constraints
+  std::vector<Ref> rates_;
   double gap_ = 0;
   std::uint32_t gap_at_ = 0;
 };

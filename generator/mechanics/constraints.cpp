@@ -20,11 +20,6 @@ std::set<std::uint32_t> coordinates_in(const Dag& dag, Ref expression) {
   return result;
 }
 
-const model::Constraint& of_model(const Mechanics& m, const Constraint& constraint) {
-  const auto same = [&](const model::Constraint& c) { return c.name == constraint.name; };
-  return *std::find_if(m.model->constraints.begin(), m.model->constraints.end(), same);
-}
-
 // psi as it reads once the coordinates that are already fixed are written as functions of time.
 Ref with_fixed(const Mechanics& m, Ref psi) {
   std::map<Symbol, Ref> values;
@@ -54,7 +49,7 @@ void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduc
   const std::string what = same ? "constraint '" + constraint.label + "' follows from the constraints before it"
                                 : "constraint '" + constraint.label + "' fixes nothing: the coordinates in it are already fixed, "
                                   "and it does not hold for all times and parameters";
-  throw Error("mechanics", m.model->where(of_model(m, constraint).span), what,
+  throw Error("mechanics", m.model->where(model_constraint(m, constraint).span), what,
               same ? "remove it" : "remove it, or the constraint that it contradicts");
 }
 
@@ -117,7 +112,38 @@ void check_touch(const Mechanics& m, Lowering& lower, const model::Constraint& c
   }
 }
 
+// Of a vector or of rolling an equation may say nothing, as a distance from the plane that no coordinate changes.
+bool may_hold(const model::Constraint& constraint) {
+  const bool several = constraint.joint || constraint.rolling || constraint.psi.size() > (constraint.velocity ? 1 : 2);
+  return several && !constraint.friction && !constraint.unilateral;
+}
+
+bool says_nothing(const Mechanics& m, const Constraint& c) {
+  if (c.holonomic()) return holds_identically(*m.dag, c.psi);
+  std::vector<Ref> all = c.gradient;
+  all.push_back(c.rate);
+  return vanishes(*m.dag, all);
+}
+
+/// A constraint of which every equation holds by itself can be left out.
+void require_something(const Mechanics& m, const model::Constraint& constraint) {
+  const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.need == Need::identity; };
+  if (constraint.joint || !std::all_of(m.constraints.begin(), m.constraints.end(), idle)) return;
+  throw Error("mechanics", m.model->where(constraint.span), "constraint '" + constraint.name + "' holds whatever the coordinates are",
+              "remove it, or give its bodies coordinates that it binds");
+}
+
 }  // namespace
+
+const model::Constraint& model_constraint(const Mechanics& m, const Constraint& constraint) {
+  const auto same = [&](const model::Constraint& c) { return c.name == constraint.name; };
+  return *std::find_if(m.model->constraints.begin(), m.model->constraints.end(), same);
+}
+
+bool may_repeat(const Mechanics& m, const Constraint& constraint) {
+  const model::Constraint& whole = model_constraint(m, constraint);
+  return whole.unit || may_hold(whole);
+}
 
 void add_constraints(Mechanics& m, Lowering& lower) {
   for (const model::Constraint& constraint : m.model->constraints) {
@@ -135,7 +161,7 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       } else {
         add_position_form(m, lower, result);
       }
-      if (constraint.joint && !velocities && holds_identically(*m.dag, result.psi)) result.need = Need::identity;
+      if (may_hold(constraint) && says_nothing(m, result)) result.need = Need::identity;
       if (result.need == Need::holds && vanishes(*m.dag, result.gradient)) {
         throw Error("mechanics", m.model->where(constraint.span),
                     "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
@@ -143,8 +169,10 @@ void add_constraints(Mechanics& m, Lowering& lower) {
                     : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                                         : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
+      result.determined = result.need == Need::holds;
       m.constraints.push_back(std::move(result));
     }
+    require_something(m, constraint);
   }
 }
 
@@ -157,7 +185,7 @@ void eliminate_coordinates(Mechanics& m) {
       if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || !m.holds(k)) continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
       if (coordinates_in(*m.dag, reduced).empty()) {
-        if (of_model(m, m.constraints[k]).joint && holds_identically(*m.dag, reduced)) m.constraints[k].need = Need::redundant;
+        if (may_repeat(m, m.constraints[k]) && holds_identically(*m.dag, reduced)) m.constraints[k].need = Need::redundant;
         else refuse_repeated(m, m.constraints[k], reduced);
         continue;
       }

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "mechanics/closure.hpp"
 #include "mechanics/integrating_factor.hpp"
+#include "mechanics/involution.hpp"
 #include "mechanics/pfaffian.hpp"
 #include "symbolic/antiderivative.hpp"
 
@@ -14,6 +16,9 @@ namespace {
 using symbolic::Substitution;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
+
+// Of a row beside the span of others, from 50 digits.
+cln::cl_R independent_part() { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 20)); }
 
 constexpr std::uint32_t first_constant = 0x20000000u;  // of SymbolKind::extra: constants of integrals while others are sought
 
@@ -39,13 +44,19 @@ class Classifier {
 
   void run() {
     std::vector<Vanishing> alone;
-    for (const Form& form : forms_) alone.push_back(frobenius(system({form})));
-    const Echelon terminal = last_derived(system(forms_));
-    for (std::size_t k = 0; k < forms_.size(); ++k) {
-      m_.classification[velocity_[k]] = verdict(k, alone[k], terminal);
+    for (std::size_t k = 0; k < forms_.size(); ++k) alone.push_back(by_itself(k));
+    for (std::size_t point = 0; point < space_.points() && !orbit_; ++point) {
+      orbit_ = orbit(space_, system(forms_), point);
+      if (orbit_) orbit_point_ = point;
     }
     for (std::size_t k = 0; k < forms_.size(); ++k) {
       if (alone[k] == Vanishing::proven || alone[k] == Vanishing::at_points) seek(forms_[k], velocity_[k]);
+    }
+    // What numbers say is complete needs no combinations.
+    const bool more = !orbit_ || orbit_->integrable() > holonomic_.size() + m_.integrals.size();
+    const Echelon terminal = more ? last_derived(system(forms_)) : Echelon{};
+    for (std::size_t k = 0; k < forms_.size(); ++k) {
+      m_.classification[velocity_[k]] = verdict(k, alone[k], terminal);
     }
     seek_together(terminal);
     for (std::size_t k = 0; k < forms_.size(); ++k) note_integral(velocity_[k]);
@@ -69,16 +80,27 @@ class Classifier {
     return proven ? Vanishing::proven : Vanishing::at_points;
   }
 
+  // Refuted by numbers, or proven.
+  Vanishing by_itself(std::size_t k) {
+    const std::vector<Form> forms = system({forms_[k]});
+    for (std::size_t point = 0; point < space_.points(); ++point) {
+      if (fails_frobenius(space_, forms, point).value_or(false)) return Vanishing::no;
+    }
+    return frobenius(forms);
+  }
+
   Vanishing frobenius(std::vector<Form> forms) {
     const Echelon rows = space_.echelon(std::move(forms));
     const Vanishing result = all_vanish(space_.curvature(rows));
     return result == Vanishing::proven && !rows.exact ? Vanishing::at_points : result;
   }
 
-  /// The largest integrable system among the combinations of the forms: those whose curvature vanishes, again and again.
+  /// The largest integrable system among the combinations of the forms: those whose curvature vanishes, again and again. No rows where
+  /// the effort does not suffice.
   Echelon last_derived(std::vector<Form> forms) {
     while (true) {
       Echelon rows = space_.echelon(std::move(forms));
+      if (space_.spent()) return {};
       const std::vector<Form> curvature = space_.curvature(rows);
       const std::size_t count = rows.rows.size();
       std::vector<Form> conditions;  // on the coefficients of a combination
@@ -87,6 +109,7 @@ class Classifier {
         for (std::size_t k = 0; k < count; ++k) conditions.back().push_back(curvature[k][pair]);
       }
       const Echelon bound = space_.echelon(std::move(conditions));
+      if (space_.spent()) return {};
       rows.exact = rows.exact && bound.exact;
       if (bound.rows.empty()) return rows;
       forms.clear();
@@ -104,7 +127,9 @@ class Classifier {
     }
   }
 
-  bool within(const Form& form, const Echelon& rows) {
+  bool within(std::size_t k, const Echelon& rows) {
+    if (orbit_) return orbit_->keeps(space_.values(forms_[k], orbit_point_));
+    const Form& form = forms_[k];
     const Vanishing rest = all_vanish({space_.reduced(form, rows)});
     return rest == Vanishing::proven || rest == Vanishing::at_points;
   }
@@ -112,7 +137,7 @@ class Classifier {
   std::string others_in(std::size_t k, const Echelon& terminal) {
     std::string text;
     for (std::size_t j = 0; j < forms_.size(); ++j) {
-      if (j == k || !within(forms_[j], terminal)) continue;
+      if (j == k || !within(j, terminal)) continue;
       text += (text.empty() ? "'" : ", '") + m_.constraints[velocity_[j]].label + "'";
     }
     return text;
@@ -127,20 +152,22 @@ class Classifier {
       case Vanishing::no: break;
     }
     const std::string why = "Frobenius' condition fails: omega ^ d omega is not zero, with t as a coordinate";
-    if (forms_.size() > 1 && within(forms_[k], terminal)) {
+    if (forms_.size() > 1 && within(k, terminal)) {
       const std::string others = others_in(k, terminal);
-      if (terminal.exact) return {Integrable::yes, "not by itself, but together with " + others};
+      if (terminal.exact && !terminal.rows.empty()) return {Integrable::yes, "not by itself, but together with " + others};
       return {Integrable::unknown, "not by itself; together with " + others + " at random points, but no proof was found"};
     }
-    if (terminal.rows.size() > holonomic_.size() + within_count(terminal)) {
+    const std::size_t integrable = orbit_ ? orbit_->integrable() : terminal.rows.size();
+    if (integrable > holonomic_.size() + within_count(terminal)) {
       return {Integrable::no, why + "; a combination of constraints is integrable"};
     }
     return {Integrable::no, why};
   }
 
   std::size_t within_count(const Echelon& terminal) {
-    return static_cast<std::size_t>(
-        std::count_if(forms_.begin(), forms_.end(), [&](const Form& form) { return within(form, terminal); }));
+    std::size_t count = 0;
+    for (std::size_t k = 0; k < forms_.size(); ++k) count += within(k, terminal) ? 1 : 0;
+    return count;
   }
 
   // ---- integrals
@@ -196,10 +223,28 @@ class Classifier {
     if (!on_leaf) return false;
     const Ref psi = space_.simpler(with_constants_written(*on_leaf));
     const Echelon all = space_.echelon(system(forms_));
-    if (all_vanish({space_.reduced(space_.differential(psi), all)}) != Vanishing::proven) return false;
+    const Form slope = space_.differential(psi);
+    if (all_vanish({space_.reduced(slope, all)}) != Vanishing::proven || !says_more(slope)) return false;
     eliminate(*on_leaf, dag_.symbol(constant(m_.integrals.size())));
     m_.integrals.push_back({m_.constraints[constraint].label, parts_of(psi), psi});
     return true;
+  }
+
+  /// Whether a differential is independent of those of holonomic constraints and of integrals that were found.
+  bool says_more(const Form& slope) {
+    std::vector<Form> forms = holonomic_;
+    for (const Integral& known : m_.integrals) forms.push_back(space_.differential(known.psi));
+    forms.push_back(slope);
+    for (std::size_t point = 0; point < space_.points(); ++point) {
+      try {
+        std::vector<Row> rows;
+        for (const Form& form : forms) rows.push_back(space_.values(form, point));
+        const Selection independent = select_independent(rows, std::vector<Turn>(rows.size(), Turn::last), independent_part());
+        if (independent.rest.empty()) return true;
+      } catch (const std::domain_error&) {  // this point says nothing
+      }
+    }
+    return false;
   }
 
   void seek_together(const Echelon& terminal) {
@@ -221,7 +266,7 @@ class Classifier {
     };
     for (const bool inside : {true, false}) {
       for (std::size_t k = 0; k < forms_.size(); ++k) {
-        if (!has_integral(velocity_[k]) && (!inside || within(forms_[k], terminal))) return velocity_[k];
+        if (!has_integral(velocity_[k]) && (!inside || within(k, terminal))) return velocity_[k];
       }
     }
     return std::nullopt;
@@ -277,6 +322,8 @@ class Classifier {
   FormSpace space_;
   std::vector<std::uint32_t> velocity_;  // active constraints on velocities, ascending
   std::vector<Form> forms_, holonomic_;
+  std::optional<Orbit> orbit_;
+  std::size_t orbit_point_ = 0;
   std::vector<Leaf> leaves_;
 };
 

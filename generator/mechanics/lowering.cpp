@@ -130,7 +130,12 @@ Ref Lowering::multiplier(const model::Node& node) {
   if (wanted.rolls_by_friction()) return rolling_reaction(node);
   if (wanted.joint) return joint_force(node);
   for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
-    if (m_.constraints[k].name == wanted.name) return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
+    if (m_.constraints[k].name != wanted.name) continue;
+    if (!m_.constraints[k + node.order].determined) {
+      throw Error("mechanics", m_.model->where(node.span), "the motion does not determine the force of '" + m_.constraints[k + node.order].label + "'",
+                  "`check` lists the constraints of which it does");
+    }
+    return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
   }
   throw Error("mechanics", m_.model->where(node.span), "this constraint has no force", "name a constraint that holds something");
 }

@@ -141,15 +141,15 @@ Mechanics build_mechanics(const model::Model& model) {
   add_joints(m, lower);
   add_contacts(m, lower);
   eliminate_coordinates(m);
-  if (!m.joints.empty()) {
+  if (!m.constraints.empty()) {
     add_known_values(m, lower);
-    drop_redundant_joints(m, lower);
+    drop_repeated_equations(m);
+    drop_dependent_equations(m, lower);
   }
   drop_held_directions(m);
   add_values(m, lower);
   check_coefficients(m);
   require_equations(m);
-  refuse_dependent_constraints(m);
   classify_constraints(m);
   return m;
 }

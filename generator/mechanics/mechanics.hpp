@@ -47,7 +47,7 @@ struct Load {
 
 enum class ConstraintKind { holonomic, velocity };
 
-/// Whether an equation of a joint is needed: not where psi is 0 whatever the coordinates are, nor where it is so wherever the other
+/// Whether an equation is needed: not where it holds whatever the coordinates are, nor where it does so wherever the other
 /// constraints hold. Such equations are neither imposed nor active and have no multiplier.
 enum class Need { holds, identity, redundant };
 const char* name(Need need);  // "holds", "identity", "redundant"
@@ -64,6 +64,7 @@ struct Constraint {
   model::NodeId written = model::no_node;  // psi, or what is 0 of a velocity constraint, in the model
   bool unilateral = false;                 // psi >= 0: never eliminated
   Need need = Need::holds;
+  bool determined = true;  // the motion determines its force; of joints JointReaction says it
 
   bool holonomic() const { return kind == ConstraintKind::holonomic; }
 };

@@ -21,6 +21,7 @@ using symbolic::SymbolKind;
 constexpr int digits = 50, agreed_digits = 30;
 constexpr std::size_t wanted_points = 4, tried_points = 40;
 constexpr std::size_t term_budget = 300;
+constexpr std::size_t most_effort = 1000000;  // products of terms: some tenths of a second
 
 cln::cl_R small(int exponent) { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
@@ -72,7 +73,7 @@ bool solve_small(std::vector<std::vector<cln::cl_R>> A, std::vector<cln::cl_R> b
 }
 
 FormSpace::FormSpace(Mechanics& m, Where where)
-    : m_(m), dag_(*m.dag), imposed_(impose(m)), written_(write_out(m)), parameters_(independent_parameters(m)) {
+    : m_(m), dag_(*m.dag), imposed_(impose(m)), written_(write_out(m)), parameters_(independent_parameters(m)), effort_{most_effort} {
   for (const std::uint32_t i : m.free) variables_.push_back({SymbolKind::coordinate, i, 0});
   variables_.push_back({SymbolKind::time, 0, 0});
   for (const std::uint32_t k : m.active) {
@@ -113,11 +114,12 @@ Ref FormSpace::derivative(Ref f, std::size_t variable) {
 }
 
 std::vector<cln::cl_R> FormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
-  const auto lookup = [&](const Symbol& symbol) -> cln::cl_R {
-    const auto found = points_[point].find(symbol);
-    return found == points_[point].end() ? value_at(symbol, point) : found->second;
-  };
-  return symbolic::evaluate(dag_, expressions, lookup, digits);
+  return symbolic::evaluate(dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, digits);
+}
+
+cln::cl_R FormSpace::value(const Symbol& symbol, std::size_t point) const {
+  const auto found = points_[point].find(symbol);
+  return found == points_[point].end() ? value_at(symbol, point) : found->second;
 }
 
 // Newton's method with the least change of the coordinates; t and parameters stay.
@@ -153,6 +155,7 @@ bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const 
 
 Vanishing FormSpace::vanishing(Ref expression) {
   if (dag_.is_zero(expression)) return Vanishing::proven;
+  if (!effort_.take(dag_.reachable({expression}).size())) return Vanishing::unknown;
   bool judged = false;
   for (std::size_t point = 0; point < points_.size(); ++point) {
     try {
@@ -162,10 +165,10 @@ Vanishing FormSpace::vanishing(Ref expression) {
     }
   }
   if (!judged) return Vanishing::unknown;
-  return symbolic::is_proven_zero(dag_, expression) ? Vanishing::proven : Vanishing::at_points;
+  return symbolic::is_proven_zero(dag_, expression, &effort_) ? Vanishing::proven : Vanishing::at_points;
 }
 
-Ref FormSpace::simpler(Ref expression) { return symbolic::simpler(dag_, expression, term_budget); }
+Ref FormSpace::simpler(Ref expression) { return symbolic::simpler(dag_, expression, term_budget, &effort_); }
 
 // A constant pivot if there is one, else the one with the smallest expression: what follows stays readable.
 bool FormSpace::choose_pivot(const std::vector<Form>& rows, const std::vector<bool>& used, std::size_t columns,
@@ -199,6 +202,7 @@ Echelon FormSpace::echelon(std::vector<Form> rows, std::size_t columns) {
   }
   std::vector<std::size_t> order;
   for (std::pair<std::size_t, std::size_t> at; choose_pivot(rows, used, columns, result.pivots, at);) {
+    if (spent()) break;
     const auto [row, column] = at;
     used[row] = true;
     order.push_back(row);
@@ -215,6 +219,7 @@ Echelon FormSpace::echelon(std::vector<Form> rows, std::size_t columns) {
     }
   }
   for (const std::size_t row : order) result.rows.push_back(rows[row]);
+  result.exact = result.exact && !spent();
   return result;
 }
 

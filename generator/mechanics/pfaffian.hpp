@@ -10,12 +10,13 @@
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
+#include "symbolic/polynomial.hpp"
 
 namespace eomgen::mechanics {
 
 using Form = std::vector<Ref>;  // coefficients of FormSpace::variables
 
-/// How it is known that something vanishes identically; `unknown`: there was no point at which to look.
+/// How it is known that something vanishes identically; `unknown`: there was no point at which to look, or no effort left to do so.
 enum class Vanishing { proven, at_points, no, unknown };
 
 /// Rows with a 1 in their pivot column and 0 in the pivot columns of the others.
@@ -41,11 +42,15 @@ class FormSpace {
   /// df/dx of a variable; integrals of functions of time have a rate.
   Ref derivative(Ref f, std::size_t variable);
 
-  /// By values at a few points in 50 digits; then, if they vanish there, by proof.
+  /// By values at a few points in 50 digits; then, if they vanish there, by proof, as long as the effort lasts.
   Vanishing vanishing(Ref expression);
   /// Values at one of the points; throws std::domain_error where there is none.
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, std::size_t point) const;
+  cln::cl_R value(const symbolic::Symbol& symbol, std::size_t point) const;
   std::size_t points() const { return points_.size(); }
+
+  /// Whether the effort is used up; what is looked at from then on is unknown, and eliminations end early.
+  bool spent() const { return effort_.left == 0; }
 
   /// Gauss-Jordan; columns of the first `columns` entries may hold pivots (0: all). Sets `exact`.
   Echelon echelon(std::vector<Form> rows, std::size_t columns = 0);
@@ -68,6 +73,7 @@ class FormSpace {
   std::vector<Ref> psi_;        // of the active holonomic constraints
   std::vector<Form> gradient_;
   std::vector<std::map<symbolic::Symbol, cln::cl_R>> points_;
+  symbolic::Effort effort_;  // of all proofs and simplifications together
 };
 
 /// x of A x = b in the sense of elimination with complete pivots, for a matrix of few rows; false where it is singular.

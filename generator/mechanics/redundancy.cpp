@@ -1,14 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constraints whose coefficients are combinations of those of others: they repeat them or contradict them.
+// [[constraint]]s whose coefficients are combinations of those of others wherever one looks: they repeat them or contradict them. What
+// could be left out of the file is refused; equations that could not, as of rolling, have no multiplier.
 #include <cln/integer.h>
 #include <cln/integer_io.h>
 #include <cln/rational.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <optional>
 #include <sstream>
 
-#include "mechanics/integrability.hpp"
 #include "mechanics/pfaffian.hpp"
+#include "mechanics/stages.hpp"
 
 namespace eomgen::mechanics {
 namespace {
@@ -25,6 +29,40 @@ using Rows = std::vector<std::vector<cl_R>>;
 struct Combination {
   std::vector<cl_R> coefficients;  // of the rows before it
   bool same_rate = false;          // b is that combination too
+};
+
+/// Independent rows of one point, orthonormalised without their b, as they come.
+class Span {
+ public:
+  /// Whether a row has no part outside of those that were added.
+  bool holds(const std::vector<cl_R>& row) const { return largest(rest(row)) <= small(25); }
+  void add(const std::vector<cl_R>& row) {
+    std::vector<cl_R> left = rest(rest(row));
+    cl_R square = 0;
+    for (std::size_t i = 0; i + 1 < left.size(); ++i) square = square + left[i] * left[i];
+    const cl_R length = cln::sqrt(square);
+    if (cln::zerop(length)) return;
+    for (cl_R& x : left) x = x / length;
+    basis_.push_back(std::move(left));
+  }
+
+ private:
+  std::vector<cl_R> rest(std::vector<cl_R> row) const {
+    for (const std::vector<cl_R>& e : basis_) {
+      cl_R part = 0;
+      for (std::size_t i = 0; i + 1 < row.size(); ++i) part = part + row[i] * e[i];
+      if (cln::zerop(part)) continue;
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = row[i] - part * e[i];
+    }
+    return row;
+  }
+  static cl_R largest(const std::vector<cl_R>& row) {
+    cl_R size = 0;
+    for (std::size_t i = 0; i + 1 < row.size(); ++i) size = cln::max(size, cln::abs(row[i]));
+    return size;
+  }
+
+  std::vector<std::vector<cl_R>> basis_;
 };
 
 /// How row k of `rows` follows from the independent ones among those before it, if it does.
@@ -52,6 +90,19 @@ std::optional<Combination> combination(const Rows& rows, const std::vector<std::
   }
   result.same_rate = cln::abs(rest[n]) < small(25);
   return result;
+}
+
+/// Whether the rows of a combination are as many as the columns that they have: then every row is a combination of them, which says nothing.
+bool spans_all(const Rows& rows, const std::vector<std::size_t>& independent, const Combination& of, std::size_t k) {
+  std::vector<std::size_t> parts{k};
+  for (std::size_t a = 0; a < independent.size(); ++a) {
+    if (cln::abs(of.coefficients[a]) >= small(25)) parts.push_back(independent[a]);
+  }
+  std::size_t columns = 0;
+  for (std::size_t i = 0; i + 1 < rows[k].size(); ++i) {
+    columns += std::any_of(parts.begin(), parts.end(), [&](std::size_t row) { return cln::abs(rows[row][i]) > small(25); }) ? 1 : 0;
+  }
+  return columns > 0 && parts.size() > columns;
 }
 
 /// "2 a - b/3"; empty where a coefficient is not a simple number.
@@ -88,7 +139,7 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
   return text;
 }
 
-[[noreturn]] void refuse(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
+Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
                          const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
   const Constraint& constraint = m.constraints[constraints[k]];
   const std::string others = listed(m, constraints, independent, here), formula = named(m, constraints, independent, here, there);
@@ -98,24 +149,25 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
     what += others.empty() ? "follows from the constraints that fix its coordinates"
                            : "follows from " + others + (formula.empty() ? ", with coefficients that depend on the state"
                                                                          : ": " + constraint.label + " = " + formula);
-    throw Error("mechanics", where, what, "remove it: nothing would determine how the force is shared");
+    return Error("mechanics", where, what, "remove it: nothing would determine how the force is shared");
   }
   what += others.empty() ? "contradicts the constraints that fix its coordinates"
                          : "contradicts " + others + (formula.empty() ? "" : ": its velocities are those of " + formula + ", the rest is not");
-  throw Error("mechanics", where, what, "remove one of them: no motion satisfies them all");
+  return Error("mechanics", where, what, "remove one of them: no motion satisfies them all");
 }
 
-}  // namespace
+/// What a constraint is left with, when all of its equations follow from others.
+using Refusals = std::map<std::string, Error>;
 
-void refuse_dependent_constraints(Mechanics& m) {
-  if (m.active.empty()) return;
-  FormSpace space(m, FormSpace::Where::anywhere);
+Refusals drop_repeated(Mechanics& m) {
   std::vector<std::uint32_t> constraints;  // what is given in positions comes first, so that the others are blamed
   for (const bool holonomic : {true, false}) {
     for (const std::uint32_t k : m.active) {
-      if (m.constraints[k].holonomic() == holonomic) constraints.push_back(k);
+      if (m.constraints[k].holonomic() == holonomic && !model_constraint(m, m.constraints[k]).joint) constraints.push_back(k);
     }
   }
+  if (constraints.empty()) return {};
+  FormSpace space(m, FormSpace::Where::anywhere);
   std::vector<Ref> entries;
   for (const std::uint32_t k : constraints) {
     const Form form = space.of(m.constraints[k]);
@@ -135,12 +187,40 @@ void refuse_dependent_constraints(Mechanics& m) {
       continue;  // outside the domain of a function: another point
     }
   }
-  if (at.size() < 2) return;  // no values: the start will tell
+  if (at.size() < 2) return {};  // no values: the start will tell
   std::vector<std::size_t> independent;
+  std::array<Span, 2> spans;
+  Refusals refusals;
   for (std::size_t k = 0; k < constraints.size(); ++k) {
-    const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
-    if (here && there) refuse(m, constraints, k, independent, *here, *there);
+    if (spans[0].holds(at[0][k]) && spans[1].holds(at[1][k])) {
+      const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
+      if (here && there && !spans_all(at[0], independent, *here, k)) {
+        Constraint& constraint = m.constraints[constraints[k]];
+        Error why = refusal(m, constraints, k, independent, *here, *there);
+        if (!here->same_rate || !may_repeat(m, constraint)) throw why;
+        refusals.emplace(constraint.name, std::move(why));
+        constraint.need = Need::redundant;
+        std::erase(m.active, constraints[k]);
+        continue;
+      }
+    }
     independent.push_back(k);
+    for (std::size_t point = 0; point < spans.size(); ++point) spans[point].add(at[point][k]);
+  }
+  return refusals;
+}
+
+}  // namespace
+
+void drop_repeated_equations(Mechanics& m) {
+  const Refusals refusals = drop_repeated(m);
+  for (const model::Constraint& whole : m.model->constraints) {
+    if (whole.joint || whole.unit) continue;
+    const auto needed = [&](const Constraint& c) { return c.name == whole.name && c.need == Need::holds; };
+    if (std::any_of(m.constraints.begin(), m.constraints.end(), needed)) continue;
+    const auto why = refusals.find(whole.name);
+    if (why != refusals.end()) throw why->second;
+    throw Error("mechanics", m.model->where(whole.span), "constraint '" + whole.name + "' follows from the constraints before it", "remove it");
   }
 }
 

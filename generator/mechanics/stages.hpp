@@ -15,7 +15,11 @@ void check_coefficients(const Mechanics& mechanics);           // of friction, w
 void eliminate_coordinates(Mechanics& mechanics);              // which constraints read q_c = d(t), eq. (2.96)
 void add_joints(Mechanics& mechanics, Lowering& lower);        // their reactions
 bool holds_identically(Dag& dag, Ref psi);                     // proven, or by numbers; an unknown is no
-void drop_redundant_joints(Mechanics& mechanics, Lowering& lower);  // equations of loops that follow from others
+void drop_repeated_equations(Mechanics& mechanics);            // that follow from [[constraint]]s identically, or refuse them
+void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // those that follow where all hold, as of loops
+/// Whether an equation may follow from others, because nobody could leave it out: of joints, of unit lengths, of rolling and of vectors.
+bool may_repeat(const Mechanics& mechanics, const Constraint& constraint);
+const model::Constraint& model_constraint(const Mechanics& mechanics, const Constraint& constraint);
 void drop_held_directions(Mechanics& mechanics);               // of contacts, along which other constraints let nothing slide
 
 }  // namespace eomgen::mechanics

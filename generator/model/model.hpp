@@ -206,6 +206,7 @@ struct Constraint {
   NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
   std::optional<std::uint32_t> joint;  // whose equations these are
+  bool unit = false;                   // the length of Euler parameters
   Span span;
 
   bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }

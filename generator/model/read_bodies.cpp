@@ -257,6 +257,7 @@ void Reader::declare_units() {
     if (!by_parameters(*frame_sources_[k].table)) continue;
     Constraint constraint;
     constraint.name = model_.frames[k].name + "_unit";
+    constraint.unit = true;
     constraint.span = frame_sources_[k].table->find("rotation")->span;
     Symbol& symbol = scope_.declare(SymbolKind::constraint, constraint.name, constraint.span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());

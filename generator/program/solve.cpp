@@ -4,6 +4,7 @@
 #include <cln/real.h>
 
 #include <algorithm>
+#include <set>
 #include <stdexcept>
 
 #include "error.hpp"
@@ -17,6 +18,42 @@ namespace eomgen::program {
 
 using symbolic::Symbol;
 
+namespace {
+
+/// Per constraint: whether it binds coordinates of one block of M alone, and that block is singular.
+std::vector<bool> within_singular_blocks(const Dag& dag, const std::vector<Ref>& M, std::size_t n, const std::vector<Ref>& A) {
+  std::vector<std::size_t> block(n, n);
+  std::vector<bool> singular;
+  for (std::size_t first = 0; first < n; ++first) {
+    if (block[first] != n) continue;
+    std::vector<std::size_t> members{first};
+    block[first] = singular.size();
+    for (std::size_t next = 0; next < members.size(); ++next) {
+      for (std::size_t j = 0; j < n; ++j) {
+        if (block[j] != n || dag.is_zero(M[members[next] * n + j])) continue;
+        block[j] = singular.size();
+        members.push_back(j);
+      }
+    }
+    std::vector<Ref> part;
+    for (const std::size_t i : members) {
+      for (const std::size_t j : members) part.push_back(M[i * n + j]);
+    }
+    singular.push_back(is_singular_everywhere(dag, part, members.size()));
+  }
+  std::vector<bool> result;
+  for (std::size_t c = 0; c * n < A.size(); ++c) {
+    std::set<std::size_t> touched;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!dag.is_zero(A[c * n + i])) touched.insert(block[i]);
+    }
+    result.push_back(touched.size() == 1 && singular[*touched.begin()]);
+  }
+  return result;
+}
+
+}  // namespace
+
 Solve::Solve(const system::EquationSystem& system, Ties ties)
     : dag_(system.dag), n_(system.free.size()), m_(system.active.size()), A_(system.A), f_(system.f), gamma_(system.gamma),
       quasi_(system.quasi) {
@@ -26,14 +63,11 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   if (augmented_) {
     quasi_.reset();
     M = system.M;
-    for (std::size_t c = 0; c < m_; ++c) S_.push_back(size_of_row(M, c));
-    for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t j = 0; j < n_; ++j) {
-        for (std::size_t c = 0; c < m_; ++c) {
-          M[i * n_ + j] = dag.add(M[i * n_ + j], dag.mul(S_[c], dag.mul(A_[c * n_ + i], A_[c * n_ + j])));
-        }
-      }
-    }
+    // Constraints of a singular block alone, as the lengths of Euler parameters, leave the other zeros of M as they are.
+    const std::vector<bool> within = within_singular_blocks(dag, M, n_, A_);
+    const std::vector<Ref> mass = M;
+    augment(M, within);
+    if (is_singular_everywhere(dag, M, n_)) augment(M = mass, std::vector<bool>(m_, true));  // as they need one another
     if (is_singular_everywhere(dag, M, n_)) {
       throw Error("program", {}, "the mass matrix is singular at every state, with the constraints too",
                   "give every coordinate a mass or a constraint that determines it");
@@ -51,6 +85,22 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   }
   for (std::size_t k = 0; k < system.apart.size(); ++k) S[k * m_ + k] = dag.add(S[k * m_ + k], system.apart[k]);
   schur_ = std::make_unique<Factorisation>(dag, std::move(S), m_, ties);
+}
+
+// M + A^T S A with the rows that are taken.
+void Solve::augment(std::vector<Ref>& M, const std::vector<bool>& taken) {
+  Dag& dag = *dag_;
+  S_.assign(m_, dag.zero());
+  for (std::size_t c = 0; c < m_; ++c) {
+    if (taken[c]) S_[c] = size_of_row(M, c);
+  }
+  for (std::size_t i = 0; i < n_; ++i) {
+    for (std::size_t j = 0; j < n_; ++j) {
+      for (std::size_t c = 0; c < m_; ++c) {
+        M[i * n_ + j] = dag.add(M[i * n_ + j], dag.mul(S_[c], dag.mul(A_[c * n_ + i], A_[c * n_ + j])));
+      }
+    }
+  }
 }
 
 // The sum of the inertias of the coordinates that a constraint binds; 1 where none of them has any.

@@ -5,7 +5,8 @@
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
 // Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix is
 // factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without
-// mass, Euler parameters) M + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. S is diagonal,
+// mass, Euler parameters) M + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. The rows of A are those that bind a singular block
+// of M alone, where that suffices, so that bodies with coordinates of their own stay apart. S is diagonal,
 // of the size of M, so that nothing small is lost in the sum. A constraint that is left has a row of zeros in A and 1 on the diagonal of the
 // Schur complement, so that its lambda is 0.
 #pragma once
@@ -54,6 +55,7 @@ class Solve : public LinearSolve {
   bool augmented() const { return augmented_; }
 
  private:
+  void augment(std::vector<Ref>& M, const std::vector<bool>& taken);
   Ref size_of_row(const std::vector<Ref>& M, std::size_t c) const;
   std::vector<Ref> forward(const std::vector<Ref>& r) const;
   std::vector<Ref> backward(const std::vector<Ref>& z) const;
@@ -64,7 +66,7 @@ class Solve : public LinearSolve {
   std::vector<Ref> A_, f_, gamma_;
   std::optional<system::QuasiEquations> quasi_;
   bool augmented_ = false;
-  std::vector<Ref> S_;  // per constraint, where augmented
+  std::vector<Ref> S_;  // per constraint, where augmented; 0 of those that are left out
   std::unique_ptr<Factorisation> mass_, schur_;
   std::vector<std::vector<Ref>> Y_;
 };

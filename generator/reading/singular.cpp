@@ -4,11 +4,15 @@
 #include <cln/integer.h>
 
 #include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
 
 #include "reading/lagrangian.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
+#include "symbolic/sample.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -104,11 +108,89 @@ bool positive_always(const Sum& factor) {
   return constant_part;
 }
 
-void add_determinant(Bridge& bridge, const std::string& approach, const Sum& kinetic, const std::vector<std::uint32_t>& which, Sets& sets) {
+using Values = std::map<Symbol, double>;
+
+double value(const Sum& sum, const Values& at);
+
+double value(const Atom& atom, const Values& at) {
+  const auto arg = [&](std::size_t i) { return value(atom.args[i], at); };
+  switch (atom.op) {
+    case Op::symbol: return at.at(atom.symbol);
+    case Op::pi: return std::acos(-1.0);
+    case Op::add: return arg(0);
+    case Op::pow: return std::pow(arg(0), arg(1));
+    case Op::sqrt: return std::sqrt(arg(0));
+    case Op::sin: return std::sin(arg(0));
+    case Op::cos: return std::cos(arg(0));
+    case Op::tan: return std::tan(arg(0));
+    case Op::sinh: return std::sinh(arg(0));
+    case Op::cosh: return std::cosh(arg(0));
+    case Op::tanh: return std::tanh(arg(0));
+    case Op::exp: return std::exp(arg(0));
+    case Op::log: return std::log(arg(0));
+    case Op::abs: return std::abs(arg(0));
+    default: return std::nan("");
+  }
+}
+
+double value(const Sum& sum, const Values& at) {
+  double result = 0;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    double term = cln::double_approx(coefficient);
+    for (const Factor& factor : monomial) term *= std::pow(value(*factor.atom, at), cln::double_approx(factor.exponent));
+    result += term;
+  }
+  return result;
+}
+
+/// Whether a search for a zero ends far from one, from many starts: then a factor of a determinant that is never negative has none.
+/// Parameters count as positive, as masses, inertias and lengths are.
+bool stays_away_from_zero(const Sum& factor) {
+  constexpr int starts = 40, shrinkings = 40;
+  constexpr double near = 1e-5;  // of the largest value met
+  std::set<Symbol> parameters, moving;
+  for_each_atom(factor, [&](const Atom& atom) {
+    if (atom.op == Op::symbol) (varies(atom) ? moving : parameters).insert(atom.symbol);
+  });
+  if (moving.empty()) return false;
+  double largest = 0, least = HUGE_VAL;
+  for (int start = 1; start <= starts; ++start) {
+    const auto point = static_cast<std::uint64_t>(start);
+    Values at;
+    for (const Symbol& s : parameters) at[s] = 3 * symbolic::sample_double(s, point);
+    for (const Symbol& s : moving) at[s] = 6 * (symbolic::sample_double(s, point) - 0.7);
+    double here = value(factor, at);
+    if (!std::isfinite(here)) continue;
+    const bool negative = here < 0;
+    largest = std::max(largest, std::abs(here));
+    double step = 1;
+    for (int turn = 0; turn < shrinkings;) {
+      bool better = false;
+      for (const Symbol& s : moving) {
+        for (const double by : {step, -step}) {
+          const double before = at[s];
+          at[s] = before + by;
+          const double there = value(factor, at);
+          if ((there < 0) != negative) return false;
+          largest = std::max(largest, std::isfinite(there) ? std::abs(there) : 0);
+          if (std::abs(there) < std::abs(here)) here = there, better = true;
+          else at[s] = before;
+        }
+      }
+      if (!better) step /= 2, ++turn;
+    }
+    least = std::min(least, std::abs(here));
+  }
+  return std::isfinite(least) && least > near * largest;
+}
+
+// Of masses and bodies the determinant is never negative; a kinetic energy that the file gives may be anything.
+void add_determinant(const Mechanics& m, Bridge& bridge, const std::string& approach, const Sum& kinetic, const std::vector<std::uint32_t>& which, Sets& sets) {
+  const bool of_masses = m.dag->is_zero(m.kinetic_given);
   Sets candidates;
   candidates.add_factors(approach, simplify(determinant(mass_matrix(bridge, kinetic, which), which.size())));
   for (const SingularSet& set : candidates.take()) {
-    if (!positive_always(set.factor)) sets.add(approach, set.factor);
+    if (!positive_always(set.factor) && !(of_masses && stays_away_from_zero(set.factor))) sets.add(approach, set.factor);
   }
 }
 
@@ -140,8 +222,8 @@ std::vector<SingularSet> singular_sets(const Mechanics& m) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
   try {
     const Sum kinetic = kinetic_energy(m, bridge);
-    if (all.size() <= largest_determinant) add_determinant(bridge, "I", kinetic, all, sets);
-    if (m.free.size() <= largest_determinant) add_determinant(bridge, "II", bridge.substitute(kinetic, values), m.free, sets);
+    if (all.size() <= largest_determinant) add_determinant(m, bridge, "I", kinetic, all, sets);
+    if (m.free.size() <= largest_determinant) add_determinant(m, bridge, "II", bridge.substitute(kinetic, values), m.free, sets);
     const Sum potential = bridge.sum(m.potential);
     sets.add_denominators("I", potential);
     sets.add_denominators("II", bridge.substitute(potential, values));

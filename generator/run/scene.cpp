@@ -375,8 +375,15 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
 
 namespace {
 
-// A component of a joint's reaction, or all of them, that the motion does not determine.
+// A component of a joint's reaction, or all of them, or the force of a constraint, that the motion does not determine.
 void refuse_undetermined(const Mechanics& m, const model::Named& want) {
+  for (const mechanics::Constraint& c : m.constraints) {
+    const std::string label = "reaction." + c.label;
+    const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(), [&](const model::Joint& j) { return j.name == c.name; });
+    if (c.determined || joint || (want.name != label && want.name != "reaction." + c.name)) continue;
+    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{}, fmt::format("the motion does not determine '{}'", label),
+                "other constraints hold the same, or nothing moves against it (`check` lists such constraints): ask for the force of another, or give the bodies coordinates that it binds");
+  }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const std::string name = "reaction." + m.model->joints[i].name;
     if (want.name != name && !want.name.starts_with(name + ".")) continue;

@@ -39,7 +39,8 @@ class StartSolver {
     psi_ = s_.psi;
     b_ = s_.b;
     for (const system::Watched& watched : s_.redundant) {
-      for (auto& rows : rows_) rows.push_back(b_.size());
+      if (p_.mechanics.constraints[watched.constraint].holonomic()) rows_[0].push_back(b_.size());
+      rows_[1].push_back(b_.size());
       A_.insert(A_.end(), watched.A.begin(), watched.A.end());
       psi_.push_back(watched.psi);
       b_.push_back(watched.b);
@@ -264,6 +265,11 @@ class StartSolver {
       newton(order, free);
       if (order == 0) hold_angles(loose_);
     }
+    if (order == 1 && worst(order) > start_tolerance && !held_.empty()) {  // the speed of a body that rolls is given in place of its spin
+      held_.clear();
+      free = unknowns(order);
+      newton(order, free);
+    }
     Eigen::Index k = 0;
     if (worst(order, &k) > start_tolerance) refuse(order, static_cast<std::size_t>(k), free);
   }
@@ -274,7 +280,7 @@ class StartSolver {
     for (const double offset : {0.0, 1.0, -1.0, 0.1, 10.0}) {
       (order == 0 ? p_.q : p_.qdot) = start;
       for (const std::size_t i : free) value({s_.free[i], order}) += offset;
-      if (!iterate(order, free)) continue;
+      if (!iterate(order, free, offset == 0)) continue;  // beside it nothing that stays would be 0
       // Only what the constraints fix may follow from them; the rest would be a guess of ours.
       for (const std::size_t i : free) {
         const StartProblem::Key key{s_.free[i], order};
@@ -286,7 +292,8 @@ class StartSolver {
     (order == 0 ? p_.q : p_.qdot) = start;
   }
 
-  bool iterate(std::uint8_t order, const std::vector<std::size_t>& free) {
+  /// `partly`: where the constraints do not fix all of them, those that they fix.
+  bool iterate(std::uint8_t order, const std::vector<std::size_t>& free, bool partly) {
     VectorXd residual;
     MatrixXd A;
     for (int step = 0; step < newton_steps; ++step) {
@@ -304,8 +311,11 @@ class StartSolver {
       Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
       decomposition.setThreshold(rank_tolerance);
       decomposition.compute(columns);
-      if (decomposition.rank() < columns.cols()) return false;  // not fixed by the constraints
-      const VectorXd move = decomposition.solve(residual);
+      VectorXd move = decomposition.solve(residual);
+      if (decomposition.rank() < columns.cols()) {
+        if (!partly) return false;
+        if (!keep_fixed(columns, decomposition.rank(), move)) return worst(order) <= rounding;
+      }
       double size = 0, scale = 0;
       for (std::size_t i = 0; i < moving.size(); ++i) {
         double& x = value({s_.free[moving[i]], order});
@@ -318,6 +328,60 @@ class StartSolver {
     return worst(order) <= rounding;
   }
 
+  /// Of unknowns that the constraints do not fix all together only those move that they fix: what no motion of the rest changes.
+  /// False where that is none.
+  static bool keep_fixed(const MatrixXd& columns, Eigen::Index rank, VectorXd& move) {
+    const Eigen::JacobiSVD<MatrixXd> svd(columns, Eigen::ComputeFullV);
+    const MatrixXd open = svd.matrixV().rightCols(columns.cols() - rank);
+    bool any = false;
+    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
+      const bool fixed = open.row(i).norm() < rank_tolerance;
+      if (!fixed) move(i) = 0;
+      any = any || fixed;
+    }
+    return any;
+  }
+
+  /// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how much it is off then.
+  std::pair<std::size_t, double> first_broken(const std::vector<std::size_t>& free) const {
+    VectorXd residual;
+    MatrixXd A;
+    linearise(1, residual, A);
+    MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
+    for (std::size_t i = 0; i < free.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
+    const std::vector<std::size_t>& bound = rows_[1];
+    const std::size_t turns = m_ + s_.redundant.size();
+    std::vector<std::size_t> before;
+    for (std::size_t k = 0; k < bound.size(); ++k) {
+      if (bound[k] >= turns) before.push_back(k);
+    }
+    for (std::size_t k = 0; k < bound.size(); ++k) {
+      if (bound[k] >= turns) continue;
+      const auto count = static_cast<Eigen::Index>(before.size());
+      MatrixXd held(count, columns.cols());
+      VectorXd wanted(count);
+      for (Eigen::Index i = 0; i < count; ++i) {
+        held.row(i) = columns.row(static_cast<Eigen::Index>(before[static_cast<std::size_t>(i)]));
+        wanted(i) = residual(static_cast<Eigen::Index>(before[static_cast<std::size_t>(i)]));
+      }
+      const auto row = static_cast<Eigen::Index>(k);
+      VectorXd move = VectorXd::Zero(columns.cols());
+      Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
+      decomposition.setThreshold(rank_tolerance);
+      VectorXd beside = columns.row(row).transpose();
+      if (count > 0 && columns.cols() > 0) {
+        decomposition.compute(held);
+        move = decomposition.solve(wanted);
+        beside -= held.transpose() * held.transpose().completeOrthogonalDecomposition().solve(beside);
+      }
+      const double off = residual(row) - columns.row(row).dot(move);
+      const double size = std::abs(residual(row)) + columns.row(row).cwiseAbs().dot(move.cwiseAbs());
+      if (beside.norm() <= rank_tolerance * columns.row(row).norm() && std::abs(off) > start_tolerance * size) return {k, off};
+      before.push_back(k);
+    }
+    return {bound.size(), 0};
+  }
+
   [[noreturn]] void refuse_turn(const StartProblem::Turn& turn, double off) const {
     throw Error("scene", p_.mechanics.model->where(turn.span),
                 fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}", p_.mechanics.model->frames[turn.frame].name, off),
@@ -328,6 +392,11 @@ class StartSolver {
     VectorXd residual;
     MatrixXd A;
     linearise(order, residual, A);
+    double off = residual(static_cast<Eigen::Index>(k));
+    if (order == 1 && !p_.turns.empty()) {
+      const auto [broken, by] = first_broken(free);
+      if (broken < rows_[1].size()) k = broken, off = by;
+    }
     const auto row = static_cast<Eigen::Index>(k);
     const std::size_t bound = rows_[order][k], turns = m_ + s_.redundant.size();
     if (bound >= turns) refuse_turn(p_.turns[(bound - turns) / 3], residual(row));
@@ -357,7 +426,7 @@ class StartSolver {
             : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve", open);
     throw Error("scene", p_.mechanics.model->where(span),
                 fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
-                            constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", residual(row),
+                            constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", off,
                             relative(residual, A, order, row), start_tolerance),
                 remedy);
   }

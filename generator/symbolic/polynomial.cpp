@@ -70,6 +70,7 @@ Expander::Maybe Expander::expand_node(Ref r) {
     case Op::pi: case Op::symbol: return atom(r);
     case Op::add: case Op::sub: {
       if (!arg(0) || !arg(1)) return std::nullopt;
+      if (effort_ != nullptr && !effort_->take(arg(0)->size() + arg(1)->size())) return std::nullopt;
       Polynomial sum = *arg(0);
       for (const auto& [m, c] : *arg(1)) add_term(sum, m, node.op == Op::add ? c : -c);
       if (sum.size() > budget_) return std::nullopt;
@@ -105,6 +106,7 @@ Expander::Maybe Expander::expand_node(Ref r) {
 
 Expander::Maybe Expander::product(const Polynomial& a, const Polynomial& b) const {
   if (a.size() * b.size() > 16 * budget_) return std::nullopt;
+  if (effort_ != nullptr && !effort_->take(a.size() * b.size())) return std::nullopt;
   Polynomial result;
   for (const auto& [m, c] : a) {
     for (const auto& [n, d] : b) add_term(result, times(m, n), c * d);
@@ -193,6 +195,7 @@ Polynomial Expander::reduce(Polynomial p) const {
   Dag& dag = dag_;
   for (bool shorter = true; shorter;) {
     shorter = false;
+    if (effort_ != nullptr && !effort_->take(2 * angles.size() * p.size())) break;
     for (const Ref angle : angles) {
       const Ref sine = dag.call(Op::sin, angle), cosine = dag.call(Op::cos, angle);
       for (const auto& [square, other] : {std::pair{sine, cosine}, std::pair{cosine, sine}}) {
@@ -244,8 +247,8 @@ Ref Expander::rebuild(const Polynomial& p) {
 
 Ref tidy(Dag& dag, Ref expression, std::size_t term_budget) { return Expander(dag, term_budget).tidy(expression); }
 
-Ref simpler(Dag& dag, Ref expression, std::size_t term_budget) {
-  const std::optional<Ref> expanded = Expander(dag, term_budget)(expression);
+Ref simpler(Dag& dag, Ref expression, std::size_t term_budget, Effort* effort) {
+  const std::optional<Ref> expanded = Expander(dag, term_budget, effort)(expression);
   if (!expanded) return expression;
   return dag.reachable({*expanded}).size() <= dag.reachable({expression}).size() ? *expanded : expression;
 }

@@ -18,10 +18,21 @@ using Monomial = std::vector<std::pair<Ref, long>>;
 /// Coefficients are not zero.
 using Polynomial = std::map<Monomial, Rational>;
 
+/// How much may still be multiplied: products of two terms. The same on every machine.
+struct Effort {
+  std::size_t left = 0;
+
+  bool take(std::size_t products) {
+    const bool enough = products <= left;
+    left = enough ? left - products : 0;
+    return enough;
+  }
+};
+
 class Expander {
  public:
-  /// Nothing is expanded to more than `term_budget` terms.
-  explicit Expander(Dag& dag, std::size_t term_budget = 400) : dag_(dag), budget_(term_budget) {}
+  /// Nothing is expanded to more than `term_budget` terms, and nothing more once `effort` is used up.
+  explicit Expander(Dag& dag, std::size_t term_budget = 400, Effort* effort = nullptr) : dag_(dag), budget_(term_budget), effort_(effort) {}
 
   /// The expanded and reduced form; nothing where the budget does not suffice.
   std::optional<Ref> operator()(Ref expression);
@@ -43,12 +54,13 @@ class Expander {
 
   Dag& dag_;
   std::size_t budget_;
+  Effort* effort_;
   std::unordered_map<std::uint32_t, Maybe> memo_;
 };
 
 /// Expander::tidy for one expression.
 Ref tidy(Dag& dag, Ref expression, std::size_t term_budget = 400);
 /// The expanded form where it has no more nodes, else the expression as it is.
-Ref simpler(Dag& dag, Ref expression, std::size_t term_budget);
+Ref simpler(Dag& dag, Ref expression, std::size_t term_budget, Effort* effort = nullptr);
 
 }  // namespace eomgen::symbolic

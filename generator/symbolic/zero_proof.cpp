@@ -159,10 +159,10 @@ Ref roots_split(Dag& dag, Ref expression) {
 
 }  // namespace
 
-bool is_proven_zero(Dag& dag, Ref expression) {
+bool is_proven_zero(Dag& dag, Ref expression, Effort* effort) {
   constexpr int most_rounds = 4;  // of roots inside of roots
   RationalForm form(dag);
-  Expander expander(dag, term_budget);
+  Expander expander(dag, term_budget, effort);
   for (int round = 0; round < most_rounds; ++round) {
     if (dag.is_zero(expression)) return true;
     const Ref numerator = form(expression).num;

@@ -5,11 +5,12 @@
 #pragma once
 
 #include "symbolic/dag.hpp"
+#include "symbolic/polynomial.hpp"
 
 namespace eomgen::symbolic {
 
 /// True: zero wherever it is defined. False: not zero, or not proven - roots, logarithms and inverse functions count as
-/// independent of one another, and what grows beyond the budget of terms is given up.
-bool is_proven_zero(Dag& dag, Ref expression);
+/// independent of one another, and what grows beyond the budget of terms, or takes more than `effort`, is given up.
+bool is_proven_zero(Dag& dag, Ref expression, Effort* effort = nullptr);
 
 }  // namespace eomgen::symbolic

@@ -30,6 +30,15 @@ TEST_CASE("fields: velocities and inputs leave no potential") {
   CHECK(One(cartesian, field("u*E1")).found.conservative == derive::Verdict::no);
 }
 
+TEST_CASE("fields: dry friction has no potential, though no component of it is an applied force") {
+  for (const char* law : {"static = 0.3, dynamic = 0.2", "dynamic = 0.2, law = \"smooth\", width = 0.01"}) {
+    const One rubs(cartesian, "dry = { coordinate = \"x\", normal = \"m\", " + std::string(law) + " }\n");
+    CHECK(rubs.found.conservative == derive::Verdict::no);
+    CHECK(rubs.found.reason == "it is friction");
+    CHECK_FALSE(rubs.found.potential.has_value());
+  }
+}
+
 TEST_CASE("fields: a force along a circle does work on each turn, the same generalised force of an angle does not") {
   const One along(polar, field("k*P.e_theta"));  // curl k/r
   CHECK(along.found.conservative == derive::Verdict::no);

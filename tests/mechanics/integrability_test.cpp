@@ -160,6 +160,38 @@ TEST_CASE("integrability: what a holonomic constraint fixes makes others integra
   CHECK(Found("x y z", {velocity("z*x_dot + x*y_dot")}).verdicts() == "no");
 }
 
+TEST_CASE("integrability: what a holonomic constraint keeps is no integral of one on velocities") {
+  const Found found("a b c", {holonomic("cos(a) + cos(b) - 1.5"), velocity("c_dot + cos(c)*a_dot + b_dot")});
+  CHECK(found.verdicts() == "yes yes");  // on the curve that is left
+  CHECK(found.m.integrals.empty());
+}
+
+TEST_CASE("integrability: a car with trailers reaches every configuration, however many there are") {
+  for (const int trailers : {1, 5, 9}) {
+    std::string coordinates = "x y s th0";
+    std::vector<std::string> wheels{velocity("x_dot*sin(th0 + s) - y_dot*cos(th0 + s) - th0_dot*cos(s)"), velocity("x_dot*sin(th0) - y_dot*cos(th0)")};
+    for (int k = 1; k <= trailers; ++k) {
+      const std::string th = "th" + std::to_string(k);
+      coordinates += " " + th;
+      std::string e = "x_dot*sin(" + th + ") - y_dot*cos(" + th + ")";
+      for (int j = 1; j <= k; ++j) e += " + R*th" + std::to_string(j) + "_dot*cos(th" + std::to_string(j) + " - " + th + ")";
+      wheels.push_back(velocity(e));
+    }
+    const Found found(coordinates, wheels);
+    CHECK(found.verdicts().find("yes") == std::string::npos);
+    CHECK(found.verdicts().find("unknown") == std::string::npos);
+    CHECK(found.m.integrals.empty());
+    for (const mechanics::Classification& c : found.m.classification) CHECK(c.reason.find("combination") == std::string::npos);
+  }
+}
+
+TEST_CASE("integrability: a wheel that cannot turn keeps to its line, the trailer behind it to none") {
+  const Found found("x y th0 th1", {velocity("x_dot*sin(th0) - y_dot*cos(th0)"), velocity("x_dot*sin(th1) - y_dot*cos(th1) + R*th1_dot"), velocity("th0_dot")});
+  CHECK(found.verdicts() == "yes no yes");
+  CHECK(found.m.integrals.size() == 2);
+  CHECK(found.worst_rate() < 1e-8);
+}
+
 TEST_CASE("redundancy: constraints that follow from others, and those that contradict them, are named") {
   const std::string c1 = velocity("x_dot + y*z_dot"), c2 = velocity("w_dot - y*z_dot + k");
   CHECK(refusal("x y z w", {c1, c2, velocity("2*x_dot + 2*y*z_dot")}) == "constraint 'c3' follows from 'c1': c3 = 2 c1");

@@ -162,3 +162,15 @@ TEST_CASE("singular sets are told per approach") {
   System pendulum(model::read_model(shipped("cart_pendulum")));
   CHECK(reading::singular_sets(pendulum.mechanics).empty());
 }
+
+TEST_CASE("a determinant of masses that vanishes nowhere is no singular set, one that does is") {
+  const std::string parameters = "format = 1\n[parameters]\nm = 1\nM = 2\nl = 1\nL = 1.5\nJ = 0.1\nK = 0.2\n";
+  const auto body = [](const std::string& name, const std::string& mass, const std::string& inertia, const std::string& position, const std::string& angle) {
+    return "[[body]]\nname = \"" + name + "\"\nmass = \"" + mass + "\"\ninertia = \"" + inertia + "\"\nposition = \"" + position + "\"\nrotation = { axis = \"E3\", angle = \"" + angle + "\" }\n";
+  };
+  System arm(model::read_model_text(parameters + body("A", "m", "J", "l*A.e1", "a") + body("B", "M", "K", "L*A.e1 + l*B.e1", "a + b"), "arm"));
+  CHECK(reading::singular_sets(arm.mechanics).empty());
+  // Stretched or folded, an arm of two massless bars cannot move its mass along itself.
+  System folded(model::read_model_text(parameters + "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"l*(cos(a)*E1 + sin(a)*E2) + L*(cos(b)*E1 + sin(b)*E2)\"\n", "folded"));
+  CHECK_FALSE(reading::singular_sets(folded.mechanics).empty());
+}

@@ -62,6 +62,68 @@ TEST_CASE("scene: the guess chooses between the closures") {
   CHECK(resolve(rod + "initial = { x = 1.2 }\nguess = { y = -3 }\n").q[1] == doctest::Approx(-1.6).epsilon(rounding));
 }
 
+TEST_CASE("scene: rates that several constraints fix together follow, beside others that stay 0") {
+  const std::string text = R"toml(format = 1
+[coordinates]
+w = {}
+x = {}
+y = {}
+z = {}
+[energy]
+kinetic = "w_dot^2 + x_dot^2 + y_dot^2 + z_dot^2"
+[[constraint]]
+name = "sum"
+velocity = "x_dot + y_dot - 3"
+[[constraint]]
+name = "open"
+velocity = "z_dot - w_dot"
+[[constraint]]
+name = "difference"
+velocity = "x_dot - y_dot - 1 - w_dot"
+[scene.default]
+)toml";
+  const run::Scene scene = resolve(text + "initial = { w_dot = 0 }\n");
+  CHECK(scene.qdot[1] == doctest::Approx(2).epsilon(rounding));
+  CHECK(scene.qdot[2] == doctest::Approx(1).epsilon(rounding));
+  CHECK(scene.qdot[3] == 0);
+  const run::Scene sliding = resolve(text + "initial = { w_dot = 1 }\n");
+  CHECK(sliding.qdot[1] == doctest::Approx(2.5).epsilon(rounding));
+  CHECK(sliding.qdot[3] == doctest::Approx(1).epsilon(rounding));
+}
+
+namespace {
+
+const std::string ball = R"toml(format = 1
+[parameters]
+R = 0.3
+[[body]]
+name = "ball"
+mass = 2
+inertia = { sphere = "R" }
+position = { cartesian = ["x", "y", "z"] }
+rotation = { euler = "321", angles = ["psi", "th", "phi"] }
+[[constraint]]
+name = "roll"
+rolling = { body = "ball", at = "-R*E3", on = "ground" }
+[scene.default]
+)toml";
+
+}  // namespace
+
+TEST_CASE("scene: beside a given angular velocity the equation that cannot hold is named, and by how much it is off") {
+  // x_dot = R w2 holds, y_dot = -R w1 does not.
+  const std::string message = refusal(ball + "initial = { x_dot = 0.6, y_dot = 1, \"ball.omega\" = [0.5, 2, 0.1] }\n");
+  CHECK(message.find("'roll.2'") != std::string::npos);
+  CHECK(message.find("1.15") != std::string::npos);
+  const run::Scene scene = resolve(ball + "initial = { x_dot = 0.6, \"ball.omega\" = [0.5, 2, 0.1] }\n");
+  CHECK(scene.qdot[1] == doctest::Approx(-0.15).epsilon(rounding));
+}
+
+TEST_CASE("scene: the spin of a body that rolls follows from its speed where the speed is given in its place") {
+  const run::Scene scene = resolve(ball + "initial = { x_dot = 0.6, y_dot = 0, psi_dot = 0.2, phi_dot = 0 }\n");
+  CHECK(scene.qdot[4] == doctest::Approx(2).epsilon(rounding));  // th_dot
+}
+
 TEST_CASE("scene: values that break a constraint are refused with the amount, unless solve may move them") {
   const std::string broken = "initial = { x = 1.2, y = -1.7 }\n";
   const std::string message = refusal(rod + broken);

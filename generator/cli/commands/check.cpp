@@ -35,7 +35,10 @@ json constraints_of(const mechanics::Mechanics& m) {
     }
     if (c.need == mechanics::Need::identity) use = "holds identically, without a multiplier";
     if (c.need == mechanics::Need::redundant) use = "follows from the others, without a multiplier; watched";
-    // A holonomic constraint is its own integral; those that repeat others are refused before this.
+    const auto of_joint = [&](const model::Joint& joint) { return joint.name == c.name; };
+    const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(), of_joint);
+    if (!c.determined && !joint) use += "; the motion does not determine its force";
+    // A holonomic constraint is its own integral.
     json of = json::array();
     json integral = c.holonomic() ? json(shown(m, c.psi) + " = 0") : json(nullptr);
     for (const mechanics::Integral& i : m.integrals) {
@@ -45,6 +48,7 @@ json constraints_of(const mechanics::Mechanics& m) {
     }
     result.push_back({{"name", c.label}, {"kind", c.holonomic() ? "holonomic" : "velocity"},
                       {"integrable", mechanics::name(found.integrable)}, {"integral", integral}, {"redundant", !m.holds(static_cast<std::uint32_t>(k))},
+                      {"determined", joint ? json(nullptr) : json(c.determined)},
                       {"use", use}, {"reason", found.reason}, {"integral_of", of}});
   }
   return result;
@@ -94,7 +98,7 @@ json contacts_of(const mechanics::Mechanics& m) {
 
 json singular_of(const mechanics::Mechanics& m) {
   json result = json::array();
-  for (const print::Item& item : print::render(m, reading::derive_reading(m, system::Approach::two), {"singular"})) {
+  for (const print::Item& item : print::render(m, reading::ReadingForm{}, {"singular"})) {
     result.push_back({{"set", item.text}, {"approach", item.role}});
   }
   return result;

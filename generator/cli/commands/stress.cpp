@@ -115,6 +115,7 @@ void repeat_constraints(const model::Model& given, std::vector<Row>& rows, std::
     model::Model model = given;
     model.constraints.push_back(given.constraints[c]);
     model.constraints.back().name += "_again";
+    model.constraints.back().unit = false;  // the second one is no part of a rotation
     const std::string test = fmt::format("constraint {} twice", given.constraints[c].name);
     try {
       mechanics::build_mechanics(model);

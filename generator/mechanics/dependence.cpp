@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equations that follow from the others where all of them hold, though near these configurations they are independent: of closed loops, by
+// joints or by [[constraint]]s. docs/theory.md, "Dependent constraints".
+#include <cln/rational.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "mechanics/closure.hpp"
+#include "mechanics/stages.hpp"
+
+namespace eomgen::mechanics {
+namespace {
+
+using cln::cl_R;
+
+cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
+
+constexpr int dependent_digits = 20;  // rows in 50 digits, configurations to 38: parts outside the span below this are 0
+constexpr double looks_redundant = 1e-4;  // |psi| of an equation that was meant to follow from the others
+
+bool of_joint(const Mechanics& m, std::uint32_t k) { return model_constraint(m, m.constraints[k]).joint.has_value(); }
+
+bool fixes(const Mechanics& m, std::uint32_t k) {
+  return std::any_of(m.fixed.begin(), m.fixed.end(), [k](const FixedCoordinate& f) { return f.constraint == k; });
+}
+
+bool has_friction(const Mechanics& m, std::uint32_t k) {
+  return std::any_of(m.contacts.begin(), m.contacts.end(),
+                     [k](const Contact& c) { return std::find(c.constraints.begin(), c.constraints.end(), k) != c.constraints.end(); });
+}
+
+Where where(const Mechanics& m, std::uint32_t k) { return m.model->where(m.model->arena[m.constraints[k].written].span); }
+
+/// Rows of constraints on positions or velocities that always hold, by all coordinates.
+struct Bound {
+  std::vector<std::uint32_t> constraints;
+  std::vector<Turn> turns;  // joints are the first to be left out; what fixes a coordinate, or rubs, never is
+};
+
+Bound bound(const Mechanics& m) {
+  Bound result;
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (m.constraints[k].unilateral || !m.holds(k)) continue;
+    result.constraints.push_back(k);
+    result.turns.push_back(fixes(m, k) || has_friction(m, k) ? Turn::always : of_joint(m, k) ? Turn::last : Turn::first);
+  }
+  return result;
+}
+
+std::vector<Row> rows_of(const Closure& closure, const Bound& of, const Configuration& at) {
+  const std::vector<Row> all = closure.rows(at);
+  std::vector<Row> rows;
+  for (const std::uint32_t k : of.constraints) rows.push_back(all[k]);
+  return rows;
+}
+
+/// Whether the rest lies in the span of what is kept, which is independent, at this configuration too.
+bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
+  std::vector<Turn> turns(rows.size(), Turn::last);
+  for (const std::size_t k : chosen.kept) turns[k] = Turn::always;
+  return select_independent(rows, turns, small(dependent_digits)).kept == chosen.kept;
+}
+
+[[noreturn]] void refuse_inexact(const Mechanics& m, const Closure& closure) {
+  throw Error("mechanics", where(m, closure.gap_at()),
+              fmt::format("equation '{}' looks as if it followed from the other constraints, but is off by {:.2g} where they hold", m.constraints[closure.gap_at()].label, closure.gap()),
+              "a loop with redundant joints closes only if the dimensions are exact: write sqrt(3)/2 or cos(pi/6) instead of decimals");
+}
+
+[[noreturn]] void refuse_special(const Mechanics& m, std::uint32_t k) {
+  throw Error("mechanics", where(m, k), fmt::format("equation '{}' follows from the other constraints for these values of the parameters only", m.constraints[k].label),
+              "write what the values have in common: make one parameter an expression of the others, or use one parameter for both");
+}
+
+/// What moves by prescription has to do so alike in all equations that repeat one another.
+void require_same_rates(const Mechanics& m, const Closure& closure, const Bound& of, const Selection& chosen, const Configuration& at) {
+  std::vector<Row> rows = rows_of(closure, of, at);
+  const std::vector<cl_R> rates = closure.rates(at);
+  std::vector<Turn> turns(rows.size(), Turn::last);
+  for (const std::size_t k : chosen.kept) turns[k] = Turn::always;
+  for (std::size_t k = 0; k < rows.size(); ++k) rows[k].push_back(rates[of.constraints[k]]);
+  for (const std::size_t k : select_independent(rows, turns, small(dependent_digits)).kept) {
+    if (std::find(chosen.kept.begin(), chosen.kept.end(), k) != chosen.kept.end()) continue;
+    const std::uint32_t constraint = of.constraints[k];
+    throw Error("mechanics", where(m, constraint),
+                fmt::format("constraint '{}' contradicts the others: its velocities are a combination of theirs, the rest is not", m.constraints[constraint].label),
+                "remove one of them: no motion satisfies them all");
+  }
+}
+
+/// Whether d . u is the same for all multipliers u with the same forces: d is a combination of the columns of A.
+class Determined {
+ public:
+  Determined(const std::vector<Row>& rows, std::size_t coordinates) {
+    for (std::size_t i = 0; i < coordinates; ++i) {
+      Row column;
+      for (const Row& row : rows) column.push_back(row[i]);
+      const cl_R size = length(column);
+      Row left = beside(beside(column));  // twice, for the digits
+      const cl_R rest = length(left);
+      if (cln::zerop(size) || rest < size * small(dependent_digits)) continue;
+      for (cl_R& x : left) x = x / rest;
+      basis_.push_back(std::move(left));
+    }
+  }
+  bool operator()(const Row& component) const {
+    const cl_R size = length(component);
+    return cln::zerop(size) || length(beside(component)) < size * small(dependent_digits);
+  }
+
+ private:
+  static cl_R length(const Row& row) {
+    cl_R square = 0;
+    for (const cl_R& x : row) square = square + x * x;
+    return cln::sqrt(square);
+  }
+  Row beside(Row row) const {
+    for (const Row& e : basis_) {
+      cl_R part = 0;
+      for (std::size_t i = 0; i < row.size(); ++i) part = part + e[i] * row[i];
+      for (std::size_t i = 0; i < row.size(); ++i) row[i] = row[i] - part * e[i];
+    }
+    return row;
+  }
+
+  std::vector<Row> basis_;  // orthonormal
+};
+
+void find_determined(Mechanics& m, const Closure& closure, const Configuration& at) {
+  const std::vector<Row> rows = closure.rows(at);
+  const Determined determined(rows, m.q.size());
+  for (JointReaction& joint : m.joints) {
+    for (std::size_t j = 0; j < joint.along.size(); ++j) {
+      const std::vector<cl_R> parts = closure.values(joint.along[j], at);
+      Row component(rows.size(), cl_R(0));
+      std::copy(parts.begin(), parts.end(), component.begin() + joint.first);
+      if (joint.determined[j] && !determined(component)) joint.determined[j] = false;
+    }
+  }
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.constraints[k].determined) continue;
+    Row unit(rows.size(), cl_R(0));
+    unit[k] = cl_R(1);
+    m.constraints[k].determined = determined(unit);
+  }
+}
+
+/// Friction needs the force that presses.
+void require_normal_forces(const Mechanics& m) {
+  for (const Contact& contact : m.contacts) {
+    for (const std::uint32_t k : contact.constraints) {
+      if (m.constraints[k].determined) continue;
+      throw Error("mechanics", where(m, k), fmt::format("the motion does not determine the force of '{}', and its contact needs it", m.constraints[k].label),
+                  "remove the constraints that repeat it, or give the bodies coordinates that let them part");
+    }
+  }
+}
+
+bool is_repeated(const Constraint& c) { return c.need == Need::redundant; }
+
+/// Configurations near the start: it may be a singular one itself; elsewhere the rank is that of the mechanism.
+std::vector<Configuration> around(Closure& closure, const Configuration& start) {
+  std::vector<Configuration> points;
+  for (std::uint64_t seed = 1; seed <= 8 && points.size() < 3; ++seed) {
+    if (auto found = closure.near(start, seed, false)) points.push_back(std::move(*found));
+  }
+  return points;
+}
+
+// Of the equations of a loop those that follow from the others at every configuration, whatever the parameters are.
+void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const std::vector<Configuration>& points) {
+  const Bound of = bound(m);
+  Selection chosen;
+  for (const Configuration& at : points) {
+    Selection here = select_independent(rows_of(closure, of, at), of.turns, small(dependent_digits));
+    if (here.kept.size() > chosen.kept.size()) chosen = std::move(here);
+  }
+  std::erase_if(chosen.rest, [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run will tell
+  if (chosen.rest.empty()) return;
+  std::size_t others = 0;
+  for (std::uint64_t seed = 11; seed <= 16 && others < 2; ++seed) {
+    const std::optional<Configuration> found = closure.near(start, seed, true);
+    if (!found) continue;
+    if (!holds_at(rows_of(closure, of, *found), chosen)) refuse_special(m, of.constraints[chosen.rest.front()]);
+    ++others;
+  }
+  if (others == 0) refuse_special(m, closure.gap() > 0 ? closure.gap_at() : of.constraints[chosen.rest.front()]);
+  for (const Configuration& at : points) require_same_rates(m, closure, of, chosen, at);
+  for (const std::size_t k : chosen.rest) {
+    m.constraints[of.constraints[k]].need = Need::redundant;
+    std::erase(m.active, of.constraints[k]);
+  }
+}
+
+bool is_regular_at(const Mechanics& m, const Closure& closure, const Configuration& start) {
+  const Bound of = bound(m);
+  return select_independent(rows_of(closure, of, start), of.turns, small(dependent_digits)).rest.empty();
+}
+
+}  // namespace
+
+void drop_dependent_equations(Mechanics& m, Lowering& lower) {
+  const bool repeated = std::any_of(m.constraints.begin(), m.constraints.end(), is_repeated);
+  const bool joints = std::any_of(m.active.begin(), m.active.end(), [&](std::uint32_t k) { return of_joint(m, k); });
+  if (!repeated && !joints && m.active.size() < 2) return;
+  Closure closure(m, lower);
+  if (!repeated && !joints && closure.is_regular()) return;
+  const std::optional<Configuration> start = closure.start();
+  if (!start) {
+    const bool exact = joints || m.freedom() <= 0;
+    if (exact && closure.gap() > 0 && closure.gap() < looks_redundant) refuse_inexact(m, closure);
+    return;  // no configuration: the start of a run will tell
+  }
+  const bool regular = is_regular_at(m, closure, *start);
+  if (regular && !repeated) return;
+  const std::vector<Configuration> points = around(closure, *start);
+  if (points.empty()) return;
+  if (!regular) drop_at(m, closure, *start, points);
+  if (std::none_of(m.constraints.begin(), m.constraints.end(), is_repeated)) return;
+  for (const Configuration& at : points) find_determined(m, closure, at);
+  require_normal_forces(m);
+}
+
+}  // namespace eomgen::mechanics

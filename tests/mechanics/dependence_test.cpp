@@ -1,0 +1,134 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Constraints that follow from others: what is left out, what the motion determines then, what is refused.
+#include <doctest/doctest.h>
+
+#include <map>
+
+#include "mechanics/mechanics.hpp"
+#include "support/mechanisms.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+namespace {
+
+struct Built {
+  explicit Built(const std::string& text) : model(model::read_model_text(text, "dependent.toml")), m(mechanics::build_mechanics(model)) {}
+
+  std::string of(mechanics::Need need) const {
+    std::string list;
+    for (const mechanics::Constraint& c : m.constraints) {
+      if (c.need == need) list += (list.empty() ? "" : " ") + c.label;
+    }
+    return list;
+  }
+  std::string undetermined() const {
+    std::string list;
+    for (const mechanics::Constraint& c : m.constraints) {
+      if (!c.determined) list += (list.empty() ? "" : " ") + c.label;
+    }
+    return list;
+  }
+
+  model::Model model;
+  mechanics::Mechanics m;
+};
+
+std::string refusal(const std::string& text) {
+  try {
+    const Built built(text);
+  } catch (const Error& error) {
+    CHECK(error.where().line > 0);
+    CHECK_FALSE(error.remedy().empty());
+    return error.message();
+  }
+  return "accepted";
+}
+
+bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
+
+/// A platform in a plane on cranks of the given lengths, whose bearings lie on one line.
+std::string cranks(const std::vector<std::string>& lengths, const std::string& parameters) {
+  std::string text = "format = 1\n[parameters]\nm = 1\n" + parameters + "[[body]]\nname = \"P\"\nmass = \"m\"\ninertia = 1\n"
+                     "position = { cartesian = [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"phi\" }\n";
+  for (std::size_t k = 0; k < lengths.size(); ++k) {
+    const std::string at = std::to_string(k);
+    text += "[[constraint]]\nname = \"crank" + at + "\"\nholonomic = \"dot(P + " + at + "*P.e1 - " + at + "*E1, P + " + at + "*P.e1 - " + at +
+            "*E1) - " + lengths[k] + "^2\"\n";
+  }
+  return text + "[scene.default]\ninitial = { phi = 0, x = 0.3 }\nguess = { y = 1 }\n";
+}
+
+}  // namespace
+
+TEST_CASE("two wheels roll on one axle: what the second says of the axle's height and of its slip sideways the first has said") {
+  const Built built(wheels_on_one_axle("z"));
+  CHECK(built.of(mechanics::Need::redundant) == "right.2 right.3");
+  CHECK(built.m.freedom() == 2);
+  // Forces sideways are shared in some way, and sideways is neither along E1 nor along E2.
+  CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
+}
+
+TEST_CASE("a body rolls at constant height: the distance from the plane is no equation, and its force is not determined") {
+  const Built built(wheels_on_one_axle("R"));
+  CHECK(built.of(mechanics::Need::identity) == "left.3 right.3");
+  CHECK(built.of(mechanics::Need::redundant) == "right.2");
+  CHECK(built.m.freedom() == 2);
+  CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
+}
+
+TEST_CASE("wheels of different radii on one level axle are refused") {
+  CHECK(has(refusal(wheels_on_one_axle("z", "R", "2*R")), "'right.3' fixes nothing"));
+}
+
+TEST_CASE("Bricard's mechanism moves, though it has as many constraints as coordinates") {
+  for (const std::string& text : {bricard_by_products(), bricard_by_distances()}) {
+    const Built built(text);
+    CHECK(built.m.q.size() == built.m.constraints.size());
+    CHECK(built.m.freedom() == 1);
+    std::size_t redundant = 0;
+    for (const mechanics::Constraint& c : built.m.constraints) redundant += c.need == mechanics::Need::redundant;
+    CHECK(redundant == 1);
+    CHECK_FALSE(built.undetermined().empty());
+  }
+}
+
+TEST_CASE("Bennett's loop moves, though scalar products say more than it has coordinates") {
+  const Built built(bennett_by_products());
+  CHECK(built.m.constraints.size() == 4);
+  CHECK(built.m.freedom() == 1);
+}
+
+TEST_CASE("three parallel cranks move a platform if they are equal for all values of the parameters") {
+  const Built built(cranks({"L", "L", "L"}, "L = 1\n"));
+  CHECK(built.m.freedom() == 1);
+  CHECK(built.undetermined() == "crank0 crank1 crank2");
+  CHECK(has(refusal(cranks({"L", "M", "L"}, "L = 1\nM = 1\n")), "for these values of the parameters only"));
+  CHECK(Built(cranks({"L", "L"}, "L = 1\n")).m.freedom() == 1);
+  CHECK(Built(cranks({"L", "L"}, "L = 1\n")).undetermined().empty());
+}
+
+TEST_CASE("the unit length of Euler parameters follows where those of another body are bound to them") {
+  std::string text = "format = 1\n";
+  for (const std::string b : {"A", "B"}) {
+    text += "[[body]]\nname = \"" + b + "\"\nmass = 1\ninertia = { principal = [1, 1.2, 1.4] }\nrotation = { euler_parameters = [";
+    for (const std::string k : {"0", "1", "2", "3"}) text += "\"" + b + "p" + k + "\"" + (k == "3" ? "] }\n" : ", ");
+  }
+  for (const std::string k : {"0", "1", "2", "3"}) text += "[[constraint]]\nname = \"c" + k + "\"\nholonomic = \"Ap" + k + " - Bp" + k + "\"\n";
+  const Built built(text + "[scene.default]\ninitial = { Ap1 = 0.3, Ap2 = 0.2 }\n");
+  CHECK(built.m.freedom() == 3);
+}
+
+TEST_CASE("a constraint that can be left out of the file is refused where it repeats others, with all its equations") {
+  const std::string text = wheels_on_one_axle("z");
+  const std::string again = "[[constraint]]\nname = \"again\"\nrolling = { body = \"L\", at = \"-R*E3\", on = \"ground\" }\n[scene.default]";
+  std::string twice = text;
+  twice.replace(twice.find("[scene.default]"), 15, again);
+  CHECK(has(refusal(twice), "'again."));
+}
+
+TEST_CASE("an event cannot wait for a force that the motion does not determine") {
+  std::string text = wheels_on_one_axle("z");
+  text += "[[event]]\nname = \"lifts\"\nwhen = \"reaction.left.3\"\n";
+  CHECK(has(refusal(text), "does not determine the force of 'left.3'"));
+}
