@@ -6,6 +6,7 @@
 #include <set>
 
 #include "derive/equations.hpp"
+#include "derive/point_energies.hpp"
 #include "derive/tree_forces.hpp"
 
 namespace eomgen::derive {
@@ -83,15 +84,18 @@ bool Branches::beyond(std::size_t outer, std::size_t inner) const {
 
 std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
   Dag& dag = *m.dag;
-  if (m.masses.empty() || !m.spins.empty() || !dag.is_zero(m.kinetic_given)) return std::nullopt;
+  std::vector<mechanics::PointMass> masses = m.masses;
+  if (masses.empty()) masses = particles_of_energy(m).value_or(std::vector<mechanics::PointMass>{});
+  else if (!dag.is_zero(m.kinetic_given)) return std::nullopt;
+  if (masses.empty() || !m.spins.empty()) return std::nullopt;
   Spelled spelled(m, imposed);
   std::vector<Vec3> positions;
-  for (const mechanics::PointMass& mass : m.masses) positions.push_back(spelled(mass.position));
+  for (const mechanics::PointMass& mass : masses) positions.push_back(spelled(mass.position));
   Branches b;
   b.coordinates = quasi_coordinates(dag, of, positions);
   symbolic::Derivation bias = b.coordinates.bias(dag);
   for (std::size_t k = 0; k < positions.size(); ++k) {
-    Carried particle{spelled(m.masses[k].mass), positions[k], {}, {}};
+    Carried particle{spelled(masses[k].mass), positions[k], {}, {}};
     for (std::size_t i = 0; i < 3; ++i) particle.velocity[i] = bias(positions[k][i]);
     for (std::size_t i = 0; i < 3; ++i) particle.bias[i] = bias(particle.velocity[i]);
     b.particles.push_back(particle);

@@ -42,7 +42,7 @@ struct Branches {
 };
 
 /// The tree that the coordinates `of` see; with `imposed`, the eliminated coordinates are functions of time. Nothing where the
-/// particles are no tree, or where kinetic energy was given beside them.
+/// particles are no tree, or where kinetic energy was given beside them. Where it was given alone they are those of point_energies.hpp.
 std::optional<Branches> branches(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
 }  // namespace eomgen::derive

@@ -94,7 +94,8 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
   Bridge bridge(m);
   // What would be too long is not begun: along chains of relative rotations it grows exponentially.
   constexpr double longest = 12000, longest_of_spins = 200000;
-  const double terms = m.spins.empty() ? 0 : most_terms(*m.dag, m.kinetic);
+  const bool grows = !m.spins.empty() || !m.dag->is_zero(m.kinetic_given);
+  const double terms = grows ? most_terms(*m.dag, m.kinetic) : 0;
   try {
     if (terms > longest) throw TermBudget();
     if (approach == system::Approach::one) approach_one(m, bridge, form);

@@ -152,3 +152,41 @@ TEST_CASE("quasi-coordinates: the running sums of relative angles, and nothing w
   }
   CHECK(of_chain("absolute").identity());
 }
+
+namespace {
+
+// Four rods with particles at their ends, by energies alone: one velocity written out, one particle with y before x, one with signs the other way round.
+const std::string energies_of_rods = parameters + R"toml([coordinates]
+a1 = "rad"
+a2 = "rad"
+a3 = "rad"
+a4 = "rad"
+[definitions]
+x1 = "L1*cos(a1)"
+y1 = "L1*sin(a1)"
+x2 = "x1 + L2*cos(a2)"
+y2 = "y1 + L2*sin(a2)"
+x3 = "x2 + L1*cos(a3)"
+y3 = "y2 + L1*sin(a3)"
+x4 = "x3 + L2*cos(a4)"
+y4 = "y3 + L2*sin(a4)"
+[energy]
+potential = "k*L1^2/2*((a1 - a2)^2 + (a2 - a3)^2 + (a3 - a4)^2) + g*(m0*y1 + m1*y2 + m2*y3 + m3*y4)"
+)toml";
+
+const std::string squares_of_rods =
+    "m0/2*(ddt(x1)^2 + ddt(y1)^2) + m1/2*(L1*sin(a1)*a1_dot + L2*sin(a2)*a2_dot)^2 + m1/2*ddt(y2)^2 + m2/2*(ddt(y3)^2 + ddt(x3)^2)"
+    " + m3/2*((-ddt(x4))^2 + ddt(0 - y4)^2)";
+
+}  // namespace
+
+TEST_CASE("trees: a kinetic energy that is a sum of squares of velocities of points is that of particles") {
+  check_tree_routes(energies_of_rods + "kinetic = \"" + squares_of_rods + "\"\n", true, true);
+}
+
+TEST_CASE("trees: what is no such sum, or no tree, is left to other routes") {
+  for (const char* more : {" + m0*L1^2/2*a2_dot^2", " + m0*L1^2/4*a1_dot*a2_dot", " + m0/2*(sin(a1)*sin(a2)*L1*a1_dot)^2"}) {
+    CAPTURE(more);
+    check_tree_routes(energies_of_rods + "kinetic = \"" + squares_of_rods + more + "\"\n", false, false);
+  }
+}
