@@ -19,8 +19,9 @@ namespace {
 /// A power of two near 1/|x|: scaling by it rounds nothing.
 Real inverse_magnitude(const Real& x) {
   if (cln::zerop(x)) return 1;
-  const double size = cln::double_approx(cln::abs(x));
-  return cln::expt(Real(2), cln::cl_I(-std::ilogb(size)));
+  // Of a long float: beyond the range of binary64 the power of its infinity would have 2^31 digits.
+  const cln::cl_F size = cln::cl_float(x, cln::float_format(20));
+  return cln::expt(Real(2), cln::cl_I(1 - cln::float_exponent(size)));
 }
 
 /// Complete pivoting of a matrix that is scaled by powers of two; the same for CLN reals and for binary64.

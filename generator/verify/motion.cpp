@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/motion.hpp"
 
+#include <cln/float.h>
+#include <cln/integer.h>
+
 #include "verify/linear_solve.hpp"
 
 namespace eomgen::verify {
@@ -18,11 +21,15 @@ Motion motion_at(const Judge& judge, const State& at) {
   const std::vector<Residual> rest = judge.dalembert(s, no_forces);
   const ConstraintValues c = judge.constraint_values(s);
   std::vector<Real> matrix(size * size, Real(0)), right(size, Real(0));
+  // Inertia is what an acceleration adds; beside large forces a small one would drown. A power of two rounds nothing.
+  Real forces = 1;
+  for (const Residual& row : rest) forces = cln::max(forces, row.scale);
+  const Real acceleration = cln::expt(Real(2), cln::cl_I(cln::float_exponent(cln::cl_float(forces, cln::float_format(20)))));
   for (std::size_t j = 0; j < n; ++j) {
-    s.qddot[j] = 1;
+    s.qddot[j] = acceleration;
     const std::vector<Residual> column = judge.dalembert(s, no_forces);
     s.qddot[j] = 0;
-    for (std::size_t i = 0; i < n; ++i) matrix[i * size + j] = column[i].value - rest[i].value;
+    for (std::size_t i = 0; i < n; ++i) matrix[i * size + j] = (column[i].value - rest[i].value) / acceleration;
     right[j] = -rest[j].value;
   }
   for (std::size_t k = 0; k < m; ++k) {

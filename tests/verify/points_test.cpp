@@ -125,6 +125,11 @@ TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a sing
   CHECK(near(good.x()[1], 1, 55));
   CHECK(near(good.x()[0], 2 / r(1e-20), 55));
   CHECK(!solve({r(1), r(2), r(2), r(4)}, std::vector<Real>{r(1), r(1)}).exists());
+  const Real beyond = r(1e300) * r(1e300);  // what binary64 holds
+  const Solution large = solve({beyond, Real(0), Real(0), 1 / beyond}, std::vector<Real>{2 * beyond, 3 / beyond});
+  REQUIRE(large.exists());
+  CHECK(near(large.x()[0], 2, 55));
+  CHECK(near(large.x()[1], 3, 55));
 }
 
 TEST_CASE("solve: large systems, whole or in parts that do not hang together, have all digits") {
