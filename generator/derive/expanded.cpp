@@ -30,7 +30,11 @@ std::optional<system::EquationSystem> expanded(Mechanics& m, system::Approach ap
   const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all_coordinates(m)));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
   symbolic::Substitution imposed = impose(m);
-  const Ref T_constrained = expander.tidy(imposed(T)), U_constrained = expander.tidy(imposed(U));
+  // An expansion ends over a common denominator; expanded again, that would be multiplied out into what it does not concern.
+  const auto constrained = [&](Ref whole, Ref reduced_whole) {
+    return imposed(whole) == whole ? reduced_whole : expander.tidy(imposed(reduced_whole));
+  };
+  const Ref T_constrained = constrained(m.kinetic, T), U_constrained = constrained(m.potential, U);
   const FullEquations motion = reduced(expander, euler_lagrange(m, T_constrained, U_constrained, Q, m.free));
   return assemble(m, full, &motion, "expanded", approach);
 }

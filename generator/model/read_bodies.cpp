@@ -23,7 +23,7 @@ void Reader::declare_frame(const Value& table, std::uint32_t place, Symbol& symb
   symbol.state = symbol.kind == SymbolKind::frame ? Symbol::State::done : symbol.state;
   scope_.declare_axes(symbol.name, symbol.span);
   model_.frames.push_back(std::move(frame));
-  frame_sources_.push_back({&table, place, std::nullopt});
+  frame_sources_.push_back({&table, place});
 }
 
 // The names in angles = [..], euler_parameters = [..], rodrigues = [..] and angle = "..": new ones are coordinates.
@@ -148,7 +148,10 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
       const Context context{"a rotation", on_anything, Shape::scalar, std::nullopt, ""};
       model_.frames[index].regular = resolver_.text(found.regular, local, rotation.span, context).node;
     }
-    if (found.family == "fixed") frame_sources_[index].principal = frame_sources_[frame.parent].principal;
+    if (found.family == "fixed") {
+      frame_sources_[index].axis = frame_sources_[frame.parent].axis;
+      frame_sources_[index].still = frame_sources_[frame.parent].still;
+    }
   }
 }
 
@@ -163,17 +166,48 @@ void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation
   if (along.node == no_node) {
     source_.fail(written.span, "this axis is not fixed in the parent", "make it of " + of + " with constant components");
   }
+  FixedDirection direction;
+  direction.numbers = numbers_of(along.node);
+  const Typed unit = resolver_.unit_of_vector(along, written.span);
+  for (std::uint32_t k = 0; k < 3; ++k) direction.unit[k] = local["r" + std::to_string(k + 1)] = resolver_.component(unit, k, written.span);
+  const auto parallel = [](const std::array<cln::cl_RA, 3>& a, const std::array<cln::cl_RA, 3>& b) {
+    return a[0] * b[1] == a[1] * b[0] && a[0] * b[2] == a[2] * b[0] && a[1] * b[2] == a[2] * b[1];
+  };
+  const FrameSource& parent = frame_sources_[frame.parent];
+  const bool same = parent.axis && parent.axis->numbers && direction.numbers && parallel(*parent.axis->numbers, *direction.numbers);
+  frame_sources_[index].still = parent.still && local.at("angle").facts == 0;
+  if (parent.still || same) frame_sources_[index].axis = direction;
   const Node& node = model_.arena[along.node];
   if (node.op == Op::fixed_basis) {
-    const std::size_t k = node.index;
-    const FrameSource& parent = frame_sources_[frame.parent];
-    if (frame.parent == 0 || parent.principal == k) frame_sources_[index].principal = k;
-    add_stage(index, rotations::about_axis(k, "angle"), local, rotation.span);
-    return;
+    add_stage(index, rotations::about_axis(node.index, "angle"), local, rotation.span);
+  } else {
+    add_stage(index, rotations::find("axis")->steps[0], local, rotation.span);
   }
-  const Typed unit = resolver_.unit_of_vector(along, written.span);
-  for (std::uint32_t k = 0; k < 3; ++k) local["r" + std::to_string(k + 1)] = resolver_.component(unit, k, written.span);
-  add_stage(index, rotations::find("axis")->steps[0], local, rotation.span);
+}
+
+/// The components of a sum of numbers times E1, E2, E3.
+std::optional<std::array<cln::cl_RA, 3>> Reader::numbers_of(NodeId vector) const {
+  const Node& node = model_.arena[vector];
+  std::array<cln::cl_RA, 3> result{0, 0, 0};
+  const auto combined = [&](const cln::cl_RA& left, std::size_t a, const cln::cl_RA& right, std::size_t b) -> std::optional<std::array<cln::cl_RA, 3>> {
+    const auto x = numbers_of(node.args[a]), y = numbers_of(node.args[b]);
+    if (!x || !y) return std::nullopt;
+    for (std::size_t k = 0; k < 3; ++k) result[k] = left * (*x)[k] + right * (*y)[k];
+    return result;
+  };
+  switch (node.op) {
+    case Op::fixed_basis: result[node.index] = 1; return result;
+    case Op::negate: return combined(-1, 0, 0, 0);
+    case Op::add: return combined(1, 0, 1, 1);
+    case Op::subtract: return combined(1, 0, -1, 1);
+    case Op::multiply: case Op::divide: {
+      const std::size_t v = model_.arena[node.args[0]].vector ? 0 : 1;
+      const Node& factor = model_.arena[node.args[1 - v]];
+      if (factor.op != Op::number || cln::zerop(factor.value)) return std::nullopt;
+      return combined(node.op == Op::multiply ? factor.value : cln::recip(factor.value), v, 0, v);
+    }
+    default: return std::nullopt;
+  }
 }
 
 void Reader::add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local, Span span) {

@@ -113,11 +113,20 @@ std::array<NodeId, 3> Reader::shape_moments(const Body& body, const Entry& shape
 void Reader::read_scalar_inertia(Body& body, const Value& value) {
   const Frame& frame = model_.frames[body.frame];
   const Typed J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
-  const auto axis = frame_sources_[body.frame].principal;
+  const auto& axis = frame_sources_[body.frame].axis;
   if (!axis) {
     source_.fail(value.span, fmt::format("one moment of inertia does not do: '{}' does not turn about one fixed axis", frame.name), form);
   }
-  body.inertia[*axis][*axis] = J.node;
+  // Of J only J r . r moves the body: J r r along the unit vector r.
+  const auto on = [&](std::size_t k) { return !axis->numbers || !cln::zerop((*axis->numbers)[k]); };
+  const bool own = axis->numbers && on(0) + on(1) + on(2) == 1;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t k = 0; k <= i; ++k) {
+      if (!on(i) || !on(k)) continue;
+      const Typed entry = own ? J : resolver_.product_of(J, resolver_.product_of(axis->unit[i], axis->unit[k], value.span), value.span);
+      body.inertia[i][k] = body.inertia[k][i] = entry.node;
+    }
+  }
 }
 
 }  // namespace eomgen::model

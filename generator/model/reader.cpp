@@ -75,7 +75,7 @@ Model Reader::read() {
   place_sources_.emplace_back();
   model_.frames.emplace_back();
   model_.frames.back().name = "ground";
-  frame_sources_.emplace_back();
+  frame_sources_.emplace_back().still = true;
 
   declare_names();
   declare_places();

@@ -89,10 +89,17 @@ private:
   };
   void declare_places();
   // read_bodies.cpp: [[body]] [[frame]]; read_inertia.cpp
+  /// A direction that is fixed in a frame and in space: components of its unit vector along the axes of the frame, and in proportion
+  /// to them numbers, where it is made of numbers.
+  struct FixedDirection {
+    std::array<Typed, 3> unit;
+    std::optional<std::array<cln::cl_RA, 3>> numbers;
+  };
   struct FrameSource {
     const Value* table = nullptr;
     std::uint32_t place = 0;  // of a body
-    std::optional<std::size_t> principal = {};  // the fixed direction about which it turns, if that is one of its axes
+    bool still = false;       // it keeps its attitude; the ground does
+    std::optional<FixedDirection> axis = {};  // about which it turns, if that is a fixed one
   };
   void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
   void declare_angles(const Value& table);
@@ -100,6 +107,7 @@ private:
   const Entry& rotation_entry(const Value& rotation) const;
   void read_rotation(Frame& frame, std::uint32_t index, const Value& rotation);
   std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry, const Value& rotation);
+  std::optional<std::array<cln::cl_RA, 3>> numbers_of(NodeId vector) const;
   void turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local);
   void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local, Span span);
   std::uint32_t frame_named(const Value& value, const std::string& what);

@@ -159,7 +159,9 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
   Dag& dag = *system_.dag;
   symbolic::Derivation d = symbolic::partial(dag, along);
   std::vector<Ref> r, c;
-  if (!system_.contacts.empty()) {  // the law of friction is not linear: its solution is differentiated
+  // The law of friction is not linear, and what a route has solved by itself obeys M, f, A and gamma only where the constraints hold (Euler
+  // parameters of unit length): the solution is differentiated.
+  if (!system_.contacts.empty() || (system_.solution && m_ > 0)) {
     for (const Ref a : qddot_) r.push_back(d(a));
     for (const system::IntegralState& integral : system_.integrals) r.push_back(d(integral.rate));
     return r;

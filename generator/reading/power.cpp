@@ -43,7 +43,20 @@ Sum number_power(const Rational& number, const Rational& exponent) {
   return atomic_power(Sum(number), exponent);
 }
 
+/// A sum of terms none of which can be negative: x^2 + y^2, whatever x and y are.
+bool never_negative(const Sum& sum) {
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    if (cln::minusp(coefficient)) return false;
+    for (const Factor& factor : monomial) {
+      const bool even = is_integer(factor.exponent) && cln::evenp(cln::numerator(factor.exponent));
+      if (!even && !factor.atom->positive && factor.atom->op != Op::abs && factor.atom->op != Op::sqrt) return false;
+    }
+  }
+  return true;
+}
+
 Sum absolute(const AtomPtr& atom) {
+  if (atom->op == Op::add) return call(Op::abs, {atom->args[0]});  // a sum is an atom under powers other than 1 only
   if (atom->positive) return Sum(atom);
   if (atom->op == Op::abs || atom->op == Op::sqrt) return Sum(atom);
   return call(Op::abs, {Sum(atom)});
@@ -117,6 +130,7 @@ Sum call(Op function, std::vector<Sum> args) {
       default: break;
     }
   }
+  if (function == Op::abs && args[0].size() > 1 && never_negative(args[0])) return args[0];
   Atom atom;
   atom.op = function;
   if (function == Op::exp || function == Op::cosh) atom.positive = true;

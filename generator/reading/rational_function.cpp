@@ -4,6 +4,7 @@
 #include <ginac/ginac.h>
 
 #include <algorithm>
+#include <set>
 
 namespace eomgen::reading {
 namespace {
@@ -113,13 +114,16 @@ std::optional<Sum> exact_quotient(const Sum& a, const Sum& b) {
   Letters letters;
   const std::optional<ex> x = letters.polynomial(divide(a, common_a)), y = letters.polynomial(divide(b, common_b));
   ex q;
+  work::spend(a.size() * b.size());  // of terms, when it divides
   if (!x || !y || !GiNaC::divide(*x, *y, q)) return std::nullopt;
   const Sum front(common_a.monomial, common_a.number);
   return front * multiply(inverse(common_b.monomial), {}) * letters.sum(q.expand()) *
          Sum(cln::recip(common_b.number));
 }
 
-Sum cancel(const Sum& sum) {
+namespace {
+
+Sum cancel_whole(const Sum& sum) {
   // the largest power of every sum in a denominator
   std::map<AtomPtr, Rational, AtomLess> under;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -146,6 +150,39 @@ Sum cancel(const Sum& sum) {
   }
   result = result * numerator;
   return result.size() <= sum.size() ? result : sum;
+}
+
+/// The sums that stand in denominators, and the atoms in them.
+std::set<AtomPtr, AtomLess> atoms_of_denominators(const Sum& sum) {
+  std::set<AtomPtr, AtomLess> result;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    for (const Factor& factor : monomial) {
+      if (factor.atom->op != Op::add || !cln::minusp(factor.exponent)) continue;
+      result.insert(factor.atom);
+      for (const auto& [inner, k] : factor.atom->args[0].terms()) {
+        for (const Factor& f : inner) result.insert(f.atom);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+// First each part by itself that other factors single out (x_dot (a^2 + b^2)/(a^2 + b^2) + ..), then the whole.
+Sum cancel(const Sum& sum) {
+  const std::set<AtomPtr, AtomLess> below = atoms_of_denominators(sum);
+  if (below.empty() || sum.size() > divided_terms) return sum;
+  std::map<Monomial, Sum, MonomialLess> parts;
+  for (const auto& [monomial, coefficient] : sum.terms()) {
+    Monomial outside, inside;
+    for (const Factor& factor : monomial) (below.contains(factor.atom) ? inside : outside).push_back(factor);
+    parts[outside].add(inside, coefficient);
+  }
+  if (parts.size() < 2) return cancel_whole(sum);
+  Sum result;
+  for (const auto& [outside, part] : parts) result += Sum(outside, 1) * cancel_whole(part);
+  return cancel_whole(result.size() <= sum.size() ? result : sum);
 }
 
 Sum absorb_roots(const Sum& sum) {

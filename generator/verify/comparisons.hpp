@@ -12,6 +12,8 @@ namespace eomgen::verify {
 
 enum class Kind { precise, binary64 };
 
+inline constexpr const char* judge_name = "d'Alembert";
+
 /// The largest difference of each pair so far.
 class Tally {
  public:

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The emitted Jacobian is that of the emitted function, also where the constraints do not hold.
+#include <doctest/doctest.h>
+
+#include "program/interpret.hpp"
+#include "support/simulation.hpp"
+#include "symbolic/sample.hpp"
+
+using namespace eomgen;
+using namespace eomgen::test;
+
+namespace {
+
+constexpr int digits = 50;
+// A difference quotient with steps of 1e-12 in 50 digits is right to some 1e-24.
+constexpr double as_good_as_exact = 1e-18;
+
+program::Arguments<cln::cl_R> anywhere(const cli::Derived& derived, const program::Program& program) {
+  const cln::float_format_t precision = cln::float_format(digits);
+  const auto value = [&](std::uint32_t k) { return cln::cl_float(symbolic::sample({symbolic::SymbolKind::extra, k, 0}, 1), precision); };
+  program::Arguments<cln::cl_R> at;
+  at.t = value(0);
+  for (std::uint32_t i = 0; i < 2 * program.free.size(); ++i) at.x.push_back(value(i + 1));
+  for (std::uint32_t i = 0; i < derived.model.parameters.size(); ++i) at.p.push_back(value(100 + i));
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("in Euler parameters the Jacobian is that of the right-hand side in every direction, off the unit sphere too") {
+  for (const char* name : {"R1_free_body_euler_parameters", "R2_ball_in_flight", "R17_follower_force", "heavy_top"}) {
+    CAPTURE(name);
+    const auto derived = cli::derive_model(model_path(name), cli::ApproachChoice::automatic);
+    program::Request request;
+    request.with = {"jac", "jac_p"};
+    const program::Program program = cli::make_program(*derived, request);
+    const auto base = anywhere(*derived, program);
+    const std::size_t n = base.x.size();
+    const auto jac = program::interpret(program.functions[1], base, digits).results[0];
+    const auto jac_p = program::interpret(program.functions[2], base, digits).results[0];
+    const cln::cl_R step = cln::expt(cln::cl_RA(10), -12);
+    const auto furthest = [&](const std::vector<cln::cl_R>& columns, std::size_t j, auto&& pick) {
+      auto above = base, below = base;
+      pick(above) = pick(above) + step;
+      pick(below) = pick(below) - step;
+      const auto right = program::interpret(program.functions[0], above, digits).results[0], left = program::interpret(program.functions[0], below, digits).results[0];
+      double most = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const cln::cl_R slope = (right[i] - left[i]) / (2 * step);
+        most = std::max(most, cln::double_approx(cln::abs(columns[j * n + i] - slope) / (1 + cln::abs(slope))));
+      }
+      return most;
+    };
+    for (std::size_t j = 0; j < n; ++j) CHECK(furthest(jac, j, [j](auto& a) -> cln::cl_R& { return a.x[j]; }) < as_good_as_exact);
+    for (std::size_t j = 0; j < base.p.size(); ++j) CHECK(furthest(jac_p, j, [j](auto& a) -> cln::cl_R& { return a.p[j]; }) < as_good_as_exact);
+  }
+}
