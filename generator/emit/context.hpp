@@ -46,5 +46,7 @@ struct EmissionContext {
 
 /// NAME of the C ABI: the model's id as an identifier that no target reserves.
 std::string mangled_id(const std::string& id);
+/// Of the Python target: NAME, or NAME_ where Python or its standard library has that name.
+std::string module_name(const std::string& id);
 
 }  // namespace eomgen::emit
