@@ -2,6 +2,10 @@
 // Emitted C, compiled and loaded, as `verify` and `run` use it.
 #pragma once
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "cli/pipeline.hpp"
 #include "emit/shared_library/loaded_model.hpp"
 #include "run/runner.hpp"
@@ -27,10 +31,14 @@ class CompiledCode {
   std::vector<bool> holonomic_;
   std::vector<eom::Contact> contacts_;
   std::vector<run::OwnOutputs> own_outputs_;
+  std::map<std::string, std::vector<std::size_t>> arrays_;  // sizes of what each function writes
 };
 
 /// Emits C with `context` and compiles it (cached by content).
 CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again = false);
+
+/// What the emitted code takes for inputs that it is not given.
+std::vector<double> default_inputs(Derived& derived);
 
 /// The same without a certificate, which is being made from it.
 CompiledCode compile_for_check(Derived& derived, const program::Program& program);

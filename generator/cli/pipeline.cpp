@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/pipeline.hpp"
 
+#include <cln/dfloat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,8 +14,11 @@
 #include "print/notation.hpp"
 #include "print/printer.hpp"
 #include "print/render.hpp"
+#include "emit/self_test.hpp"
+#include "program/abi_values.hpp"
 #include "program/constrained_solve.hpp"
 #include "program/interpret.hpp"
+#include "program/kinks.hpp"
 #include "reading/reading.hpp"
 
 namespace eomgen::cli {
@@ -90,6 +94,26 @@ std::vector<program::Program> other_forms(const Derived& derived, const program:
   return result;
 }
 
+program::AbiArguments abi_arguments(const verify::At& at, const std::vector<verify::Real>& default_inputs) {
+  return {{at.t, at.x, at.p, at.u, {}, {}, at.mode}, default_inputs, at.order};
+}
+
+/// The same with its other functions.
+verify::ProgramForm with_functions(verify::ProgramForm form, const program::Program& program, const std::vector<verify::Real>& default_inputs) {
+  form.functions = program::abi_function_names(program);
+  form.route = program.route;
+  form.approach = program.approach;
+  form.outputs = program.outputs;
+  form.default_inputs = default_inputs;
+  form.call = [&program, default_inputs](const std::string& function, const verify::At& at, int digits) {
+    return program::abi_values(program, function, abi_arguments(at, default_inputs), digits);
+  };
+  form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
+    return program::abi_bounds(program, function, abi_arguments(at, default_inputs));
+  };
+  return form;
+}
+
 verify::ProgramForm program_form(const program::Program& program, int digits) {
   const program::Function& rhs = program.functions.front();
   return {"optimised program", [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x,
@@ -105,37 +129,30 @@ verify::ProgramForm program_form(const program::Program& program, int digits) {
           }};
 }
 
-// States for the self test: the start, and two beside it, so that a vanishing term cannot hide.
-/// A point k steps beside the start, with what the right-hand side is there; nothing where it has no value.
-std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context, int k, int mode) {
-  constexpr int digits = 40;
-  emit::TestVector vector;
-  vector.t = context.start_time + 0.125 * k;
-  vector.mode = mode | program.in_charts;
-  for (std::size_t i = 0; i < context.start.size(); ++i) {
-    // Dyadic offsets: exact in binary64, different for every component.
-    vector.x.push_back(context.start[i] + k * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
-  }
-  for (const emit::Quantity& parameter : context.parameters) vector.p.push_back(parameter.value);
-  for (const emit::Quantity& input : context.inputs) vector.u.push_back(input.value + k * 0.25);
-  program::Arguments<cln::cl_R> arguments;
-  arguments.t = cln::cl_R(vector.t);
-  arguments.mode = mode;
-  for (const double x : vector.x) arguments.x.push_back(cln::cl_R(x));
-  for (const double p : vector.p) arguments.p.push_back(cln::cl_R(p));
-  for (const double u : vector.u) arguments.u.push_back(cln::cl_R(u));
-  try {
-    const auto values = program::interpret(program.functions.front(), arguments, digits);
-    for (std::size_t r = 1; r < values.results.size(); ++r) {  // a law of friction without a solution, or with several
-      for (const cln::cl_R& code : values.results[r]) {
-        if (cln::minusp(code)) return std::nullopt;
-      }
+/// The k-th state for the self test: the start, then states beside it with other parameters and inputs, no two of which are equal, so that a
+/// vanishing term cannot hide, nor one that is taken for another. Nearer to the start where there is no value.
+std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context, int k, int mode, std::size_t index) {
+  for (const double share : {1.0, 0.125, 0x1p-6, 0x1p-10}) {
+    emit::TestVector at;
+    at.t = context.start_time + 0.125 * k * share;
+    at.mode = mode;
+    const double step = k * share;
+    for (std::size_t i = 0; i < context.start.size(); ++i) {
+      // Dyadic offsets: exact in binary64, different for every component.
+      at.x.push_back(context.start[i] + step * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
     }
-    for (const cln::cl_R& dx : values.results.front()) vector.dx.push_back(cln::double_approx(dx));
-  } catch (const std::domain_error&) {
-    return std::nullopt;  // a state beside the start may lie outside the chart
+    const std::size_t count = context.parameters.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double value = context.parameters[i].value;
+      const std::size_t rank = k % 2 == 1 ? i + 1 : count - i;
+      const double more = step * static_cast<double>(rank) / (8 * static_cast<double>(count) + 8);
+      at.p.push_back(value == 0 ? more : value * (1 + more));
+    }
+    for (std::size_t i = 0; i < context.inputs.size(); ++i) at.u.push_back(context.inputs[i].value + step * (0.25 + 0.0625 * static_cast<double>(i)));
+    if (auto vector = emit::test_vector(program, context, std::move(at), index)) return vector;
+    if (k == 0) break;
   }
-  return vector;
+  return std::nullopt;
 }
 
 /// A state of second charts at which rounding says nothing about the code.
@@ -156,17 +173,23 @@ std::vector<emit::TestVector> test_vectors(const program::Program& program, cons
   constexpr std::size_t most_modes = 12;
   std::vector<emit::TestVector> result;
   const auto add = [&](int k, int mode) {
-    if (auto vector = test_vector(program, context, k, mode)) result.push_back(std::move(*vector));
+    if (auto vector = test_vector(program, context, k, mode, result.size())) result.push_back(std::move(*vector));
   };
   for (const int k : {0, 1, 2}) add(k, 0);
   const std::vector<eom::ContactShape> shapes(program.contacts.begin(), program.contacts.end());
   for (const int mode : eom::contact_modes(shapes, most_modes)) {
     if (mode != 0) add(1, mode);
   }
+  int above = 0, below = 0;  // every kink held on one side
+  for (std::size_t k = 0; k < program.kinks.size(); ++k) {
+    above |= 1 << (program::first_kink_bit + 2 * k);
+    below |= 2 << (program::first_kink_bit + 2 * k);
+  }
+  if (above != 0) add(1, above), add(2, below);
   for (const program::Program& other : program.second) {
     std::size_t count = 0;
     for (int k = 1; k < 9 && count < 2; ++k) {
-      std::optional<emit::TestVector> vector = test_vector(other, context, k, 0);
+      std::optional<emit::TestVector> vector = test_vector(program, context, k, other.in_charts, result.size());
       if (!vector || !far_from_failing(program, other.in_charts, vector->x)) continue;
       result.push_back(std::move(*vector));
       ++count;
@@ -227,25 +250,30 @@ program::Program make_program(Derived& derived, const program::Request& request)
   return program;
 }
 
+void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
+  constexpr std::size_t large = 16;  // coordinates
+  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+    // With nothing to eliminate the approaches are one: a large system is not looked at twice.
+    if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
+    const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
+    // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
+    if (form.by_parts) continue;
+    subjects.reading.push_back({fmt::format("reading form {}", system::name(approach)), reading::residuals_on_dag(form, mechanics)});
+  }
+}
+
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
   Stopwatch watch;
   verify::Subjects subjects;
   subjects.systems = verify::all_routes(derived.mechanics);
-  constexpr std::size_t large = 16;  // coordinates
-  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
-    // With nothing to eliminate the approaches are one: a large system is not looked at twice.
-    if (approach == system::Approach::one && derived.mechanics.fixed.empty() && derived.mechanics.q.size() > large) continue;
-    const reading::ReadingForm form = reading::derive_reading(derived.mechanics, approach);
-    // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
-    if (form.by_parts) continue;
-    subjects.reading.push_back({fmt::format("reading form {}", system::name(approach)),
-                                reading::residuals_on_dag(form, derived.mechanics)});
-  }
+  add_reading_forms(derived.mechanics, subjects);
   if (options.reductions) {
     const reading::RouthForm routh = reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
     subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
   }
-  subjects.programs.push_back(program_form(program, options.digits));
+  std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
+  for (std::size_t i = 0; i < options.default_inputs.size(); ++i) inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
+  subjects.programs.push_back(with_functions(program_form(program, options.digits), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
   for (const program::Program& form : forms) {
     subjects.programs.push_back(program_form(form, options.digits));

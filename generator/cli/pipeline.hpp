@@ -47,6 +47,9 @@ std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approac
 /// The cheapest program of the candidates; counts its time.
 program::Program make_program(Derived& derived, const program::Request& request);
 
+/// Both reading forms, where they are written out.
+void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects);
+
 /// Every route, both reading forms and the optimised program against the judge.
 struct Verification {
   int digits = 50;
@@ -55,6 +58,7 @@ struct Verification {
   const verify::CompiledForm* compiled = nullptr;
   std::map<std::uint32_t, symbolic::Rational> fixed = {};  // as the program was asked for
   bool reductions = false;  // Routh's too, which no code is made of
+  std::vector<double> default_inputs = {};  // of the emitted code, which mass and constraints see; none: any will do
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 

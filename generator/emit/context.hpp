@@ -16,11 +16,20 @@ struct Quantity {
   std::string expression = {};  // of a parameter that depends on others, in the language of model files
 };
 
-/// A right-hand side in full precision, for the self test.
+/// What a function of the ABI gives at a test vector: its arrays, and for each how far rounding may take it.
+struct FunctionValues {
+  std::string function;
+  int to = 0;  // of `chart`
+  std::vector<std::vector<double>> values;
+  std::vector<double> tolerances;
+};
+
+/// A state for the self test (self_test.hpp).
 struct TestVector {
   double t = 0;
   int mode = 0;
-  std::vector<double> x, p, u, dx;
+  std::vector<double> x, p, u;
+  std::vector<FunctionValues> functions;  // rhs first
 };
 
 struct EventText {
@@ -46,5 +55,7 @@ struct EmissionContext {
 
 /// NAME of the C ABI: the model's id as an identifier that no target reserves.
 std::string mangled_id(const std::string& id);
+/// Of the Python target: NAME, or NAME_ where Python or its standard library has that name.
+std::string module_name(const std::string& id);
 
 }  // namespace eomgen::emit

@@ -19,10 +19,6 @@ namespace {
 
 using json = nlohmann::ordered_json;
 
-// The right-hand side of good code differs from these values by rounding, some 1e-16 times the condition of the mass
-// matrix; of code that is wrong, or built with unsafe flags, by far more.
-constexpr double selftest_tolerance = 1e-9;
-
 constexpr std::size_t contact_values = 5;  // of each contact in the array g
 
 std::string rate_unit(const std::string& unit) {
@@ -285,51 +281,6 @@ std::string defaults_body(const program::Program& program, const EmissionContext
   return result;
 }
 
-std::string selftest_body(const program::Program& program, const EmissionContext& context,
-                          const std::function<std::string(const std::string&)>& called, const std::string& null,
-                          const Dialect& dialect) {
-  const std::size_t n = program.state_count(), parameters = context.parameters.size(), inputs = context.inputs.size();
-  const char* open = dialect.line_comments ? "  // " : "  /* ";
-  const char* close = dialect.line_comments ? "" : " */";
-  if (context.tests.empty()) return fmt::format("{}no values were given{}\n  return 0;", open, close);
-  std::string rows;
-  for (const TestVector& test : context.tests) {
-    std::string row = "      {" + decimal(test.t);
-    for (const auto* list : {&test.x, &test.p, &test.u, &test.dx}) {
-      for (const double value : *list) row += ", " + decimal(value);
-    }
-    rows += wrapped(row + "}", "       ") + ",\n";
-  }
-  rows.erase(rows.size() - 2);
-  const std::size_t at_p = 1 + n, at_u = at_p + parameters, at_dx = at_u + inputs;
-  std::string text = fmt::format("{}t, x, p, u, dx: computed in high precision, rounded once{}\n", open, close);
-  text += fmt::format("  static const double values[{}][{}] = {{\n{}}};\n", context.tests.size(), at_dx + n, rows);
-  const bool modes = std::any_of(context.tests.begin(), context.tests.end(), [](const TestVector& test) { return test.mode != 0; });
-  if (modes) {
-    std::string list;
-    for (const TestVector& test : context.tests) list += (list.empty() ? "" : ", ") + std::to_string(test.mode);
-    text += wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context.tests.size(), list), "      ") + "\n";
-  }
-  text += fmt::format("  for (int k = 0; k < {}; ++k) {{\n", context.tests.size());
-  text += "    const double* const point = values[k];\n";
-  text += fmt::format("    const double* const expected = point + {};\n", at_dx);
-  text += fmt::format("    double dx[{}], largest = 0.0;\n", n);
-  const std::string absolute = dialect.line_comments ? "std::fabs" : "fabs";
-  text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n      if ({}(expected[i]) > largest) largest = {}(expected[i]);\n    }}\n", n, absolute, absolute);
-  const auto compare = [&](const std::string& function, const std::string& more) {
-    text += fmt::format("    if ({}(point[0], point + 1, point + {}, {}{}, {}, dx) != 0) return k + 1;\n", called(function), at_p, more,
-                        inputs > 0 ? fmt::format("point + {}", at_u) : null, modes ? "modes[k]" : "0");
-    text += fmt::format("    for (int i = 0; i < {}; ++i) {{\n", n);
-    text += fmt::format("      if (!({}(dx[i] - expected[i]) <= {}*largest)) return k + 1;\n    }}\n", absolute, decimal(selftest_tolerance));
-  };
-  compare("rhs", "");
-  if (const std::size_t prepared = program.prepared_count(); prepared > 0) {
-    text += fmt::format("    double w[{}];\n    if ({}(point + {}, w) != 0) return k + 1;\n", prepared, called("prepare"), at_p);
-    compare("rhs_prepared", "w, ");
-  }
-  return text + "  }\n  return 0;";
-}
-
 std::string purpose(const std::string& function) {
   if (function == "rhs") return "dx = d/dt of the state x.";
   if (function == "prepare") return "w = what the right-hand side needs of the parameters only: to be called again where they change.";
@@ -359,7 +310,7 @@ void require_consistent(const program::Program& program, const EmissionContext& 
   require(program.events.empty() || program.events.size() == context.events.size(), "events");
   require(context.start.size() == n, "start values");
   for (const TestVector& test : context.tests) {
-    require(test.x.size() == n && test.dx.size() == n, "states of the self test");
+    require(test.x.size() == n && !test.functions.empty() && test.functions[0].values[0].size() == n, "states of the self test");
     require(test.p.size() == context.parameters.size(), "parameters of the self test");
     require(test.u.size() == context.inputs.size(), "inputs of the self test");
   }

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every target of the C family says beside the functions: banner, JSON, defaults, self test.
+// What every target of the C family says beside the functions: banner, JSON, defaults.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,11 +19,8 @@ std::string banner(const program::Program& program, const EmissionContext& conte
 /// NAME_info, as JSON (docs/abi.md).
 std::string info_json(const program::Program& program, const EmissionContext& context);
 
-/// Bodies of NAME_defaults and NAME_selftest; `called` is how a function of the ABI is called.
+/// Body of NAME_defaults.
 std::string defaults_body(const program::Program& program, const EmissionContext& context, const Dialect& dialect);
-std::string selftest_body(const program::Program& program, const EmissionContext& context,
-                          const std::function<std::string(const std::string&)>& called, const std::string& null,
-                          const Dialect& dialect);
 
 /// What a function of the ABI does, in a sentence.
 std::string purpose(const std::string& function);

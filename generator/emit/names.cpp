@@ -45,6 +45,47 @@ constexpr std::string_view macro_prefixes[] = {"M_",   "FP_",   "DBL_", "FLT_", 
 // Types and namespaces of the emitted header.
 constexpr std::string_view own[] = {"Real", "State", "Parameter", "Input", "Output", "Reaction", "std", "eom"};
 
+// Names of the runtime, in whose namespace `eom` the emitted header has its own (a test holds this list against lib/eom).
+constexpr std::string_view runtime[] = {
+    "AtEvent", "Automatic", "Choice", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
+    "Crossing", "CsvWriter", "Direction", "Drift", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Lu",
+    "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "NoObserver", "NoProjection", "Options",
+    "Outcome", "Plot", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Result", "Rhs",
+    "Run", "Statistics", "StepView", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "chart_bits",
+    "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "contact_allows", "contact_bits",
+    "contact_digit", "contact_leaf", "contact_modes", "contact_states", "contact_values", "detail", "divergence_bound",
+    "estimate_error", "events", "events_without_progress", "explicit_rk", "first_chart_bit", "implicit", "integrate",
+    "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
+    "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "slips_on", "smallest_step_in_ulps", "svg",
+    "taylor", "variational", "with_contact_digit"};
+
+// Words of Python, its standard library, and what a script that uses a module is likely to import.
+constexpr std::string_view python[] = {
+    "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue", "def", "del", "elif",
+    "else", "except", "finally", "for", "from", "global", "if", "import", "in", "is", "lambda", "nonlocal", "not", "or",
+    "pass", "raise", "return", "try", "while", "with", "yield", "match", "case", "type", "abc", "aifc", "antigravity",
+    "argparse", "array", "ast", "asynchat", "asyncio", "asyncore", "atexit", "audioop", "base64", "bdb", "binascii", "binhex",
+    "bisect", "builtins", "bz2", "cProfile", "calendar", "cgi", "cgitb", "chunk", "cmath", "cmd", "code", "codecs", "codeop",
+    "collections", "colorsys", "compileall", "compression", "concurrent", "configparser", "contextlib", "contextvars", "copy",
+    "copyreg", "crypt", "csv", "ctypes", "curses", "dataclasses", "datetime", "dbm", "decimal", "difflib", "dis", "distutils",
+    "doctest", "email", "encodings", "ensurepip", "enum", "errno", "faulthandler", "fcntl", "filecmp", "fileinput", "fnmatch",
+    "formatter", "fractions", "ftplib", "functools", "gc", "genericpath", "getopt", "getpass", "gettext", "glob", "graphlib",
+    "grp", "gzip", "hashlib", "heapq", "hmac", "html", "http", "idlelib", "imaplib", "imghdr", "imp", "importlib", "inspect",
+    "io", "ipaddress", "itertools", "json", "keyword", "lib2to3", "linecache", "locale", "logging", "lzma", "macpath",
+    "mailbox", "mailcap", "marshal", "math", "mimetypes", "mmap", "modulefinder", "msilib", "msvcrt", "multiprocessing",
+    "netrc", "nis", "nntplib", "nt", "ntpath", "nturl2path", "numbers", "opcode", "operator", "optparse", "os", "ossaudiodev",
+    "parser", "pathlib", "pdb", "pickle", "pickletools", "pipes", "pkgutil", "platform", "plistlib", "poplib", "posix",
+    "posixpath", "pprint", "profile", "pstats", "pty", "pwd", "py_compile", "pyclbr", "pydoc", "pydoc_data", "pyexpat",
+    "queue", "quopri", "random", "re", "readline", "reprlib", "resource", "rlcompleter", "runpy", "sched", "secrets",
+    "select", "selectors", "shelve", "shlex", "shutil", "signal", "site", "sitecustomize", "smtpd", "smtplib", "sndhdr",
+    "socket", "socketserver", "spwd", "sqlite3", "sre_compile", "sre_constants", "sre_parse", "ssl", "stat", "statistics",
+    "string", "stringprep", "struct", "subprocess", "sunau", "symbol", "symtable", "sys", "sysconfig", "syslog", "tabnanny",
+    "tarfile", "telnetlib", "tempfile", "termios", "test", "textwrap", "this", "threading", "time", "timeit", "tkinter",
+    "token", "tokenize", "tomllib", "trace", "traceback", "tracemalloc", "tty", "turtle", "turtledemo", "types", "typing",
+    "unicodedata", "unittest", "urllib", "usercustomize", "uu", "uuid", "venv", "warnings", "wave", "weakref", "webbrowser",
+    "winreg", "winsound", "wsgiref", "xdrlib", "xml", "xmlrpc", "xxlimited", "xxlimited_35", "xxsubtype", "zipapp", "zipfile",
+    "zipimport", "zlib", "zoneinfo", "numpy", "scipy", "matplotlib", "pandas", "sympy", "pip", "setuptools", "pkg_resources"};
+
 bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
@@ -98,7 +139,12 @@ std::string NameTable::declare(const std::string& wanted) {
 std::string mangled_id(const std::string& id) {
   std::string name = identifier(id);
   if (name.empty() || name[0] == '_' || (name[0] >= '0' && name[0] <= '9')) name = "model_" + name;
-  return is_reserved(name) ? name + "_" : name;
+  return is_reserved(name) || is_one_of(name, runtime) ? name + "_" : name;
+}
+
+std::string module_name(const std::string& id) {
+  const std::string name = mangled_id(id);
+  return is_one_of(name, python) ? name + "_" : name;
 }
 
 }  // namespace eomgen::emit

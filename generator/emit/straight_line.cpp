@@ -253,10 +253,13 @@ class Printer {
         end_where_negative(function_.results[r].first, entries);
         continue;
       }
+      const bool optional = function_.name == "jac" && r == 1;  // dfdt may be NULL
+      if (optional) body_ += fmt::format("  if ({}) {{\n", text_.results[r]);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::size_t place = r > 0 || function_.places.empty() ? i : function_.places[i];
-        line(fmt::format("{}[{}] = {};", text_.results[r], place, expressions_.signed_value(entries[i]).text) + remark(r, place));
+        line(fmt::format("{}{}[{}] = {};", optional ? "  " : "", text_.results[r], place, expressions_.signed_value(entries[i]).text) + remark(r, place));
       }
+      if (optional) body_ += "  }\n";
     }
     if (!is_rhs()) {
       line("return 0;");

@@ -139,6 +139,35 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
   return text;
 }
 
+/// Whether psi of constraint k is that combination of the others too: where they are closed, so is k. True where one that cannot be left
+/// is among them, and where there are no values to tell by.
+bool close_together(const Mechanics& m, FormSpace& space, const std::vector<std::uint32_t>& constraints, const std::vector<std::size_t>& independent,
+                    std::size_t k, const Combination& at) {
+  std::vector<Ref> psi{space.written(m.constraints[constraints[k]].psi)};
+  std::vector<cl_R> coefficients;
+  for (std::size_t a = 0; a < independent.size(); ++a) {
+    if (cln::abs(at.coefficients[a]) < small(25)) continue;
+    const Constraint& other = m.constraints[constraints[independent[a]]];
+    if (!other.unilateral) return true;
+    psi.push_back(space.written(other.psi));
+    coefficients.push_back(at.coefficients[a]);
+  }
+  for (std::size_t point = 0; point < space.points(); ++point) {
+    try {
+      const std::vector<cl_R> values = space.values(psi, point);
+      cl_R rest = values[0], size = cln::abs(values[0]);
+      for (std::size_t a = 0; a < coefficients.size(); ++a) {
+        rest = rest - coefficients[a] * values[a + 1];
+        size = size + cln::abs(coefficients[a] * values[a + 1]);
+      }
+      return cln::abs(rest) <= small(20) * size;
+    } catch (const std::domain_error&) {
+      continue;
+    }
+  }
+  return true;
+}
+
 Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
                          const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
   const Constraint& constraint = m.constraints[constraints[k]];
@@ -191,7 +220,9 @@ Refusals drop_repeated(Mechanics& m) {
   std::vector<std::size_t> independent;
   std::array<Span, 2> spans;
   Refusals refusals;
+  const auto leavable = [&](std::size_t k) { return m.constraints[constraints[k]].unilateral; };
   for (std::size_t k = 0; k < constraints.size(); ++k) {
+    if (leavable(k)) continue;
     if (spans[0].holds(at[0][k]) && spans[1].holds(at[1][k])) {
       const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
       if (here && there && !spans_all(at[0], independent, *here, k)) {
@@ -206,6 +237,14 @@ Refusals drop_repeated(Mechanics& m) {
     }
     independent.push_back(k);
     for (std::size_t point = 0; point < spans.size(); ++point) spans[point].add(at[point][k]);
+  }
+  for (std::size_t k = 0; k < constraints.size(); ++k) {
+    if (!leavable(k)) continue;
+    const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
+    // Walls that face one another bind the same velocities, and are not touched together.
+    const bool dependent = here && there;
+    if (dependent && close_together(m, space, constraints, independent, k, *here)) throw refusal(m, constraints, k, independent, *here, *there);
+    if (!dependent) independent.push_back(k);
   }
   return refusals;
 }

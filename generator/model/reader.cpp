@@ -106,6 +106,7 @@ Model Reader::read() {
     source_.fail(root_.span, "nothing moves: the model has no coordinate",
                  "name coordinates in a position or in [coordinates]");
   }
+  refuse_shadowed_outputs();
   read_scenes();
   read_joints();
   warn_unused();

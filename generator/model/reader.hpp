@@ -219,6 +219,7 @@ private:
   void read_solver(Scene& scene, const Value& value);
   void read_outputs(Scene& scene, const Value& value);
   void check_output(const Value& value);
+  void refuse_shadowed_outputs();
   bool is_contact_output(const std::vector<std::string>& parts);  // read_friction.cpp
   NodeId positive_number(const Value& value, const std::string& what, std::string_view unit);
   Symbol& coordinate_of_key(const Entry& entry, const std::string& what, std::uint8_t& order);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/modes/contact_state.hpp>
 
 #include "derive/routes.hpp"
 #include "verify/comparisons.hpp"
@@ -26,6 +27,24 @@ std::string describe(const Comparison& c) {
 
 bool nearer_to_failing(const Comparison& a, const Comparison& b) {
   return a.max_relative_difference * b.tolerance < b.max_relative_difference * a.tolerance;
+}
+
+std::vector<std::size_t> leavable(const mechanics::Mechanics& mechanics) {
+  std::vector<std::size_t> result;
+  for (const mechanics::Contact& contact : mechanics.contacts) {
+    if (contact.unilateral) result.push_back(contact.constraints[0]);
+  }
+  return result;
+}
+
+// The mode in which the contacts that are open at this state are apart.
+int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
+  int mode = 0;
+  for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
+    const mechanics::Contact& contact = mechanics.contacts[j];
+    if (contact.unilateral && state.apart.contains(contact.constraints[0])) mode = eom::with_contact_digit(mode, j, eom::contact_states / 2);
+  }
+  return mode;
 }
 
 }  // namespace
@@ -69,10 +88,11 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
     if (!mechanics.holds(k)) judge.imply(k);
   }
-  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed);
+  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed, leavable(mechanics));
   Tally tally(options.digits);
   while (tally.points() < options.points) {
-    const State state = points.next();
+    State state = points.next();
+    state.mode = mode_at(mechanics, state);
     Tally with_this_point = tally;
     try {
       compare_at(mechanics, subjects, judge, state, with_this_point);

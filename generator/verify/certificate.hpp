@@ -33,12 +33,30 @@ struct ReadingForm {
   std::vector<symbolic::Ref> residuals;
 };
 
+/// Arguments of a function of the C ABI; `order` of taylor.
+struct At {
+  Real t;
+  std::vector<Real> x, p, u;
+  int mode = 0, order = 0;
+};
+/// The arrays that it writes.
+using Arrays = std::vector<std::vector<Real>>;
+
 /// The optimised program read in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u) in a mode; nothing
 /// where it says that the law of friction has no solution there, or several.
 struct ProgramForm {
   std::string name;  // "program"
   std::function<std::vector<Real>(const Real& t, const std::vector<Real>& x, const std::vector<Real>& p,
                                   const std::vector<Real>& u, int mode)> rhs;
+  // All functions of the ABI that it has, by name; left out: they are not compared.
+  std::vector<std::string> functions = {};
+  std::function<std::optional<Arrays>(const std::string& function, const At& at, int digits)> call = {};
+  /// How far binary64 may be off, to first order.
+  std::function<std::vector<std::vector<double>>(const std::string& function, const At& at)> bounds = {};
+  std::string route = {};  // whose equations it is made of
+  system::Approach approach = system::Approach::two;
+  std::vector<std::string> outputs = {};       // names of those of its function `outputs`
+  std::vector<Real> default_inputs = {};
 };
 
 /// Compiled code in binary64; nothing where it reports an error code.
@@ -46,6 +64,7 @@ struct CompiledForm {
   std::string name;  // "emitted code"
   std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
                                                    const std::vector<double>& u, int mode)> rhs;
+  std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const At& at)> call = {};
 };
 
 struct Subjects {

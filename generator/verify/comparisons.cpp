@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/comparisons.hpp"
 
+#include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
 
@@ -10,6 +11,7 @@
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
 #include "verify/friction_law.hpp"
+#include "verify/functions.hpp"
 #include "verify/motion.hpp"
 #include "verify/plain_forces.hpp"
 #include "verify/system_values.hpp"
@@ -34,19 +36,13 @@ double worst(const std::vector<double>& values) {
   return largest;
 }
 
-double relative_to(const Real& difference, double scale) {
-  if (cln::zerop(difference)) return 0;
-  const double size = std::fabs(cln::double_approx(difference));
-  return scale > 0 ? size / scale : 1;
-}
-
 /// Accelerations and multipliers of two systems, relative to the terms of the equations.
 double difference(const SystemValues& a, const SystemValues& b) {
   const std::size_t n = a.state.qddot.size();
   double largest = 0;
   for (std::size_t i = 0; i < n + a.lambda.size(); ++i) {
     const Real d = i < n ? a.state.qddot[i] - b.state.qddot[i] : a.lambda[i - n] - b.lambda[i - n];
-    largest = std::max(largest, relative_to(d, std::max(a.scale[i], b.scale[i])));
+    largest = std::max(largest, relative(d, cln::max(a.scale[i], b.scale[i])));
   }
   return largest;
 }
@@ -56,11 +52,11 @@ double motion_residual(const SystemValues& v) {
   double largest = 0;
   for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
   for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
+    if (v.state.apart.contains(k)) continue;
     Residual along;  // A qddot and what remains of psi_ddot
     for (std::size_t i = 0; i < v.state.qddot.size(); ++i) {
       const Real& slope = v.constraints.gradient[k][i];
-      const double size = i < v.scale.size() && std::isfinite(v.scale[i]) ? v.scale[i] : 0;
-      along.add(slope * v.state.qddot[i], cln::abs(slope) * cln::max(cln::abs(v.state.qddot[i]), Real(size)));
+      along.add(slope * v.state.qddot[i], cln::abs(slope) * cln::max(cln::abs(v.state.qddot[i]), v.scale[i]));
     }
     along.add(v.constraints.psi_ddot[k] - along.value);
     largest = std::max(largest, along.relative());
@@ -88,8 +84,9 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
     }
     rate.add(v.b[k]);
     rate.add(Real(0), length * fastest);  // a rate that is 0 but for the rounding of slopes that cancel has no size of its own
-    largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length),
+    largest = std::max({largest, relative(v.psi[k] - v.constraints.psi[s.active[k]], size + length),
                         relative(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
+    if (!v.state.apart.contains(s.active[k])) largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length)});
   }
   return largest;
 }
@@ -104,7 +101,9 @@ void compare_energies(const EquationSystem& s, const SystemValues& v, const Judg
   for (std::size_t i = 0; i < v.rows.size(); ++i) scale = scale + cln::abs(v.state.qdot[i]) * v.rows[i].scale;
   tally.note("power of " + name, judge_name, false, relative(v.power - e.kinetic_rate - e.potential_rate, scale));
   const Real rate = energy_rate(s, judge, v, tally.digits());
-  tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale));
+  // The difference of two energies has no more digits than these.
+  const Real noise = e.scale * cln::expt(cln::cl_RA(1) / 10, cln::cl_I(tally.digits()));
+  tally.note("power of " + name, "its energy along the path", true, relative(v.power - rate, scale + noise));
 }
 
 /// Outputs that the judge can compute from the model: coordinates, positions, velocities, scalar definitions.
@@ -241,26 +240,19 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
   return largest;
 }
 
-/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale.
+/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale; all of them
+/// by what rounding may do, where that is known.
 double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
-                      const SystemValues& v) {
+                      const SystemValues& v, const std::vector<Real>& rounding = {}) {
   const std::size_t n = s.free.size();
   if (a.size() != 2 * n + s.integrals.size() || b.size() != a.size()) return 1;
   double largest = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    largest = std::max(largest, relative(a[i] - b[i], cln::abs(b[i])));
-    largest = std::max(largest, relative_to(a[n + i] - b[n + i], v.scale[s.free[i]]));
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    Real size = i < n || i >= 2 * n ? cln::abs(b[i]) : v.scale[s.free[i - n]];
+    if (!rounding.empty()) size = size + rounding[i];
+    largest = std::max(largest, relative(a[i] - b[i], size));
   }
-  for (std::size_t i = 2 * n; i < a.size(); ++i) largest = std::max(largest, relative(a[i] - b[i], cln::abs(b[i])));
   return largest;
-}
-
-std::vector<Real> state_vector(const EquationSystem& s, const State& state) {
-  std::vector<Real> x;
-  for (const std::uint32_t i : s.free) x.push_back(state.q[i]);
-  for (const std::uint32_t i : s.free) x.push_back(state.qdot[i]);
-  for (const system::IntegralState& integral : s.integrals) x.push_back(state.integrals[integral.integral]);
-  return x;
 }
 
 std::vector<double> rounded(const std::vector<Real>& values) {
@@ -269,27 +261,45 @@ std::vector<double> rounded(const std::vector<Real>& values) {
   return result;
 }
 
-/// Code in binary64 against the system at the same binary64 numbers.
-double compiled_difference(const CompiledForm& form, const EquationSystem& s, const SystemValues& v, const Judge& judge,
-                           int mode) {
+/// The state as binary64 has it.
+State in_binary64(const State& state, const Judge& judge) {
   const auto exactly = [&](const Real& value) {
     return judge.precision().round(cln::rational(Real(cln::cl_DF(cln::double_approx(value)))));
   };
-  State at = v.state;
+  State at = state;
   at.t = exactly(at.t);
   for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
     for (Real& value : *part) value = exactly(value);
+  return at;
+}
+
+/// What rounding may change in dx at a state, as sizes; none where it is not known.
+std::vector<Real> rounding_of_rhs(const Subjects& subjects, const At& at, const Judge& judge) {
+  std::vector<Real> sizes;
+  if (subjects.programs.empty() || !subjects.programs.front().bounds) return sizes;
+  constexpr double least_number = 1e-290;  // smaller numbers have fewer digits
+  const std::vector<std::vector<double>> bounds = subjects.programs.front().bounds("rhs", at);
+  for (const double bound : bounds[0]) {
+    if (!std::isfinite(bound)) return {};
+    sizes.push_back(size_of_rounding(std::max(bound, least_number), judge.precision()));
+  }
+  return sizes;
+}
+
+/// Code in binary64 against the system at the same binary64 numbers.
+double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v, const Judge& judge, int mode) {
+  const EquationSystem& s = subjects.systems.front();
   if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at);
   const std::vector<Real> reference = right_hand_side(s, judge, at);
-  const auto dx = form.rhs(cln::double_approx(at.t), rounded(state_vector(s, at)), rounded(at.parameters), rounded(at.inputs),
-                           mode);
+  const At arguments = arguments_at(s, at, mode);
+  const auto dx = form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
   if (!dx) return 1;
   std::vector<Real> precise;
   for (const double value : *dx) {
     if (!std::isfinite(value)) return 1;
-    precise.push_back(exactly(Real(cln::cl_DF(value))));
+    precise.push_back(cln::rational(Real(cln::cl_DF(value))));
   }
-  return rhs_difference(precise, reference, s, v);
+  return rhs_difference(precise, reference, s, v, rounding_of_rhs(subjects, arguments, judge));
 }
 
 /// Programs and compiled code against the first system, whose friction forces are those of the law in `mode`.
@@ -297,15 +307,20 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& 
   const EquationSystem& first = subjects.systems.front();
   bool told = false;  // that the law has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
-    const std::vector<Real> x = state_vector(first, v.state);
+    const std::vector<Real> x = arguments_at(first, v.state, mode).x;
     const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs, mode);
     told = told || (dx.empty() && !first.contacts.empty());
     if (told) continue;
     tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v));
   }
+  if (told) return;
+  compare_functions(subjects, v, judge, mode, tally);
+  if (subjects.compiled.empty()) return;
+  const State at = in_binary64(v.state, judge);
   for (const CompiledForm& form : subjects.compiled) {
-    if (!told) tally.note(form.name, name_of(first), true, compiled_difference(form, first, v, judge, mode), Kind::binary64);
+    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, judge, mode), Kind::binary64);
   }
+  compare_compiled_functions(subjects, at, judge, mode, tally);
 }
 
 /// Friction forces of sizes that no law gives: the equations must hold with them all the same.
@@ -327,7 +342,7 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
   result.mode = mode;
   for (std::size_t j = 0; j < s.contacts.size(); ++j) {
     const std::optional<std::uint32_t> k = s.contacts[j].unilateral;
-    if (!k || eom::contact_leaf(mode, 2 * j + 1) > 0) continue;
+    if (!k || eom::contact_leaf(mode, 2 * j + 1) > 0 || eom::contact_leaf(state.mode, 2 * j + 1) < 0) continue;
     std::size_t steepest = 0;
     const auto slope = [&](std::size_t i) { return at.A[*k * s.free.size() + i]; };
     for (std::size_t i = 1; i < s.free.size(); ++i) {
@@ -339,11 +354,20 @@ State in_mode(const EquationSystem& s, const SystemValues& at, const State& stat
   return result;
 }
 
-std::vector<int> modes_of(const EquationSystem& s) {
+/// The modes that can be at a state: what is open there does not touch.
+std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<eom::ContactShape> shapes;
   for (const system::Contact& contact : s.contacts) shapes.push_back(contact.shape());
   constexpr std::size_t enough = 40;
-  return eom::contact_modes(shapes, enough);
+  std::vector<int> modes = eom::contact_modes(shapes, state.apart.empty() ? enough : 1000);
+  std::erase_if(modes, [&](int mode) {
+    for (std::size_t j = 0; j < shapes.size(); ++j) {
+      if (shapes[j].unilateral && eom::contact_leaf(state.mode, 2 * j + 1) < 0 && eom::contact_leaf(mode, 2 * j + 1) > 0) return true;
+    }
+    return false;
+  });
+  if (modes.size() > enough) modes.resize(enough);
+  return modes;
 }
 
 }  // namespace
@@ -388,7 +412,7 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   const EquationSystem& first = subjects.systems.front();
   compare_integrals(mechanics, first, values.front(), judge, tally);
   if (first.contacts.empty()) return compare_code(subjects, values.front(), judge, 0, tally);
-  for (const int mode : modes_of(first)) {
+  for (const int mode : modes_of(first, state)) {
     State lawful = in_mode(first, values.front(), state, mode);
     set_friction(mechanics, judge, lawful, lawful_friction(first, judge, lawful));
     const SystemValues in_mode = values_of(first, mechanics, judge, lawful);

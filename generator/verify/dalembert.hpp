@@ -39,6 +39,7 @@ struct State {
   std::vector<Real> phi;  // components of friction along the tangents, and what they amount to
   std::vector<FrictionForce> friction;
   int mode = 0;                      // of the contacts (eom/modes/contact_state.hpp)
+  std::set<std::size_t> apart;       // scalar constraints that are open here: they bind nothing and have no force
 };
 
 /// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.

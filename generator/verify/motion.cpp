@@ -13,7 +13,7 @@ Motion motion_at(const Judge& judge, const State& at) {
   State& s = motion.state;
   std::vector<std::size_t> bound;  // constraints that do not follow from others
   for (std::size_t k = 0; k < judge.constraints().size(); ++k) {
-    if (!judge.implied(k)) bound.push_back(k);
+    if (!judge.implied(k) && !at.apart.contains(k)) bound.push_back(k);
   }
   const std::size_t n = s.q.size(), m = bound.size(), size = n + m;
   const std::vector<Real> no_forces(judge.constraints().size(), Real(0));
@@ -42,14 +42,16 @@ Motion motion_at(const Judge& judge, const State& at) {
   std::vector<Real> row_scale;
   for (std::size_t i = 0; i < n; ++i) row_scale.push_back(rest[i].scale);
   for (std::size_t k = 0; k < m; ++k) row_scale.push_back(cln::abs(right[n + k]));
-  const Solution solution = solve(std::move(matrix), std::move(right), true);
+  const Solution solution = solve(matrix, std::move(right), true);
   if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
+  for (std::size_t i = 0; i < size; ++i)  // terms of the solution may cancel to nothing
+    for (std::size_t k = 0; k < size; ++k) row_scale[i] = row_scale[i] + cln::abs(matrix[i * size + k] * solution.x()[k]);
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
   motion.lambda = no_forces;
   for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
-    for (std::size_t k = 0; k < size; ++k) scale = scale + Real(cln::cl_DF(solution.inverse[k][i])) * row_scale[k];
+    for (std::size_t k = 0; k < size; ++k) scale = scale + cln::rational(Real(solution.inverse[k][i])) * row_scale[k];
     if (i < n) motion.scale.push_back(scale);
   }
   if (!judge.model().joints.empty()) {  // as of system_values

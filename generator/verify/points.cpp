@@ -18,6 +18,11 @@ struct Unfit : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
+/// The constraints cannot be met there.
+struct Unclosed : Unfit {
+  using Unfit::Unfit;
+};
+
 // How far random values go from the defaults and starts, before anything is rejected.
 constexpr double parameter_spread = 0.25;   // relative
 constexpr double coordinate_spread = 0.5;   // of the scale of its unit
@@ -26,13 +31,15 @@ constexpr double range_margin = 0.05;       // of a chart's range, at either end
 constexpr double longest_span = 100;        // s; later times test nothing more
 constexpr double kink_margin = 1e-6;        // so that rounding to binary64 cannot change the branch
 constexpr double singular_constraints = 1e10;
+constexpr std::size_t patience = 12;        // tries to close the same contacts before one of them is left open
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
 
 }  // namespace
 
-Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed)
-    : judge_(judge), engine_(seed), cap_(cap), fixed_(std::move(fixed)) {
+Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed,
+               std::vector<std::size_t> leavable)
+    : judge_(judge), engine_(seed), cap_(cap), fixed_(std::move(fixed)), leavable_(std::move(leavable)), choosings_(1) {
   read_scene();
 }
 
@@ -170,7 +177,7 @@ std::vector<Real> Points::correction(const State& state, bool rates) const {
   const std::size_t n = choices_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
   for (std::size_t k = c.gradient.size(); k-- > 0;) {
-    if ((rates || judge_.holonomic(k)) && !judge_.implied(k)) continue;  // binds no position, or follows
+    if ((rates || judge_.holonomic(k)) && !judge_.implied(k) && !state.apart.contains(k)) continue;  // else: binds no position, follows, is open
     c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
     defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
   }
@@ -193,7 +200,7 @@ std::vector<Real> Points::correction(const State& state, bool rates) const {
     }
   }
   const Solution y = solve(std::move(gram), std::move(right));
-  if (!y.exists() || y.condition > singular_constraints) throw Unfit("the constraints lose rank");
+  if (!y.exists() || y.condition > singular_constraints) throw Unclosed("the constraints lose rank");
   std::vector<Real> change(n, Real(0));
   for (std::size_t j = 0; j < n; ++j)
     for (std::size_t i = 0; i < rows; ++i)
@@ -216,13 +223,22 @@ void Points::project_positions(State& s) const {
     if (iteration > 0 && size > 1000) break;
     if (size < small) return;
   }
-  throw Unfit("no configuration on the constraints was found");
+  throw Unclosed("no configuration on the constraints was found");
 }
 
 void Points::project_velocities(State& s) const {
   if (judge_.constraints().empty()) return;
-  const std::vector<Real> change = correction(s, true);
-  for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
+  // Linear; a second time for the digits of what is nearly at rest. What is left where nothing can move is 0.
+  const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 6));
+  std::vector<Real> size;
+  for (std::size_t i = 0; i < choices_.size(); ++i) size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
+  for (int round = 0; round < 2; ++round) {
+    const std::vector<Real> change = correction(s, true);
+    for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
+  }
+  for (std::size_t i = 0; i < size.size(); ++i) {
+    if (cln::abs(s.qdot[i]) <= size[i]) s.qdot[i] = 0;
+  }
 }
 
 /// Relative to the size of the terms, as far as the digits of a projection go.
@@ -258,16 +274,40 @@ void Points::require_smooth(const State& s) const {
   if (margin.kink < kink_margin) throw Unfit("too near a kink");
 }
 
+// One more contact stays open, each of those that were to be closed in turn. False: the fault lies elsewhere.
+bool Points::give_up_closing(Choosing& choosing) {
+  if (choosing.reached || choosing.open.size() == leavable_.size()) return false;
+  if (++choosing.failures < patience) return true;
+  const std::set<std::size_t> open = choosing.open;
+  choosings_.erase(choosings_.begin() + static_cast<std::ptrdiff_t>(turn_ % choosings_.size()));
+  for (std::size_t j = 0; j < leavable_.size(); ++j) {
+    if (open.contains(j)) continue;
+    Choosing more;
+    more.open = open;
+    more.open.insert(j);
+    // What is open in another one is open in this one too: that one closes more.
+    const auto closes_more = [&](const Choosing& other) { return std::includes(more.open.begin(), more.open.end(), other.open.begin(), other.open.end()); };
+    if (std::none_of(choosings_.begin(), choosings_.end(), closes_more)) choosings_.push_back(std::move(more));
+  }
+  return true;
+}
+
 State Points::next() {
   for (;;) {
+    Choosing& choosing = choosings_[turn_ % choosings_.size()];
     try {
       State s = draw();
+      for (const std::size_t j : choosing.open) s.apart.insert(leavable_[j]);
       project_positions(s);
       project_velocities(s);
       require_implied(s);
       require_inside(s);
       require_smooth(s);
+      choosing.reached = true;
+      ++turn_;
       return s;
+    } catch (const Unclosed& unclosed) {
+      if (!give_up_closing(choosing)) reject(unclosed.what());
     } catch (const Unfit& unfit) {
       reject(unfit.what());
     } catch (const Singular& singular) {

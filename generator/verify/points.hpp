@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <map>
 #include <random>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -19,8 +20,10 @@ namespace eomgen::verify {
 class Points {
  public:
   /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the constraints;
-  /// implied ones have to hold there by themselves.
-  Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {});
+  /// implied ones have to hold there by themselves. Scalar constraints in `leavable` are closed, all of them or,
+  /// where that cannot be, as many as can be, other ones at other points; the others are State::apart.
+  Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
+         std::vector<std::size_t> leavable = {});
 
   /// A state with qddot = 0. Throws Error (Fault::check) once too many were rejected.
   State next();
@@ -34,6 +37,13 @@ class Points {
     bool has_lower = false, has_upper = false;
     double lower = 0, upper = 0;
   };
+  /// Which of `leavable` are open.
+  struct Choosing {
+    std::set<std::size_t> open;
+    std::size_t failures = 0;
+    bool reached = false;
+  };
+  bool give_up_closing(Choosing& choosing);
   double uniform();                 // in (0, 1)
   double symmetric();               // in (-1, 1)
   Real exact(double value) const;   // the same number at full precision
@@ -54,6 +64,9 @@ class Points {
   std::mt19937_64 engine_;
   std::size_t cap_;
   std::map<std::uint32_t, cln::cl_RA> fixed_;
+  std::vector<std::size_t> leavable_;
+  std::vector<Choosing> choosings_;   // taken in turn
+  std::size_t turn_ = 0;
   std::vector<Choice> choices_;       // per coordinate
   std::vector<Real> defaults_;        // of the parameters
   std::vector<double> input_defaults_;

@@ -7,7 +7,6 @@
 #include <cln/real.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "symbolic/evaluate.hpp"
 #include "verify/linear_solve.hpp"
@@ -27,7 +26,7 @@ struct Solved {
   std::vector<std::vector<double>> inverse;  // sizes of the columns of [M A^T; A 0]^-1, where asked for
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
-  std::vector<Real> inertia;  // the diagonal of M
+  std::vector<Real> M;
   double condition = 1;
 };
 
@@ -48,12 +47,13 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     return part;
   };
   const std::size_t n = s.free.size(), m = s.active.size(), size = n + m;
-  const std::vector<Real> M = take(n * n), f = take(n);
   Solved out;
+  out.M = take(n * n);
+  const std::vector<Real>& M = out.M;
+  const std::vector<Real> f = take(n);
   out.psi = take(m), out.A = take(m * n), out.b = take(m), out.gamma = take(m);
   std::vector<Real> matrix(size * size, Real(0));
   std::vector<Real> right = f;
-  for (std::size_t i = 0; i < n; ++i) out.inertia.push_back(M[i * n + i]);
   for (std::size_t i = 0; i < n; ++i)
     for (std::size_t k = 0; k < n; ++k) matrix[i * size + k] = M[i * n + k];
   for (std::size_t k = 0; k < m; ++k) {
@@ -101,49 +101,69 @@ void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& 
 }
 
 /// sum_k |K^-1|_ik scale_k for the unknowns of the solve.
-std::vector<double> propagate(const Solved& solved, const std::vector<double>& row_scale) {
-  std::vector<double> scale(row_scale.size(), 0.0);
+std::vector<Real> propagate(const Solved& solved, const std::vector<Real>& row_scale) {
+  std::vector<Real> scale(row_scale.size(), Real(0));
   for (std::size_t k = 0; k < scale.size(); ++k)
-    for (std::size_t i = 0; i < scale.size(); ++i)
-      scale[i] += solved.inverse[k][i] * row_scale[k];
+    for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = scale[i] + cln::rational(Real(solved.inverse[k][i])) * row_scale[k];
   return scale;
 }
 
 /// A joint may keep a body from turning that nothing turns: accelerations and multipliers that are 0 up to rounding are so beside the
 /// largest ones.
-void raise_least(std::vector<double>& scale, std::size_t accelerations) {
-  constexpr double share = 1e-4;
+void raise_least(std::vector<Real>& scale, std::size_t accelerations) {
+  const Real share = cln::cl_RA(1) / 10000;
   const auto raise = [&](auto begin, auto end) {
-    if (begin == end) return;
-    const double least = share * *std::max_element(begin, end);
-    for (auto at = begin; at != end; ++at) *at = std::max(*at, least);
+    Real largest = 0;
+    for (auto at = begin; at != end; ++at) largest = cln::max(largest, *at);
+    for (auto at = begin; at != end; ++at) *at = cln::max(*at, largest * share);
   };
   const auto middle = scale.begin() + static_cast<std::ptrdiff_t>(accelerations);
   raise(scale.begin(), middle);
   raise(middle, scale.end());
 }
 
-void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Solved& solved, SystemValues& v) {
-  const std::size_t n = s.free.size(), m = s.active.size(), all = v.state.q.size();
-  std::vector<double> row_scale;
-  for (const std::uint32_t i : s.free) row_scale.push_back(cln::double_approx(v.rows[i].scale));
+/// The terms of each equation, those of the unknowns among them: sum_k |M_ik qddot_k| may cancel to nothing.
+std::vector<Real> sizes_of_rows(const EquationSystem& s, const Solved& solved, const SystemValues& v, const std::vector<Real>& qddot,
+                                const std::vector<Real>& lambda) {
+  const std::size_t n = s.free.size(), m = s.active.size();
+  std::vector<Real> sizes;
+  for (std::size_t i = 0; i < n; ++i) {
+    Real sum = v.rows[s.free[i]].scale;
+    for (std::size_t k = 0; k < n; ++k) sum = sum + cln::abs(solved.M[i * n + k] * qddot[k]);
+    for (std::size_t k = 0; k < m; ++k) sum = sum + cln::abs(solved.A[k * n + i] * lambda[k]);
+    sizes.push_back(sum);
+  }
   for (std::size_t k = 0; k < m; ++k) {
     Real sum = cln::abs(solved.gamma[k]);
-    for (std::size_t i = 0; i < n; ++i) sum = sum + cln::abs(solved.A[k * n + i] * solved.qddot[i]);
-    row_scale.push_back(cln::double_approx(sum));
+    for (std::size_t i = 0; i < n; ++i) sum = sum + cln::abs(solved.A[k * n + i] * qddot[i]);
+    sizes.push_back(sum);
   }
-  const std::vector<double> unknown = propagate(solved, row_scale);
-  v.scale.assign(all + v.lambda.size(), 0.0);
+  return sizes;
+}
+
+void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, const Solved& solved, SystemValues& v) {
+  const std::size_t n = s.free.size(), m = s.active.size(), all = v.state.q.size();
+  const std::vector<Real> row_scale = sizes_of_rows(s, solved, v, solved.qddot, solved.lambda);
+  std::vector<Real> unknown = propagate(solved, row_scale);
+  v.scale.assign(all + v.lambda.size(), Real(0));
   // An acceleration that a constraint makes 0 is what remains where the terms of its own equation cancel.
   for (std::size_t i = 0; i < n; ++i) {
-    const double inertia = std::fabs(cln::double_approx(solved.inertia[i]));
-    v.scale[s.free[i]] = unknown[i] + (inertia > 0 ? row_scale[i] / inertia : 0);
+    const Real inertia = cln::abs(solved.M[i * n + i]);
+    if (!cln::zerop(inertia)) unknown[i] = unknown[i] + row_scale[i] / inertia;
+    v.scale[s.free[i]] = unknown[i];
   }
   for (std::size_t k = 0; k < m; ++k) v.scale[all + s.active[k]] = unknown[n + k];
+  const std::vector<Real> accelerations(unknown.begin(), unknown.begin() + static_cast<std::ptrdiff_t>(n));
+  const std::vector<Real> multipliers(unknown.begin() + static_cast<std::ptrdiff_t>(n), unknown.end());
+  const std::vector<Real> sized = sizes_of_rows(s, solved, v, accelerations, multipliers);
+  for (std::size_t i = 0; i < n; ++i) v.rows[s.free[i]].scale = sized[i];
   for (const mechanics::FixedCoordinate& fixed : mechanics.fixed) {
-    const double slope = cln::double_approx(cln::abs(v.constraints.gradient[fixed.constraint][fixed.coordinate]));
-    v.scale[fixed.coordinate] = std::fabs(cln::double_approx(v.state.qddot[fixed.coordinate]));
-    v.scale[all + fixed.constraint] = cln::double_approx(v.rows[fixed.coordinate].scale) / slope;
+    const std::vector<Real>& gradient = v.constraints.gradient[fixed.constraint];
+    const Real slope = cln::abs(gradient[fixed.coordinate]);
+    Real sum = 0;  // of psi_ddot
+    for (std::size_t i = 0; i < all; ++i) sum = sum + cln::abs(gradient[i]) * cln::max(cln::abs(v.state.qddot[i]), v.scale[i]);
+    v.scale[fixed.coordinate] = sum / slope;
+    v.scale[all + fixed.constraint] = v.rows[fixed.coordinate].scale / slope;
   }
   if (!mechanics.joints.empty()) raise_least(v.scale, all);
 }

@@ -28,9 +28,9 @@ struct SystemValues {
   Real kinetic = 0, potential = 0, energy = 0, power = 0;
   std::vector<Real> outputs;
   double condition = 1;
-  std::vector<Residual> rows;     // d'Alembert's, per coordinate
+  std::vector<Residual> rows;     // d'Alembert's, per coordinate; their sizes with unknowns as large as their scales
   ConstraintValues constraints;   // the judge's, with these accelerations
-  std::vector<double> scale;      // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
+  std::vector<Real> scale;        // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
                                   // terms of every equation can change in them
 };
 

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <limits>
+#include <set>
+#include <utility>
 
 #include "emit/examples.hpp"
 #include "emit/shared_library/checksum.hpp"
@@ -86,6 +88,56 @@ TEST_CASE("emitted code: hostile names and texts stay what they are") {
   compiles_everywhere(example("9 lives-%", double_pendulum(), {"x", "x_"}, {"p", "u", "mode", "INT_MAX", "errno"}));
   compiles_everywhere(example("eom", cart_pendulum(), {"M", "h"}, {"rhs", "finite", "M_11", "sin_theta", "lambda"}, {"selftest"}));
   compiles_everywhere(example("two", double_pendulum(), {"two_sincos", "sincos"}, {"angle", "sine", "eom_sincos", "eom_lanes", "two_bits"}));
+}
+
+TEST_CASE("emitted code: no model's name can collide with one of the runtime's") {
+  // Every word of the runtime's headers as the name of a model: where it is kept it can be a namespace beside them.
+  const std::filesystem::path lib = EOMGEN_TEST_LIB;
+  std::set<std::string> words, headers;
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(lib / "eom")) {
+    if (entry.path().extension() != ".hpp") continue;
+    headers.insert(std::filesystem::relative(entry.path(), lib).string());
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      std::string word;
+      for (const char c : line.substr(0, line.find("//")) + " ") {
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') word += c;
+        else if (!word.empty()) words.insert(std::exchange(word, ""));
+      }
+    }
+  }
+  REQUIRE(words.contains("integrate"));
+  std::string text;
+  for (const std::string& header : headers) text += "#include \"" + header + "\"\n";
+  for (const std::string& word : words) {
+    if (std::isdigit(static_cast<unsigned char>(word[0])) == 0 && emit::mangled_id(word) == word) text += "namespace eom { using " + word + " = int; }\n";
+  }
+  const Folder folder;
+  std::ofstream(folder.path + "/use.cpp") << text;
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN}, {folder.path + "/use.cpp"}) == "");
+}
+
+TEST_CASE("emitted code: df/dt may be left out of the Jacobian, in C and in C++") {
+  const Folder folder;
+  const Example e = examples()[3];  // its support moves
+  emit::write_files(folder.path, emit::emit(e.program, e.context));
+  std::ofstream(folder.path + "/use.cpp") << R"(
+#include "spherical.hpp"
+#include "spherical.h"
+int main() {
+  double x[6], p[5], all[36], dfdt[6], without[36];
+  spherical_defaults(x, p);
+  if (spherical_jac(0.5, x, p, nullptr, 0, all, dfdt) != 0 || spherical_jac(0.5, x, p, nullptr, 0, without, nullptr) != 0) return 1;
+  for (int i = 0; i < 36; ++i) if (all[i] != without[i]) return 2;
+  if (eom::spherical::jac<double>(0.5, x, p, nullptr, 0, without, nullptr) != 0) return 3;
+  for (int i = 0; i < 36; ++i) if (!(std::fabs(all[i] - without[i]) <= 1e-12*(1 + std::fabs(all[i])))) return 4;
+  return 0;
+}
+)";
+  const std::string object = folder.path + "/object.o", program = folder.path + "/use";
+  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/spherical.c"}) == "");
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
+  CHECK(emit::run_process({program}).status == 0);
 }
 
 TEST_CASE("emitted code: -ffast-math is refused") {

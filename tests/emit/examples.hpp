@@ -11,6 +11,7 @@
 #include <sstream>
 
 #include "emit/shared_library/loaded_model.hpp"
+#include "emit/self_test.hpp"
 #include "emit/shared_library/process.hpp"
 #include "emit/targets.hpp"
 #include "emit/write_files.hpp"
@@ -54,12 +55,7 @@ inline Example example(const std::string& id, const system::EquationSystem& syst
     test.p = rounded(arguments.p, parameters.size());
     test.u = rounded(arguments.u, inputs.size());
     test.t = cln::double_approx(arguments.t);
-    arguments.t = exactly(test.t);
-    const auto values = program::interpret(result.program.functions[0], arguments, 50);
-    for (const auto& value : values.results[0]) {
-      test.dx.push_back(cln::double_approx(value));
-    }
-    context.tests.push_back(std::move(test));
+    context.tests.push_back(*emit::test_vector(result.program, context, test, point));
   }
   context.start = context.tests[0].x;
   return result;

@@ -43,3 +43,13 @@ TEST_CASE("names: what begins as the compiler's own names do becomes a legal nam
     CHECK(name[0] != '_');
   }
 }
+
+TEST_CASE("names: a model called as something of Python or its library gets another module, and keeps its C names") {
+  for (const char* id : {"json", "numpy", "lambda", "None", "ctypes", "math", "test"}) {
+    CAPTURE(id);
+    CHECK(module_name(id) == mangled_id(id) + "_");
+  }
+  CHECK(mangled_id("json") == "json");
+  CHECK(module_name("cart_pendulum") == "cart_pendulum");
+  CHECK(module_name("int") == "int_");
+}

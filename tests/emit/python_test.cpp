@@ -15,7 +15,7 @@ void compiles_and_imports(const Example& e, const std::string& more = "pass") {
   const Setting cache("EOMGEN_CACHE_DIR", folder.path);
   const auto files = emit::emit(e.program, e.context, "python");
   emit::write_files(folder.path, files);
-  const std::string name = emit::mangled_id(e.context.id), c = folder.path + "/" + name + "_simulate.c";
+  const std::string name = emit::mangled_id(e.context.id), module = emit::module_name(e.context.id), c = folder.path + "/" + name + "_simulate.c";
   CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", folder.path + "/c.o"}, {c}) == "");
   CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) == "");
   for (const auto& file : files) {
@@ -25,7 +25,7 @@ void compiles_and_imports(const Example& e, const std::string& more = "pass") {
   const std::string use = fmt::format(
       "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{0}'); import {1} as m; "
       "assert len(m.rhs(0, m.defaults['x'])) == len(m.states) == {2}; assert len(m.params) == {3}; "
-      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'; {4}", folder.path, name, e.context.start.size(),
+      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'; {4}", folder.path, module, e.context.start.size(),
       e.context.parameters.size(), more);
   const emit::Finished finished = emit::run_process({"python3", "-c", use});
   CHECK_MESSAGE(finished.status == 0, finished.output);
@@ -70,4 +70,12 @@ TEST_CASE("target python: compiled code is kept and loaded only where nobody els
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));
   std::filesystem::permissions(shared.path, std::filesystem::perms::all);
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(folder.path));
+}
+
+TEST_CASE("target python: models called as Python's words and modules are imported beside these") {
+  for (const char* id : {"json", "numpy", "lambda", "None"}) {
+    INFO(id);
+    auto e = example(id, pendulum(), {"theta"}, {"m", "l", "g"});
+    compiles_and_imports(e, "import json; assert json.loads('[1]') == [1]");
+  }
 }

@@ -127,7 +127,8 @@ json hoisted(const program::Program& program) {
 
 int execute(const Options& options, const Common& common) {
   if (options.print_name) {
-    fmt::print("{}\n", emit::mangled_id(std::filesystem::path(options.model).stem().string()));
+    const std::string id = std::filesystem::path(options.model).stem().string();
+    fmt::print("{}\n", options.target == "python" ? emit::module_name(id) : emit::mangled_id(id));
     return 0;
   }
   if (options.folder.empty()) throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");

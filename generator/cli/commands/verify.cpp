@@ -6,6 +6,7 @@
 
 #include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
@@ -49,9 +50,47 @@ void print_readable(const verify::Certificate& certificate) {
   fmt::print("\n{}\n", certificate.summary());
 }
 
+/// Every function that `emit` may be asked for, but for Taylor series where the program is too large for them.
+program::Program with_every_function(Derived& derived) {
+  program::Request request;
+  request.with = {"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
+  for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
+  try {
+    return make_program(derived, request);
+  } catch (const Error&) {
+    request.with.pop_back();
+    return make_program(derived, request);
+  }
+}
+
+/// Where the constraints fix the whole motion there is nothing to integrate and no code: the routes and the reading forms are held
+/// against the judge, their constraint forces above all.
+std::optional<verify::Certificate> certify_prescribed(const Options& options, std::uint64_t seed) {
+  const model::Model model = load_model(options.model);
+  std::size_t equations = 0;
+  for (const model::Constraint& constraint : model.constraints) equations += constraint.psi.size();
+  if (equations < model.coordinates.size()) return std::nullopt;
+  mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
+  if (mechanics.freedom() > 0) return std::nullopt;
+  verify::Subjects subjects;
+  subjects.systems = verify::all_routes(mechanics);
+  add_reading_forms(mechanics, subjects);
+  return verify::certify(mechanics, subjects, {options.digits, static_cast<std::size_t>(options.points), seed, {}});
+}
+
+int show(const verify::Certificate& certificate, const Common& common) {
+  if (common.json) {
+    print_document(to_json(certificate));
+  } else {
+    print_readable(certificate);
+  }
+  return certificate.pass ? 0 : 1;
+}
+
 int execute(const Options& options, const Common& common) {
+  if (const auto prescribed = certify_prescribed(options, common.seed)) return show(*prescribed, common);
   std::unique_ptr<Derived> derived = derive_model(options.model, ApproachChoice::automatic);
-  const program::Program program = make_program(*derived, {});
+  const program::Program program = with_every_function(*derived);
   Verification verification{options.digits, static_cast<std::size_t>(options.points), common.seed, nullptr};
   verification.reductions = true;
   std::optional<CompiledCode> code;
@@ -60,14 +99,9 @@ int execute(const Options& options, const Common& common) {
     code.emplace(compile_for_check(*derived, program));
     compiled = code->form();
     verification.compiled = &compiled;
+    verification.default_inputs = default_inputs(*derived);
   }
-  const verify::Certificate certificate = certify(*derived, program, verification);
-  if (common.json) {
-    print_document(to_json(certificate));
-  } else {
-    print_readable(certificate);
-  }
-  return certificate.pass ? 0 : 1;
+  return show(certify(*derived, program, verification), common);
 }
 
 }  // namespace

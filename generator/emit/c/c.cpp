@@ -6,6 +6,7 @@
 #include "emit/file_parts.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
+#include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
@@ -111,6 +112,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
     functions.push_back({{"definition", text.definition}});
     declared.push_back({{"purpose", purpose("taylor")}, {"prototype", text.head}});
   }
+  const SelfTestNames test{[&name](const std::string& f) { return name + "_" + f; }, name + "_differs", "0"};
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},
@@ -119,7 +121,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},
       {"defaults", defaults_body(program, context, dialect)},
-      {"selftest", selftest_body(program, context, [&name](const std::string& f) { return name + "_" + f; }, "0", dialect)}};
+      {"comparison", selftest_comparison(context, test, dialect)},
+      {"selftest", selftest_body(program, context, test, dialect)}};
   return {{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
           {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, declared)}};
 }

@@ -12,6 +12,7 @@
 #include "emit/file_parts.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
+#include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
@@ -137,6 +138,7 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
     const TaylorText text = print_taylor(program, names, context, dialect, "");
     taylor = "\n" + text.definition;
   }
+  const SelfTestNames test{[](const std::string& f) { return f + "<double>"; }, kernel_prefix + "differs", "nullptr"};
   std::vector<EmittedFile> files = {
       {name + ".hpp",
        rendered(skeleton::cpp_model_hpp,
@@ -148,7 +150,8 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
                  {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
                 {"info", string_literal(info_json(program, context), "      ")},
                  {"defaults", defaults_body(program, context, dialect)},
-                 {"selftest", selftest_body(program, context, [](const std::string& f) { return f + "<double>"; }, "nullptr", dialect)}},
+                 {"comparison", selftest_comparison(context, test, dialect)},
+                 {"selftest", selftest_body(program, context, test, dialect)}},
                 functions)}};
   for (EmittedFile& file : emit_c(program, context)) files.push_back(std::move(file));
   return files;

@@ -19,7 +19,7 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
   files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, {{"name", name}}, {})});
-  files.push_back({name + ".py",
+  files.push_back({module_name(context.id) + ".py",
                    rendered(skeleton::python_model_py, {{"banner", banner(program, context, "# ", "# ", "")}, {"name", name}}, {})});
   return files;
 }

@@ -1,0 +1,281 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/self_test.hpp"
+
+#include <cln/dfloat.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/modes/chart_state.hpp>
+
+#include "emit/text.hpp"
+#include "program/abi_values.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+constexpr int digits = 40;
+// Of the largest entry: what is wrong by less is not looked for.
+constexpr double relative_tolerance = 1e-11;
+// Of the first-order bound of rounding.
+constexpr double caution = 16;
+constexpr int taylor_order = 4;
+// Values of one function; the first two vectors are always held where they fit, the second one alone where they do not.
+constexpr std::size_t most_values = 3000;
+
+cln::cl_R exactly(double value) { return cln::rational(cln::cl_DF(value)); }
+
+std::vector<cln::cl_R> exactly(const std::vector<double>& values) {
+  std::vector<cln::cl_R> result;
+  for (const double value : values) result.push_back(exactly(value));
+  return result;
+}
+
+program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& context) {
+  program::AbiArguments arguments;
+  arguments.at.t = exactly(at.t);
+  arguments.at.x = exactly(at.x);
+  arguments.at.p = exactly(at.p);
+  arguments.at.u = exactly(at.u);
+  arguments.at.mode = at.mode;
+  arguments.order = taylor_order;
+  for (const Quantity& input : context.inputs) arguments.default_inputs.push_back(exactly(input.value));
+  return arguments;
+}
+
+/// Rounded once, with what rounding may change; nothing where a number is not finite.
+std::optional<FunctionValues> rounded(const std::string& function, const program::AbiResults& results, const std::vector<std::vector<double>>& bounds) {
+  constexpr double largest_number = 1e290, least_number = 1e-290;
+  FunctionValues values{function, 0, {}, {}};
+  for (std::size_t r = 0; r < results.size(); ++r) {
+    double largest = 0, off = 0;
+    values.values.emplace_back();
+    for (std::size_t i = 0; i < results[r].size(); ++i) {
+      const double value = cln::double_approx(results[r][i]);
+      if (!(std::fabs(value) < largest_number) || !(bounds[r][i] < largest_number)) return std::nullopt;
+      values.values.back().push_back(value);
+      largest = std::max(largest, std::fabs(value));
+      off = std::max(off, bounds[r][i]);
+    }
+    // Two digits say enough; upwards.
+    const double tolerance = std::max({relative_tolerance * largest, caution * off, least_number});
+    values.tolerances.push_back(std::stod(fmt::format("{:.1e}", 1.05 * tolerance)));
+  }
+  return values;
+}
+
+std::optional<FunctionValues> values_at(const program::Program& program, const std::string& function, const program::AbiArguments& arguments) {
+  const std::optional<program::AbiResults> results = program::abi_values(program, function, arguments, digits);
+  if (!results) return std::nullopt;
+  return rounded(function, *results, program::abi_bounds(program, function, arguments));
+}
+
+std::size_t entries(const program::Program& program, const std::string& function) {
+  if (function == "taylor") return program.state_count() * (taylor_order + 1);
+  std::size_t count = 0;
+  for (const program::Function& f : program.functions) {
+    if (f.name != function) continue;
+    for (const auto& result : f.results) count += program::is_code(result.first) ? 0 : result.second.size();
+  }
+  return count;
+}
+
+bool is_held(std::size_t count, std::size_t index) { return (index + 1) * count <= most_values || index == 1; }
+
+/// The state in other charts, bit after bit as NAME_chart does.
+void add_charts(const program::Program& program, const program::AbiArguments& arguments, TestVector& vector) {
+  for (unsigned mask = 0; mask < 1u << program.charts.size(); ++mask) {
+    const int to = eom::mode_of_charts(mask), from = arguments.at.mode & eom::chart_bits;
+    if (to == from) continue;
+    program::Arguments<cln::cl_R> at = arguments.at;
+    FunctionValues values{"chart", to, {}, {}};
+    std::vector<double> off;
+    try {
+      for (std::size_t j = 0; j < program.charts.size(); ++j) {
+        const int bit = 1 << (eom::first_chart_bit + static_cast<int>(j));
+        if (((to ^ from) & bit) == 0) continue;
+        const program::Function& exchange = (to & bit) != 0 ? program.charts[j].to : program.charts[j].back;
+        at.x = program::interpret(exchange, at, digits).results[0];
+      }
+    } catch (const std::domain_error&) {
+      continue;
+    }
+    // Formulas of a few sines: what they lose is far below this.
+    const std::vector<std::vector<double>> bounds{std::vector<double>(at.x.size(), 1e-14)};
+    if (const auto found = rounded("chart", {at.x}, bounds)) {
+      vector.functions.push_back(*found);
+      vector.functions.back().to = to;
+    }
+  }
+}
+
+std::string comment(const Dialect& dialect, const std::string& text) { return dialect.line_comments ? "// " + text : "/* " + text + " */"; }
+
+class Body {
+ public:
+  Body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect)
+      : program_(program), context_(context), names_(names), dialect_(dialect), at_p_(1 + program.state_count()),
+        at_u_(at_p_ + context.parameters.size()) {}
+
+  std::string operator()() {
+    points();
+    defaults();
+    std::vector<std::pair<std::string, int>> keys;  // in the order in which they are met
+    for (const TestVector& test : context_.tests) {
+      for (const FunctionValues& f : test.functions) {
+        const std::pair<std::string, int> key{f.function, f.to};
+        if (std::find(keys.begin(), keys.end(), key) == keys.end()) keys.push_back(key);
+      }
+    }
+    for (const auto& [function, to] : keys) hold(function, to);
+    return text_ + "  return 0;";
+  }
+
+ private:
+  static std::string list(const std::vector<double>& values) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ", ") + decimal(value);
+    return text;
+  }
+
+  void points() {
+    std::string rows, modes;
+    for (const TestVector& test : context_.tests) {
+      std::vector<double> all{test.t};
+      for (const auto* part : {&test.x, &test.p, &test.u}) all.insert(all.end(), part->begin(), part->end());
+      rows += wrapped("      {" + list(all) + "}", "       ") + ",\n";
+      modes += (modes.empty() ? "" : ", ") + std::to_string(test.mode);
+    }
+    rows.erase(rows.size() - 2);
+    text_ += fmt::format("  {}\n", comment(dialect_, "t, x, p, u of each state"));
+    text_ += fmt::format("  static const double points[{}][{}] = {{\n{}}};\n", context_.tests.size(), at_u_ + context_.inputs.size(), rows);
+    with_modes_ = std::any_of(context_.tests.begin(), context_.tests.end(), [](const TestVector& test) { return test.mode != 0; });
+    if (with_modes_) text_ += wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context_.tests.size(), modes), "      ") + "\n";
+    const TestVector& first = context_.tests.front();
+    starts_ = first.x == context_.start && first.mode == 0 && first.t == context_.start_time;
+    for (std::size_t i = 0; i < first.p.size(); ++i) starts_ = starts_ && first.p[i] == context_.parameters[i].value;
+    for (std::size_t i = 0; i < first.u.size(); ++i) starts_ = starts_ && first.u[i] == context_.inputs[i].value;
+  }
+
+  /// The first state is that of the defaults.
+  void defaults() {
+    if (!starts_) return;
+    const std::size_t n = program_.state_count(), count = context_.parameters.size();
+    text_ += fmt::format("  {{\n    double x[{}], p[{}];\n    int i;\n    {}(x, p);\n", n, std::max<std::size_t>(1, count), names_.called("defaults"));
+    text_ += fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(x[i] == points[0][1 + i])) return 1;\n    }}\n", n);
+    if (count > 0) text_ += fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(p[i] == points[0][{} + i])) return 1;\n    }}\n", count, at_p_);
+    text_ += "  }\n";
+  }
+
+  struct Row {
+    std::size_t state;
+    const FunctionValues* values;
+  };
+  std::vector<Row> rows_of(const std::string& function, int to) const {
+    std::vector<Row> rows;
+    for (std::size_t k = 0; k < context_.tests.size(); ++k) {
+      for (const FunctionValues& f : context_.tests[k].functions) {
+        if (f.function == function && f.to == to) rows.push_back({k, &f});
+      }
+    }
+    return rows;
+  }
+
+  void hold(const std::string& function, int to) {
+    const std::vector<Row> rows = rows_of(function, to);
+    std::string numbers, states;
+    for (const Row& row : rows) {
+      std::vector<double> all;
+      for (std::size_t r = 0; r < row.values->values.size(); ++r) {
+        all.push_back(row.values->tolerances[r]);
+        all.insert(all.end(), row.values->values[r].begin(), row.values->values[r].end());
+      }
+      numbers += wrapped("        {" + list(all) + "}", "         ") + ",\n";
+      states += (states.empty() ? "" : ", ") + std::to_string(row.state);
+    }
+    numbers.erase(numbers.size() - 2);
+    const std::vector<std::vector<double>>& shape = rows.front().values->values;
+    std::size_t width = 0;
+    for (const auto& array : shape) width += 1 + array.size();
+    text_ += fmt::format("  {{  {}\n", comment(dialect_, function + ": what rounding explains, then the values, for each array"));
+    text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
+    text_ += fmt::format("    static const double expected[{}][{}] = {{\n{}}};\n", rows.size(), width, numbers);
+    text_ += fmt::format("    for (int k = 0; k < {}; ++k) {{\n", rows.size());
+    text_ += "      const int state = at[k];\n";
+    text_ += fmt::format("      const double* const point = points[state];\n");
+    std::string arrays;
+    for (std::size_t r = 0; r < shape.size(); ++r) {
+      text_ += fmt::format("      double y{}[{}] = {{0}};\n", r + 1, std::max<std::size_t>(1, shape[r].size()));
+      arrays += fmt::format(", y{}", r + 1);
+    }
+    const std::size_t prepared = program_.prepared_count();
+    if (function == "rhs_prepared") text_ += fmt::format("      double w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", prepared, names_.called("prepare"), at_p_);
+    text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function), arguments(function, to), arrays), "          ") + "\n";
+    std::size_t place = 0;
+    for (std::size_t r = 0; r < shape.size(); ++r) {
+      if (!shape[r].empty()) text_ += fmt::format("      if ({}({}, y{}, expected[k] + {})) return state + 1;\n", names_.differs, shape[r].size(), r + 1, place);
+      place += 1 + shape[r].size();
+    }
+    text_ += "    }\n  }\n";
+  }
+
+  std::string arguments(const std::string& function, int to) const {
+    const std::string p = fmt::format("point + {}", at_p_), mode = with_modes_ ? "modes[state]" : "0";
+    if (function == "prepare") return p;
+    if (function == "chart") return fmt::format("point + 1, {}, {}", mode, to);
+    const std::string of_state = "point[0], point + 1, " + p;
+    if (function == "mass" || function == "constraints") return of_state;
+    if (function == "mass_in" || function == "constraints_in") return fmt::format("{}, {}", of_state, mode);
+    // At the first state the inputs are their defaults, as they are where none are given.
+    const std::string given = fmt::format("point + {}", at_u_);
+    const std::string u = context_.inputs.empty() ? names_.null : starts_ ? fmt::format("state > 0 ? {} : {}", given, names_.null) : given;
+    const std::string w = function == "rhs_prepared" ? ", w" : "", order = function == "taylor" ? fmt::format(", {}", taylor_order) : "";
+    return fmt::format("{}{}, {}, {}{}", of_state, w, u, mode, order);
+  }
+
+  const program::Program& program_;
+  const EmissionContext& context_;
+  const SelfTestNames& names_;
+  const Dialect& dialect_;
+  std::size_t at_p_, at_u_;
+  bool with_modes_ = false, starts_ = false;
+  std::string text_;
+};
+
+}  // namespace
+
+std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at, std::size_t index) {
+  const program::AbiArguments arguments = arguments_of(at, context);
+  const bool smooth = (at.mode & ~eom::chart_bits) == 0, own = (at.mode & eom::chart_bits) == 0;
+  at.functions.clear();
+  const std::optional<FunctionValues> rhs = values_at(program, "rhs", arguments);
+  if (!rhs) return std::nullopt;
+  for (const std::string& name : program::abi_function_names(program)) {
+    const bool of_mode = program::has_mode(name) || name == "prepare";
+    if (!of_mode && !smooth) continue;
+    if (name != "rhs" && !is_held(entries(program, name), index)) continue;
+    std::optional<FunctionValues> values = name == "rhs" ? rhs : values_at(program, name, arguments);
+    if (!values) continue;
+    if (of_mode || own) at.functions.push_back(*values);
+    if (of_mode || program.charts.empty()) continue;
+    values->function += "_in";
+    at.functions.push_back(*values);
+  }
+  if (smooth) add_charts(program, arguments, at);
+  return at;
+}
+
+std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect) {
+  if (context.tests.empty()) return fmt::format("  {}\n  return 0;", comment(dialect, "no values were given"));
+  return Body(program, context, names, dialect)();
+}
+
+std::string selftest_comparison(const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect) {
+  if (context.tests.empty()) return "";
+  return fmt::format("{}\n{} int {}(int count, const double* got, const double* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
+                     "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
+                     comment(dialect, "Whether values are off the expected ones by more than expected[0]."), dialect.line_comments ? "inline" : "static",
+                     names.differs, dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,214 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/abi_values.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <eom/modes/chart_state.hpp>
+#include <functional>
+#include <limits>
+#include <stdexcept>
+
+#include "program/kinks.hpp"
+#include "program/rounding.hpp"
+
+namespace eomgen::program {
+namespace {
+
+using cln::cl_R;
+
+const Function* find(const Program& program, const std::string& name) {
+  const auto found = std::find_if(program.functions.begin(), program.functions.end(), [&](const Function& f) { return f.name == name; });
+  return found == program.functions.end() ? nullptr : &*found;
+}
+
+template <class Real>
+Arguments<Real> prepared_for(const Program& program, const std::string& function, Arguments<Real> at, const std::vector<Real>& defaults) {
+  at.side.assign(program.kinks.size(), Real(0));
+  if (!has_mode(function)) {
+    at.u = defaults;
+    at.mode = 0;
+    return at;
+  }
+  for (std::size_t k = 0; k < at.side.size(); ++k) {
+    const std::size_t bit = first_kink_bit + 2 * k;
+    at.side[k] = Real((at.mode >> bit & 1) - (at.mode >> (bit + 1) & 1));
+  }
+  return at;
+}
+
+Values<cl_R> run(const Function& function, const Arguments<cl_R>& at, int digits) { return interpret(function, at, digits); }
+Values<double> run(const Function& function, const Arguments<double>& at, int) { return interpret(function, at); }
+
+// Whether the emitted code would go on: pivots, and what ends it with a code.
+bool ends_well(const Function& function, const Values<cl_R>& values) {
+  for (const auto& [pivot, scale] : values.pivots) {
+    const cl_R least = cl_R(2 * pivot_tolerance) * cln::abs(scale);
+    if (cln::zerop(pivot) || cln::abs(pivot) <= least) return false;
+  }
+  for (std::size_t r = 0; r < values.results.size(); ++r) {
+    if (!is_code(function.results[r].first)) continue;
+    if (std::any_of(values.results[r].begin(), values.results[r].end(), [](const cl_R& code) { return cln::minusp(code); })) return false;
+  }
+  return true;
+}
+
+template <class Real>
+void drop_codes(const Function& function, std::vector<std::vector<Real>>& results) {
+  for (std::size_t r = results.size(); r-- > 0;) {
+    if (is_code(function.results[r].first)) results.erase(results.begin() + static_cast<std::ptrdiff_t>(r));
+  }
+}
+
+/// Entries that only other charts have stay 0.
+template <class Real>
+void put_in_place(const Program& all, const Function& function, std::vector<std::vector<Real>>& results) {
+  if (function.places.empty()) return;
+  std::vector<Real> whole(function.name == "outputs" ? all.outputs.size() : results[0].size(), Real(0));
+  for (std::size_t i = 0; i < function.places.size(); ++i) whole.at(function.places[i]) = results[0][i];
+  results[0] = std::move(whole);
+}
+
+/// The prepared values, one chart after the other.
+template <class Result, class One>
+Result all_prepared(const Program& program, const One& one) {
+  Result result = one(*find(program, "prepare"));
+  for (const Program& other : program.second) {
+    const Function* prepare = find(other, "prepare");
+    if (prepare == nullptr) continue;
+    const Result more = one(*prepare);
+    result.insert(result.end(), more.begin(), more.end());
+  }
+  return result;
+}
+
+/// The recurrences, driven as emitted code does (templates, emit/taylor.cpp). `checked` says whether the start is regular.
+template <class Real>
+std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real>& at, int order, int digits, const std::function<bool(const Values<Real>&)>& checked) {
+  std::vector<Real> coefficients = at.x;
+  const std::size_t n = at.x.size();
+  if (order == 0) return coefficients;
+  const Values<Real> start = run(taylor.start, at, digits);
+  if (!checked(start)) throw std::domain_error("the start of the series is singular");
+  std::vector<Real> w = start.results[0], after = start.results[1];
+  w.resize(taylor.prepared(), Real(0));
+  coefficients.insert(coefficients.end(), after.begin(), after.end());
+  std::vector<std::vector<Real>> a{{}}, b{{}};  // factors by order, from 1
+  for (int k = 1; k < order; ++k) {
+    for (std::size_t i = 0; i < taylor.products; ++i) {
+      Real sum = 0;
+      for (int j = 1; j < k; ++j) sum = sum + a[static_cast<std::size_t>(j)][i] * b[static_cast<std::size_t>(k - j)][i];
+      w[taylor.zeros + i] = sum;
+    }
+    w[taylor.prepared() - 2] = Real(k == 1 ? 1 : 0);
+    w[taylor.prepared() - 1] = Real(1) / Real(k);
+    Arguments<Real> next{Real(k), {coefficients.end() - static_cast<std::ptrdiff_t>(n), coefficients.end()}, at.p, at.u, w, at.side, at.mode};
+    const Values<Real> values = run(taylor.next, next, digits);
+    a.push_back(values.results[0]);
+    b.push_back(values.results[1]);
+    a.back().resize(taylor.products, Real(0));
+    b.back().resize(taylor.products, Real(0));
+    for (const Real& value : values.results[2]) coefficients.push_back(value / Real(k + 1));
+  }
+  return coefficients;
+}
+
+Arguments<double> in_binary64(const Arguments<cl_R>& at) {
+  Arguments<double> result{cln::double_approx(at.t), {}, {}, {}, {}, {}, at.mode};
+  for (const auto& [from, to] : {std::pair{&at.x, &result.x}, {&at.p, &result.p}, {&at.u, &result.u}}) {
+    for (const cl_R& value : *from) to->push_back(cln::double_approx(value));
+  }
+  return result;
+}
+
+std::vector<double> in_binary64(const std::vector<cl_R>& values) {
+  std::vector<double> result;
+  for (const cl_R& value : values) result.push_back(cln::double_approx(value));
+  return result;
+}
+
+}  // namespace
+
+const Program* in_charts(const Program& program, int mode) {
+  if (eom::charts_of(mode) == eom::charts_of(program.in_charts)) return &program;
+  for (const Program& other : program.second) {
+    if (eom::charts_of(mode) == eom::charts_of(other.in_charts)) return &other;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> abi_function_names(const Program& program) {
+  std::vector<std::string> names;
+  for (const Function& function : program.functions) names.push_back(function.name);
+  if (program.taylor) names.emplace_back("taylor");
+  return names;
+}
+
+bool has_mode(const std::string& function) { return function != "mass" && function != "constraints" && function != "prepare"; }
+
+std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments, int digits) try {
+  const Program* const here = in_charts(program, arguments.at.mode);
+  if (here == nullptr) return std::nullopt;
+  Arguments<cl_R> at = prepared_for(*here, function, arguments.at, arguments.default_inputs);
+  if (function == "taylor") {
+    const auto checked = [&](const Values<cl_R>& values) { return ends_well(here->taylor->start, values); };
+    return AbiResults{taylor_coefficients<cl_R>(*here->taylor, at, arguments.order, digits, checked)};
+  }
+  if (function == "prepare") {
+    return AbiResults{all_prepared<std::vector<cl_R>>(program, [&](const Function& prepare) { 
+      Values<cl_R> values = interpret(prepare, at, digits);
+      if (!ends_well(prepare, values)) throw std::domain_error("singular");
+      return values.results[0];
+    })};
+  }
+  const Function* wanted = find(*here, function);
+  if (function == "rhs_prepared") {
+    if (wanted == nullptr) wanted = find(*here, "rhs");  // nothing worth preparing in this chart
+    else at.w = interpret(*find(*here, "prepare"), at, digits).results[0];
+  }
+  if (wanted == nullptr) return std::nullopt;
+  Values<cl_R> values = interpret(*wanted, at, digits);
+  if (!ends_well(*wanted, values)) return std::nullopt;
+  drop_codes(*wanted, values.results);
+  put_in_place(program, *wanted, values.results);
+  return std::move(values.results);
+} catch (const std::domain_error&) {
+  return std::nullopt;
+}
+
+std::vector<std::vector<double>> abi_bounds(const Program& program, const std::string& function, const AbiArguments& arguments) {
+  const Program& here = *in_charts(program, arguments.at.mode);
+  Arguments<double> at = prepared_for(here, function, in_binary64(arguments.at), in_binary64(arguments.default_inputs));
+  if (function == "taylor") {
+    // The recurrences couple orders: what binary64 has been off by here, and a hundred times that.
+    constexpr int digits = 40;
+    constexpr double caution = 100;
+    const std::optional<AbiResults> exact = abi_values(program, function, arguments, digits);
+    if (!exact) return {std::vector<double>(at.x.size() * static_cast<std::size_t>(arguments.order + 1), std::numeric_limits<double>::infinity())};
+    const std::vector<double> got = taylor_coefficients<double>(*here.taylor, at, arguments.order, 0, [](const Values<double>&) { return true; });
+    std::vector<double> off;
+    double largest = 0;
+    for (const double value : got) largest = std::max(largest, std::fabs(value));
+    for (std::size_t i = 0; i < got.size(); ++i) off.push_back(caution * (std::fabs(got[i] - cln::double_approx(exact->front()[i])) + half_unit * largest));
+    return {off};
+  }
+  if (function == "prepare") {
+    return {all_prepared<std::vector<double>>(program, [&](const Function& prepare) { return rounding_bounds(prepare, at)[0]; })};
+  }
+  const Function* wanted = find(here, function);
+  std::vector<double> w_off;
+  if (function == "rhs_prepared") {
+    if (wanted == nullptr) {
+      wanted = find(here, "rhs");
+    } else {
+      const Function& prepare = *find(here, "prepare");
+      at.w = interpret(prepare, at).results[0];
+      w_off = rounding_bounds(prepare, at)[0];
+    }
+  }
+  std::vector<std::vector<double>> bounds = rounding_bounds(*wanted, at, w_off);
+  drop_codes(*wanted, bounds);
+  put_in_place(program, *wanted, bounds);
+  return bounds;
+}
+
+}  // namespace eomgen::program

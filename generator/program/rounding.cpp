@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/rounding.hpp"
+
+#include <cln/dfloat.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace eomgen::program {
+namespace {
+
+using symbolic::Op;
+
+constexpr double infinite = std::numeric_limits<double>::infinity();
+constexpr double least_normal = std::numeric_limits<double>::min();  // what is smaller loses digits
+constexpr double library = 4;                                        // half units of the C library's functions
+
+/// A value and how far it may be off.
+struct Bounded {
+  double value = 0, off = 0;
+};
+
+Bounded rounded(double value, double off, double half_units = 1) {
+  if (!std::isfinite(value)) return {value, infinite};
+  return {value, off + half_units * half_unit * std::fabs(value) + (value == 0 && off == 0 ? 0 : least_normal)};
+}
+
+/// x times y, of which one may be 0 and the other infinite.
+double times(double x, double y) { return x == 0 || y == 0 ? 0 : x * y; }
+
+Bounded product(const Bounded& a, const Bounded& b) {
+  const double off = times(a.off, std::fabs(b.value)) + times(std::fabs(a.value), b.off) + times(a.off, b.off);
+  if (a.value == 0 && a.off == 0) return {0, 0};
+  if (b.value == 0 && b.off == 0) return {0, 0};
+  return rounded(a.value * b.value, off);
+}
+
+Bounded quotient(const Bounded& a, const Bounded& b) {
+  const double least = std::fabs(b.value) - b.off;  // of the denominator
+  if (!(least > 0)) return {a.value / b.value, infinite};
+  const double value = a.value / b.value;
+  return rounded(value, (a.off + std::fabs(value) * b.off) / least);
+}
+
+Bounded root(const Bounded& a) {
+  if (a.value - a.off > 0) return rounded(std::sqrt(a.value), a.off / std::sqrt(a.value - a.off));
+  return a.off == 0 && a.value == 0 ? Bounded{0, 0} : Bounded{std::sqrt(std::max(0.0, a.value)), std::sqrt(std::fabs(a.value) + a.off)};
+}
+
+Bounded power(const Bounded& a, const Bounded& b) {
+  const double value = std::pow(a.value, b.value);
+  const double off = std::fabs(value) * (std::fabs(b.value) * a.off / std::fabs(a.value) + std::fabs(std::log(a.value)) * b.off);
+  return rounded(value, off, library);
+}
+
+Bounded inverse_sine(Op op, const Bounded& a) {
+  const double inside = (1 - std::fabs(a.value) - a.off) * (1 + std::fabs(a.value));
+  const double off = inside > 0 ? a.off / std::sqrt(inside) : a.off == 0 ? 0 : std::sqrt(2 * a.off);
+  return rounded(op == Op::asin ? std::asin(a.value) : std::acos(a.value), off, library);
+}
+
+Bounded of_one(Op op, const Bounded& a) {
+  const double x = a.value;
+  // The slope at x, and one half of what the curvature adds.
+  const auto smooth = [&](double value, double slope) { return rounded(value, times(std::fabs(slope), a.off) + times(a.off, a.off), library); };
+  switch (op) {
+    case Op::sqrt: return root(a);
+    case Op::sin: return smooth(std::sin(x), std::cos(x));
+    case Op::cos: return smooth(std::cos(x), std::sin(x));
+    case Op::tan: return smooth(std::tan(x), 1 + std::tan(x) * std::tan(x));
+    case Op::asin: case Op::acos: return inverse_sine(op, a);
+    case Op::atan: return smooth(std::atan(x), 1 / (1 + x * x));
+    case Op::sinh: return smooth(std::sinh(x), std::cosh(x));
+    case Op::cosh: return smooth(std::cosh(x), std::sinh(x));
+    case Op::tanh: return smooth(std::tanh(x), 1 - std::tanh(x) * std::tanh(x));
+    case Op::exp: return smooth(std::exp(x), std::exp(x));
+    case Op::log: return x - a.off > 0 ? smooth(std::log(x), 1 / (x - a.off)) : Bounded{std::log(x), infinite};
+    case Op::abs: return {std::fabs(x), a.off};
+    case Op::sign: return {x > 0 ? 1.0 : x < 0 ? -1.0 : x, std::fabs(x) < a.off ? infinite : 0};
+    default: return {std::nan(""), infinite};
+  }
+}
+
+/// Whether rounding may turn a < b into its opposite.
+bool undecided(const Bounded& a, const Bounded& b) { return a.off + b.off > 0 && std::fabs(a.value - b.value) <= a.off + b.off; }
+
+Bounded of_two(Op op, const Bounded& a, const Bounded& b) {
+  switch (op) {
+    case Op::div: return quotient(a, b);
+    case Op::pow: return power(a, b);
+    case Op::atan2: {
+      const double square = a.value * a.value + b.value * b.value;
+      return rounded(std::atan2(a.value, b.value), (std::fabs(b.value) * a.off + std::fabs(a.value) * b.off) / square, library);
+    }
+    case Op::min: return {std::min(a.value, b.value), std::max(a.off, b.off)};
+    case Op::max: return {std::max(a.value, b.value), std::max(a.off, b.off)};
+    default: return {std::nan(""), infinite};
+  }
+}
+
+class Run {
+ public:
+  Run(const Function& function, const Arguments<double>& arguments, const std::vector<double>& w_off)
+      : function_(function), arguments_(arguments), w_off_(w_off) {}
+
+  std::vector<std::vector<double>> operator()() {
+    for (const Instruction& instruction : function_.code) value_.push_back(of(instruction));
+    std::vector<std::vector<double>> result;
+    for (const auto& [name, entries] : function_.results) {
+      result.emplace_back();
+      for (const Operand& entry : entries) {
+        const Bounded b = read(entry);
+        result.back().push_back(std::isfinite(b.value) && std::isfinite(b.off) ? b.off : infinite);
+      }
+    }
+    return result;
+  }
+
+ private:
+  Bounded leaf(const Operand& operand) const {
+    switch (operand.slot) {
+      case Slot::constant: {
+        const symbolic::Rational& exact = function_.constants[operand.index];
+        const double value = cln::double_approx(exact);
+        return {value, exact == cln::rational(cln::cl_DF(value)) ? 0 : half_unit * std::fabs(value)};
+      }
+      case Slot::pi: return {3.14159265358979323846, 2 * half_unit};
+      case Slot::time: return {arguments_.t, 0};
+      case Slot::state: return {arguments_.x.at(operand.index), 0};
+      case Slot::parameter: return {arguments_.p.at(operand.index), 0};
+      case Slot::input: return {arguments_.u.at(operand.index), 0};
+      case Slot::prepared: return {arguments_.w.at(operand.index), operand.index < w_off_.size() ? w_off_[operand.index] : 0};
+      case Slot::side: return {operand.index < arguments_.side.size() ? arguments_.side[operand.index] : 0, 0};
+      case Slot::contact: return {static_cast<double>(eom::contact_leaf(arguments_.mode, operand.index)), 0};
+      case Slot::value: break;
+    }
+    return value_[operand.index];
+  }
+  Bounded read(const Operand& operand) const {
+    Bounded result = leaf(operand);
+    if (operand.negated) result.value = -result.value;
+    return result;
+  }
+
+  Bounded of(const Instruction& instruction) const {
+    std::vector<Bounded> o;
+    for (const Operand& operand : instruction.operands) o.push_back(read(operand));
+    if (instruction.op == Op::add || instruction.op == Op::mul) {
+      Bounded result = o[0];
+      for (std::size_t i = 1; i < o.size(); ++i) {
+        result = instruction.op == Op::add ? rounded(result.value + o[i].value, result.off + o[i].off) : product(result, o[i]);
+      }
+      return result;
+    }
+    if (instruction.op == Op::select) return undecided(o[0], o[1]) ? Bounded{0, infinite} : o[0].value < o[1].value ? o[2] : o[3];
+    return o.size() == 1 ? of_one(instruction.op, o[0]) : of_two(instruction.op, o[0], o[1]);
+  }
+
+  const Function& function_;
+  const Arguments<double>& arguments_;
+  const std::vector<double>& w_off_;
+  std::vector<Bounded> value_;
+};
+
+}  // namespace
+
+std::vector<std::vector<double>> rounding_bounds(const Function& function, const Arguments<double>& arguments, const std::vector<double>& w_off) {
+  return Run(function, arguments, w_off)();
+}
+
+}  // namespace eomgen::program

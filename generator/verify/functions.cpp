@@ -1,0 +1,395 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/functions.hpp"
+
+#include <cln/dfloat.h>
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "symbolic/evaluate.hpp"
+#include "verify/plain_forces.hpp"
+
+namespace eomgen::verify {
+namespace {
+
+using symbolic::Ref;
+using system::EquationSystem;
+
+Real ten_to(int exponent) { return cln::expt(cln::cl_RA(10), cln::cl_I(exponent)); }
+
+/// The same numbers with more digits: a sum of floats has those of the shorter one.
+At with_digits(const At& at, const Precision& precision) {
+  At result = at;
+  result.t = precision.round(at.t);
+  for (auto* part : {&result.x, &result.p, &result.u})
+    for (Real& value : *part) value = precision.round(value);
+  return result;
+}
+
+/// A direction without zeros, the same everywhere.
+Real component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
+
+class Functions {
+ public:
+  Functions(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally)
+      : program_(subjects.programs.front()), v_(v), judge_(judge), tally_(tally), s_(system_of(subjects)),
+        at_(arguments_at(subjects.systems.front(), v.state, mode)), lookup_(judge, v.state) {
+    lookup_.lambda = v.lambda;
+  }
+
+  void operator()() {
+    for (const std::string& function : program_.functions) {
+      if (function == "rhs" || function == "prepare") continue;  // held elsewhere, and by what is made of it
+      const std::optional<Arrays> values = program_.call(function, at_, judge_.digits());
+      if (!values) continue;
+      sizes_ = sizes(function, *values);
+      if (sizes_.empty()) continue;  // too near another branch
+      if (function == "rhs_prepared") prepared(*values);
+      if (function == "jac") jacobian(*values);
+      if (function == "jac_p") parameters(*values);
+      if (function == "mass") mass(*values);
+      if (function == "constraints") constraints(*values);
+      if (function == "momenta") momenta(*values);
+      if (function == "reactions") reactions(*values);
+      if (function == "outputs") outputs(*values);
+      if (function == "events") events(*values);
+      if (function == "taylor") taylor();
+    }
+  }
+
+ private:
+  /// The system of the program's route.
+  const EquationSystem& system_of(const Subjects& subjects) const {
+    for (const EquationSystem& s : subjects.systems) {
+      if (s.route == program_.route && s.approach == program_.approach) return s;
+    }
+    return subjects.systems.front();
+  }
+
+  Arrays sizes(const std::string& function, const Arrays& values) const {
+    const std::vector<std::vector<double>> bounds = program_.bounds(function, at_);
+    Arrays result;
+    for (std::size_t r = 0; r < values.size(); ++r) {
+      result.emplace_back();
+      for (std::size_t i = 0; i < values[r].size(); ++i) {
+        if (!std::isfinite(bounds[r][i])) return {};
+        result.back().push_back(cln::abs(values[r][i]) + size_of_rounding(bounds[r][i], judge_.precision()));
+      }
+    }
+    return result;
+  }
+
+  void note(const std::string& function, const std::string& against, double difference) {
+    tally_.note(function + " of " + program_.name, against, true, difference);
+  }
+
+  std::vector<Real> evaluate(const std::vector<Ref>& roots, const Lookup& lookup) const {
+    return symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits());
+  }
+
+  /// Values of the system's expressions, each with the size of what is summed in it: by what its last digits lose, and by what accelerations and
+  /// multipliers of the size of their scales would make of it.
+  struct Sized {
+    std::vector<Real> values, sizes;
+  };
+  Sized sized(const std::vector<Ref>& roots, const Lookup& lookup) const {
+    constexpr int more = 20, caution = 3;  // digits
+    Lookup large = lookup;
+    for (std::size_t i = 0; i < large.state.qddot.size(); ++i) large.state.qddot[i] = cln::abs(large.state.qddot[i]) + v_.scale[i];
+    for (std::size_t k = 0; k < large.lambda.size(); ++k) large.lambda[k] = cln::abs(large.lambda[k]) + v_.scale[large.state.qddot.size() + k];
+    const std::vector<Real> precise = symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits() + more);
+    const std::vector<Real> largest = evaluate(roots, large);
+    Sized result{evaluate(roots, lookup), {}};
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      const Real& value = result.values[i];
+      result.sizes.push_back(cln::abs(value) + cln::abs(largest[i]) + cln::abs(value - precise[i]) * ten_to(judge_.digits() + caution));
+    }
+    return result;
+  }
+
+  /// Array `r` against these expressions of the system.
+  double against(const Arrays& values, std::size_t r, const std::vector<Ref>& roots, const Lookup& lookup) const {
+    const Sized expected = sized(roots, lookup);
+    double largest = 0;
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      largest = std::max(largest, relative(values[r].at(i) - expected.values[i], sizes_[r].at(i) + expected.sizes[i]));
+    }
+    return largest;
+  }
+
+  /// [f(at + h) - f(at - h)]/2h of the right-hand side; `shift` moves the arguments by a multiple of the direction.
+  template <class Shift>
+  std::optional<Arrays> slope(const std::string& function, const Shift& shift) const {
+    const int digits = tally_.digits(), more = 3 * digits + 10;
+    const Precision precision(more);
+    const Real h = precision.round(ten_to(-digits));
+    At above = with_digits(at_, precision), below = above;
+    shift(above, h);
+    shift(below, -h);
+    const std::optional<Arrays> high = program_.call(function, above, more), low = program_.call(function, below, more);
+    if (!high || !low) return std::nullopt;
+    Arrays result = *high;
+    for (std::size_t r = 0; r < result.size(); ++r)
+      for (std::size_t i = 0; i < result[r].size(); ++i) result[r][i] = (result[r][i] - (*low)[r][i]) / (2 * h);
+    return result;
+  }
+  /// The sizes of the right-hand side, as far as its differences lose digits of them.
+  std::vector<Real> noise(const std::string& function) const {
+    const std::optional<Arrays> values = program_.call(function, at_, judge_.digits());
+    if (!values) return {};
+    const Arrays size = sizes(function, *values);
+    if (size.empty()) return {};
+    std::vector<Real> result;
+    for (const Real& one : size[0]) result.push_back(one * ten_to(-tally_.digits()));
+    return result;
+  }
+
+  void prepared(const Arrays& values) {
+    const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
+    if (!rhs) return;
+    double largest = 0;
+    for (std::size_t i = 0; i < values[0].size(); ++i) largest = std::max(largest, relative(values[0][i] - (*rhs)[0][i], sizes_[0][i]));
+    note("rhs_prepared", "its rhs", largest);
+  }
+
+  /// Columns of array `r`, each times its component of the direction, against the slope along it.
+  void along(const std::string& function, const Arrays& values, std::size_t r, const std::vector<Real>& direction, const std::optional<Arrays>& slope) {
+    const std::vector<Real> lost = noise("rhs");
+    if (!slope || lost.empty()) return;
+    const std::size_t rows = lost.size();
+    double largest = 0;
+    for (std::size_t i = 0; i < rows; ++i) {
+      Real sum = 0, size = lost[i];
+      for (std::size_t j = 0; j < direction.size(); ++j) {
+        sum = sum + values[r][i + rows * j] * direction[j];
+        size = size + sizes_[r][i + rows * j] * cln::abs(direction[j]);
+      }
+      largest = std::max(largest, relative(sum - (*slope)[0][i], size));
+    }
+    note(function, "differences of dx", largest);
+  }
+
+  void jacobian(const Arrays& values) {
+    // Off the unit sphere of Euler parameters the equations go on in one way of many, and their slopes in another.
+    const auto on_sphere = [](const model::Frame& frame) { return frame.rotation == "euler_parameters"; };
+    const std::vector<model::Frame>& frames = judge_.model().frames;
+    if (std::any_of(frames.begin(), frames.end(), on_sphere)) return;
+    std::vector<Real> direction;
+    for (std::size_t j = 0; j < at_.x.size(); ++j) direction.push_back(component(j));
+    along("jac", values, 0, direction, slope("rhs", [&](At& at, const Real& h) {
+            for (std::size_t j = 0; j < direction.size(); ++j) at.x[j] = at.x[j] + h * direction[j];
+          }));
+    along("df/dt", values, 1, {Real(1)}, slope("rhs", [](At& at, const Real& h) { at.t = at.t + h; }));
+  }
+
+  void parameters(const Arrays& values) {
+    std::vector<Real> direction;
+    for (std::size_t j = 0; j < at_.p.size(); ++j) direction.push_back(cln::zerop(at_.p[j]) ? component(j) : component(j) * cln::rational(at_.p[j]));
+    along("jac_p", values, 0, direction, slope("rhs", [&](At& at, const Real& h) {
+            for (std::size_t j = 0; j < direction.size(); ++j) at.p[j] = at.p[j] + h * direction[j];
+          }));
+  }
+
+  /// Without friction, and with inputs at their defaults, as the functions without a mode are.
+  Lookup without_mode() const {
+    Lookup lookup = lookup_;
+    std::fill(lookup.state.phi.begin(), lookup.state.phi.end(), Real(0));
+    lookup.state.inputs = program_.default_inputs;
+    return lookup;
+  }
+
+  void mass(const Arrays& values) {
+    const std::size_t n = s_.free.size();
+    std::vector<Ref> M;
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t i = 0; i < n; ++i) M.push_back(s_.M[i * n + j]);
+    std::vector<Ref> h;
+    for (const Ref f : s_.f) h.push_back(s_.dag->neg(f));
+    const Lookup lookup = without_mode();
+    note("mass", name(), std::max(against(values, 0, M, lookup), against(values, 1, h, lookup)));
+  }
+
+  void constraints(const Arrays& values) {
+    const std::size_t n = s_.free.size(), m = s_.active.size();
+    std::vector<Ref> A;
+    for (std::size_t j = 0; j < n; ++j)
+      for (std::size_t k = 0; k < m; ++k) A.push_back(s_.A[k * n + j]);
+    const Lookup lookup = without_mode();
+    note("constraints", name(), std::max({against(values, 0, s_.psi, lookup), against(values, 1, A, lookup), against(values, 2, s_.b, lookup)}));
+  }
+
+  void reactions(const Arrays& values) {
+    std::vector<Ref> roots;
+    for (const system::Reaction& reaction : s_.reactions) roots.push_back(reaction.value);
+    note("reactions", name(), against(values, 0, roots, lookup_));
+  }
+
+  /// Those that the system has; what is conserved is offered by the program's own one only.
+  void outputs(const Arrays& values) {
+    std::vector<Ref> roots;
+    std::vector<std::size_t> places;
+    for (std::size_t i = 0; i < program_.outputs.size(); ++i) {
+      const auto found = std::find_if(s_.outputs.begin(), s_.outputs.end(), [&](const system::Output& o) { return o.name == program_.outputs[i]; });
+      if (found == s_.outputs.end()) continue;
+      roots.push_back(found->value);
+      places.push_back(i);
+    }
+    const Sized expected = sized(roots, lookup_);
+    double largest = 0;
+    for (std::size_t i = 0; i < roots.size(); ++i) {
+      largest = std::max(largest, relative(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
+    }
+    if (!roots.empty()) note("outputs", name(), largest);
+  }
+
+  void events(const Arrays& values) {
+    std::vector<Ref> roots;
+    for (const system::Event& event : s_.events) roots.push_back(event.value);
+    if (!roots.empty()) note("events", name(), against(values, 0, roots, lookup_));
+  }
+
+  /// dL/dqdot along a direction of the rates; and their rates along the path, where the constraints and friction have their part.
+  void momenta(const Arrays& values) {
+    const std::size_t n = s_.free.size();
+    const int digits = tally_.digits(), more = 3 * digits + 10;
+    const Precision precision(more);
+    const Real h = precision.round(ten_to(-digits));
+    const auto lagrangian = [&](const Real& step) {
+      Lookup lookup = lookup_;
+      for (std::size_t i = 0; i < n; ++i) {
+        Real& rate = lookup.state.qdot[s_.free[i]];
+        rate = precision.round(rate) + step * component(i);
+      }
+      const std::vector<Real> energies = symbolic::evaluate(*s_.dag, {s_.kinetic, s_.potential}, lookup, more);
+      return Real(energies[0] - energies[1]);
+    };
+    Real sum = 0, size = (cln::abs(v_.kinetic) + cln::abs(v_.potential)) * ten_to(-digits);
+    for (std::size_t i = 0; i < n; ++i) {
+      sum = sum + values[0][i] * component(i);
+      size = size + sizes_[0][i] * cln::abs(component(i));
+    }
+    note("momenta", "the Lagrangian of " + name(), relative(sum - (lagrangian(h) - lagrangian(-h)) / (2 * h), size));
+
+    const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
+    if (!rhs) return;
+    const std::optional<Arrays> slopes = slope("momenta", [&](At& at, const Real& step) {
+      at.t = at.t + step;
+      for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] = at.x[i] + step * cln::rational((*rhs)[0][i]);
+    });
+    const std::vector<Real> lost = noise("momenta");
+    if (!slopes || lost.empty()) return;
+    Lookup frictionless = lookup_;
+    std::fill(frictionless.state.phi.begin(), frictionless.state.phi.end(), Real(0));
+    const std::vector<Real> with = evaluate(s_.f, lookup_), without = evaluate(s_.f, frictionless), A = evaluate(s_.A, lookup_);
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      Residual expected{values[1][i] + with[i] - without[i], sizes_[1][i] + lost[i] + cln::abs(with[i]) + cln::abs(without[i])};
+      for (std::size_t k = 0; k < s_.active.size(); ++k) {
+        const Real& slope = A[k * n + i];
+        expected.add(slope * v_.lambda[s_.active[k]], cln::abs(slope) * v_.scale[v_.state.qddot.size() + s_.active[k]]);
+      }
+      largest = std::max(largest, relative((*slopes)[0][i] - expected.value, expected.scale));
+    }
+    note("rates of momenta", "momenta along the path", largest);
+  }
+
+  /// The polynomial X of order K obeys X' = f(X) but for terms of h^K: h is so small that these are beyond the digits compared.
+  void taylor() {
+    constexpr int order = 4, beyond = 20;
+    const int exponent = tally_.digits() + beyond, more = order * exponent + 60;
+    const Precision precision(more);
+    const Real h = precision.round(ten_to(-exponent));
+    At at = with_digits(at_, precision);
+    at.order = order;
+    const std::optional<Arrays> c = program_.call("taylor", at, more);
+    if (!c) return;
+    const std::size_t n = at_.x.size();
+    std::vector<Real> x(n, Real(0)), rate(n, Real(0));
+    Real last = 0;
+    for (std::size_t k = order + 1; k-- > 0;) {
+      for (std::size_t i = 0; i < n; ++i) {
+        const Real& coefficient = (*c)[0][i + n * k];
+        x[i] = x[i] * h + coefficient;
+        if (k > 0) rate[i] = rate[i] * h + Real(static_cast<long>(k)) * coefficient;
+        if (k == order) last = cln::max(last, cln::abs(coefficient));
+      }
+    }
+    if (cln::zerop(last)) return;
+    at.x = x;
+    at.t = at.t + h;
+    const std::optional<Arrays> rhs = program_.call("rhs", at, more);
+    if (!rhs) return;
+    const Real size = last * order * cln::expt(h, order - 1);
+    double largest = 0;
+    for (std::size_t i = 0; i < n; ++i) largest = std::max(largest, relative(rate[i] - (*rhs)[0][i], size));
+    note("taylor", "dx along the series", largest);
+  }
+
+  std::string name() const { return s_.route + " " + system::name(s_.approach); }
+
+  const ProgramForm& program_;
+  const SystemValues& v_;
+  const Judge& judge_;
+  Tally& tally_;
+  const EquationSystem& s_;
+  At at_;
+  Lookup lookup_;
+  Arrays sizes_;
+};
+
+}  // namespace
+
+Real size_of_rounding(double bound, const Precision& precision) {
+  return precision.round(cln::rational(Real(cln::cl_DF(std::ldexp(bound, 53)))));
+}
+
+At arguments_at(const EquationSystem& s, const State& state, int mode) {
+  At at{state.t, {}, state.parameters, state.inputs, mode, 4};
+  for (const std::uint32_t i : s.free) at.x.push_back(state.q[i]);
+  for (const std::uint32_t i : s.free) at.x.push_back(state.qdot[i]);
+  for (const system::IntegralState& integral : s.integrals) at.x.push_back(state.integrals[integral.integral]);
+  return at;
+}
+
+void compare_functions(const Subjects& subjects, const SystemValues& values, const Judge& judge, int mode, Tally& tally) {
+  if (subjects.programs.empty() || !subjects.programs.front().call) return;
+  Functions(subjects, values, judge, mode, tally)();
+}
+
+void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Judge& judge, int mode, Tally& tally) {
+  if (subjects.programs.empty() || !subjects.programs.front().call) return;
+  const ProgramForm& program = subjects.programs.front();
+  const At at = arguments_at(subjects.systems.front(), rounded, mode);
+  constexpr double largest_number = 1e300, least_number = 1e-290;
+  for (const CompiledForm& form : subjects.compiled) {
+    if (!form.call) continue;
+    for (const std::string& function : program.functions) {
+      const std::optional<Arrays> expected = program.call(function, at, judge.digits());
+      if (!expected) continue;
+      const std::vector<std::vector<double>> bounds = program.bounds(function, at);
+      const std::optional<std::vector<std::vector<double>>> got = form.call(function, at);
+      double largest = got ? 0 : 1;
+      bool known = true;
+      for (std::size_t r = 0; r < expected->size() && got; ++r) {
+        for (std::size_t i = 0; i < (*expected)[r].size(); ++i) {
+          const Real& value = (*expected)[r][i];
+          known = known && std::isfinite(bounds[r][i]) && cln::abs(value) < cln::rational(Real(cln::cl_DF(largest_number)));
+          if (!known) continue;
+          const double entry = (*got)[r][i];
+          if (!std::isfinite(entry)) {
+            largest = 1;
+            continue;
+          }
+          const Real size = cln::abs(value) + size_of_rounding(std::max(bounds[r][i], least_number), judge.precision());
+          largest = std::max(largest, relative(cln::rational(Real(cln::cl_DF(entry))) - value, size));
+        }
+      }
+      if (known) tally.note(function + " of " + form.name, function + " of " + program.name, true, largest, Kind::binary64);
+    }
+  }
+}
+
+}  // namespace eomgen::verify

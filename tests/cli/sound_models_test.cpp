@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sound models that the certificate of compiled code, or the self test, would refuse if numbers were compared relative to the wrong size.
+#include <doctest/doctest.h>
+#include <fmt/format.h>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+std::string particle(const std::string& parameters, const std::string& force) {
+  return fmt::format(R"toml(format = 1
+[parameters]
+m = 1
+{}
+[[particle]]
+name = "P"
+mass = "m"
+position = {{ cartesian = ["x", "y"] }}
+[[force]]
+{}
+[scene.default]
+t = [0, 10]
+initial = {{ x = 0.5, y = 1 }}
+)toml", parameters, force);
+}
+
+}  // namespace
+
+TEST_CASE("verify: a motion that is wholly prescribed has constraint forces to hold") {
+  const Folder folder;
+  for (const char* model : {"P10_rocket", "R9_robot_arm"}) {
+    CAPTURE(model);
+    const Json found = document(folder, {"verify", model, "--points", "4"});
+    CHECK(found["verdict"] == "pass");
+    CHECK(found["points"] == 4);
+    CHECK(found["routes"].size() > 4);
+  }
+}
+
+TEST_CASE("verify: compiled code may be off by what rounding does to large angles, far places, stiff springs and faint forces") {
+  const Folder folder;
+  for (const auto& [parameters, force] : {std::pair{"F = 1\nw = 1e7", "generalized = { x = \"F*sin(w*t)\" }"},
+                                          {"F = 1\nw = 0.1", "generalized = { x = \"F*exp(-((t - 5)/w)^2)\" }"},
+                                          {"k = 100\nd = 1e8", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"},
+                                          {"k = 1e10\nd = 3", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"}}) {
+    CAPTURE(force);
+    folder.write("sound.toml", particle(parameters, force));
+    CHECK(document(folder, {"verify", "sound.toml", "--points", "6"})["verdict"] == "pass");
+  }
+}
+
+TEST_CASE("run: shipped models with springs of 1e8 and 1e10 load their compiled code") {
+  const Folder folder;
+  for (const char* model : {"elastic_pendulum", "car_axis", "S4_two_particles"}) {
+    for (const char* stiffness : {"k=1e8", "k=1e10"}) {
+      CAPTURE(model);
+      CAPTURE(stiffness);
+      const Json found = document(folder, {"run", model, "--set", stiffness, "--t-end", "1e-4"});
+      CHECK(found["outcome"] == "done");
+    }
+  }
+}
