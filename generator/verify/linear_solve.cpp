@@ -20,7 +20,10 @@ namespace {
 Real inverse_magnitude(const Real& x) {
   if (cln::zerop(x)) return 1;
   const double size = cln::double_approx(cln::abs(x));
-  return cln::expt(Real(2), cln::cl_I(-std::ilogb(size)));
+  if (std::isnormal(size)) return cln::expt(Real(2), cln::cl_I(-std::ilogb(size)));
+  // Beyond what binary64 holds: products of scales that it does hold.
+  const cln::cl_F wide = cln::cl_float(cln::abs(x), cln::float_format(30));
+  return cln::expt(Real(2), cln::cl_I(1) - cln::cl_I(cln::float_exponent(wide)));
 }
 
 /// Complete pivoting of a matrix that is scaled by powers of two; the same for CLN reals and for binary64.
