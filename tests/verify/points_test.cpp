@@ -132,6 +132,18 @@ TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a sing
   CHECK(near(large.x()[1], 3, 55));
 }
 
+TEST_CASE("solve: entries whose size no binary64 number has, products of starts of 1e-300 or speeds of 1e300, are scaled all the same") {
+  const Precision p(60);
+  const auto r = [&](double value) { return p.round(cln::rational(Real(value))); };
+  for (const double scale : {1e-300, 1e-160, 1e160, 1e300}) {
+    const Real s = r(scale) * r(scale);
+    const Solution found = solve({2 * s, s, s, 3 * s}, std::vector<Real>{3 * s, 4 * s});
+    REQUIRE(found.exists());
+    CHECK(near(found.x()[0], 1, 55));
+    CHECK(near(found.x()[1], 1, 55));
+  }
+}
+
 TEST_CASE("solve: large systems, whole or in parts that do not hang together, have all digits") {
   const Precision p(60);
   const auto entry = [&](std::size_t i, std::size_t k) { return p.round(Real(1) / (1 + static_cast<int>((7 * i + 3 * k) % 11)) + (i == k ? 5 : 0)); };
