@@ -8,12 +8,39 @@ namespace eomgen::symbolic {
 
 Ref Derivation::operator()(Ref expression) {
   if (const auto found = memo_.find(expression.id); found != memo_.end()) return found->second;
-  // Operands have smaller ids than their users, so ascending order is an order of evaluation. A stack of our own finds
-  // what is still missing without walking what is known.
-  std::vector<Ref> stack{expression};
+  // Operands have smaller ids than their users. Most of a large expression does not depend on the seeds: what does is found first, and
+  // the rest is not remembered, but for where the two meet.
+  std::vector<bool> seen(dag_.size(), false), depends(dag_.size(), false);
+  std::vector<Ref> open, stack{expression};
+  while (!stack.empty()) {
+    const Ref r = stack.back();
+    stack.pop_back();
+    if (seen[r.id]) continue;
+    seen[r.id] = true;
+    if (const auto found = memo_.find(r.id); found != memo_.end()) {
+      depends[r.id] = !dag_.is_zero(found->second);
+      continue;
+    }
+    open.push_back(r);
+    const Node& node = dag_[r];
+    for (std::uint8_t i = 0; i < node.arity; ++i) stack.push_back(node.args[i]);
+  }
+  std::sort(open.begin(), open.end());
+  for (const Ref r : open) {
+    const Node& node = dag_[r];
+    bool any = node.op == Op::symbol && seeds_.contains(dag_.symbol_of(r));
+    for (std::uint8_t i = 0; i < node.arity; ++i) any = any || depends[node.args[i].id];
+    depends[r.id] = any;
+  }
+  stack = {expression};
   while (!stack.empty()) {
     const Ref r = stack.back();
     if (memo_.contains(r.id)) {
+      stack.pop_back();
+      continue;
+    }
+    if (!depends[r.id]) {
+      memo_.emplace(r.id, dag_.zero());
       stack.pop_back();
       continue;
     }
