@@ -176,6 +176,10 @@ void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const s
     Selection here = select_independent(rows_of(closure, of, at), of.turns, small(dependent_digits));
     if (here.kept.size() > chosen.kept.size()) chosen = std::move(here);
   }
+  // Rows that are independent around the start may not be at it, though as many others are.
+  const std::vector<Row> at_start = rows_of(closure, of, start);
+  const Selection there = select_independent(at_start, of.turns, small(dependent_digits));
+  if (there.kept.size() == chosen.kept.size() && !holds_at(at_start, chosen)) chosen = there;
   std::erase_if(chosen.rest, [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run will tell
   if (chosen.rest.empty()) return;
   std::size_t others = 0;
