@@ -53,25 +53,6 @@ TEST_CASE("two wheels on one axle move as Newton and Euler say, whether their he
   }
 }
 
-TEST_CASE("Bricard's mechanism falls in the same way by scalar products and by distances, and keeps its energy") {
-  const Finished products = run_text("bricard_products", bricard_by_products());
-  CHECK(products.simulation.certificate.pass);
-  CHECK(products.simulation.result.power_balance < 1e-8);
-  CHECK(products.simulation.result.constraint_drift < 1e-9);
-  CHECK(products.drift("energy") < 1e-8);
-  const Finished distances = run_text("bricard_distances", bricard_by_distances());
-  CHECK(distances.simulation.certificate.pass);
-  CHECK(distances.drift("energy") < 1e-8);
-  double moved = 0;
-  const double start[] = {1, 1, 1};
-  for (int i = 0; i < 3; ++i) {
-    const double p = products.final("M3.position" + std::to_string(i + 1)), d = distances.final(std::string(1, "xyz"[i]) + "P3");
-    CHECK(p == doctest::Approx(d).epsilon(1e-8));
-    moved = std::max(moved, std::abs(p - start[i]));
-  }
-  CHECK(moved > 0.1);
-}
-
 TEST_CASE("Bennett's loop keeps its energy and all four of its equations") {
   const Finished run = run_text("bennett", bennett_by_products());
   CHECK(run.simulation.certificate.pass);

@@ -164,7 +164,7 @@ TEST_CASE("singular sets are told per approach") {
 }
 
 TEST_CASE("a determinant of masses that vanishes nowhere is no singular set, one that does is") {
-  const std::string parameters = "format = 1\n[parameters]\nm = 1\nM = 2\nl = 1\nL = 1.5\nJ = 0.1\nK = 0.2\n";
+  const std::string parameters = "format = 1\n[parameters]\nm = 1\nM = 2\nl = 1\nL = 1.5\nJ = 0.1\nK = 0.2\n[coordinates]\na = {}\nb = {}\n";
   const auto body = [](const std::string& name, const std::string& mass, const std::string& inertia, const std::string& position, const std::string& angle) {
     return "[[body]]\nname = \"" + name + "\"\nmass = \"" + mass + "\"\ninertia = \"" + inertia + "\"\nposition = \"" + position + "\"\nrotation = { axis = \"E3\", angle = \"" + angle + "\" }\n";
   };
