@@ -107,7 +107,10 @@ nlohmann::ordered_json RunReport::json() const {
   for (const run::Invariant& i : result.invariants) {
     invariants[i.name] = {{"initial", number(i.initial)}, {"max_relative_drift", number(i.max_relative_drift)}};
   }
-  for (const run::RunEvent& e : result.events) events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
+  for (const run::RunEvent& e : result.events) {
+    events.push_back({{"t", e.t}, {"kind", e.kind}, {"name", e.name}});
+    if (e.kind == "impulse") events.back()["work"] = number(e.work);
+  }
   Json changes = Json::array();
   for (const run::SolverChange& c : result.solver_changes) changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", c.reason}});
   for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.of}, {"crossings", k.count}});
@@ -188,7 +191,9 @@ std::string RunReport::text() const {
     }
     out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, c.reason));
   }
-  for (const run::RunEvent& e : result.events) out += line("event", fmt::format("{} at t = {}: {}", e.kind, e.t, e.name));
+  for (const run::RunEvent& e : result.events) {
+    out += line("event", fmt::format("{} at t = {}: {}{}", e.kind, e.t, e.name, e.kind == "impulse" ? fmt::format(", work {:.6g}", e.work) : ""));
+  }
   for (const run::KinkCrossings& k : result.kinks) out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));

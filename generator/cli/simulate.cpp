@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "cli/beyond_range.hpp"
 #include "error.hpp"
 #include "program/kinks.hpp"
 
@@ -91,6 +92,23 @@ std::vector<std::string> state_names(const Derived& derived) {
   return names;
 }
 
+/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of contacts.
+static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
+  const system::EquationSystem& system = derived.candidates.front();
+  std::vector<std::optional<symbolic::Ref>> functions;
+  for (const system::Event& event : system.events) functions.emplace_back(event.value);
+  functions.insert(functions.end(), code.kink_values.begin(), code.kink_values.end());
+  functions.resize(system.events.size() + code.kinks.size());
+  for (const system::Contact& contact : system.contacts) {
+    for (std::size_t value = 0; value < eom::contact_values; ++value) {
+      functions.emplace_back();
+      if (value == 3 && contact.unilateral) functions.back() = system.psi[*contact.unilateral];
+    }
+  }
+  if (functions.empty()) return {};
+  return run::EventRanges(system, functions, scene.parameters);
+}
+
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
   for (const derive::Conserved& c : derived.conserved) {
@@ -106,6 +124,10 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     run.integrals.push_back(std::move(names));
   }
   run.contacts = contact_outputs(derived);
+  run.ranges = ranges_of(derived, scene, code);
+  run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
+    return holds_beyond_range(derived, scene, code, coordinate, t, x);
+  };
   for (const std::uint32_t k : derived.candidates.front().active) run.constraint_names.push_back(derived.mechanics.constraints[k].label);
   for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
     const model::Event& event = derived.model.events[i];
@@ -117,6 +139,19 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
 }
 
 namespace {
+
+/// Surfaces of the kinks of a program as expressions.
+std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Program& program) {
+  std::vector<symbolic::Ref> values;
+  for (const system::EquationSystem& candidate : derived.candidates) {
+    if (program.kinks.empty() || candidate.route != program.route || candidate.approach != program.approach || candidate.form != program.form) continue;
+    system::EquationSystem held = candidate;
+    for (const program::Kink& kink : program::hold_kinks(held)) values.push_back(kink.value);
+    if (values.size() == program.kinks.size()) return values;
+    values.clear();
+  }
+  return values;
+}
 
 /// Lets the run exchange what the library can.
 void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& library) {
@@ -166,7 +201,7 @@ Simulation simulate(const SimulationRequest& request) {
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
   const std::string solver = run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
   const bool variational = run::method_named(solver).variational;
-  const bool exchanges = possible && !run::method_named(solver).series && !variational;
+  const bool exchanges = possible && !scene.jumps && !run::method_named(solver).series && !variational;
   require_fit(system, solver);
 
   const bool watch_power = !energy_is_conserved(*derived);
@@ -198,7 +233,8 @@ Simulation simulate(const SimulationRequest& request) {
     charts = std::make_shared<ChartLibrary>(*derived, program, std::move(context), ChartRequest{wanted, request.approach, request.form, request.seed});
   }
 
-  const run::Code functions = code.for_run();
+  run::Code functions = code.for_run();
+  functions.kink_values = kink_values(*derived, program);
   run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
   allow_charts(run, charts);
   if (request.begin) {
@@ -222,7 +258,8 @@ run::RunResult run_again(const Simulation& simulation, const run::Overrides& ove
   allowed.exchanges_charts = simulation.charts != nullptr;
   const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
                                               derived.model.scene(simulation.scene.name), allowed);
-  const run::Code code = simulation.code.for_run();
+  run::Code code = simulation.code.for_run();
+  code.kink_values = kink_values(derived, simulation.program);
   run::RunRequest run = run_request(derived, scene, code, estimate);
   allow_charts(run, simulation.charts);
   return run::integrate_scene(run);

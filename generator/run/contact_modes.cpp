@@ -5,6 +5,12 @@
 #include <cmath>
 
 namespace eomgen::run {
+namespace {
+
+constexpr double known_gap = 3e-14;       // of the largest: rounding of what it is made of
+constexpr double most_restitution = 0.9;  // beyond it bounces go on for long
+
+}  // namespace
 
 ContactModes::ContactModes(const RunRequest& request, ConstraintRows& rows, std::size_t states, Inputs inputs, Function rhs,
                            Function functions, std::function<void(double, std::span<const double>, std::span<const double>)> changed)
@@ -46,12 +52,15 @@ std::vector<eom::ModeEvent> ContactModes::start(double t, std::span<double> x) {
   const std::vector<eom::Contact>& contacts = request_.code.contacts;
   std::vector<double> g(rule_.functions());
   velocities_.forget();
+  largest_gap_ = 0;
+  restitution_.assign(contacts.size(), 0.0);
   if (two_directions_) velocities_.hold(t, x.data(), inputs_(t), 0);  // how much slip counts, before any is given
   std::vector<double> slip(contacts.size(), 0.0);
   std::array<bool, eom::max_contacts> apart{};
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     apart[j] = request_.scene.apart[j];
-    rule_.restitution(j, velocities_.restitution(t, x.data(), inputs_(t), j));
+    restitution_[j] = velocities_.restitution(t, x.data(), inputs_(t), j);
+    rule_.restitution(j, restitution_[j]);
   }
   if (functions_(t, x.data(), 0, g.data()) == 0) {
     for (std::size_t j = 0; j < contacts.size(); ++j) {
@@ -131,13 +140,38 @@ void ContactModes::adjust(double* g) {
     const double* const value = g + eom::contact_values * j;
     const double slip = request_.code.contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
     if (request_.code.contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.see_slip(slip);
+    if (request_.code.contacts[j].unilateral && eom::contact_digit(mode(), j) >= 3 && std::isfinite(value[3])) largest_gap_ = std::max(largest_gap_, std::abs(value[3]));
   }
   rule_.shift(g);
 }
 
+/// Where the bounce that follows is lower than the gap is known, so are all after it: they are over after the sum of their times, in which the
+/// motion goes on as it begins, and the contact stays.
+void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
+  const Motion motion{this};
+  const double e = restitution_[j], up = -e * motion.approach(t, x, j);
+  k_.resize(x.size()), middle_.resize(x.size());
+  if (!(up > 0) || rhs_(t, x.data(), mode(), k_.data()) != 0) return;
+  const double h = 1e-6;
+  for (std::size_t i = 0; i < x.size(); ++i) middle_[i] = x[i] + h * k_[i];
+  const double falls = (motion.approach(t, x, j) - motion.approach(t + h, middle_, j)) / h;
+  if (!(falls > 0) || up * up / (2 * falls) > known_gap * largest_gap_) return;
+  if (motion.impact(t, x, eom::with_contact_digit(mode(), j, 0), j, e) != 0 || rhs_(t, x.data(), mode(), k_.data()) != 0) return;
+  const double time = 2 * up / (falls * (1 - e));
+  const std::size_t n = request_.code.free.size();
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * (k_[i] + (i < n ? time / 2 * k_[n + i] : 0));
+  t += time;
+  rule_.restitution(j, 0);
+}
+
 eom::AtEvent ContactModes::take(double& t, std::span<double> x, const eom::Crossing& crossing, std::span<eom::EventFunction> functions) {
   const std::size_t before = switch_->events.size();
+  const std::size_t j = crossing.function / eom::contact_values;
+  const bool hits = crossing.function % eom::contact_values == 3 && request_.code.contacts[j].unilateral && eom::contact_digit(mode(), j) >= 3;
+  const double e = hits ? restitution_[j] : 0;
+  if (e > 0 && e < most_restitution) end_bounces(t, x, j);
   const eom::AtEvent answer = switch_->take(t, x, crossing, functions);
+  if (e > 0) rule_.restitution(j, e);
   rows_.mode(switch_->mode);
   if (answer == eom::AtEvent::restart) hold(t, x.data());
   told_.reset();

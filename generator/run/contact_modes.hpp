@@ -50,12 +50,15 @@ class ContactModes {
     double approach(double t, std::span<const double> x, std::size_t j) const;
     double still() const { return self->velocities_.still(); }
   };
+  void end_bounces(double& t, std::span<double> x, std::size_t j);
   using Rule = eom::Contacts<Function, Function, Motion>;
 
   const RunRequest& request_;
   ConstraintRows& rows_;
   ContactVelocities velocities_;
   bool two_directions_ = false;  // some contact slides in two
+  std::vector<double> restitution_;  // of each contact, at the start
+  double largest_gap_ = 0;       // of contacts that are apart
   Inputs inputs_;
   std::function<void(double, std::span<const double>, std::span<const double>)> changed_;
   Function rhs_, functions_;

@@ -19,7 +19,7 @@
 namespace eomgen::run {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Stopwatch = std::chrono::steady_clock;
 
 constexpr double worth_a_note = 1e-3;  // of a velocity
 
@@ -102,7 +102,7 @@ void tell_kick(const Kicks& kicks, std::span<const double> end, RunResult& resul
 }  // namespace
 
 void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result) {
-  const Clock::time_point start = Clock::now();
+  const Stopwatch::time_point start = Stopwatch::now();
   const int order = method_named(solver).order;
   Integration again(request, solver);
   Kicks kicks(request.code.free.size(), request.code.free.size());
@@ -149,7 +149,7 @@ void estimate_error(const RunRequest& request, const std::string& solver, const 
     result.estimate_note = "steps of this size are too long for the method's order to show: shorter ones change the end by as much again; the estimate is not to be trusted";
   }
   if (method_named(solver).variational) tell_frozen(request, first, options, result);
-  result.seconds_estimate = std::chrono::duration<double>(Clock::now() - start).count();
+  result.seconds_estimate = std::chrono::duration<double>(Stopwatch::now() - start).count();
 }
 
 }  // namespace eomgen::run

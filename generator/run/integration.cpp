@@ -30,7 +30,7 @@ Integration::Integration(const RunRequest& request, std::string solver)
   side_ = std::nextafter(request.scene.t0, request.scene.t1);
   prepare();
   start_ = own_start();
-  g_.resize(first_contact() + eom::contact_values * compiled().contacts.size());
+  g_.resize(first_jump() + (request_.scene.jumps ? request_.scene.jumps->surfaces() : 0));
   g_size_.resize(request.code.kinks.size());
   if (request.watch_power) power_ = index_of(request.code.output_names, "power");
   start_charts(request.scene.t0, start_);
@@ -49,7 +49,7 @@ Integration::Integration(const RunRequest& request, std::string solver)
       [this, in_mode](double t, const double* x, int contacts, double* dx) { return motion(t, x, inputs(t), in_mode(contacts), dx); },
       [this, in_mode](double t, const double* x, int contacts, double* g) {
         const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
-        std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()), g_.end(), g);
+        std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()), g_.begin() + static_cast<std::ptrdiff_t>(first_jump()), g);
         return code != 0 ? code : contact_code(g);
       },
       [this](double t, std::span<const double> before, std::span<const double> after) {
@@ -183,7 +183,8 @@ void Integration::own_values(double t, const double* x, std::span<double> y) con
 }
 
 int Integration::events(double t, const double* x, double* g) {
-  const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+  const int code = compiled().events == nullptr ? 0 : compiled().events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+  if (code == 0 && g_.size() > first_jump()) request_.scene.jumps->values({t, {x, start_.size()}, inputs(t)}, g + first_jump());
   if (code != 0 || !contacts_) return code;
   if (const int bad = contact_code(g + first_contact()); bad != 0) return bad;
   contacts_->adjust(g + first_contact());
@@ -201,7 +202,7 @@ std::vector<eom::EventFunction> Integration::watched() const {
   for (const WatchedEvent& event : request_.events)
     functions.push_back({event.direction, event.stop ? eom::Watch::breaking : eom::Watch::passing});
   functions.resize(g_.size());
-  if (contacts_) contacts_->watch(std::span(functions).subspan(first_contact()));
+  if (contacts_) contacts_->watch(std::span(functions).subspan(first_contact(), first_jump() - first_contact()));
   return functions;
 }
 
@@ -224,6 +225,10 @@ void Integration::hold_sides(double t, const double* x, bool anew) {
 
 eom::AtEvent Integration::at_event(const eom::EventPoint& point, const OnEvent& event) {
   const std::size_t i = point.crossing.function;
+  if (i >= first_jump()) {
+    jump_ = request_.scene.jumps->cross({point.t, point.x, inputs(point.t)}, i - first_jump());
+    return jump_.empty() ? eom::AtEvent::go_on : eom::AtEvent::stop;
+  }
   if (i >= first_contact()) return change_contact(point, event);
   if (i < request_.events.size()) {
     const WatchedEvent& watched = request_.events[i];
@@ -246,7 +251,7 @@ void Integration::cross_kink(const eom::EventPoint& point, std::size_t k) {
 eom::AtEvent Integration::change_contact(const eom::EventPoint& point, const OnEvent& event) {
   eom::Crossing crossing = point.crossing;
   crossing.function -= first_contact();
-  const eom::AtEvent answer = contacts_->take(point.t, point.x, crossing, point.functions.subspan(first_contact()));
+  const eom::AtEvent answer = contacts_->take(point.t, point.x, crossing, point.functions.subspan(first_contact(), first_jump() - first_contact()));
   mode_ = (mode_ & ~eom::contact_bits) | contacts_->mode();
   if (const eom::ModeEvent* told = contacts_->told(); told != nullptr && event) event({told->t, told->kind, told->name}, point.x);
   if (answer != eom::AtEvent::restart) return answer;
@@ -296,19 +301,6 @@ int Integration::project(double t, double* x) {
   return 0;
 }
 
-std::vector<double> Integration::restarts() const {
-  std::vector<double> times;
-  for (const Signal& signal : request_.scene.inputs) {
-    for (const double t : signal.jumps()) {
-      if (t > request_.scene.t0 && t < request_.scene.t1) times.push_back(t);
-    }
-  }
-  std::sort(times.begin(), times.end());
-  times.erase(std::unique(times.begin(), times.end()), times.end());
-  times.push_back(request_.scene.t1);
-  return times;
-}
-
 /// Whose law of friction has no solution, or several: the margin of that contact is the smallest.
 void Integration::tell_friction(eom::Result& end) {
   const bool none = end.outcome == eom::Outcome::friction_no_solution;
@@ -330,6 +322,10 @@ void Integration::explain(eom::Result& end) {
         "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "
         "a constraint with friction, or a smooth law", compiled().kinks[kink_], end.t);
   }
+  if (!jump_.empty()) {
+    end.outcome = eom::Outcome::jump_undetermined;
+    end.detail = jump_;
+  }
   if (contacts_ && contacts_->ended()) {
     end.outcome = *contacts_->ended();
     end.detail = contacts_->detail();
@@ -346,11 +342,13 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   kink_crossings.assign(compiled().kinks.size(), 0);
   projected_.clear();
   stopped_ = finer_ = steps_due_ = false;
+  jump_.clear();
   fixed_step_ = options.fixed_step;
   if (contacts_) contacts_->tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol, fixed_step_ > 0 ? slow_slip_atol : options.atol);
   choice = finer_choice_ = {};
   eom::Options piece = options;
   piece.choice = &choice;
+  piece.step_bounds = request_.scene.clock.bounds;
   // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
   piece.quadratures = request_.watch_power && compiled().contacts.empty() ? 1 : 0;
   eom::Result total;
@@ -370,10 +368,13 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   }
   position_correction = velocity_correction = 0;  // of the run
   projected_.clear();
-  for (const double end : restarts()) {
-    side_ = (total.t + end) / 2;
+  const std::vector<Piece> all = pieces();
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k > 0) begin_piece(all[k - 1], total, event);
+    side_ = (total.t + all[k].end) / 2;
     piece.max_steps = options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
-    integrate_until(end, piece, observer, event, total);
+    if (options.fixed_step > 0 && request_.scene.step > 0) piece.fixed_step = options.fixed_step * all[k].step / request_.scene.step;
+    if (jump_.empty()) integrate_until(all[k].end, piece, observer, event, total);
     explain(total);
     if (total.outcome != eom::Outcome::done) break;
   }

@@ -8,9 +8,17 @@
 
 #include "run/chart_switch.hpp"
 #include "run/contact_modes.hpp"
+#include "run/jumps.hpp"
 #include "run/singular_passage.hpp"
 
 namespace eomgen::run {
+
+/// Where fixed steps have to be shorter than the scene's to follow a function of time.
+struct FinerSteps {
+  double begin, end, step;
+};
+std::vector<FinerSteps> finer_steps(const Scene& scene);
+inline constexpr double steps_of_bound = 0.125;  // of a bound of chosen steps
 
 class Integration {
  public:
@@ -43,6 +51,7 @@ class Integration {
 
  private:
   friend struct MotionOf;
+  friend struct EventsOf;
   int rhs(double t, const double* x, double* dx);
   int jacobian(double t, const double* x, double* dfdx, double* dfdt);
   int taylor(double t, const double* x, int order, double* coefficients);
@@ -62,7 +71,16 @@ class Integration {
   void cross_kink(const eom::EventPoint& point, std::size_t kink);
   eom::AtEvent change_contact(const eom::EventPoint& point, const OnEvent& event);
   void tell_friction(eom::Result& end);
-  std::vector<double> restarts() const;
+  /// Between two times at which something jumps, or fixed steps change their size.
+  struct Piece {
+    double end, next;  // the one after it begins at `next`, a rounding behind the end where a kink of time lies between
+    double step;       // of fixed steps
+  };
+  std::vector<Piece> pieces() const;
+  void begin_piece(const Piece& before, eom::Result& total, const OnEvent& event);
+  bool any_contact_touches() const;
+  void cross_jump(const Piece& before, eom::Result& total, const OnEvent& event);
+  std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from, double to) const;
   void integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total);
   bool passable(const eom::Result& from, double length, const eom::Options& piece);
   std::string name_of_row(std::size_t row) const;
@@ -70,6 +88,7 @@ class Integration {
   void explain(eom::Result& end);
   bool steps_due(double t, const double* x);
   eom::Options finer(const eom::Options& piece);
+  std::size_t first_jump() const { return first_contact() + eom::contact_values * compiled().contacts.size(); }
   std::size_t first_contact() const { return request_.events.size() + request_.code.kinks.size(); }
   const Code& compiled() const { return charts_.code(); }  // knows all charts that the run is or was in
   void accept(const eom::StepView& step);
@@ -99,6 +118,7 @@ class Integration {
   mutable std::vector<double> u_;
   std::vector<double> w_;  // of Code::prepare
   std::vector<double> y_, h_;
+  std::string jump_;  // what jumped that nothing says the consequences of
   std::vector<double> psi_, b_;
   ConstraintRows rows_;
   eom::Projection projection_;

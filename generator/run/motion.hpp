@@ -21,4 +21,13 @@ struct MotionOf {
   std::size_t taylor_states() const { return 2 * of.n_ + of.compiled().integrals; }
 };
 
+/// Event functions, with their bounds along a step.
+struct EventsOf {
+  Integration& of;
+  int operator()(double t, const double* x, double* g) const { return of.events(t, x, g); }
+  std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from, double to) const {
+    return of.hidden(step, i, side, from, to);
+  }
+};
+
 }  // namespace eomgen::run

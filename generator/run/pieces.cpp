@@ -75,7 +75,7 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
     due = passage_ && !passing && go_on && !exchange_due_ && piece.fixed_step <= 0 ? std::copysign(passage_->due(step), last_step_) : 0;
     return go_on && !exchange_due_ && !steps_due_ && due == 0;
   };
-  const auto g = [this](double t, const double* x, double* values) { return events(t, x, values); };
+  const EventsOf g{*this};
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
   const auto after = [this](double t, double* x) { return rows_.size() == 0 || keeps_constraints_ ? 0 : project(t, x); };
   int idle = 0;
@@ -97,7 +97,7 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
     go_on_from(part, total);
     const bool passed = passing && part.outcome == eom::Outcome::done;
     const bool paused = (exchange_due_ || steps_due_ || due != 0) && part.outcome == eom::Outcome::stopped_by_event;
-    if (stopped_ || (contacts_ && contacts_->ended()) || !(passed || paused)) return;
+    if (stopped_ || !jump_.empty() || (contacts_ && contacts_->ended()) || !(passed || paused)) return;
     for (const std::string& whose : exchange_due_ ? exchange_charts(total.t, total.x) : std::vector<std::string>{}) {
       if (event) event({total.t, "chart", whose}, total.x);
     }

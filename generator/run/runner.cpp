@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "model/names.hpp"
+#include "run/balance.hpp"
 #include "run/estimate.hpp"
 #include "run/integration.hpp"
 #include "run/resolution.hpp"
@@ -20,9 +21,9 @@
 namespace eomgen::run {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+using Stopwatch = std::chrono::steady_clock;
 
-double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
+double seconds_since(Stopwatch::time_point start) { return std::chrono::duration<double>(Stopwatch::now() - start).count(); }
 
 /// What is looked at after every step: invariants, power balance, constraints; and the rows in between.
 class Watch {
@@ -39,6 +40,8 @@ class Watch {
     }
     for (const std::string& name : request.magnitudes) magnitudes_.push_back(name.empty() ? no_output : index_of(names, name));
     magnitudes_.resize(conserved_.size(), no_output);
+    last_.resize(conserved_.size());
+    shift_.resize(conserved_.size());
     for (std::size_t i = 0; i < names.size(); ++i) {
       if (names[i].starts_with(system::watched_prefix)) redundant_.push_back(i);
     }
@@ -50,9 +53,11 @@ class Watch {
 
   bool step(const eom::StepView& view) {
     see(view.t1, view.x1.data());
-    if (left_chart()) {
+    if (left_chart(view)) {
       // Nothing of this step is a result: the chart's equations stop holding somewhere inside it.
-      chart_detail_ = fmt::format("{} leaves its range between t = {} and {}", left_, view.t0, view.t1);
+      chart_detail_ = fmt::format("{} leaves its range ({}, {}) between t = {} and {}: give it a wider one in [coordinates] if the equations hold beyond it, or take coordinates "
+                                  "that do not end there (Cartesian ones, Euler parameters, an angle of another sequence)",
+                                  left_, lower_, upper_, view.t0, view.t1);
       last_t_ = view.t0;
       last_x_.assign(view.x0.begin(), view.x0.end());
       return false;
@@ -67,6 +72,7 @@ class Watch {
   /// An event: told, and a row of its own, put in order when the rest of its step is written.
   void event(const RunEvent& event, std::span<const double> x) {
     events_.push_back(event);
+    if (event.kind == "impulse") shift_invariants(event.t, x.data());
     if (request_.every > 0 && event.kind == "custom") pending_.emplace_back(event.t, std::vector<double>(x.begin(), x.end()));
   }
 
@@ -112,7 +118,8 @@ class Watch {
       // Near where the own chart fails its formulas say little.
       if (std::find(own.begin(), own.end(), conserved_[i]) != own.end()) continue;
       const double terms = magnitudes_[i] == no_output ? 0 : y_[magnitudes_[i]];
-      drifts_[i].see(y_[conserved_[i]], conserved_[i] == energy_ ? magnitude : terms);
+      last_[i] = y_[conserved_[i]];
+      drifts_[i].see(y_[conserved_[i]] - shift_[i], conserved_[i] == energy_ ? magnitude : terms);
     }
     const double work = request_.watch_power ? x[2 * request_.code.free.size() + request_.code.integrals] : 0;
     balance_.see(y_[energy_] - integration_.work - integration_.contact_work, work, magnitude);
@@ -120,14 +127,29 @@ class Watch {
     for (const std::size_t i : redundant_) defect_ = std::max(defect_, std::abs(y_[i]));
   }
 
+  // An energy is conserved between the impulses of supports; momenta are, through them.
+  void shift_invariants(double t, const double* x) {
+    integration_.outputs(t, x, y_);
+    for (std::size_t i = 0; i < conserved_.size(); ++i) {
+      if (drifts_[i].name() != "energy" && drifts_[i].name() != "jacobi") continue;
+      shift_[i] += y_[conserved_[i]] - last_[i];
+    }
+  }
+
   // Every coordinate, eliminated ones too, comes first among the outputs, with its rate.
-  bool left_chart() {
+  bool left_chart(const eom::StepView& view) {
     const Scene& scene = request_.scene;
     for (std::size_t i = 0; i < scene.lower.size(); ++i) {
       const double q = y_[2 * i];
       if (integration_.charts().has_exchanged(static_cast<std::uint32_t>(i))) continue;
       if (q > scene.lower[i] && q < scene.upper[i]) continue;
+      if (std::find(beyond_.begin(), beyond_.end(), i) != beyond_.end()) continue;
+      if (request_.beyond_range && integration_.charts().second() == 0 && request_.beyond_range(static_cast<std::uint32_t>(i), view.t1, view.x1)) {
+        beyond_.push_back(i);
+        continue;
+      }
       left_ = request_.code.output_names[2 * i];
+      lower_ = scene.lower[i], upper_ = scene.upper[i];
       return true;
     }
     return false;
@@ -180,9 +202,12 @@ class Watch {
   static constexpr std::size_t no_output = static_cast<std::size_t>(-1);
   std::vector<std::size_t> conserved_, magnitudes_, redundant_;
   std::vector<eom::Drift> drifts_;
+  std::vector<double> last_, shift_;  // of invariants: where the last step ended; by which impulses changed them
   eom::PowerBalance balance_;
   double defect_ = 0;
   std::string left_, chart_detail_;
+  std::vector<std::size_t> beyond_;  // coordinates whose range the equations do not need
+  double lower_ = 0, upper_ = 0;  // of its range
   double last_t_ = 0;
   std::vector<double> last_x_;
   std::vector<RunEvent> events_;
@@ -205,6 +230,7 @@ eom::Options options_of(const RunRequest& request) {
   options.rtol = request.scene.rtol;
   options.atol = request.scene.atol;
   options.fixed_step = request.scene.step;
+  if (request.scene.max_step > 0) options.max_step = request.scene.max_step;
   options.interrupt = request.interrupt;
   options.max_steps = request.steps_allowed(options.fixed_step > 0);
   return options;
@@ -280,10 +306,15 @@ RunResult integrate_scene(const RunRequest& request) {
     result.reason += ", momenta from the equations";
     if (request.watch_power) result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";
   }
+  if (request.scene.step > 0) {
+    if (const std::vector<FinerSteps> finer = finer_steps(request.scene); !finer.empty())
+      result.reason += fmt::format("; shorter steps from t = {:.6g} on where a function of time changes within one", finer.front().begin);
+  }
+  if (!request.scene.clock.incomplete.empty()) result.reason += "; " + request.scene.clock.incomplete;
   const eom::Options options = options_of(request);
   Integration integration(request, result.solver);
   Watch watch(request, integration);
-  const Clock::time_point start = Clock::now();
+  const Stopwatch::time_point start = Stopwatch::now();
   std::optional<Resolution> resolution;
   const auto& contacts = request.code.contacts;
   const bool impacts = std::any_of(contacts.begin(), contacts.end(), [](const eom::Contact& contact) { return contact.unilateral; });
@@ -302,7 +333,7 @@ RunResult integrate_scene(const RunRequest& request) {
   watch.report(result);
   result.outcome = end.outcome;
   result.detail = end.detail;
-  if (end.detail.starts_with("max_steps")) result.detail += "; --max-steps allows more";
+  if (end.outcome == eom::Outcome::max_steps) result.detail += "; --max-steps allows more";
   result.t = end.t;
   result.statistics = end.statistics;
   if (asked == eom::Automatic::name) tell_choice(request, integration.choice, result);
@@ -328,6 +359,7 @@ RunResult integrate_scene(const RunRequest& request) {
     own.x = result.state;
     estimate_error(request, asked, own, options, resolution ? &*resolution : nullptr, result);
   }
+  if (ended) require_balance(request, result);
   return result;
 }
 

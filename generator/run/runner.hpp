@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "run/event_ranges.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::run {
@@ -42,6 +43,7 @@ struct Code {
   std::size_t active_constraints = 0;
   std::vector<bool> holonomic = {};       // per active constraint: false where it binds velocities only
   std::vector<std::string> kinks = {};    // "abs", "max": their surfaces follow the model's events in g
+  std::vector<symbolic::Ref> kink_values = {};  // as expressions
   std::vector<eom::Contact> contacts = {};  // after them, eom::contact_values of each
   std::size_t first_kink_bit = 0;         // of mode: two for each kink, above and below its surface
   // Only where the solver taylor was asked for, up to its highest order.
@@ -64,6 +66,7 @@ struct Invariant {
 struct RunEvent {
   double t;
   std::string kind, name;
+  double work = 0;  // of an impulse
 };
 
 /// An [[event]] as this scene takes it.
@@ -146,6 +149,9 @@ struct RunRequest {
   std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
   std::vector<ExchangedChart> charts = {};   // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those asked for before
+  EventRanges ranges = {};  // of event functions
+  /// Whether the equations hold where a coordinate has left its range; none: they do not.
+  std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
   std::size_t max_steps = 0;  // accepted and rejected together; 0: those of eom::Options, and no bound on fixed steps, whose number is known
 

@@ -13,6 +13,7 @@
 #include "derive/conserved.hpp"
 #include "derive/imposition.hpp"
 #include "model/names.hpp"
+#include "run/jumps.hpp"
 #include "run/start.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/sample.hpp"
@@ -186,7 +187,8 @@ class SceneEvaluator {
   std::map<Symbol, cln::cl_R> given_;
 };
 
-void resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value, Scene& result) {
+std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value, Scene& result) {
+  std::vector<std::optional<Ref>> expressions;
   symbolic::Substitution written = derive::write_out(m);
   for (std::uint32_t i = 0; i < m.model->inputs.size(); ++i) {
     const auto given = std::find_if(scene.inputs.begin(), scene.inputs.end(), [&](const auto& s) { return s.input == i; });
@@ -199,6 +201,7 @@ void resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& val
         throw Error("scene", m.model->where(given->span), "the times of an input table must increase", "sort the table by time");
       }
       result.inputs.emplace_back(std::move(t), std::move(v));
+      expressions.emplace_back();
       continue;
     }
     const model::NodeId id = given == scene.inputs.end() ? m.model->inputs[i].fallback : std::get<model::NodeId>(given->signal);
@@ -210,7 +213,18 @@ void resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& val
                   "put the integral where the input is used, as integral(f) with f in [functions]");
     }
     result.inputs.emplace_back(*m.dag, signal, result.parameters);
+    expressions.emplace_back(signal);
   }
+  return expressions;
+}
+
+// What time alone does, and where that makes something jump.
+void resolve_clock(const Mechanics& m, const system::EquationSystem& system, const std::vector<std::optional<Ref>>& expressions, Scene& result) {
+  std::vector<ClockInput> inputs;
+  for (std::size_t i = 0; i < expressions.size(); ++i) inputs.push_back({&result.inputs[i], expressions[i]});
+  result.clock = look_at_time(system, result.parameters, inputs, result.t0, result.t1);
+  auto jumps = std::make_shared<Jumps>(m, system, result.parameters, result.clock);
+  if (!jumps->none()) result.jumps = std::move(jumps);
 }
 
 // A start outside its chart would be integrated with equations that do not hold there.
@@ -242,7 +256,7 @@ void require_span(const Mechanics& m, const model::Scene& scene, const Scene& re
   if (!(result.rtol >= 0 && result.atol >= 0 && result.rtol + result.atol > 0)) {
     fail("tolerances must not be negative, nor both zero", "give rtol = 1e-9 and atol = 1e-12, say");
   }
-  if (result.step < 0 || result.every < 0) fail("step and every must be positive", "leave them out for the defaults");
+  if (result.step < 0 || result.max_step < 0 || result.every < 0) fail("step, max_step and every must be positive", "leave them out for the defaults");
 }
 
 // Coordinates fail where M has no inverse; with multipliers it may have none as long as the constraints mend that.
@@ -312,6 +326,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.rtol = overrides.rtol.value_or(result.rtol);
   result.atol = overrides.atol.value_or(result.atol);
   result.step = overrides.step.value_or(result.step);
+  result.max_step = overrides.max_step.value_or(result.max_step);
   result.every = overrides.every.value_or(result.every);
   result.solver = overrides.solver.value_or(scene.solver);
   const bool at_start = overrides.at_start && overrides.t_end && result.t1 == result.t0;
@@ -321,7 +336,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
                 "give a later --t-end");
   }
   require_span(m, scene, result, at_start);
-  resolve_inputs(m, scene, value, result);
+  const std::vector<std::optional<Ref>> inputs = resolve_inputs(m, scene, value, result);
 
   StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}, {}};
   for (const model::InitialValue& initial : scene.initial) {
@@ -348,6 +363,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
     if (const auto& start_of = m.model->parameters[i].start_of) result.parameters[i] = problem.q[*start_of];
   }
+  resolve_clock(m, system, inputs, result);  // the start may be among the parameters
   result.q = problem.q;
   result.qdot = problem.qdot;
   resolve_ranges(m, value, result);

@@ -6,20 +6,24 @@
 #include <cln/real.h>
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
+#include "run/clock.hpp"
 #include "run/signal.hpp"
 #include "system/equation_system.hpp"
 
 namespace eomgen::run {
 
+class Jumps;
+
 /// What `run` takes from the command line in place of the scene's values.
 struct Overrides {
   std::map<std::string, symbolic::Rational> parameters;
-  std::optional<double> t_end, rtol, atol, step, every;
+  std::optional<double> t_end, rtol, atol, step, max_step, every;
   std::optional<std::string> solver;
   std::vector<std::string> outputs;  // in place of the scene's, unless empty
   bool at_start = false;             // t_end may be the start: nothing moves then
@@ -35,7 +39,10 @@ struct Scene {
   std::string solver;              // as asked for; may be "auto"
   double rtol = 1e-9, atol = 1e-12;
   double step = 0, every = 0;      // 0: not given
+  double max_step = 0;             // of chosen steps; 0: not bounded
   std::vector<Signal> inputs;      // one per input of the model
+  Clock clock;                     // what time alone does
+  std::shared_ptr<Jumps> jumps;    // where something may jump, or null
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
   std::vector<bool> stops;           // per event of the model: whether it ends the run
   std::vector<bool> apart;           // per contact: whether it does not touch at the start

@@ -67,18 +67,21 @@ class Variational {
   bool prepared_ = false;
 };
 
-/// Ends of the pieces between jumps of the inputs.
-std::vector<double> pieces(const Scene& scene, double t_end) {
-  std::vector<double> ends;
+/// Ends of the pieces between jumps of the inputs and kinks of time, and where the next one begins.
+std::vector<Break> pieces(const Scene& scene, double t_end) {
+  std::vector<Break> ends;
   const double direction = t_end < scene.t0 ? -1 : 1;
   for (const Signal& signal : scene.inputs) {
     for (const double t : signal.jumps()) {
-      if ((t - scene.t0) * direction > 0 && (t_end - t) * direction > 0) ends.push_back(t);
+      if ((t - scene.t0) * direction > 0 && (t_end - t) * direction > 0) ends.push_back({t, t});
     }
   }
-  std::sort(ends.begin(), ends.end(), [direction](double a, double b) { return a * direction < b * direction; });
-  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
-  ends.push_back(t_end);
+  for (const Break& b : scene.clock.breaks) {
+    if ((b.before - scene.t0) * direction > 0 && (t_end - b.after) * direction > 0) ends.push_back(direction > 0 ? b : Break{b.after, b.before});
+  }
+  std::sort(ends.begin(), ends.end(), [direction](const Break& a, const Break& b) { return a.before * direction < b.before * direction; });
+  ends.erase(std::unique(ends.begin(), ends.end(), [](const Break& a, const Break& b) { return a.before == b.before; }), ends.end());
+  ends.push_back({t_end, t_end});
   return ends;
 }
 
@@ -88,12 +91,13 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
   eom::Result total;
   total.t = request.scene.t0;
   total.x = f.start();
-  for (const double end : pieces(request.scene, t_end)) {
+  for (const auto& [end, next] : pieces(request.scene, t_end)) {
     f.side = (total.t + end) / 2;
     eom::Result piece = eom::integrate(solver, f, total.t, total.x, end, options);
     piece.statistics += total.statistics;
     total = std::move(piece);
     if (total.outcome != eom::Outcome::done) break;
+    total.t = next;
   }
   return total;
 }
@@ -122,6 +126,8 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const std::stri
   options.atol = request.scene.atol;
   options.fixed_step = method_named(result.solver).adaptive ? 0 : request.scene.step;
   options.interrupt = request.interrupt;
+  if (t_end > request.scene.t0) options.step_bounds = request.scene.clock.bounds;
+  if (request.scene.max_step > 0) options.max_step = request.scene.max_step;
   options.max_steps = request.steps_allowed(options.fixed_step > 0);
   const eom::Result end = run(request, result.solver, t_end, directions, options);
   result.outcome = end.outcome;

@@ -76,10 +76,9 @@ class Run {
   /// One trial step; false: the run ends here.
   bool step() {
     if (options_.interrupt != nullptr && options_.interrupt->load(std::memory_order_relaxed))
-      return end(Outcome::interrupted, "interrupted at t = " + printed(t_));
+      return end(Outcome::interrupted, "stopped from outside");
     if (steps_ + rejected_ >= options_.max_steps)
-      return end(Outcome::diverged, "max_steps (" + std::to_string(options_.max_steps) + ") reached at t = " +
-                                        printed(t_));
+      return end(Outcome::max_steps, "all " + std::to_string(options_.max_steps) + " steps of max_steps were made before t = " + printed(t_end_));
     const double t_next = next_time();
     bool moved = false;
     const int code = stepper_.attempt(t_, t_next);
@@ -114,9 +113,21 @@ class Run {
       const double k = static_cast<double>(steps_) + 1;
       return k >= fixed_steps_ ? t_end_ : t_start_ + direction_ * options_.fixed_step * k;
     }
-    const double left = std::abs(t_end_ - t_);
-    if (1.01 * h_ >= left) return t_end_;
-    return t_ + direction_ * (2 * h_ > left ? 0.5 * left : h_);
+    const double left = std::abs(t_end_ - t_), h = options_.step_bounds.empty() ? h_ : bounded(h_);
+    if (1.01 * h >= left) return t_end_;
+    return t_ + direction_ * (2 * h > left ? 0.5 * left : h);
+  }
+
+  /// A step of at most h that is nowhere longer than the bounds along it allow; it may end where a bound begins.
+  double bounded(double h) const {
+    const auto bounds = options_.step_bounds;
+    auto bound = std::upper_bound(bounds.begin(), bounds.end(), t_, [](double t, const StepBound& b) { return t < b.t; });
+    if (bound != bounds.begin()) --bound;
+    for (; bound != bounds.end() && bound->t < t_ + h; ++bound) {
+      const double until = bound->t - t_;
+      h = std::min(h, std::max({bound->step, until > smallest_step(t_) ? until : 0, smallest_step(t_)}));
+    }
+    return h;
   }
 
   /// after_step and the derivative at the end of the step; returns a code.

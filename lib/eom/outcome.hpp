@@ -18,7 +18,10 @@ enum class Outcome {
   friction_many_solutions,
   chart_left,
   interrupted,
-  not_finite
+  not_finite,
+  max_steps,
+  jump_undetermined,
+  balance_open
 };
 
 /// The spelling of the enumerator.
@@ -35,6 +38,9 @@ constexpr const char* name(Outcome outcome) {
     case Outcome::chart_left: return "chart_left";
     case Outcome::interrupted: return "interrupted";
     case Outcome::not_finite: return "not_finite";
+    case Outcome::max_steps: return "max_steps";
+    case Outcome::jump_undetermined: return "jump_undetermined";
+    case Outcome::balance_open: return "balance_open";
   }
   return "not_finite";
 }

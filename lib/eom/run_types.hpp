@@ -33,11 +33,17 @@ struct Choice {
   std::vector<MethodChange> changes;
 };
 
+/// From t on, until the next bound, no chosen step is to be longer than `step`, wherever in it that lies.
+struct StepBound {
+  double t, step;
+};
+
 struct Options {
   double rtol = 1e-9;       // error allowed per step and component: atol + rtol |x|
   double atol = 1e-12;
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
+  std::span<const StepBound> step_bounds = {};  // ascending in t, of chosen steps that go forward in time: what is known to happen there is not stepped over
   double fixed_step = 0;    // > 0: steps of this size without error control, whatever the method; rk4 needs it
   std::size_t event_parts = 1;  // so many equal steps to a breaking event that ends a step, instead of one
   int series_order = 0;     // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step

@@ -110,7 +110,7 @@ TEST_CASE("stress: budgets are steps: a run beyond them is told, and a motion th
   o.request.steps_limit = 50000;
   const std::vector<stress::Row> slower = stress::judge({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(slower.size() == 1);
-  CHECK(slower[0].outcome == "diverged");
+  CHECK(slower[0].outcome == "max_steps");
   CHECK(slower[0].verdict == stress::Verdict::told);
 }
 

@@ -22,6 +22,7 @@
 #include "derive/prescribed_forces.hpp"
 #include "derive/lagrange.hpp"
 #include "model/names.hpp"
+#include "run/jumps.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::cli {
@@ -153,6 +154,7 @@ class Prescribed {
         result.detail = fmt::format("at t = {}", t_);
       }
     }
+    if (result.outcome == eom::Outcome::done) tell_jumps(result);
   }
 
  private:
@@ -184,12 +186,30 @@ class Prescribed {
       return 0;
     };
     eom::Options tolerances;
+    if (scene_.max_step > 0) tolerances.max_step = scene_.max_step;
     tolerances.rtol = scene_.rtol;
     tolerances.atol = scene_.atol;
     const eom::Result end = eom::integrate("dop853", f, from, integrals_, t, tolerances);
     integrals_ = end.x;
     result.outcome = end.outcome;
     result.detail = end.detail;
+  }
+
+  /// Where a velocity jumps the forces are an impulse, which no row shows.
+  void tell_jumps(Answer& result) const {
+    if (!scene_.jumps || !scene_.jumps->by_time()) return;
+    for (const run::Break& at : scene_.clock.breaks) {
+      std::vector<double> before, after, x = integrals_;
+      const double side = (at.before + at.after) / 2;
+      for (const run::Signal& input : scene_.inputs) before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
+      const run::Jumps::Told told = scene_.jumps->cross({at.before, x, before.data()}, at.after, after.data(), x);
+      if (told.undetermined.empty() && !told.velocities) continue;
+      result.outcome = eom::Outcome::jump_undetermined;
+      result.detail = !told.undetermined.empty() ? told.undetermined
+                                                 : fmt::format("{} jumps at t = {:.15g}: the forces there are an impulse, which no row shows; make it a motion that takes some time",
+                                                               told.what.empty() ? "a velocity" : told.what, at.after);
+      return;
+    }
   }
 
   void write_row(Answer& result) const {

@@ -23,7 +23,7 @@ namespace {
 struct Options {
   std::string model, scene = "default", out, plot, approach = "auto", form = "auto";
   std::vector<std::string> set, outputs, sensitivity;
-  std::optional<double> rtol, atol, step, t_end, every;
+  std::optional<double> rtol, atol, step, max_step, t_end, every;
   std::optional<std::string> solver;
   std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
@@ -35,6 +35,7 @@ run::Overrides overrides_of(const Options& options) {
   o.rtol = options.rtol;
   o.atol = options.atol;
   o.step = options.step;
+  o.max_step = options.max_step;
   o.every = options.every;
   o.t_end = options.t_end;
   o.at_start = true;
@@ -203,6 +204,7 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
   app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
   app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
+  app.add_option("--max-step", options->max_step, "the longest step where steps are chosen")->check(positive_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")->check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());

@@ -5,6 +5,7 @@
 // An event function keeps a side (the sign it had last). A crossing flips it, so that the residual of a root that was
 // just found is not found again. A side that is not known (at the start of a run on the surface itself, or after a state
 // was changed there) is the sign of the first value beyond rounding, looked for on a geometric sequence of points.
+// g may have hidden(view, i, side, from, to): between which two places of the step function i first leaves its side, whatever samples show.
 // Each step is sampled at nine points; between samples of one sign a double root is looked for wherever they show a dip that may
 // reach zero: three of them by the parabola through them, four by the lines through the outer two on either side, below which a convex function, with
 // a kink or not, cannot come. Where a crossing is found all functions are looked at: one that is beyond zero there has crossed before,
@@ -215,9 +216,27 @@ class EventLocator {
     position_[i] = beyond_guard ? 0 : s;
   }
 
-  /// The first crossing after the function's position. Beyond a place without a value nothing is looked for.
+  /// The first crossing after the function's position: by samples, or before that one where bounds of the function, if g has them, do not exclude it.
   template <class G>
   std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g) {
+    const std::optional<Candidate> sampled = between_samples(view, i, g);
+    if constexpr (requires { g.hidden(view, i, 1, 0.0, 1.0); }) {
+      const int side = side_[i];
+      if (side == 0) return sampled;
+      const auto found = g.hidden(view, i, side, position_[i], sampled ? sampled->s : 1.0);
+      if (!found) return sampled;
+      const auto inward = [&](double s) { return side * value(view, s, i, g); };
+      const double at_right = inward(found->second);
+      if (!(at_right < 0)) return sampled;
+      const double s = root(inward, found->first, found->first == position_[i] ? none : inward(found->first), found->second, at_right);
+      if (!sampled || s < sampled->s - tolerance) return Candidate{i, s, side};
+    }
+    return sampled;
+  }
+
+  /// Beyond a place without a value nothing is looked for.
+  template <class G>
+  std::optional<Candidate> between_samples(const StepView& view, std::size_t i, G& g) {
     const int side = side_[i];
     if (side == 0) return std::nullopt;
     const auto inward = [&](double s) { return side * value(view, s, i, g); };  // positive on the function's side

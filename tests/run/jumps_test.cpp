@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What jumps is applied and told, or ends the run: velocities of supports, steps of a potential, positions.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "support/folders.hpp"
+#include "support/simulation.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+constexpr double g = 9.81;
+
+test::Finished run_text(const std::string& name, const std::string& text, const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+  const std::string path = test::build_folder() + "/" + name + ".toml";
+  test::write_text(path, "format = 1\n" + text);
+  return test::run_model(path, adjust);
+}
+
+std::string pendulum(const std::string& support) {
+  return "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[coordinates]\nth = \"1\"\n[functions]\ns = \"" + support +
+         "\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"s + l*sin(th)\", \"-l*cos(th)\", 0]\n[[force]]\ngravity = \"-g*E2\"\n"
+         "[scene.default]\nt = [0, 3]\ninitial = { th = 0.1 }\n";
+}
+
+/// The pendulum on a support that moves evenly but for one change of its velocity at t = 1.
+std::array<double, 2> expected(double change) {
+  const auto f = [](double, const double* x, double* dx) {
+    dx[0] = x[1];
+    dx[1] = -g * std::sin(x[0]);
+    return 0;
+  };
+  eom::Options options;
+  options.rtol = 1e-13;
+  options.atol = 1e-14;
+  eom::Result end = eom::integrate("dop853", f, 0, std::vector<double>{0.1, 0}, 1, options);
+  end.x[1] -= change * std::cos(end.x[0]);
+  end = eom::integrate("dop853", f, 1, end.x, 3, options);
+  return {end.x[0], end.x[1]};
+}
+
+const run::RunEvent* impulse(const test::Finished& finished) {
+  for (const run::RunEvent& event : finished.simulation.result.events) {
+    if (event.kind == "impulse") return &event;
+  }
+  return nullptr;
+}
+
+std::string step_at_one(const std::string& potential, double speed) {
+  return "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n[energy]\npotential = \"" + potential +
+         "\"\n[scene.default]\nt = [0, 3]\ninitial = { x_dot = " + std::to_string(speed) + " }\n";
+}
+
+}  // namespace
+
+TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an impulse, and the work of it is told") {
+  struct Case {
+    const char* support;
+    double change;
+  };
+  for (const Case& c : {Case{"a*abs(t - 1)", 2}, Case{"a*max(0, t - 1)", 1}, Case{"if(t < 1, 0, a*(t - 1))", 1}, Case{"3 - a*min(1, t)", 1}}) {
+    CAPTURE(std::string(c.support));
+    const test::Finished finished = run_text("support", pendulum(c.support));
+    const auto [th, th_dot] = expected(c.change);
+    CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+    CHECK(std::abs(finished.final("th") - th) < 1e-7);
+    CHECK(std::abs(finished.final("th_dot") - th_dot) < 1e-7);
+    REQUIRE(impulse(finished) != nullptr);
+    CHECK(std::abs(impulse(finished)->t - 1) < 1e-12);
+    CHECK(impulse(finished)->name == "th_dot");
+    CHECK(finished.simulation.result.power_balance < 1e-8);
+    CHECK(finished.simulation.result.contact_work == doctest::Approx(impulse(finished)->work));
+  }
+}
+
+TEST_CASE("jumps: the same by a constraint with a multiplier") {
+  const test::Finished finished = run_text(
+      "rod", "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n"
+             "[[constraint]]\nname = \"rod\"\nholonomic = \"(x - a*abs(t - 1))^2 + y^2 - l^2\"\n[scene.default]\nt = [0, 3]\n"
+             "initial = { x = \"1 + sin(0.1)\", y = \"-cos(0.1)\", x_dot = -1, y_dot = 0 }\n");
+  const auto [th, th_dot] = expected(2);
+  CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+  CHECK(std::abs(finished.final("x") - (2 + std::sin(th))) < 1e-7);
+  CHECK(std::abs(finished.final("y") + std::cos(th)) < 1e-7);
+  CHECK(std::abs(finished.final("x_dot") - (1 + std::cos(th) * th_dot)) < 1e-7);
+  REQUIRE(impulse(finished) != nullptr);
+  CHECK(finished.simulation.result.power_balance < 1e-8);
+}
+
+TEST_CASE("jumps: a support whose velocity bends and does not jump gives no impulse") {
+  const test::Finished finished = run_text("bends", pendulum("a*max(0, t - 1)^2"));
+  CHECK(finished.simulation.result.outcome == eom::Outcome::done);
+  CHECK(impulse(finished) == nullptr);
+}
+
+TEST_CASE("jumps: a support that jumps itself ends the run, and is named") {
+  const test::Finished finished = run_text("place", pendulum("if(t < 1, 0, a)"));
+  CHECK(finished.simulation.result.outcome == eom::Outcome::jump_undetermined);
+  CHECK(finished.simulation.result.detail.find("P.position1 jumps at t = 1") == 0);
+}
+
+TEST_CASE("jumps: a step of a potential ends the run where it is crossed, one that is not is no matter") {
+  const test::Finished crossed = run_text("step", step_at_one("if(x < 1, 0, 5)", 4));
+  CHECK(crossed.simulation.result.outcome == eom::Outcome::jump_undetermined);
+  CHECK(crossed.simulation.result.detail.find("the potential energy jumps by 5") == 0);
+  CHECK(std::abs(crossed.final("x") - 1) < 1e-9);
+  CHECK(run_text("step", step_at_one("if(x < 1, 0, 5)", 0.3)).simulation.result.outcome == eom::Outcome::done);
+  CHECK(run_text("step", step_at_one("if(x < 1, 0, 5*(x - 1))", 4)).simulation.result.outcome == eom::Outcome::done);
+}
+
+TEST_CASE("jumps: a wire with a corner ends the run there") {
+  const test::Finished corner = run_text("corner", "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
+                                                   "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
+  CHECK(corner.simulation.result.outcome == eom::Outcome::jump_undetermined);
+  CHECK(corner.simulation.result.detail.find("the kinetic energy jumps") == 0);
+}
