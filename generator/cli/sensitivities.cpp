@@ -8,6 +8,7 @@
 #include <array>
 #include <cmath>
 
+#include "cli/output.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
