@@ -10,6 +10,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,11 +27,11 @@ using eomgen::cli::Common;
 constexpr int exit_internal = 4;
 
 int report(const eomgen::Error& error) {
-  // Messages name a page as the source tree has it; here it is told where it is.
-  std::string text = error.what();
-  const std::string page = "docs/model-format.md";
-  if (const std::size_t at = text.find(page); at != std::string::npos) text.replace(at, page.size(), eomgen::cli::documentation("model-format.md"));
-  eomgen::cli::tell(text);
+  eomgen::cli::tell(error.what());
+  // Messages name a page as the source tree has it.
+  if (std::string_view(error.what()).find("docs/model-format.md") != std::string_view::npos) {
+    eomgen::cli::tell(fmt::format("  docs/model-format.md is {}\n", eomgen::cli::documentation("model-format.md")));
+  }
   return error.exit_code();
 }
 

@@ -55,15 +55,16 @@ Error unexpected(const CLI::App& app) {
     return Error("usage", {}, fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
   }
   const std::string name = option->substr(0, option->find('='));
-  std::string hint = model::did_you_mean(name, flags_of(app));
-  if (hint.empty() && app.get_parent() != nullptr) {  // one of the program itself, also by its first letter
-    for (const std::string& flag : flags_of(*app.get_parent())) {
-      if (flag == name || (name.size() == 2 && flag.size() > 2 && flag[2] == name[1])) hint = fmt::format("did you mean 'eomgen {}'?", flag);
-    }
+  // Letters are near to every other letter: one stands for a longer name that begins with it.
+  const bool letter = name.size() == 2;
+  std::string hint = letter ? "" : model::did_you_mean(name, flags_of(app));
+  const auto begins = [&](const std::string& flag) { return flag == name || (letter && flag.size() > 2 && flag[2] == name[1]); };
+  for (const std::string& flag : flags_of(app)) {
+    if (hint.empty() && begins(flag)) hint = fmt::format("did you mean '{}'?", flag);
   }
-  if (hint.empty() && name.size() == 2) {  // the first letter of a longer one
-    for (const std::string& flag : flags_of(app)) {
-      if (hint.empty() && flag.size() > 2 && flag[2] == name[1]) hint = fmt::format("did you mean '{}'?", flag);
+  if (app.get_parent() != nullptr) {
+    for (const std::string& flag : flags_of(*app.get_parent())) {
+      if (hint.empty() && begins(flag)) hint = fmt::format("did you mean 'eomgen {}'?", flag);
     }
   }
   return Error("usage", {}, fmt::format("there is no option {}", model::quote(name)), hint.empty() ? help : hint + " " + help);

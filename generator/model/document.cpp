@@ -196,7 +196,9 @@ void refuse_bare_value(const Source& source, std::size_t at) {
     meant[comma] = '.';
     source.fail(span, "a comma is no decimal point", fmt::format("write {}", meant.find(' ') == std::string::npos ? meant : '"' + meant + '"'));
   }
-  if (value.size() > 100 || value.find(',') != std::string::npos) return;
+  // A number that TOML does not take is told as such.
+  const bool plain = value.find_first_not_of("0123456789.eE+-_xob") == std::string::npos;
+  if (plain || value.size() > 100 || value.find(',') != std::string::npos) return;
   source.fail(span, fmt::format("{} is no TOML value: units and expressions are texts", quote(value)), fmt::format("write it in quotes: \"{}\"", value));
 }
 

@@ -262,8 +262,9 @@ Syntax parse_quantity(const Text& text) {
   auto unit = parse_unit(last->word);
   if (!unit) {
     // "2 fm/s": what could only be a unit is told as one.
-    const bool unit_like = std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
-                           last->word.find_first_of("(),+-<>.") == std::string_view::npos;
+    const bool unit_like = completed_unit(last->word).has_value() ||
+                           (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
+                            last->word.find_first_of("(),+-<>.") == std::string_view::npos);
     if (unit_like) {
       const std::string hint = unit_hint(last->word);
       text.source->fail(text.span(at, last->word.size()), fmt::format("{} is not a unit", quote(last->word)),

@@ -327,6 +327,10 @@ RunResult integrate_scene(const RunRequest& request) {
   eom::Result end = moves ? integration.run(options, see, [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); })
                           : eom::Result{eom::Outcome::done, request.scene.t0, integration.initial_state(), {}, ""};
   result.seconds_integrate = seconds_since(start);
+  if (!moves && result.solver == eom::Automatic::name) {
+    result.solver = "dop853";
+    result.reason = "nothing moves from the start to the start";
+  }
   const std::string asked = result.solver;
   watch.cut(end);
   watch.finish(end.t, end.x.data());

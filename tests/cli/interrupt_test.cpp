@@ -15,7 +15,7 @@ using namespace eomgen::test;
 namespace {
 
 // Far longer than any test may take.
-const Words endless{"run", "P2_planar_pendulum", "--t-end", "1e7", "--every", "0.1", "--out", "a.csv", "--json"};
+const Words endless{"run", "P2_planar_pendulum", "--t-end", "1e7", "--every", "20", "--out", "a.csv", "--json"};
 
 /// The file NAME.partial-XXXXXX, once there are rows in it; empty where that takes more than 20 seconds.
 std::string wait_for_rows(const Folder& folder, const std::string& name, std::size_t bytes = 100000) {

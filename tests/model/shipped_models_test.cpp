@@ -11,7 +11,7 @@ namespace {
 
 std::vector<std::filesystem::path> shipped() {
   std::vector<std::filesystem::path> result;
-  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
+  for (const auto& entry : std::filesystem::directory_iterator(eomgen::test::source_folder() + "/models")) {
     if (entry.path().extension() == ".toml") result.push_back(entry.path());
   }
   std::sort(result.begin(), result.end());
@@ -52,7 +52,7 @@ TEST_CASE("in shipped models every coordinate and parameter has a unit") {
 }
 
 TEST_CASE("reading is deterministic") {
-  const std::string path = test::source_folder() + "/models/P7_moving_sphere.toml";
+  const std::string path = eomgen::test::source_folder() + "/models/P7_moving_sphere.toml";
   const Model a = read_model(path), b = read_model(path);
   REQUIRE(a.arena.nodes.size() == b.arena.nodes.size());
   for (std::size_t k = 0; k < a.arena.nodes.size(); ++k) {
@@ -65,7 +65,7 @@ TEST_CASE("reading is deterministic") {
 TEST_CASE("a path that is no file is told") {
   for (const auto& [path, message] :
        {std::pair<std::string, std::string>{"/nonexistent/model.toml", "there is no such file"},
-        {test::source_folder() + "/models", "this is a directory"}}) {
+        {eomgen::test::source_folder() + "/models", "this is a directory"}}) {
     try {
       read_model(path);
       FAIL("accepted");

@@ -12,6 +12,13 @@ Rational si(const std::string& quantity) {
   return exact(model, model.parameters[0].value);
 }
 
+bool only_unused(const Model& model) {
+  for (const eomgen::Warning& warning : model.warnings) {
+    if (!warning.message.ends_with("is not used")) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 TEST_CASE("units are converted to SI exactly") {
@@ -137,9 +144,9 @@ holonomic = "z - x^2 - y^2 - sin(x)"
 
 TEST_CASE("numbers made of pi are numbers, in every place") {
   const Model model = read(particle(
-      "[functions]\nf = \"min(t, pi)\"\ng2 = \"L*sin(pi*t) + pi*L\"\n[definitions]\nd = \"max(R, pi/2) + pi\"\n"
+      "[functions]\nf = \"min(t, pi)\"\ng2 = \"L + pi*L\"\n[definitions]\nd = \"max(R, pi/2) + pi\"\n"
       "[scene.default]\ninitial = { R = \"pi\", phi = \"pi/2\", phi_dot = \"2*pi\", theta_dot = \"-sqrt(pi)\" }\n"));
-  CHECK(model.warnings.empty());
+  CHECK(only_unused(model));
   CHECK(model.definitions[0].unit.text == "m");
   CHECK(model.functions[0].unit.text == "s");
   CHECK_THROWS(read(particle("[definitions]\nd = \"R + L^2*pi\"\n")));  // what it is multiplied by keeps its dimension
@@ -149,7 +156,7 @@ TEST_CASE("a file whose only units are angles is a file without units") {
   const std::string text = "format = 1\n[parameters]\nm = 1\nL = 2\na = \"30 deg\"\nb = \"0.1[rad]\"\n[coordinates]\nphi = \"rad\"\nx = {}\n"
                            "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"phi\", \"x\"] }\n"
                            "[definitions]\nd = \"r + r^2 + sin(r)\"\n[scene.default]\ninitial = { phi = \"45 deg\" }\n";
-  CHECK(read(text).warnings.empty());
+  CHECK(only_unused(read(text)));
   std::string other = text;
   other.replace(other.find("m = 1"), 5, "m = \"1 kg\"");
   CHECK_THROWS(read(other));

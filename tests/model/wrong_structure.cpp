@@ -6,9 +6,9 @@ namespace eomgen::model {
 
 std::vector<WrongModel> wrong_structure() {
   return {
-      {"a constraint that is a square", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"(R - L)^2\"\n"), "15:14",
+      {"a constraint that is a square", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"(R - L)^2\"\n"), "14:13",
        "the constraint 'rod' is a power: its gradient vanishes where it holds, so that it has no force", "write \"R - L\""},
-      {"a constraint that is a square times a parameter", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"-m*(R - L)^2/2\"\n"), "15:14",
+      {"a constraint that is a square times a parameter", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"-m*(R - L)^2/2\"\n"), "14:13",
        "the constraint 'rod' is a power: its gradient vanishes where it holds, so that it has no force", "write what is raised to the power"},
       {"an empty file", "", "1:1", "the model has no format", "add format = 1 at the top"},
       {"no format", pendulum({{"format = 1\n", ""}}), "1:1", "the model has no format", "add format = 1 at the top"},
