@@ -2,6 +2,8 @@
 // The command equilibria: its document, its text, and what it refuses. Its numbers are tested in tests/linear.
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -21,6 +23,22 @@ TEST_CASE("equilibria: points with values, eigenvalues and stability, the same f
   CHECK(contains(text, "equilibrium, stable: the second variation of 'energy'"));
   CHECK(document(folder, {"equilibria", "R13_sleigh", "--scene", "straight"})["held"].size() == 2);
   CHECK(document(folder, {"equilibria", "R6_rolling_disk"})["points"][0]["stable"] == "unknown");
+}
+
+TEST_CASE("equilibria: coordinates that are 0 are shown, 0 has no sign, and a search that a force ends says which") {
+  const Folder folder;
+  const std::string text = expect(0, folder, {"equilibria", "S5_double_pendulum"}).out;
+  CHECK(contains(text, "theta1                                          0\n"));
+  const Json found = document(folder, {"equilibria", "S5_double_pendulum"});
+  CHECK(found["points"][0]["values"]["theta1"] == 0.0);
+  CHECK(!std::signbit(found["points"][0]["values"]["theta1_dot"].get<double>()));
+  CHECK(found["points"][0]["off"] == 0.0);
+  CHECK(found["refused"] == 0);
+  folder.write("stick.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"x^2/2\"\n[[force]]\nname = \"stick\"\n"
+                             "generalized = { x = \"-sign(x_dot)\" }\n[scene.default]\ninitial = { x = 1, x_dot = -0.0 }\n");
+  const std::string why = expect(2, folder, {"equilibria", "stick.toml"}).err;
+  CHECK(contains(why, "stick.toml:7:"));
+  CHECK(contains(why, "'stick' has no slope"));
 }
 
 TEST_CASE("equilibria: equations that depend on t, contacts, and what cannot be held are told with a remedy") {
