@@ -3,6 +3,8 @@
 
 #include <cln/float.h>
 #include <cln/integer.h>
+#include <cln/rational.h>
+#include <cln/real.h>
 
 #include "verify/linear_solve.hpp"
 

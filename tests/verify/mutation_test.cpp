@@ -79,7 +79,7 @@ class Mutator {
     for (std::sregex_iterator it(source_.begin(), source_.end(), head), none; it != none; ++it) {
       const std::size_t begin = static_cast<std::size_t>(it->position() + it->length()), end = source_.find("\n}\n", begin);
       const std::string function = (*it)[1];
-      if (begin > last || function == "abi" || function.find("sincos") != std::string::npos || function == "taylor_sums") continue;
+      if (begin > last || function == "abi" || function.find("sincos") != std::string::npos || function.starts_with("taylor_sums") || function == "taylor") continue;  // loops may not end
       functions_.emplace_back(begin, end);
     }
     REQUIRE(functions_.size() > 4);
