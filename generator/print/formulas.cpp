@@ -218,8 +218,10 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
     const Formula zero = reading::number(0);
     const Formula psi = form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
     const Formula written = reading::as_written(*m.model, m.constraints[c.constraint].written)
-                                .value_or(arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms));
-    if (c.fixes) {
+                                .value_or(c.too_long ? mark("...") : arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms));
+    if (c.too_long) {
+      add("derivatives too long to be written out", reading::relation({written, zero}));
+    } else if (c.fixes) {
       const std::uint32_t q = c.fixes->coordinate;
       add("fixes a coordinate", reading::relation({psi, written, zero}));
       std::vector<Formula> motion{reading::relation({coordinate(q, 0), arrange(c.value)}),

@@ -15,43 +15,6 @@ namespace {
 
 using mechanics::Mechanics;
 
-void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
-  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!m.holds(k)) continue;
-    ReadConstraint c;
-    c.constraint = k;
-    c.label = m.constraints[k].label;
-    c.holonomic = m.constraints[k].holonomic();
-    if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
-    c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
-    c.acceleration = bridge.total_derivative(c.rate);
-    const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
-    if (const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes); found != m.fixed.end()) {
-      c.fixes = *found;
-      c.value = bridge.sum(found->value);
-      c.value_rate = bridge.sum(found->rate);
-      c.value_acceleration = bridge.sum(found->acceleration);
-    }
-    form.constraints.push_back(std::move(c));
-  }
-}
-
-void add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
-  if (m.spins.empty()) return;
-  const bool imposed = form.approach == system::Approach::two;
-  const std::map<Symbol, Sum> values = imposed_values(m, bridge);
-  const auto read = [&](const Sum& sum) { return imposed ? simplify(bridge.substitute(sum, values)) : sum; };
-  try {
-    form.spins = read_spins(m, bridge);
-    for (ReadSpin& spin : form.spins) {
-      for (Sum& w : spin.w) w = read(w);
-    }
-  } catch (const TermBudget&) {  // angular velocities along a long chain of relative rotations
-    form.spins.clear();
-  }
-  if (!form.by_parts) form.translation = read(translational_energy(m, bridge));
-}
-
 // Equations that are too long to be read: what is left is which coordinates and forces there are.
 void leave_by_parts(const Mechanics& m, ReadingForm& form) {
   form.by_parts = true;
@@ -66,6 +29,63 @@ void leave_by_parts(const Mechanics& m, ReadingForm& form) {
     equation.coordinate = i;
     equation.of_motion = of_motion;
     form.equations.push_back(std::move(equation));
+  }
+}
+
+// Throws TermBudget.
+void read_constraint(const Mechanics& m, Bridge& bridge, ReadConstraint& c) {
+  const std::uint32_t k = c.constraint;
+  if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
+  c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
+  c.acceleration = bridge.total_derivative(c.rate);
+  const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
+  if (const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes); found != m.fixed.end()) {
+    c.fixes = *found;
+    c.value = bridge.sum(found->value);
+    c.value_rate = bridge.sum(found->rate);
+    c.value_acceleration = bridge.sum(found->acceleration);
+  }
+}
+
+void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.holds(k)) continue;
+    ReadConstraint c;
+    c.constraint = k;
+    c.label = m.constraints[k].label;
+    c.holonomic = m.constraints[k].holonomic();
+    try {
+      read_constraint(m, bridge, c);
+    } catch (const TermBudget&) {
+      c.psi = c.rate = c.acceleration = Sum();
+      c.too_long = true;
+      c.fixes.reset();
+      const auto leans = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
+      if (!form.by_parts && std::any_of(m.fixed.begin(), m.fixed.end(), leans)) leave_by_parts(m, form);
+    }
+    form.constraints.push_back(std::move(c));
+  }
+}
+
+void add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+  if (m.spins.empty()) return;
+  const bool imposed = form.approach == system::Approach::two;
+  std::map<Symbol, Sum> values;
+  const auto read = [&](const Sum& sum) { return imposed ? simplify(bridge.substitute(sum, values)) : sum; };
+  try {
+    if (imposed) values = imposed_values(m, bridge);
+    form.spins = read_spins(m, bridge);
+    for (ReadSpin& spin : form.spins) {
+      for (Sum& w : spin.w) w = read(w);
+    }
+  } catch (const TermBudget&) {  // angular velocities along a long chain of relative rotations
+    form.spins.clear();
+  }
+  if (form.by_parts) return;
+  try {
+    form.translation = read(translational_energy(m, bridge));
+  } catch (const TermBudget&) {
+    leave_by_parts(m, form);
   }
 }
 

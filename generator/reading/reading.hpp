@@ -26,6 +26,7 @@ struct ReadConstraint {
   Sum psi, rate, acceleration;
   std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t); by approach II also of other coordinates
   Sum value, value_rate, value_acceleration;        // of that coordinate
+  bool too_long = false;  // to be written out with its derivatives: nothing of it is here but what the author wrote
 };
 
 /// lambda_k dpsi_k/dq_i of one equation.

@@ -212,6 +212,17 @@ void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Sy
   }
 }
 
+void add_geometry(const Mechanics& m, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
+  if (m.q.size() <= largest_determinant) return;
+  // Each particle's chart fails where its metric does; that is where the whole inertia matrix may.
+  for (const Geometry& g : geometry(m)) {
+    sets.add_factors("I", g.determinant);
+    bool stays = false;
+    for (const std::uint32_t i : g.coordinates) stays = stays || !m.is_eliminated(i);
+    if (stays && m.free.size() > largest_determinant) sets.add_factors("II", bridge.substitute(g.determinant, values));
+  }
+}
+
 }  // namespace
 
 std::vector<SingularSet> singular_sets(const Mechanics& m) {
@@ -219,26 +230,22 @@ std::vector<SingularSet> singular_sets(const Mechanics& m) {
   Sets sets;
   std::vector<std::uint32_t> all;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) all.push_back(i);
-  const std::map<Symbol, Sum> values = imposed_values(m, bridge);
+  std::map<Symbol, Sum> values;
   try {
+    values = imposed_values(m, bridge);
     const Sum kinetic = kinetic_energy(m, bridge);
     if (all.size() <= largest_determinant) add_determinant(m, bridge, "I", kinetic, all, sets);
     if (m.free.size() <= largest_determinant) add_determinant(m, bridge, "II", bridge.substitute(kinetic, values), m.free, sets);
     const Sum potential = bridge.sum(m.potential);
     sets.add_denominators("I", potential);
     sets.add_denominators("II", bridge.substitute(potential, values));
+  } catch (const TermBudget&) {  // what is too long to be written out is not told: the run's own pivots tell it
+  }
+  try {
+    add_geometry(m, bridge, values, sets);
+    add_rotations(m, bridge, values, sets);
   } catch (const TermBudget&) {
   }
-  if (m.q.size() > largest_determinant) {
-    // Each particle's chart fails where its metric does; that is where the whole inertia matrix may.
-    for (const Geometry& g : geometry(m)) {
-      sets.add_factors("I", g.determinant);
-      bool stays = false;
-      for (const std::uint32_t i : g.coordinates) stays = stays || !m.is_eliminated(i);
-      if (stays && m.free.size() > largest_determinant) sets.add_factors("II", bridge.substitute(g.determinant, values));
-    }
-  }
-  add_rotations(m, bridge, values, sets);
   return sets.take();
 }
 
