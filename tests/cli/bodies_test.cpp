@@ -86,3 +86,58 @@ TEST_CASE("one moment of inertia does for a turn about any fixed axis: -E3, 2*E3
   tilted.replace(tilted.find("rotation = { axis = \"F.e3\""), 0, "relative_to = \"F\"\n");
   period(tilted);
 }
+
+TEST_CASE("what is too long to be written out ends no command: a rattleback in Euler parameters, five bodies on ball joints") {
+  const Folder folder;
+  folder.write("rattleback.toml", R"toml(format = 1
+title = "Rattleback: an ellipsoid that rolls, its inertia turned against its axes"
+[parameters]
+m = "1 kg"
+a = "0.2 m"
+b = "0.03 m"
+c = "0.02 m"
+h = "0.01 m"
+A = "0.0002 kg*m^2"
+B = "0.0016 kg*m^2"
+C = "0.0017 kg*m^2"
+D = "-0.0002 kg*m^2"
+g = "9.81 m/s^2"
+[definitions]
+n1 = "dot(body.e1, E3)"
+n2 = "dot(body.e2, E3)"
+n3 = "dot(body.e3, E3)"
+w = "sqrt(a^2*n1^2 + b^2*n2^2 + c^2*n3^2)"
+[[body]]
+name = "body"
+mass = "m"
+inertia = [["A", "D", "0"], ["D", "B", "0"], ["0", "0", "C"]]
+position = { cartesian = ["x1", "x2", "x3"] }
+rotation = { euler_parameters = ["e0", "e1", "e2", "e3"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "contact"
+rolling = { body = "body", at = "-(a^2*n1*body.e1 + b^2*n2*body.e2 + c^2*n3*body.e3)/w + h*body.e3", on = "ground" }
+[scene.default]
+t = [0, 2]
+initial = { e0 = 0.999, e1 = 0.02, e2 = 0.01, "body.omega" = [0.01, 0.02, 2] }
+guess = { e3 = 0.03 }
+)toml");
+  std::string chain = "format = 1\n";
+  for (int i = 1; i <= 5; ++i) {
+    const std::string k = std::to_string(i), before = std::to_string(i - 1);
+    const std::string e = "\"a" + k + "\", \"b" + k + "\", \"c" + k + "\", \"d" + k + "\"", r = "\"x" + k + "\", \"y" + k + "\", \"z" + k + "\"";
+    chain += "[[body]]\nname = \"B" + k + "\"\nmass = 1\ninertia = { principal = [0.1, 0.12, 0.02] }\nposition = { cartesian = [" + r +
+             "] }\nrotation = { euler_parameters = [" + e + "] }\n[[joint]]\nname = \"j" + k + "\"\ntype = \"ball\"\nbodies = [\"" +
+             (i == 1 ? "ground" : "B" + before) + "\", \"B" + k + "\"]\nat = [" + (i == 1 ? "\"origin\"" : "\"B" + before + " - 0.5*B" + before + ".e3\"") + ", \"B" + k + " + 0.5*B" +
+             k + ".e3\"]\n";
+  }
+  folder.write("chain.toml", chain + "[[force]]\ngravity = \"-9.81*E3\"\n");
+  for (const char* name : {"rattleback.toml", "chain.toml"}) {
+    CAPTURE(name);
+    expect(0, folder, {"check", name});
+    const ChildResult shown = expect(0, folder, {"derive", name});
+    CHECK_FALSE(shown.out.empty());
+    CHECK(document(folder, {"verify", name, "--points", "1", "--no-compile"})["verdict"] == "pass");
+  }
+}

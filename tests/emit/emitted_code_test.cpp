@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "emit/examples.hpp"
-#include "emit/shared_library/checksum.hpp"
+#include "model/content_hash.hpp"
 #include "error.hpp"
 #include "support/tolerances.hpp"
 
@@ -369,7 +369,7 @@ TEST_CASE("print the checksum of what is emitted" * doctest::skip()) {  // for t
   for (const Example& e : examples()) {
     for (const auto& file : emit::emit(e.program, e.context)) all += file.text;
   }
-  MESSAGE("emitted: ", emit::checksum(all), ";");
+  MESSAGE("emitted: ", model::content_hash(all), ";");
 }
 
 TEST_CASE("emission: equal bytes in fresh processes") {
