@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <eom/modes/chart_state.hpp>
 
 #include "emit/text.hpp"
@@ -100,6 +101,9 @@ void add_charts(const program::Program& program, const program::AbiArguments& ar
     } catch (const std::domain_error&) {
       continue;
     }
+    // At half a turn rounding decides between pi and -pi, which are the same angle.
+    const auto at_half_a_turn = [](const cln::cl_R& x) { return std::fabs(std::fabs(cln::double_approx(x)) - std::numbers::pi) < 1e-6; };
+    if (std::any_of(at.x.begin(), at.x.end(), at_half_a_turn)) continue;
     // Formulas of a few sines: what they lose is far below this.
     const std::vector<std::vector<double>> bounds{std::vector<double>(at.x.size(), 1e-14)};
     if (const auto found = rounded("chart", {at.x}, bounds)) {

@@ -231,6 +231,7 @@ bool Closure::is_regular() {
         A.row(k) /= length;
       }
     }
+    if (A.rows() == 0) return true;  // contacts alone, which may be open
     Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
     qr.setThreshold(plainly_independent);
     qr.compute(A.transpose());
