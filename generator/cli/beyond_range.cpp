@@ -27,8 +27,10 @@ bool of_system(const model::Model& model, std::uint32_t coordinate) {
     if (!place.chart) continue;
     for (const model::NodeId entry : place.chart->entries) {
       if (entry == model::no_node) continue;
-      const model::Span& span = model.arena[entry].span;
-      if (span.line == stated.line && span.column == stated.column && span.line > 0) return true;
+      // Its range has the place of the entry, whose name begins behind the quotation mark.
+      const model::Node& node = model.arena[entry];
+      const bool itself = node.op == model::Op::coordinate && node.index == coordinate;
+      if (itself && node.span.line == stated.line && node.span.column >= stated.column && node.span.column <= stated.column + 1 && stated.line > 0) return true;
     }
   }
   return false;

@@ -47,6 +47,9 @@ constexpr std::string_view own[] = {"Real", "State", "Parameter", "Input", "Outp
 
 // Names of the runtime, in whose namespace `eom` the emitted header has its own (a test holds this list against lib/eom).
 constexpr std::string_view runtime[] = {
+    "EINTR", "EISDIR", "ELOOP", "F_DUPFD_CLOEXEC", "O_CLOEXEC", "O_CREAT", "O_EXCL", "O_NOCTTY", "O_NOFOLLOW", "O_RDONLY", "O_RDWR", "O_WRONLY",
+    "S_ISCHR", "S_ISDIR", "S_ISREG",  // macros of what its headers include
+    "STDERR_FILENO", "STDIN_FILENO", "STDOUT_FILENO", "StepBound", "WholeFile",
     "AtEvent", "Automatic", "Choice", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
     "Crossing", "CsvWriter", "Direction", "Drift", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Lu",
     "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "NoObserver", "NoProjection", "Options",

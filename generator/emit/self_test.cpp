@@ -203,7 +203,8 @@ class Body {
     for (const auto& array : shape) width += 1 + array.size();
     text_ += fmt::format("  {{  {}\n", comment(dialect_, function + ": what rounding explains, then the values, for each array"));
     text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
-    text_ += fmt::format("    static const double expected[{}][{}] = {{\n{}}};\n", rows.size(), width, numbers);
+    const bool empty = std::all_of(shape.begin(), shape.end(), [](const auto& array) { return array.empty(); });
+    if (!empty) text_ += fmt::format("    static const double expected[{}][{}] = {{\n{}}};\n", rows.size(), width, numbers);
     text_ += fmt::format("    for (int k = 0; k < {}; ++k) {{\n", rows.size());
     text_ += "      const int state = at[k];\n";
     text_ += fmt::format("      const double* const point = points[state];\n");
