@@ -5,7 +5,7 @@
  * model       P7_moving_sphere
  * content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
  * equations   approach II, route christoffel
- * verified    pass: 5 points at 50 digits, 98 comparisons
+ * verified    pass: 5 points at 50 digits, 103 comparisons
  * singular    R = 0
  * singular    phi = 0, phi = pi
  * singular    d = 0
@@ -60,7 +60,7 @@ int P7_moving_sphere_abi(void);
 const char* P7_moving_sphere_info(void);
 /* The default scene: state at its start, parameter values. */
 void P7_moving_sphere_defaults(double* x, double* p);
-/* Compares the right-hand side with embedded values of high precision: 0, or the number of the first that differs. */
+/* Compares every function with embedded values of high precision: 0, or the number of the first state where one differs. */
 int P7_moving_sphere_selftest(void);
 /* dx = d/dt of the state x. */
 int P7_moving_sphere_rhs(double t, const double* x, const double* p, const double* u, int mode, double* dx);

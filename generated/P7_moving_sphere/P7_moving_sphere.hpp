@@ -5,7 +5,7 @@
 // model       P7_moving_sphere
 // content     21882b45b1cb5277745fe3e155be4ec7b9bcdb9ac2eb1b2e6e200dd73960e063
 // equations   approach II, route christoffel
-// verified    pass: 5 points at 50 digits, 98 comparisons
+// verified    pass: 5 points at 50 digits, 103 comparisons
 // singular    R = 0
 // singular    phi = 0, phi = pi
 // singular    d = 0
@@ -76,11 +76,11 @@ inline const char* info() {
       ":[\"smooth\"],\"units\":{\"phi\":\"rad\",\"theta\":\"rad\",\"phi_dot\":\"rad/s\",\"theta_dot\":\""
       "rad/s\",\"R\":\"m\",\"m\":\"kg\",\"g\":\"m/s^2\",\"D\":\"N/m\",\"d0\":\"m\",\"a\":\"m\",\"w\":\""
       "rad/s\"},\"defaults\":{\"t\":0.0,\"x\":[1.0,0.0,0.0,2.0],\"p\":[1.0,9.81,0.3,1.0,0.1,2.0],\"u\":"
-      "[]},\"approach\":\"II\",\"route\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digits, 98 "
-      "comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":{"
-      "\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"mul\":61"
-      ",\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\":"
-      "0,\"trig\":4,\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig\":3,\""
+      "[]},\"approach\":\"II\",\"route\":\"christoffel\",\"verdict\":\"pass: 5 points at 50 digits, 103"
+      " comparisons\",\"singular\":[\"R = 0\",\"phi = 0, phi = pi\",\"d = 0\"],\"operations\":{\"rhs\":"
+      "{\"add\":5,\"mul\":19,\"div\":2,\"sqrt\":0,\"trig\":4,\"other\":0},\"jac\":{\"add\":17,\"mul\":6"
+      "1,\"div\":3,\"sqrt\":0,\"trig\":4,\"other\":0},\"mass\":{\"add\":5,\"mul\":23,\"div\":0,\"sqrt\""
+      ":0,\"trig\":4,\"other\":0},\"reactions\":{\"add\":4,\"mul\":10,\"div\":0,\"sqrt\":0,\"trig\":3,\""
       "other\":0},\"outputs\":{\"add\":9,\"mul\":21,\"div\":0,\"sqrt\":0,\"trig\":4,\"other\":0}}}";
 }
 #if defined(__GNUC__)
@@ -312,10 +312,12 @@ int jac(Real t, const Real* x, const Real* p, const Real* u, int mode, Real* dfd
   dfdx[13] = Real(1);
   dfdx[14] = sin_phi*v21;
   dfdx[15] = -Real(2)*v13*v18;
-  dfdt[0] = Real(0);
-  dfdt[1] = Real(0);
-  dfdt[2] = v6*v24*v25;
-  dfdt[3] = v19*v25*v26;
+  if (dfdt) {
+    dfdt[0] = Real(0);
+    dfdt[1] = Real(0);
+    dfdt[2] = v6*v24*v25;
+    dfdt[3] = v19*v25*v26;
+  }
   return 0;
 }
 
@@ -403,26 +405,114 @@ int outputs(Real t, const Real* x, const Real* p, const Real* u, int mode, Real*
   return 0;
 }
 
-// Compares the right-hand side with embedded values of high precision: 0, or the number of the first that differs.
+// Whether values are off the expected ones by more than expected[0].
+inline int eom_differs(int count, const double* got, const double* expected) {
+  for (int i = 0; i < count; ++i) {
+    if (!(std::fabs(got[i] - expected[i + 1]) <= expected[0])) return 1;
+  }
+  return 0;
+}
+
+// Compares every function with embedded values of high precision: 0, or the number of the first state where one differs.
 inline int selftest() {
-  // t, x, p, u, dx: computed in high precision, rounded once
-  static const double values[3][15] = {
-      {0.0, 1.0, 0.0, 0.0, 2.0, 1.0, 9.81, 0.3, 1.0, 0.1, 2.0, 0.0, 2.0, 10.073425214616828,
-       -0.4434814682665637},
-      {0.125, 0.9296875, 0.0078125, 0.0859375, 1.9140625, 1.0, 9.81, 0.3, 1.0, 0.1, 2.0, 0.0859375, 1.9140625,
-       9.395812654808005, -0.5950913300576388},
-      {0.25, 0.859375, 0.015625, 0.171875, 1.828125, 1.0, 9.81, 0.3, 1.0, 0.1, 2.0, 0.171875, 1.828125,
-       8.685687994051444, -0.7579979442823342}};
-  for (int k = 0; k < 3; ++k) {
-    const double* const point = values[k];
-    const double* const expected = point + 11;
-    double dx[4], largest = 0.0;
-    for (int i = 0; i < 4; ++i) {
-      if (std::fabs(expected[i]) > largest) largest = std::fabs(expected[i]);
+  // t, x, p, u of each state
+  static const double points[3][11] = {
+      {0.0, 1.0, 0.0, 0.0, 2.0, 1.0, 9.81, 0.3, 1.0, 0.1, 2.0},
+      {0.125, 0.9296875, 0.0078125, 0.0859375, 1.9140625, 1.0178571428571428, 10.160357142857144,
+       0.31607142857142856, 1.0714285714285714, 0.10892857142857143, 2.2142857142857144},
+      {0.25, 0.859375, 0.015625, 0.171875, 1.828125, 1.2142857142857142, 11.561785714285715,
+       0.3428571428571428, 1.1071428571428572, 0.10714285714285715, 2.0714285714285716}};
+  {
+    double x[4], p[6];
+    int i;
+    defaults<double>(x, p);
+    for (i = 0; i < 4; ++i) {
+      if (!(x[i] == points[0][1 + i])) return 1;
     }
-    if (rhs<double>(point[0], point + 1, point + 5, nullptr, 0, dx) != 0) return k + 1;
-    for (int i = 0; i < 4; ++i) {
-      if (!(std::fabs(dx[i] - expected[i]) <= 1e-09*largest)) return k + 1;
+    for (i = 0; i < 6; ++i) {
+      if (!(p[i] == points[0][5 + i])) return 1;
+    }
+  }
+  {  // rhs: what rounding explains, then the values, for each array
+    static const int at[3] = {0, 1, 2};
+    static const double expected[3][5] = {
+        {1.1e-10, 0.0, 2.0, 10.073425214616828, -0.4434814682665637},
+        {9.6e-11, 0.0859375, 1.9140625, 9.114411890432438, -0.6646183607238894},
+        {9.6e-11, 0.171875, 1.828125, 9.143846612488385, -0.7766438652444466}};
+    for (int k = 0; k < 3; ++k) {
+      const int state = at[k];
+      const double* const point = points[state];
+      double y1[4] = {0};
+      if (rhs<double>(point[0], point + 1, point + 5, nullptr, 0, y1) != 0) return state + 1;
+      if (eom_differs(4, y1, expected[k] + 0)) return state + 1;
+    }
+  }
+  {  // jac: what rounding explains, then the values, for each array
+    static const int at[3] = {0, 1, 2};
+    static const double expected[3][22] = {
+        {3.8e-11, 0.0, 0.0, 3.6357782743778815, -0.22891791666978883, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, -0.4,
+         -2.568370463737323, 0.0, 1.0, 1.8185948536513634, -0.4, 1.7e-11, 0.0, 0.0, -1.6509660721930932,
+         0.16000000000000003},
+        {4.7e-11, 0.0, 0.0, 4.475691268558156, 0.2230416445273224, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0,
+         -0.42139431676366446, -2.8568100467904918, 0.0, 1.0, 1.8349147504831311, -0.5496592576399723,
+         1.6e-11, 0.0, 0.0, -1.527602191080663, 0.6773019038016613},
+        {6.3e-11, 0.0, 0.0, 6.013922354933218, 0.7740300309691578, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0,
+         -0.33242856060898535, -3.1516987537408703, 0.0, 1.0, 1.8081523811110913, -0.6287421186529988,
+         1.2e-11, 0.0, 0.0, -1.1776965212781205, 0.8182042071374122}};
+    for (int k = 0; k < 3; ++k) {
+      const int state = at[k];
+      const double* const point = points[state];
+      double y1[16] = {0};
+      double y2[4] = {0};
+      if (jac<double>(point[0], point + 1, point + 5, nullptr, 0, y1, y2) != 0) return state + 1;
+      if (eom_differs(16, y1, expected[k] + 0)) return state + 1;
+      if (eom_differs(4, y2, expected[k] + 17)) return state + 1;
+    }
+  }
+  {  // mass: what rounding explains, then the values, for each array
+    static const int at[3] = {0, 1, 2};
+    static const double expected[3][8] = {
+        {1e-11, 1.0, 0.0, 0.0, 0.7080734182735712, 1.1e-10, -10.073425214616828, 0.31401743917648806},
+        {1.3e-11, 1.2342844318880566, 0.0, 0.0, 0.7927746938959079, 1.2e-10, -11.249776702176147,
+         0.5268926174804816},
+        {1.7e-11, 1.6344518093840028, 0.0, 0.0, 0.9376968301431773, 1.6e-10, -14.945176640511429,
+         0.7282564905898625}};
+    for (int k = 0; k < 3; ++k) {
+      const int state = at[k];
+      const double* const point = points[state];
+      double y1[4] = {0};
+      double y2[2] = {0};
+      if (mass<double>(point[0], point + 1, point + 5, y1, y2) != 0) return state + 1;
+      if (eom_differs(4, y1, expected[k] + 0)) return state + 1;
+      if (eom_differs(2, y2, expected[k] + 5)) return state + 1;
+    }
+  }
+  {  // reactions: what rounding explains, then the values, for each array
+    static const int at[3] = {0, 1, 2};
+    static const double expected[3][2] = {
+        {2.6e-11, 2.468071947472166},
+        {3.6e-11, 3.3909023775726927},
+        {6.5e-11, 6.147312526062827}};
+    for (int k = 0; k < 3; ++k) {
+      const int state = at[k];
+      const double* const point = points[state];
+      double y1[1] = {0};
+      if (reactions<double>(point[0], point + 1, point + 5, nullptr, 0, y1) != 0) return state + 1;
+      if (eom_differs(1, y1, expected[k] + 0)) return state + 1;
+    }
+  }
+  {  // outputs: what rounding explains, then the values, for each array
+    static const int at[3] = {0, 1, 2};
+    static const double expected[3][3] = {
+        {7.1e-11, 6.7365124571135935, 2.468071947472166},
+        {8.7e-11, 8.295356116008849, 3.3909023775726927},
+        {1.3e-10, 12.248333791982937, 6.147312526062827}};
+    for (int k = 0; k < 3; ++k) {
+      const int state = at[k];
+      const double* const point = points[state];
+      double y1[2] = {0};
+      if (outputs<double>(point[0], point + 1, point + 5, nullptr, 0, y1) != 0) return state + 1;
+      if (eom_differs(2, y1, expected[k] + 0)) return state + 1;
     }
   }
   return 0;
