@@ -106,7 +106,8 @@ class Determined {
   }
   bool operator()(const Row& component) const {
     const cl_R size = length(component);
-    return cln::zerop(size) || length(beside(component)) < size * small(dependent_digits);
+    // Entries are directions and arms: what is smaller by so many digits is a zero of a configuration that was solved for.
+    return size < small(dependent_digits) || length(beside(component)) < size * small(dependent_digits);
   }
 
  private:

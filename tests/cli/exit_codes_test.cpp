@@ -42,7 +42,13 @@ exec cc "$@"
   CHECK(result.status == 1);
   const Json certificate = Json::parse(result.out);
   CHECK(certificate["verdict"] == "fail");
-  for (const Json& row : certificate["routes"]) CHECK(row["pass"] == (row["a"] != "emitted code"));
+  // Functions without a sine stay right; nothing but the emitted code is blamed.
+  bool blamed = false;
+  for (const Json& row : certificate["routes"]) {
+    if (!contains(row["a"].get<std::string>(), "emitted code")) CHECK(row["pass"] == true);
+    if (row["a"] == "emitted code") blamed = row["pass"] == false;
+  }
+  CHECK(blamed);
 }
 
 TEST_CASE("exit code 2: an error of the model shows its place, a caret and what to do") {
