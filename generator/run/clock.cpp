@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <queue>
+#include <set>
 
 #include "run/range_code.hpp"
 #include "system/expressions.hpp"
@@ -24,7 +25,7 @@ constexpr std::size_t most_boxes = 100'000;  // of one search for roots
 constexpr std::size_t most_breaks = 20'000;
 constexpr std::size_t most_cells = 2'000;    // of one smooth function
 constexpr double resolved = 0.5;             // change of the slope times the length of a cell, of the function's range
-constexpr double ripple = 1e-6;              // of the largest value: a smaller range is none
+constexpr double ripple = 1e-3;              // of the largest value of a term: a smaller range is none
 constexpr double steps_per_cell = 8;         // a sine is bounded to steps of half a period at least
 constexpr double shortest = 1e-12;           // of the span, in a search
 
@@ -253,9 +254,34 @@ class Search {
       const bool input = dag_[r].op == symbolic::Op::symbol && dag_.symbol_of(r).kind == SymbolKind::input;
       functions.push_back(input ? *inputs_[dag_.symbol_of(r).index].expression : r);
     }
-    for (const Ref f : functions) bound(f);
+    for (const Ref f : functions) {
+      for (const Ref term : terms(f)) bound(term);
+    }
     const auto narrow = std::min_element(bounds_.begin(), bounds_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
-    if (narrow == bounds_.end() || narrow->step > (t1_ - t0_) / 2) bounds_.clear();
+    if (narrow == bounds_.end() || narrow->step >= (t1_ - t0_) / 2) bounds_.clear();
+  }
+
+  /// What is added up is looked at term by term: a sum bounds its terms worse than these (sin^2 + cos^2), and a pulse beside a large constant is one.
+  std::vector<Ref> terms(Ref sum) {
+    std::vector<Ref> open{sum}, result;
+    while (!open.empty()) {
+      const Ref r = open.back();
+      open.pop_back();
+      if (depends_(r) != 1 || !seen_terms_.insert(r.id).second) continue;
+      const Node& node = dag_[r];
+      using symbolic::Op;
+      if (node.op == Op::symbol && dag_.symbol_of(r).kind == SymbolKind::input) {
+        open.push_back(*inputs_[dag_.symbol_of(r).index].expression);
+        continue;
+      }
+      const bool scaled = (node.op == Op::mul && (depends_(node.args[0]) == 0 || depends_(node.args[1]) == 0)) || (node.op == Op::div && depends_(node.args[1]) == 0);
+      if (node.op != Op::add && node.op != Op::sub && node.op != Op::neg && !scaled) {
+        result.push_back(r);
+        continue;
+      }
+      for (std::size_t k = 0; k < node.arity; ++k) open.push_back(node.args[k]);
+    }
+    return result;
   }
 
   void bound(Ref function) {
@@ -325,6 +351,7 @@ class Search {
   Dependence depends_;
   std::vector<Break> cuts_;
   std::vector<std::vector<Ref>> surfaces_;
+  std::set<std::uint32_t> seen_terms_;
   std::vector<eom::StepBound> bounds_;
   std::string incomplete_;
   std::vector<double> at_;

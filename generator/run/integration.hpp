@@ -18,7 +18,7 @@ struct FinerSteps {
   double begin, end, step;
 };
 std::vector<FinerSteps> finer_steps(const Scene& scene);
-inline constexpr double steps_of_bound = 0.125;  // of a bound of chosen steps
+inline constexpr double steps_of_bound = 0.03125;  // of a bound of chosen steps
 
 class Integration {
  public:
