@@ -57,5 +57,7 @@ struct EmissionContext {
 std::string mangled_id(const std::string& id);
 /// Of the Python target: NAME, or NAME_ where Python or its standard library has that name.
 std::string module_name(const std::string& id);
+/// Of the target javascript: NAME, or NAME_ where JavaScript or a browser has that name.
+std::string script_name(const std::string& id);
 
 }  // namespace eomgen::emit

@@ -271,8 +271,8 @@ std::string defaults_body(const program::Program& program, const EmissionContext
     const std::string remark = dialect.line_comments ? "  // " + comment_text(name) : "  /* " + comment_text(name) + " */";
     result += fmt::format("  {}[{}] = {};{}\n", array, i, dialect.value(value), remark);
   };
-  if (x.empty()) result += "  (void)x;\n";
-  if (context.parameters.empty()) result += "  (void)p;\n";
+  if (dialect.typed && x.empty()) result += "  (void)x;\n";
+  if (dialect.typed && context.parameters.empty()) result += "  (void)p;\n";
   for (std::size_t i = 0; i < x.size(); ++i) entry("x", i, context.start[i], x[i].name);
   for (std::size_t i = 0; i < context.parameters.size(); ++i) {
     entry("p", i, context.parameters[i].value, context.parameters[i].name);

@@ -89,6 +89,11 @@ constexpr std::string_view python[] = {
     "winreg", "winsound", "wsgiref", "xdrlib", "xml", "xmlrpc", "xxlimited", "xxlimited_35", "xxsubtype", "zipapp", "zipfile",
     "zipimport", "zlib", "zoneinfo", "numpy", "scipy", "matplotlib", "pandas", "sympy", "pip", "setuptools", "pkg_resources"};
 
+constexpr std::string_view javascript[] = {
+    "arguments", "async", "await", "debugger", "eval", "exports", "extends", "finally", "function", "globalThis", "implements", "import", "in", "instanceof",
+    "let", "location", "module", "null", "of", "package", "require", "self", "super", "top", "undefined", "var", "window", "with", "yield", "document",
+    "NaN", "Infinity", "Math", "Object", "Array", "Float64Array", "Number", "JSON", "global", "process"};
+
 bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
@@ -120,6 +125,8 @@ bool is_reserved(const std::string& name) {
          std::any_of(std::begin(macro_prefixes), std::end(macro_prefixes), begins);
 }
 
+std::span<const std::string_view> javascript_words() { return javascript; }
+
 std::string identifier(const std::string& text) {
   std::string result;
   for (const char c : text) {
@@ -143,6 +150,11 @@ std::string mangled_id(const std::string& id) {
   std::string name = identifier(id);
   if (name.empty() || name[0] == '_' || (name[0] >= '0' && name[0] <= '9')) name = "model_" + name;
   return is_reserved(name) || is_one_of(name, runtime) ? name + "_" : name;
+}
+
+std::string script_name(const std::string& id) {
+  const std::string name = mangled_id(id);
+  return is_one_of(name, javascript) ? name + "_" : name;
 }
 
 std::string module_name(const std::string& id) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names of the user's become identifiers of C and C++, each once per scope.
+// Names of the user's become identifiers of C, C++ or JavaScript, each once per scope.
 #pragma once
 
 #include <set>
+#include <span>
 #include <string>
+#include <string_view>
 
 namespace eomgen::emit {
 
@@ -13,6 +15,9 @@ bool is_reserved(const std::string& name);
 
 /// `text` with everything that no identifier may hold replaced by _.
 std::string identifier(const std::string& text);
+
+/// Words of JavaScript, and what a page or a module has by name, that C and C++ leave free.
+std::span<const std::string_view> javascript_words();
 
 /// Identifiers of one scope: `declare` gives the name, or the name with trailing underscores where it is taken.
 class NameTable {

@@ -172,7 +172,7 @@ class Printer {
       return;
     }
     name = name.empty() ? fmt::format("v{}", ++temporaries_) : table_.declare(name);
-    line(fmt::format("const {} {} = {};", dialect_.real, name, e.text));
+    line(fmt::format("{} {} = {};", constant(), name, e.text));
     expressions_.set(index, {name, Expression::atom});
   }
 
@@ -271,7 +271,7 @@ class Printer {
     for (std::size_t i = n + 1; i < names_.state.size(); ++i) sum += fmt::format(" + {}[{}]", dx, i);
     // inf - inf and nan - nan are nan, which equals nothing
     const std::string finite = table_.declare("finite");
-    line(fmt::format("const {} {} = {};", dialect_.real, finite, sum));
+    line(fmt::format("{} {} = {};", constant(), finite, sum));
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
@@ -295,12 +295,15 @@ class Printer {
     return dialect_.line_comments ? fmt::format("  // {}", text) : fmt::format("  /* {} */", text);
   }
 
+  /// What a declaration begins with.
+  std::string constant() const { return dialect_.typed ? "const " + dialect_.real : "const"; }
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
   bool is_used(Slot slot) const {
     return std::any_of(leaves_[0].begin(), leaves_[0].end(), [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
   }
   /// Of a part, which has all arguments of the function whether it needs them or not.
   std::string all_arguments() const {
+    if (!dialect_.typed) return "";
     std::string result = text_.near_first ? fmt::format("  (void){};", guarded_) : "";
     for (const Argument& argument : arguments(function_.name, text_, names_)) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", argument.name);
     return result + fmt::format(" (void){};\n", text_.work);
@@ -308,6 +311,7 @@ class Printer {
   /// The ABI gives these two functions no inputs: they see the defaults.
   bool takes_inputs() const { return function_.name != "mass" && function_.name != "constraints"; }
   std::string unused_arguments() const {
+    if (!dialect_.typed) return "";
     std::vector<std::string> unused;
     for (const Argument& argument : arguments(function_.name, text_, names_)) {
       const bool used = is_used(argument.slot) || (argument.kind == Argument::Kind::mode && is_used(Slot::contact));
@@ -334,7 +338,7 @@ class Printer {
       std::string list;
       for (const auto& [leaf_slot, index] : leaves) {
         if (leaf_slot != slot) continue;
-        list += fmt::format("{} {} = {}", list.empty() ? fmt::format("  const {}", dialect_.real) : ",",
+        list += fmt::format("{} {} = {}", list.empty() ? "  " + constant() : ",",
                             expressions_.size_of({slot, index, false}).text, value(index));
       }
       if (!list.empty()) result += wrapped(list + ";", "      ") + "\n";
@@ -344,6 +348,7 @@ class Printer {
     load(Slot::contact, [&](std::uint32_t i) {
       std::string digit = fmt::format("({} & {})", names_.mode, eom::contact_bits);
       for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
+      if (!dialect_.typed) digit = fmt::format("({} | 0)", digit);  // whole numbers do not divide as such there
       const std::string one = dialect_.constant(1);
       if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
       return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect_.constant(0));
@@ -356,6 +361,7 @@ class Printer {
     load(Slot::side, [&](std::uint32_t i) {
       const std::size_t bit = program::first_kink_bit + 2 * i;
       const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names_.mode, bit, bit + 1);
+      if (!dialect_.typed) return side;
       return dialect_.using_std ? dialect_.real + side : fmt::format("({}){}", dialect_.real, side);
     });
     return result;

@@ -2,7 +2,9 @@
 // A Function as statements of C or C++; everything but the function's head, which targets write themselves.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "emit/context.hpp"
@@ -23,6 +25,7 @@ struct Dialect {
   bool near_first = false;
   bool line_comments = false;
   bool using_std = false;                            // `using std::sin;` before calls
+  bool typed = true;                                 // false: JavaScript, where constants are declared without a type
 };
 
 /// Identifiers of one model: the same in all its functions.
@@ -35,7 +38,8 @@ struct ModelNames {
   std::vector<std::string> all_coordinates;  // of the model, also eliminated ones (for names that a Program suggests)
   std::string arguments_t = "t", x, p, w, u, mode;  // names of the arguments that are left
 };
-ModelNames model_names(const program::Program& program, const EmissionContext& context);
+/// `taken`: further words that no name may be.
+ModelNames model_names(const program::Program& program, const EmissionContext& context, std::span<const std::string_view> taken = {});
 
 struct FunctionText {
   std::vector<std::string> results;  // names of the result arguments, in order

@@ -3,6 +3,7 @@
 
 #include "emit/c/c.hpp"
 #include "emit/cpp/cpp.hpp"
+#include "emit/javascript/javascript.hpp"
 #include "emit/python/python.hpp"
 #include "error.hpp"
 
@@ -13,6 +14,7 @@ constexpr TargetEntry registry[] = {
     {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
     {"c", "C11 sources with the C ABI", emit_c},
     {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python},
+    {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript},
 };
 
 }  // namespace

@@ -128,7 +128,7 @@ json hoisted(const program::Program& program) {
 int execute(const Options& options, const Common& common) {
   if (options.print_name) {
     const std::string id = std::filesystem::path(options.model).stem().string();
-    fmt::print("{}\n", options.target == "python" ? emit::module_name(id) : emit::mangled_id(id));
+    fmt::print("{}\n", options.target == "python" ? emit::module_name(id) : options.target == "javascript" ? emit::script_name(id) : emit::mangled_id(id));
     return 0;
   }
   if (options.folder.empty()) throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");
@@ -190,7 +190,7 @@ Execute declare_emit(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   add_place(app, "-o,--out", options->folder, "the folder for the sources; it is made if need be");
-  app.add_option("--target", options->target, "cpp, c, python, or latex for a document")->capture_default_str();
+  app.add_option("--target", options->target, "cpp, c, python, javascript, or latex for a document")->capture_default_str();
   add_list(app, "--with", options->with,
            "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, taylor; charts: second ones");
   add_list(app, "--output", options->outputs, "names for the function outputs");

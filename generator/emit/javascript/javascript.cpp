@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/javascript/javascript.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "emit/metadata.hpp"
+#include "emit/names.hpp"
+#include "emit/signature.hpp"
+#include "emit/straight_line.hpp"
+#include "emit/text.hpp"
+#include "error.hpp"
+#include "skeletons/javascript_model_js.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string number(double value) {
+  if (std::isnan(value)) return "NaN";
+  if (std::isinf(value)) return value > 0 ? "Infinity" : "-Infinity";
+  return decimal(value);
+}
+
+Dialect javascript_dialect() {
+  Dialect dialect;
+  dialect.constant = [](const symbolic::Rational& value) { return number(nearest_double(value)); };
+  dialect.value = number;
+  dialect.pi = "3.141592653589793";
+  dialect.absolute = "abs";
+  dialect.line_comments = true;
+  dialect.typed = false;
+  return dialect;
+}
+
+/// JSON that may stand in a script of a page: no text of the model's ends the script.
+std::string literal(const Json& value) {
+  std::string result;
+  for (const char c : value.dump(-1, ' ', true, Json::error_handler_t::replace)) {
+    result += c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : std::string(1, c);
+  }
+  return result;
+}
+
+/// Of the banner, likewise.
+std::string harmless(std::string text) {
+  for (char& c : text) {
+    if (c == '<' || c == '>') c = '|';
+  }
+  return text;
+}
+
+std::string parameter_list(const std::string& function, const FunctionText& text, const ModelNames& names) {
+  std::string list;
+  for (const Argument& argument : arguments(function, text, names)) list += (list.empty() ? "" : ", ") + argument.name;
+  return list;
+}
+
+/// The function; a long one as parts that it calls one after the other, since engines do not optimise functions of any length.
+std::string definition(const program::Function& function, const FunctionText& text, const ModelNames& names) {
+  const std::string list = parameter_list(function.name, text, names);
+  const std::string head = fmt::format("function {}({})", function.name, list);
+  if (text.parts.empty()) return fmt::format("{} {{\n{}}}\n", head, text.body);
+  std::string parts, calls = fmt::format("  const {} = new Float64Array({});\n  let {} = 0;\n", text.work, text.work_size, text.code);
+  for (std::size_t k = 1; k <= text.parts.size(); ++k) {
+    const std::string name = fmt::format("{}_part{}", function.name, k);
+    parts += fmt::format("function {}({}, {}) {{\n{}}}\n\n", name, list, text.work, text.parts[k - 1]);
+    calls += fmt::format("  {0} = {1}({2}, {3});\n  if ({0} !== 0) return {0};\n", text.code, name, list, text.work);
+  }
+  return fmt::format("{}{} {{\n{}  return 0;\n}}\n", parts, head, calls);
+}
+
+/// Sines and cosines one by one: what C computes in vectors has no counterpart.
+program::Function without_packs(program::Function function) {
+  for (program::Instruction& instruction : function.code) instruction.pack = instruction.lane = 0;
+  return function;
+}
+
+std::string vectors(const EmissionContext& context) {
+  Json tests = Json::array();
+  for (const TestVector& test : context.tests) {
+    Json functions = Json::array();
+    for (const FunctionValues& f : test.functions) functions.push_back({{"name", f.function}, {"values", f.values}, {"allowed", f.tolerances}});
+    tests.push_back({{"t", test.t}, {"mode", test.mode}, {"x", test.x}, {"p", test.p}, {"u", test.u}, {"functions", functions}});
+  }
+  std::string text = "[";
+  for (std::size_t i = 0; i < tests.size(); ++i) text += (i > 0 ? ",\n  " : "\n  ") + literal(tests[i]);
+  return text + "]";
+}
+
+void require_known(const program::Program& program) {
+  if (program.taylor) throw Error("emit", {}, "the JavaScript target does not know Taylor series", "leave taylor out of --with, or use the target c or cpp");
+  if (!program.charts.empty()) throw Error("emit", {}, "the JavaScript target does not know charts", "use the target c or cpp, or leave --with charts out");
+}
+
+}  // namespace
+
+std::vector<EmittedFile> emit_javascript(const program::Program& program, const EmissionContext& context) {
+  require_consistent(program, context);
+  require_known(program);
+  const std::string name = script_name(context.id);
+  const Dialect dialect = javascript_dialect();
+  const ModelNames names = model_names(program, context, javascript_words());
+  std::vector<std::vector<std::pair<std::string, std::string>>> functions;
+  std::string list;
+  for (const program::Function& emitted : program.functions) {
+    const program::Function function = without_packs(emitted);
+    const FunctionText text = print_function(function, names, context, dialect);
+    functions.push_back({{"purpose", purpose(function.name)}, {"definition", definition(function, text, names)}});
+    list += ", " + function.name;
+  }
+  const std::vector<std::pair<std::string, std::string>> values = {{"banner", harmless(banner(program, context, "// ", "// ", ""))},
+                                                                   {"name", name},
+                                                                   {"info", literal(Json::parse(info_json(program, context)))},
+                                                                   {"defaults", defaults_body(program, context, dialect)},
+                                                                   {"list", list},
+                                                                   {"prepared", std::to_string(program.prepared_count())},
+                                                                   {"vectors", vectors(context)}};
+  return {{name + ".js", rendered(skeleton::javascript_model_js, values, functions)}};
+}
+
+}  // namespace eomgen::emit
