@@ -128,6 +128,7 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
     if (file.name == name + ".h") header = file.text;
   }
   if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
+  const Interrupt heeded;  // by what waits for the compiler, which leaves nothing behind
   emit::Compiled compiled = emit::compile_and_load(source, header, name, &Interrupt::flag());
   if (!compiled.note.empty() && !again) {
     tell(format_warning({{}, compiled.note + "; what is compiled now is kept in a private one, for this run alone",

@@ -3,6 +3,8 @@
 
 #include <csignal>
 
+#include "work.hpp"
+
 namespace eomgen::cli {
 namespace {
 
@@ -11,6 +13,7 @@ std::atomic<bool> raised{false};
 static_assert(std::atomic<bool>::is_always_lock_free);
 
 extern "C" void on_signal(int signal) {
+  work::request_stop();
   if (raised.exchange(true)) {
     std::signal(signal, SIG_DFL);
     std::raise(signal);
@@ -19,15 +22,9 @@ extern "C" void on_signal(int signal) {
 
 }  // namespace
 
-Interrupt::Interrupt() {
-  raised = false;
+void heed_signals() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
-}
-
-Interrupt::~Interrupt() {
-  std::signal(SIGINT, SIG_DFL);
-  std::signal(SIGTERM, SIG_DFL);
 }
 
 const std::atomic<bool>& Interrupt::flag() { return raised; }

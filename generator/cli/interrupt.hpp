@@ -3,17 +3,20 @@
 
 #include <atomic>
 
+#include "work.hpp"
+
 namespace eomgen::cli {
 
-/// While one exists, Ctrl-C (and a polite kill) raises a flag in place of ending the program; a second one ends it.
-/// Before there is one, Ctrl-C ends the program: nothing is lost that would have to be kept.
+/// From now on Ctrl-C (and a polite kill) is a request to stop (work.hpp) in place of the end of the program; a second one ends it.
+void heed_signals();
+
+/// While one exists, the command sees to the request itself, and keeps what it has; before that, it is left where it is.
 class Interrupt {
  public:
-  Interrupt();
-  ~Interrupt();
-  Interrupt(const Interrupt&) = delete;
-  Interrupt& operator=(const Interrupt&) = delete;
   static const std::atomic<bool>& flag();
+
+ private:
+  work::Kept kept_;
 };
 
 }  // namespace eomgen::cli

@@ -15,9 +15,12 @@
 #include <vector>
 
 #include "cli/command.hpp"
+#include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/usage.hpp"
+#include "cli/watch.hpp"
+#include "work.hpp"
 
 namespace {
 
@@ -84,12 +87,18 @@ int main(int argc, char** argv) try {
     if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
     return report(eomgen::cli::usage_error(error, app));
   }
+  eomgen::cli::heed_signals();
+  const eomgen::cli::Watch watch;
+  const eomgen::work::Stage stage("reading the model");
   const int code = actions.at(app.get_subcommands().front())(common);
   // A full disk or a closed pipe loses results; that is a failure, not a silence.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return output_lost();
   return code;
 } catch (const eomgen::Error& error) {
   return report(error);
+} catch (const eomgen::work::Interrupted&) {
+  eomgen::cli::tell_interrupted(nullptr);
+  return eomgen::cli::exit_interrupted;
 } catch (const std::bad_alloc&) {
   eomgen::cli::tell("error: out of memory\n  remedy: make the model smaller\n");
   return exit_internal;

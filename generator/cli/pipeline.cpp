@@ -225,6 +225,7 @@ std::unique_ptr<Derived> derive_model(const std::string& name, ApproachChoice ap
 }
 
 std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approach, FormChoice form) {
+  const work::Stage stage("deriving the equations");
   auto derived = std::make_unique<Derived>();
   Stopwatch watch;
   derived->model = std::move(model);
@@ -232,7 +233,7 @@ std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approac
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::RouteEntry& route : derive::routes()) {
-      if (auto system = derive::derive_where_worth(route, derived->mechanics, a)) derived->candidates.push_back(std::move(*system));
+      if (auto route_system = derive::derive_where_worth(route, derived->mechanics, a).system) derived->candidates.push_back(std::move(*route_system));
     }
   }
   derived->conserved = derive::conserved_quantities(derived->mechanics, derived->candidates);
@@ -242,6 +243,7 @@ std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approac
 }
 
 program::Program make_program(Derived& derived, const program::Request& request) {
+  const work::Stage stage("optimising the code");
   Stopwatch watch;
   program::Request complete = request;
   complete.parameters = derived.model.parameters.size();
@@ -256,16 +258,18 @@ void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjec
     // With nothing to eliminate the approaches are one: a large system is not looked at twice.
     if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
     const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
+    std::string name = fmt::format("reading form {}", system::name(approach));
     // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
-    if (form.by_parts) continue;
-    subjects.reading.push_back({fmt::format("reading form {}", system::name(approach)), reading::residuals_on_dag(form, mechanics)});
+    if (form.by_parts) subjects.left_out.push_back({std::move(name), form.why_by_parts});
+    else subjects.reading.push_back({std::move(name), reading::residuals_on_dag(form, mechanics)});
   }
 }
 
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
+  const work::Stage stage("holding the derivations against one another");
   Stopwatch watch;
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(derived.mechanics);
+  subjects.systems = verify::all_routes(derived.mechanics, &subjects.left_out);
   add_reading_forms(derived.mechanics, subjects);
   if (options.reductions) {
     const reading::RouthForm routh = reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
@@ -283,17 +287,20 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   const verify::Certificate certificate =
       verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed});
   derived.seconds.verify += watch.lap();
+  if (certificate.interrupted && !options.partial) throw work::Interrupted{};
   return certificate;
 }
 
 void require_pass(const verify::Certificate& certificate, const model::Model& model) {
   if (certificate.pass) return;
-  std::string failures;
+  std::string failures, agreeing;
   for (const verify::Comparison& c : certificate.comparisons) {
     if (!c.pass) failures += fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
   }
+  for (const std::string& name : certificate.agreeing()) agreeing += (agreeing.empty() ? "" : ", ") + name;
   throw Error("verify", Where{model.file, 0, 0, 1, ""},
-              fmt::format("the derivations of this model disagree ({}), so nothing is emitted", failures),
+              fmt::format("the derivations of this model disagree ({}), so nothing is emitted; {}", failures,
+                          agreeing.empty() ? "none agrees with d'Alembert's principle" : "with d'Alembert's principle agree " + agreeing),
               "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons", Fault::check);
 }
 
@@ -324,8 +331,9 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
   for (const model::Event& event : model.events) {
     context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
   }
-  const reading::ReadingForm none;  // singular sets need no equations
-  for (const print::Item& item : print::render(derived.mechanics, none, {"singular"})) context.singular.push_back(item.text);
+  for (const print::Item& item : print::render_singular(derived.mechanics)) {
+    if (item.left_out.empty()) context.singular.push_back(item.text);
+  }
   context.start_time = scene.t0;
   for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
   for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);

@@ -59,6 +59,7 @@ struct Verification {
   std::map<std::uint32_t, symbolic::Rational> fixed = {};  // as the program was asked for
   bool reductions = false;  // Routh's too, which no code is made of
   std::vector<double> default_inputs = {};  // of the emitted code, which mass and constraints see; none: any will do
+  bool partial = false;     // what an interruption leaves will do
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 

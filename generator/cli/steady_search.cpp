@@ -4,10 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <optional>
 
 #include "derive/imposition.hpp"
 #include "model/names.hpp"
 #include "symbolic/calculus.hpp"
+#include "work.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -226,7 +228,17 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
     for (const std::uint32_t i : p.system().free) search.ranges.push_back({p.scene.lower[i], p.scene.upper[i]});
     name_attitudes(p, search);
     hold(result, request, search);
-    result.search = linear::find_steady_motions(search);
+    {
+      const work::Stage stage("looking for equilibria and steady motions");
+      result.search = linear::find_steady_motions(search);
+    }
+    // What was found is judged and shown where that is done at once.
+    constexpr std::size_t small = 8;  // coordinates
+    std::optional<work::Kept> kept;
+    if (result.search.interrupted) {
+      if (p.flow->coordinates() > small || result.search.points.empty()) throw work::Interrupted{};
+      kept.emplace();
+    }
     require_not_ignored(result, request);
     require_ends(result);
     if (!result.search.symmetry.autonomous) {
@@ -237,6 +249,7 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
       const std::string why = result.search.released ? "a family leaves it open; with its value at the start there is none" : "a family leaves it open: its value at the start";
       result.held.push_back({p.flow->names()[i], linear::to_double(p.z[i]), why});
     }
+    const work::Stage stage("judging stability");
     judge(result, request);
   } catch (const std::domain_error& error) {
     const Source source = without_slope(p, p.z);

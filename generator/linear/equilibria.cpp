@@ -6,6 +6,8 @@
 
 #include "linear/newton.hpp"
 
+#include "work.hpp"
+
 namespace eomgen::linear {
 namespace {
 
@@ -32,13 +34,15 @@ class Search {
     std::vector<FoundPoint> alone, members;
     for (FoundPoint& point : result_.points) (point.family == 0 ? alone : members).push_back(std::move(point));
     result_.points = std::move(alone);
-    if (!members.empty()) {
+    if (!members.empty() && result_.interrupted) {
+      result_.points.push_back(members.front());
+    } else if (!members.empty()) {
       hold_families(members.front().z);
       const std::size_t before = result_.points.size();
       members_ = 0;
       result_.converged = result_.refused = 0;
       all_starts();
-      result_.released = result_.points.size() == before;
+      result_.released = result_.points.size() == before && !result_.interrupted;
       if (result_.released) result_.points.push_back(members.front());
     }
     std::sort(result_.points.begin(), result_.points.end(), [this](const FoundPoint& a, const FoundPoint& b) { return this->before(a.z, b.z); });
@@ -52,6 +56,10 @@ class Search {
     for (const Precise& t : held_->targets) targets.push_back(to_double(t));
     std::vector<State<double>> seen;
     for (std::size_t k = 0; k < r_.starts; ++k) {
+      if (work::abandoned()) {
+        result_.interrupted = true;
+        return;
+      }
       if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
       const RoughEnd rough = rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
       if (!rough.reason.empty() && result_.refused++ == 0) {

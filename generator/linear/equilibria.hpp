@@ -47,6 +47,7 @@ struct SearchResult {
   std::size_t refused = 0;           // starts whose way ended where the equations have no value or no slope
   std::string reason;                // of the first of them
   State<double> refused_at;          // and where
+  bool interrupted = false;          // before all starts were tried: what is here was found by then
 };
 
 /// Throws std::domain_error where the start has no field.

@@ -25,14 +25,14 @@ class BodyForces {
     if (place.chart && !place.chart->planar) {
       const auto q = coordinates({place.chart->entries.begin(), place.chart->entries.end()});
       const bool fixed = place.chart->system == "cartesian" && along_fixed_axes(q);
-      if (!q.empty()) show("constraint force", "bold F", q, [&](std::size_t i) {
+      if (!q.empty()) within_budget("constraint force", "bold F", q, [&](std::size_t i) {
         return fixed ? mark("E", {reading::number(static_cast<long>(i + 1))}) : mark("a", {}, {coordinate(q[i])});
       });
     }
     const model::Frame& frame = m_.model->frames[body.frame];
     if (frame.rotation.empty() || frame.entries.size() != 3) return;
     const auto angles = coordinates(frame.entries);
-    if (!angles.empty()) show("constraint moment", "bold M", angles, [&](std::size_t i) { return mark("bold g", {}, {coordinate(angles[i])}); });
+    if (!angles.empty()) within_budget("constraint moment", "bold M", angles, [&](std::size_t i) { return mark("bold g", {}, {coordinate(angles[i])}); });
   }
 
  private:
@@ -73,6 +73,15 @@ class BodyForces {
       }
     }
     return !q.empty();
+  }
+
+  template <class Vector>
+  void within_budget(const char* role, const char* letter, const std::vector<std::uint32_t>& along, Vector&& vector) {
+    try {
+      show(role, letter, along, vector);
+    } catch (const work::OverBudget& over) {
+      out_.push_back(left_out("reactions", m_.spins[body_].name, role, over.what()));
+    }
   }
 
   template <class Vector>

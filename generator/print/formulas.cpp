@@ -145,7 +145,7 @@ void add_rotations(const Mechanics& m, const ReadingForm& form, const Formula& T
 Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
   try {
     return arrange(reading::read(m, expression));
-  } catch (const reading::TermBudget&) {
+  } catch (const work::OverBudget&) {
     return mark("...");  // too long to be read
   }
 }
@@ -217,11 +217,17 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
     };
     const Formula zero = reading::number(0);
     const Formula psi = form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
-    const Formula written = reading::as_written(*m.model, m.constraints[c.constraint].written)
-                                .value_or(c.too_long ? mark("...") : arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms));
-    if (c.too_long) {
-      add("derivatives too long to be written out", reading::relation({written, zero}));
-    } else if (c.fixes) {
+    const auto as_read = [&] {
+      if (!(c.holonomic ? c.no_psi : c.no_rate).empty()) return mark("...");
+      return arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms);
+    };
+    const std::optional<Formula> as_given = reading::as_written(*m.model, m.constraints[c.constraint].written);
+    const Formula written = as_given ? *as_given : as_read();
+    const auto add_sum = [&](const char* role, const Sum& sum, const std::string& why) {
+      if (why.empty()) add(role, reading::relation({arrange(sum, Layout::terms), zero}));
+      else out.push_back(left_out("constraints", c.label, role, why));
+    };
+    if (c.fixes) {
       const std::uint32_t q = c.fixes->coordinate;
       add("fixes a coordinate", reading::relation({psi, written, zero}));
       std::vector<Formula> motion{reading::relation({coordinate(q, 0), arrange(c.value)}),
@@ -241,11 +247,11 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
       for (const mechanics::Integral& integral : m.integrals) {
         if (integral.label == c.label) add("its integral", reading::relation({reading::wrap(Form::rate, {read_or_dots(m, integral.psi)}), zero}));
       }
-      add("its time derivative", reading::relation({arrange(c.acceleration, Layout::terms), zero}));
+      add_sum("its time derivative", c.acceleration, c.no_acceleration);
     } else {
       add("keeps its multiplier", reading::relation({psi, written, zero}));
-      add("its first time derivative", reading::relation({arrange(c.rate, Layout::terms), zero}));
-      add("its second time derivative", reading::relation({arrange(c.acceleration, Layout::terms), zero}));
+      add_sum("its first time derivative", c.rate, c.no_rate);
+      add_sum("its second time derivative", c.acceleration, c.no_acceleration);
     }
   }
 }
@@ -303,11 +309,10 @@ void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
   }
 }
 
-std::vector<Statement> statements(const Mechanics& m, const ReadingForm& form, const std::vector<std::string>& show) {
+void add_statements(const Mechanics& m, const ReadingForm& form, const std::vector<std::string>& show, std::vector<Statement>& out) {
   const auto wanted = [&](const char* key) {
     return std::any_of(show.begin(), show.end(), [&](const std::string& s) { return s == key || s == "all"; });
   };
-  std::vector<Statement> out;
   if (wanted("constraints")) add_constraints(m, form, out);
   if (wanted("energies")) add_energies(m, form, out);
   if (wanted("lagrangian")) add_lagrangian(m, form, out);
@@ -324,7 +329,6 @@ std::vector<Statement> statements(const Mechanics& m, const ReadingForm& form, c
   if (!of_geometry.empty()) add_geometry(m, of_geometry, out);
   if (wanted("frenet")) add_frenet(m, std::find(show.begin(), show.end(), "frenet") != show.end(), out);
   if (wanted("singular")) add_singular(m, out);
-  return out;
 }
 
 }  // namespace eomgen::print

@@ -12,14 +12,20 @@ namespace eomgen::print {
 struct Statement {
   std::string key, name, coordinate, role;
   reading::Formula formula;
+  std::string left_out = {};  // why there is no formula: it takes more than its budget
 };
+
+/// In place of a formula that takes more than its budget.
+inline Statement left_out(std::string key, std::string name, std::string role, std::string why) {
+  return {std::move(key), std::move(name), "", std::move(role), reading::mark("..."), std::move(why)};
+}
 
 struct Item;  // render.hpp
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
 
-/// The statements that `show` names, in a fixed order of keys.
-std::vector<Statement> statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
-                                  const std::vector<std::string>& show);
+/// The statements that `show` names, in a fixed order of keys; what is there already when an interruption is thrown is whole.
+void add_statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, const std::vector<std::string>& show,
+                    std::vector<Statement>& out);
 
 /// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, as (2.109).
 reading::Formula momentum_form(const reading::Equation& equation);

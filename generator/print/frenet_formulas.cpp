@@ -61,10 +61,9 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   reading::Frenet f;
   try {
     f = reading::frenet(m);
-  } catch (const reading::TermBudget&) {
-    if (!asked) return;
-    throw Error("derive", Where{m.model->file, 0, 0, 1, ""}, "the Frenet triad is too long to be written out",
-                "leave 'frenet' out of --show, or choose coordinates in which the constraints read q = constant");
+  } catch (const work::OverBudget& over) {
+    out.push_back(left_out("frenet", m.masses[0].name, "", over.what()));
+    return;
   }
   std::vector<Formula> fixed, unit;
   for (int k = 1; k <= 3; ++k) fixed.push_back(mark("E", {reading::number(k)}));

@@ -88,7 +88,7 @@ class ContactFormulas {
   Formula read(Ref expression) {
     try {
       return reading::arrange(reading::read(m_, imposed_(expression)));
-    } catch (const reading::TermBudget&) {
+    } catch (const work::OverBudget&) {
       return mark("...");
     }
   }
@@ -109,7 +109,8 @@ class ContactFormulas {
         std::vector<Formula> index = number_of(a);
         index.insert(index.begin(), mark("t"));
         show("direction", {mark("e", std::move(index)), combination(t, fixed)});
-      } catch (const reading::TermBudget&) {
+      } catch (const work::OverBudget& over) {
+        out_.push_back(left_out("friction", contact_.name, "direction", over.what()));
       }
     }
   }

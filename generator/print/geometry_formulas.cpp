@@ -123,11 +123,13 @@ Formula combination(const Components& components, const std::vector<Formula>& ve
 }
 
 void add_geometry(const Mechanics& m, const std::vector<std::string>& keys, std::vector<Statement>& out) {
-  const std::vector<Geometry> particles = reading::geometry(m);
+  std::vector<reading::LeftOut> unseen;
+  const std::vector<Geometry> particles = reading::geometry(m, &unseen);
   // One free particle's manifold is its space; of anything else the whole has a metric of its own.
   const bool whole = m.masses.size() != 1 || particles.empty() || !m.fixed.empty();
   const bool needed = whole && std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key != "basis"; });
-  const std::optional<Geometry> system = needed ? reading::configuration_space(m) : std::nullopt;
+  const std::optional<Geometry> system = needed ? reading::configuration_space(m, &unseen) : std::nullopt;
+  for (reading::LeftOut& l : unseen) out.push_back(left_out(keys.front(), std::move(l.what), "", std::move(l.why)));
   for (const std::string& key : keys) {
     for (const Geometry& g : particles) tabulate(Tables(g, "a", out), key);
     if (!system || key == "basis") continue;
@@ -138,11 +140,13 @@ void add_geometry(const Mechanics& m, const std::vector<std::string>& keys, std:
 }
 
 void add_singular(const Mechanics& m, std::vector<Statement>& out) {
-  for (const reading::SingularSet& set : reading::singular_sets(m)) {
+  std::vector<reading::LeftOut> unseen;
+  for (const reading::SingularSet& set : reading::singular_sets(m, &unseen)) {
     Formula formula = reading::relation({arrange(set.factor), reading::number(0)});
     if (!set.solutions.empty()) formula = reading::wrap(Form::list, set.solutions);
     out.push_back({"singular", "", "", set.approach, std::move(formula)});
   }
+  for (reading::LeftOut& l : unseen) out.push_back(left_out("singular", std::move(l.what), "", std::move(l.why)));
 }
 
 }  // namespace eomgen::print

@@ -14,6 +14,7 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vecto
     item.name = statement.name;
     item.coordinate = statement.coordinate;
     item.role = statement.role;
+    item.left_out = statement.left_out;
     item.text = print(statement.formula, notation, Format::text);
     item.latex = print(statement.formula, notation, Format::latex);
     item.mathml = print(statement.formula, notation, Format::mathml);
@@ -23,8 +24,23 @@ std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vecto
 }
 
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
-                         const std::vector<std::string>& show) {
-  return render(mechanics, statements(mechanics, form, show));
+                         const std::vector<std::string>& show, bool* interrupted) {
+  std::vector<Statement> all;
+  std::optional<work::Kept> kept;  // what is there is printed, although a stop is asked for
+  try {
+    add_statements(mechanics, form, show, all);
+  } catch (const work::Interrupted&) {
+    if (interrupted == nullptr) throw;
+    kept.emplace();
+    *interrupted = true;
+  }
+  return render(mechanics, all);
+}
+
+std::vector<Item> render_singular(const mechanics::Mechanics& mechanics) {
+  std::vector<Statement> all;
+  add_singular(mechanics, all);
+  return render(mechanics, all);
 }
 
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, const reading::Sum& expression) {
@@ -42,8 +58,9 @@ Item render_expression(const mechanics::Mechanics& mechanics, std::string key, s
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression) {
   try {
     return render_expression(mechanics, key, name, reading::read(mechanics, expression));
-  } catch (const reading::TermBudget&) {
+  } catch (const work::OverBudget& over) {
     Item item;
+    item.left_out = over.what();
     item.key = std::move(key);
     item.name = std::move(name);
     item.text = "(too long to be shown)";

@@ -18,14 +18,19 @@ struct Item {
   std::string coordinate;
   std::string text, latex, mathml;
   std::string role;
+  std::string left_out = {};  // why nothing is shown; empty where it is
 };
 
-/// The items that `show` names (keys, or "all"); "equations" brings the explicit form along.
+/// The items that `show` names (keys, or "all"); "equations" brings the explicit form along. Where it is interrupted, it throws
+/// work::Interrupted, or tells so in `interrupted` and gives the items that are there.
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
-                         const std::vector<std::string>& show);
+                         const std::vector<std::string>& show, bool* interrupted = nullptr);
 
 /// Routh's reduction under the key "routh": constant momenta, the rates that they give, the Routhian, the reduced equations.
 std::vector<Item> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);
+
+/// The singular sets alone, of which `form` knows nothing.
+std::vector<Item> render_singular(const mechanics::Mechanics& mechanics);
 
 /// Any expression of the Dag, simplified for reading: potentials, conserved quantities.
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two approaches; neither calls the other. Both throw TermBudget.
+// The two approaches; neither calls the other. Both throw work::OverBudget.
 #pragma once
 
 #include "reading/lagrangian.hpp"

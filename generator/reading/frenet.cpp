@@ -122,6 +122,7 @@ Frenet frenet(const Mechanics& mechanics) {
     throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""}, "there is no curve whose Frenet triad could be shown: " + why,
                 "leave 'frenet' out of --show, or constrain one particle by two holonomic constraints");
   }
+  const work::Budget budget(form_budget);
   Mechanics m = mechanics;  // shares the Dag; lowering unit vectors may add nodes to it
   Bridge bridge(m);
   Frenet f;

@@ -29,7 +29,7 @@ struct Frenet {
 /// Why a model has no such curve; empty where it has.
 std::string why_no_curve(const mechanics::Mechanics& mechanics);
 
-/// Throws Error{stage "derive"} where there is no curve, TermBudget where its formulas are too long.
+/// Throws Error{stage "derive"} where there is no curve, work::OverBudget where its formulas are too long.
 Frenet frenet(const mechanics::Mechanics& mechanics);
 
 }  // namespace eomgen::reading

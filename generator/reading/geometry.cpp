@@ -2,6 +2,7 @@
 // Bases (1.20), (1.22), metric (1.31), Christoffel symbols (2.184), (2.185) of one particle's coordinates, and of the
 // whole system's configuration manifold.
 #include <algorithm>
+#include <string>
 
 #include "reading/lagrangian.hpp"
 #include "reading/rational_function.hpp"
@@ -141,7 +142,7 @@ Geometry of_place(Bridge& bridge, Mechanics& m, std::uint32_t index, const mecha
 
 }  // namespace
 
-std::vector<Geometry> geometry(const Mechanics& mechanics) {
+std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>* left_out) {
   Mechanics m = mechanics;  // shares the Dag; lowering the unit vectors may add nodes to it
   Bridge bridge(m);
   std::vector<Geometry> result;
@@ -149,22 +150,27 @@ std::vector<Geometry> geometry(const Mechanics& mechanics) {
     const std::uint32_t place = m.masses[k].place;
     if (!m.model->places[place].chart) continue;
     try {
+      const work::Budget budget(item_budget);
       Geometry g = of_place(bridge, m, place, m.masses[k]);
       if (!g.coordinates.empty()) result.push_back(std::move(g));
-    } catch (const TermBudget&) {
-      continue;
+    } catch (const work::OverBudget& over) {
+      if (left_out != nullptr) left_out->push_back({"geometry of " + m.model->places[place].name, over.what()});
     }
   }
   return result;
 }
 
-std::optional<Geometry> configuration_space(const Mechanics& m) {
+std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<LeftOut>* left_out) {
   const std::size_t n = m.free.size();
-  if (n > largest_manifold) return std::nullopt;
+  if (n > largest_manifold) {
+    if (left_out != nullptr) left_out->push_back({"geometry of the configuration manifold", "more than " + std::to_string(largest_manifold) + " coordinates"});
+    return std::nullopt;
+  }
   Bridge bridge(m);
   Geometry g;
   g.coordinates = m.free;
   try {
+    const work::Budget budget(form_budget);
     g.metric = mass_matrix(bridge, bridge.substitute(kinetic_energy(m, bridge), imposed_values(m, bridge)), m.free);
     if (n <= 3) {
       g.determinant = determinant(g.metric, n);
@@ -173,7 +179,8 @@ std::optional<Geometry> configuration_space(const Mechanics& m) {
     add_christoffel(bridge, g);
     g.line_element = quadratic_form(bridge, g);
     g.kinetic = Rational(1) / 2 * g.line_element;
-  } catch (const TermBudget&) {
+  } catch (const work::OverBudget& over) {
+    if (left_out != nullptr) left_out->push_back({"geometry of the configuration manifold", over.what()});
     return std::nullopt;
   }
   return g;

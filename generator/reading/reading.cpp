@@ -16,9 +16,10 @@ namespace {
 using mechanics::Mechanics;
 
 // Equations that are too long to be read: what is left is which coordinates and forces there are.
-void leave_by_parts(const Mechanics& m, ReadingForm& form) {
+void leave_by_parts(const Mechanics& m, ReadingForm& form, const std::string& why) {
   form.by_parts = true;
-  form.kinetic = form.potential = form.lagrangian = Sum();
+  form.why_by_parts = why;
+  form.kinetic = form.potential = form.lagrangian = form.translation = Sum();
   form.by_degree.reset();
   form.equations.clear();
   form.reactions.clear();
@@ -32,19 +33,41 @@ void leave_by_parts(const Mechanics& m, ReadingForm& form) {
   }
 }
 
-// Throws TermBudget.
-void read_constraint(const Mechanics& m, Bridge& bridge, ReadConstraint& c) {
+/// What `read` gives within the budget of an item; where it takes more, why.
+template <class Read>
+std::string within_budget(Read&& read) {
+  try {
+    const work::Budget budget(item_budget);
+    read();
+    return "";
+  } catch (const work::OverBudget& over) {
+    return over.what();
+  }
+}
+
+void read_constraint(const Mechanics& m, Bridge& bridge, ReadConstraint& c, ReadingForm& form) {
   const std::uint32_t k = c.constraint;
-  if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
-  c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
-  c.acceleration = bridge.total_derivative(c.rate);
+  c.no_psi = within_budget([&] {
+    if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
+  });
+  c.no_rate = c.no_psi;
+  if (c.no_rate.empty()) {
+    c.no_rate = within_budget([&] { c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k]))); });
+  }
+  c.no_acceleration = c.no_rate;
+  if (c.no_acceleration.empty()) c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
   const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
-  if (const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes); found != m.fixed.end()) {
-    c.fixes = *found;
+  const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes);
+  if (found == m.fixed.end()) return;
+  const std::string no_value = within_budget([&] {
     c.value = bridge.sum(found->value);
     c.value_rate = bridge.sum(found->rate);
     c.value_acceleration = bridge.sum(found->acceleration);
-  }
+    c.fixes = *found;
+  });
+  if (no_value.empty()) return;
+  c.no_rate = c.no_acceleration = no_value;
+  if (!form.by_parts) leave_by_parts(m, form, no_value);
 }
 
 void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
@@ -54,15 +77,7 @@ void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
     c.constraint = k;
     c.label = m.constraints[k].label;
     c.holonomic = m.constraints[k].holonomic();
-    try {
-      read_constraint(m, bridge, c);
-    } catch (const TermBudget&) {
-      c.psi = c.rate = c.acceleration = Sum();
-      c.too_long = true;
-      c.fixes.reset();
-      const auto leans = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
-      if (!form.by_parts && std::any_of(m.fixed.begin(), m.fixed.end(), leans)) leave_by_parts(m, form);
-    }
+    read_constraint(m, bridge, c, form);
     form.constraints.push_back(std::move(c));
   }
 }
@@ -73,19 +88,22 @@ void add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
   std::map<Symbol, Sum> values;
   const auto read = [&](const Sum& sum) { return imposed ? simplify(bridge.substitute(sum, values)) : sum; };
   try {
+    const work::Budget budget(form_budget);
     if (imposed) values = imposed_values(m, bridge);
     form.spins = read_spins(m, bridge);
     for (ReadSpin& spin : form.spins) {
       for (Sum& w : spin.w) w = read(w);
     }
-  } catch (const TermBudget&) {  // angular velocities along a long chain of relative rotations
+  } catch (const work::OverBudget& over) {  // angular velocities along a long chain of relative rotations
     form.spins.clear();
+    form.no_spins = over.what();
   }
   if (form.by_parts) return;
   try {
+    const work::Budget budget(form_budget);
     form.translation = read(translational_energy(m, bridge));
-  } catch (const TermBudget&) {
-    leave_by_parts(m, form);
+  } catch (const work::OverBudget& over) {
+    leave_by_parts(m, form, over.what());
   }
 }
 
@@ -117,13 +135,15 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
   const bool grows = !m.spins.empty() || !m.dag->is_zero(m.kinetic_given);
   const double terms = grows ? most_terms(*m.dag, m.kinetic) : 0;
   try {
+    const work::Budget budget(form_budget);
     if (terms > longest) throw TermBudget();
     if (approach == system::Approach::one) approach_one(m, bridge, form);
     else approach_two(m, bridge, form);
-  } catch (const TermBudget&) {
-    leave_by_parts(m, form);
+  } catch (const work::OverBudget& over) {
+    leave_by_parts(m, form, over.what());
   }
   if (terms <= longest_of_spins) add_spins(m, bridge, form);
+  else form.no_spins = TermBudget().what();
   add_constraints(m, bridge, form);
   return form;
 }
@@ -149,6 +169,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
 }
 
 Sum read(const Mechanics& m, symbolic::Ref expression) {
+  const work::Budget budget(item_budget);
   Bridge bridge(m);
   return bridge.sum(expression);
 }

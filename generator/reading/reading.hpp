@@ -18,15 +18,21 @@ namespace eomgen::reading {
 
 using Components = std::array<Sum, 3>;
 
+/// Operations (products and sums of two terms) that are spent on a form, and on one formula of those that are shown beside it. What
+/// takes more is left out, on every machine the same.
+inline constexpr std::size_t form_budget = 5'000'000, item_budget = 200'000;
+
+using work::LeftOut;
+
 /// One constraint psi = 0, with its first and second total time derivatives; of one on velocities `rate` is what is 0.
 struct ReadConstraint {
   std::uint32_t constraint;  // index into Mechanics::constraints
   std::string label;
   bool holonomic = true;
   Sum psi, rate, acceleration;
+  std::string no_psi, no_rate, no_acceleration;  // why they are left out; empty where they are there
   std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t); by approach II also of other coordinates
   Sum value, value_rate, value_acceleration;        // of that coordinate
-  bool too_long = false;  // to be written out with its derivatives: nothing of it is here but what the author wrote
 };
 
 /// lambda_k dpsi_k/dq_i of one equation.
@@ -71,16 +77,18 @@ struct ReadSpin {
 struct ReadingForm {
   system::Approach approach = system::Approach::one;
   bool by_parts = false;  // too large to be multiplied out: m r_ddot . dr/dq in place of the equations written out
+  std::string why_by_parts;
   Sum kinetic, potential, lagrangian;  // unconstrained for I, constrained for II
   Sum translation;              // the part of `kinetic` that is not of `spins`; 0 where by_parts
   std::vector<ReadSpin> spins;  // for I as they are, for II with the constraints imposed
+  std::string no_spins;         // why there are none, where bodies turn
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
   std::vector<ReadConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones
   std::vector<ReadReaction> reactions;
 };
 
-/// Derives the equations for reading. Never throws TermBudget: sets by_parts instead.
+/// Derives the equations for reading. Never throws work::OverBudget: sets by_parts instead.
 ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approach approach);
 
 /// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
@@ -100,14 +108,14 @@ struct Geometry {
 };
 
 /// For every particle whose position is given in a chart.
-std::vector<Geometry> geometry(const mechanics::Mechanics& mechanics);
+std::vector<Geometry> geometry(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
 /// The configuration manifold: M_ik from T2 (free coordinates, constraints imposed) with its Christoffel symbols;
 /// nothing where it is too large. `name` is empty, the bases are empty.
-std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanics);
+std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
-/// Where the equations of an approach fail, and where a potential or force does.
-std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics);
+/// Where the equations of an approach fail, and where a potential or force does. What was not looked at is told in `left_out`.
+std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
 /// lhs - rhs of each equation of motion, in the order of ReadingForm::equations, on the Dag of `mechanics`: symbols q,
 /// qdot, qddot of free coordinates, parameters, functions of time, inputs, multipliers. Empty if form.by_parts.
@@ -116,7 +124,7 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
 /// A scalar expression as the model's author wrote it, nothing multiplied out; nothing if there are vectors in it.
 std::optional<Formula> as_written(const model::Model& model, model::NodeId expression);
 
-/// Any expression of the Dag, simplified for reading; throws TermBudget.
+/// Any expression of the Dag, simplified for reading; throws work::OverBudget.
 Sum read(const mechanics::Mechanics& mechanics, symbolic::Ref expression);
 
 }  // namespace eomgen::reading

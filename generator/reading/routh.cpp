@@ -79,8 +79,9 @@ RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cycli
   form.cyclic = cyclic;
   Bridge bridge(m);
   try {
+    const work::Budget budget(form_budget);
     reduce(m, bridge, form);
-  } catch (const TermBudget&) {
+  } catch (const work::OverBudget&) {
     form.by_parts = true;
   }
   if (form.by_parts) form = RouthForm{true, cyclic, {}, {}, {}, {}, {}};

@@ -225,27 +225,35 @@ void add_geometry(const Mechanics& m, Bridge& bridge, const std::map<Symbol, Sum
 
 }  // namespace
 
-std::vector<SingularSet> singular_sets(const Mechanics& m) {
+std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>* left_out) {
   Bridge bridge(m);
   Sets sets;
   std::vector<std::uint32_t> all;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) all.push_back(i);
+  const auto within_budget = [&](const char* what, auto&& look) {
+    try {
+      const work::Budget budget(item_budget);
+      look();
+    } catch (const work::OverBudget& over) {  // the run's own pivots tell these places
+      if (left_out != nullptr) left_out->push_back({what, over.what()});
+    }
+  };
   std::map<Symbol, Sum> values;
-  try {
-    values = imposed_values(m, bridge);
-    const Sum kinetic = kinetic_energy(m, bridge);
-    if (all.size() <= largest_determinant) add_determinant(m, bridge, "I", kinetic, all, sets);
-    if (m.free.size() <= largest_determinant) add_determinant(m, bridge, "II", bridge.substitute(kinetic, values), m.free, sets);
+  within_budget("what constraints impose", [&] { values = imposed_values(m, bridge); });
+  if (m.free.size() <= largest_determinant) {
+    within_budget("the determinant of the inertia matrix", [&] {
+      const Sum kinetic = kinetic_energy(m, bridge);
+      if (all.size() <= largest_determinant) add_determinant(m, bridge, "I", kinetic, all, sets);
+      add_determinant(m, bridge, "II", bridge.substitute(kinetic, values), m.free, sets);
+    });
+  }
+  within_budget("the denominators of the potential", [&] {
     const Sum potential = bridge.sum(m.potential);
     sets.add_denominators("I", potential);
     sets.add_denominators("II", bridge.substitute(potential, values));
-  } catch (const TermBudget&) {  // what is too long to be written out is not told: the run's own pivots tell it
-  }
-  try {
-    add_geometry(m, bridge, values, sets);
-    add_rotations(m, bridge, values, sets);
-  } catch (const TermBudget&) {
-  }
+  });
+  within_budget("the metrics of the charts", [&] { add_geometry(m, bridge, values, sets); });
+  within_budget("the angles of the bodies", [&] { add_rotations(m, bridge, values, sets); });
   return sets.take();
 }
 

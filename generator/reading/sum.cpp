@@ -23,6 +23,7 @@ long to_long(const Rational& r) { return cln::cl_I_to_long(cln::numerator(r)); }
 
 void Sum::add(const Monomial& monomial, const Rational& coefficient) {
   if (cln::zerop(coefficient)) return;
+  work::spend(1);
   auto [found, inserted] = terms_.try_emplace(monomial, coefficient);
   if (inserted) return;
   found->second = found->second + coefficient;

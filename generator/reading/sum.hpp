@@ -10,10 +10,10 @@
 #include <cstddef>
 #include <map>
 #include <memory>
-#include <stdexcept>
 #include <vector>
 
 #include "symbolic/dag.hpp"
+#include "work.hpp"
 
 namespace eomgen::reading {
 
@@ -27,8 +27,8 @@ struct Atom;
 using AtomPtr = std::shared_ptr<const Atom>;
 
 /// Thrown where an expression would be multiplied out beyond what anybody reads; callers then show it by parts.
-struct TermBudget : std::length_error {
-  TermBudget() : std::length_error("the expression has too many terms to be multiplied out") {}
+struct TermBudget : work::OverBudget {
+  TermBudget() : work::OverBudget("too many terms to be written out") {}
 };
 inline constexpr std::size_t term_budget = 3000;
 
@@ -74,7 +74,7 @@ class Sum {
 Sum operator+(Sum a, const Sum& b);
 Sum operator-(Sum a, const Sum& b);
 Sum operator-(const Sum& a);
-/// Throws TermBudget.
+/// Throws work::OverBudget: by its terms, or by the operations that all of this takes (reading.hpp).
 Sum operator*(const Sum& a, const Sum& b);
 Sum operator*(const Rational& factor, const Sum& a);
 inline bool operator==(const Sum& a, const Sum& b) { return compare(a, b) == 0; }

@@ -48,13 +48,19 @@ Zero numerically(const Sum& sum) {
 
 }  // namespace
 
+bool is_zero(const Sum& sum) {
+  if (sum.is_zero()) return true;
+  const Zero numbers = numerically(sum);
+  return numbers == Zero::numerical || (numbers == Zero::unknown && zero_test(sum) == Zero::proven);
+}
+
 Zero zero_test(const Sum& sum) {
   if (sum.is_zero()) return Zero::proven;
   const Zero numbers = numerically(sum);
   if (numbers == Zero::no) return numbers;
   try {
     if (cancel(expand_angles(sum)).is_zero()) return Zero::proven;
-  } catch (const TermBudget&) {
+  } catch (const work::OverBudget&) {
     return numbers;
   }
   return numbers;

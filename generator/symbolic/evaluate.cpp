@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "symbolic/evaluate.hpp"
 
+#include "work.hpp"
+
 #include <cln/float.h>
 #include <cln/integer.h>
 
@@ -129,6 +131,7 @@ std::vector<Real> run(const Dag& dag, const std::vector<Ref>& roots, const Looku
 
 std::vector<cl_R> evaluate(const Dag& dag, const std::vector<Ref>& roots,
                            const std::function<cl_R(const Symbol&)>& lookup, int digits) {
+  work::check();
   const Precise arithmetic{cln::float_format(static_cast<std::uintptr_t>(digits))};
   const auto rounded = [&](const Symbol& symbol) -> cl_R { return arithmetic.round(lookup(symbol)); };
   return run<cl_R>(dag, roots, rounded, arithmetic);

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <set>
 
+#include "work.hpp"
+
 namespace eomgen::symbolic {
 namespace {
 
@@ -58,6 +60,7 @@ const Expander::Maybe& Expander::expand(Ref expression) {
 Polynomial Expander::atom(Ref r) const { return {{Monomial{{r, 1}}, Rational(1)}}; }
 
 Expander::Maybe Expander::expand_node(Ref r) {
+  work::check();
   const Node node = dag_[r];
   const auto arg = [&](std::size_t i) -> const Maybe& { return memo_.at(node.args[i].id); };
   switch (node.op) {

@@ -62,20 +62,37 @@ std::string Certificate::summary() const {
   std::copy_if(comparisons.begin(), comparisons.end(), std::back_inserter(shown), wanted);
   std::string text = fmt::format("{}: {} points, {} digits", verdict(), points, options.digits);
   if (shown.empty()) return text;
+  std::string out;
+  for (const work::LeftOut& l : left_out) {
+    if (l.over_budget) out += (out.empty() ? "; without " : ", ") + l.what;
+  }
   const Comparison& worst = *std::max_element(shown.begin(), shown.end(), nearer_to_failing);
   text += ", worst " + describe(worst);
   if (!pass && shown.size() > 1) text += fmt::format(" and {} more comparisons", shown.size() - 1);
-  return text;
+  return text + out;
 }
 
-std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics) {
+std::vector<std::string> Certificate::agreeing() const {
+  std::vector<std::string> names;
+  for (const Comparison& c : comparisons) {
+    if (c.b != judge_name || c.a.find(" of ") != std::string::npos) continue;
+    const auto its_own = [&](const Comparison& row) { return row.b == judge_name && (row.a == c.a || row.a.ends_with(" of " + c.a)); };
+    const bool all = std::all_of(comparisons.begin(), comparisons.end(), [&](const Comparison& row) { return row.pass || !its_own(row); });
+    if (all) names.push_back(c.a);
+  }
+  return names;
+}
+
+std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out) {
   constexpr std::size_t large = 16;  // coordinates
   std::vector<system::EquationSystem> systems;
   for (const derive::RouteEntry& route : derive::routes())
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       // With nothing to eliminate the approaches are one: a large system is not looked at twice.
       if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
-      if (auto system = derive::derive_where_worth(route, mechanics, approach)) systems.push_back(std::move(*system));
+      derive::Outcome outcome = derive::derive_where_worth(route, mechanics, approach);
+      if (outcome.system) systems.push_back(std::move(*outcome.system));
+      else if (left_out != nullptr) left_out->push_back({fmt::format("{} {}", route.name, system::name(approach)), std::move(outcome.why), outcome.over_budget});
     }
   return systems;
 }
@@ -90,12 +107,17 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   }
   Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed, leavable(mechanics));
   Tally tally(options.digits);
+  bool interrupted = false;
   while (tally.points() < options.points) {
     State state = points.next();
     state.mode = mode_at(mechanics, state);
     Tally with_this_point = tally;
     try {
       compare_at(mechanics, subjects, judge, state, with_this_point);
+    } catch (const work::Interrupted&) {
+      if (tally.points() == 0) throw;
+      interrupted = true;
+      break;
     } catch (const std::domain_error& no_value) {
       points.reject(no_value.what());
       continue;
@@ -108,6 +130,8 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   certificate.comparisons = tally.comparisons();
   certificate.points = tally.points();
   certificate.rejected = points.rejected();
+  certificate.left_out = subjects.left_out;
+  certificate.interrupted = interrupted;
   const auto& rows = certificate.comparisons;
   certificate.pass = !rows.empty() && std::all_of(rows.begin(), rows.end(), [](const Comparison& c) { return c.pass; });
   return certificate;
@@ -115,7 +139,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
 
 Certificate verify(mechanics::Mechanics& mechanics, const Options& options) {
   Subjects subjects;
-  subjects.systems = all_routes(mechanics);
+  subjects.systems = all_routes(mechanics, &subjects.left_out);
   return certify(mechanics, subjects, options);
 }
 

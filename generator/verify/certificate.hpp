@@ -15,6 +15,7 @@
 #include "mechanics/mechanics.hpp"
 #include "system/equation_system.hpp"
 #include "verify/jet.hpp"
+#include "work.hpp"
 
 namespace eomgen::verify {
 
@@ -68,6 +69,7 @@ struct CompiledForm {
 };
 
 struct Subjects {
+  std::vector<work::LeftOut> left_out = {};
   std::vector<system::EquationSystem> systems;
   std::vector<ReadingForm> reading;
   std::vector<ProgramForm> programs;
@@ -88,17 +90,21 @@ struct Certificate {
   std::vector<Comparison> comparisons;
   std::size_t points = 0;
   std::map<std::string, std::size_t> rejected;  // by reason
+  std::vector<work::LeftOut> left_out;  // routes and forms that were not compared
   bool pass = false;
+  bool interrupted = false;  // before all points were compared
   const char* verdict() const { return pass ? "pass" : "fail"; }
   std::size_t rejections() const;
   /// "pass: 20 points, 50 digits, worst 3.1e-49 (jacobian II against d'Alembert)"
   std::string summary() const;
+  /// What agrees with d'Alembert's principle in every row of its own: "lagrange II", "reading form I".
+  std::vector<std::string> agreeing() const;
 };
 
-/// Every route of derive::routes() by both approaches.
-std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics);
+/// Every route of derive::routes() by both approaches that applies within its budget; the others are told in `left_out`.
+std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out = nullptr);
 
-/// Throws Error{Fault::check} if no states can be found at which to compare.
+/// Throws Error{Fault::check} if no states can be found at which to compare. An interruption leaves the points that were compared.
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options = {});
 
 /// certify of all routes.

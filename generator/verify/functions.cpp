@@ -173,10 +173,6 @@ class Functions {
   }
 
   void jacobian(const Arrays& values) {
-    // Off the unit sphere of Euler parameters the equations go on in one way of many, and their slopes in another.
-    const auto on_sphere = [](const model::Frame& frame) { return frame.rotation == "euler_parameters"; };
-    const std::vector<model::Frame>& frames = judge_.model().frames;
-    if (std::any_of(frames.begin(), frames.end(), on_sphere)) return;
     std::vector<Real> direction;
     for (std::size_t j = 0; j < at_.x.size(); ++j) direction.push_back(component(j));
     along("jac", values, 0, direction, slope("rhs", [&](At& at, const Real& h) {

@@ -108,3 +108,37 @@ TEST_CASE("a polite kill is heeded while the compiler hangs, and nothing is left
   CHECK(contains(result.err, "interrupted before the run began"));
   CHECK(std::filesystem::is_empty(folder / "cache"));
 }
+
+TEST_CASE("every command that derives stops on Ctrl-C at once, with 3, whatever it is doing") {
+  const Folder folder;
+  // Distances of all pairs of 20 particles on relative angles: nothing of it is short.
+  folder.write("a.toml", "format = 1\n[[chain]]\nname = \"link\"\nn = 20\nmass = 1\nlength = 1\ncoordinate = \"th\"\nangles = \"relative\"\n"
+                         "[[force]]\ngravitation = { G = 1 }\n[scene.default]\nt = [0, 1]\ninitial = { th1 = 0.5, th2 = 0.3 }\n");
+  const std::vector<Words> commands{{"check", "a.toml"}, {"derive", "a.toml", "--show", "all"}, {"verify", "a.toml"}, {"emit", "a.toml", "-o", "out"},
+                                    {"report", "a.toml", "-o", "a.html"}, {"linearize", "a.toml"}, {"equilibria", "a.toml"}, {"stress", "a.toml"}};
+  for (const Words& words : commands) {
+    CAPTURE(words[0]);
+    Child child(command(folder, words));
+    std::this_thread::sleep_for(std::chrono::milliseconds(150));
+    const auto asked = std::chrono::steady_clock::now();
+    child.signal(SIGINT);
+    const ChildResult result = child.finish();
+    CHECK(result.status == 3);
+    CHECK(contains(result.err, "interrupted"));
+    CHECK(std::chrono::steady_clock::now() - asked < std::chrono::seconds(1));  // 0.2 of them where nothing else runs
+  }
+  CHECK(folder.names() == Words{"a.toml"});
+}
+
+TEST_CASE("equilibria that were found before Ctrl-C are shown") {
+  const Folder folder;
+  Child child(command(folder, {"equilibria", "S5_double_pendulum", "--starts", "100000", "--json"}));
+  std::this_thread::sleep_for(std::chrono::seconds(2));  // some thousand starts; the first few find all four
+  child.signal(SIGINT);
+  const ChildResult result = child.finish();
+  CHECK(result.status == 3);
+  CHECK(contains(result.err, "interrupted"));
+  const Json found = Json::parse(result.out);
+  CHECK(found["interrupted"] == true);
+  CHECK(found["points"].size() == 4);
+}

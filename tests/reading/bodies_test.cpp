@@ -7,6 +7,7 @@
 
 #include "reading/by_name.hpp"
 #include "symbolic/calculus.hpp"
+#include "work.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -52,6 +53,7 @@ TEST_CASE("a rolling disk in Euler parameters: constraint and time derivative ar
   for (const reading::ReadConstraint& c : form.constraints) {
     if (c.holonomic) continue;
     ++seen;
+    CHECK(c.no_acceleration.empty());
     CHECK(is_canonical(c.rate));
     CHECK(is_canonical(c.acceleration));
     // x1_dot, or x2_dot, stands alone.
@@ -68,4 +70,28 @@ TEST_CASE("sqrt(x^2 S^-2) of a sum of squares S is |x|/S: S is never negative") 
   CHECK(is_canonical(root));
   CHECK(root == over(reading::call(symbolic::Op::abs, {n("x1")}), S));
   CHECK(reading::call(symbolic::Op::abs, {S}) == S);
+}
+
+TEST_CASE("a budget of operations ends what exceeds it, also from within another, and the outer one pays") {
+  const auto spent = [](std::size_t outer, std::size_t inner, std::size_t operations) {
+    const work::Budget around(outer);
+    bool over = false;
+    try {
+      const work::Budget budget(inner);
+      work::spend(operations);
+    } catch (const work::OverBudget&) {
+      over = true;
+    }
+    return over;
+  };
+  CHECK_FALSE(spent(100, 10, 10));
+  CHECK(spent(100, 10, 11));
+  CHECK(spent(5, 10, 6));
+  const work::Budget around(100);
+  {
+    const work::Budget budget(60);
+    work::spend(50);
+  }
+  CHECK_NOTHROW(work::spend(50));
+  CHECK_THROWS_AS(work::spend(1), work::OverBudget);
 }

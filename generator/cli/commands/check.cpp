@@ -9,6 +9,7 @@
 #include "cli/decimal.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/watch.hpp"
 #include "derive/conservative.hpp"
 #include "derive/conserved.hpp"
 #include "derive/lagrange.hpp"
@@ -96,10 +97,11 @@ json contacts_of(const mechanics::Mechanics& m) {
   return result;
 }
 
-json singular_of(const mechanics::Mechanics& m) {
+json singular_of(const mechanics::Mechanics& m, json& left_out) {
   json result = json::array();
-  for (const print::Item& item : print::render(m, reading::ReadingForm{}, {"singular"})) {
-    result.push_back({{"set", item.text}, {"approach", item.role}});
+  for (const print::Item& item : print::render_singular(m)) {
+    if (item.left_out.empty()) result.push_back({{"set", item.text}, {"approach", item.role}});
+    else left_out.push_back({{"what", "singular sets: " + item.name}, {"why", item.left_out}});
   }
   return result;
 }
@@ -120,40 +122,59 @@ std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
   return m.dag->is_constant(value) ? decimal_text(m.dag->value(value)) : shown(m, value);
 }
 
-}  // namespace
-
-json examine(const model::Model& model) {
+void fill_in(const model::Model& model, json& found) {
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  system::EquationSystem system = derive::lagrange(m, system::Approach::two);
-  json coordinates = json::array(), parameters = json::array(), conserved = json::array(), warnings = json::array();
   bool every_unit = true;
   for (std::uint32_t i = 0; i < model.coordinates.size(); ++i) {
     const model::Coordinate& c = model.coordinates[i];
-    coordinates.push_back({{"name", c.name}, {"unit", c.unit.text}, {"eliminated", m.is_eliminated(i)}});
+    found["coordinates"].push_back({{"name", c.name}, {"unit", c.unit.text}, {"eliminated", m.is_eliminated(i)}});
     every_unit = every_unit && c.unit.dimension.has_value();
   }
+  found["dof"] = m.freedom();
   for (const model::Parameter& p : model.parameters) {
-    parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[parameters.size()])}});
+    found["parameters"].push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[found["parameters"].size()])}});
     every_unit = every_unit && p.unit.dimension.has_value();
   }
-  json inputs = json::array();
   for (const model::Input& input : model.inputs) {
-    inputs.push_back({{"name", input.name}, {"unit", input.unit.text},
-                      {"default", input.fallback == model::no_node ? "0" : value_of(m, mechanics::lower_scalar(m, input.fallback))}});
+    found["inputs"].push_back({{"name", input.name}, {"unit", input.unit.text},
+                               {"default", input.fallback == model::no_node ? "0" : value_of(m, mechanics::lower_scalar(m, input.fallback))}});
     every_unit = every_unit && input.unit.dimension.has_value();
   }
+  found["units"] = every_unit ? "checked" : "checked where they are given";
+  found["constraints"] = constraints_of(m);
+  found["joints"] = joints_of(m);
+  found["contacts"] = contacts_of(m);
+  found["charts"] = charts_of_model(m);
+  found["forces"] = forces_of(m);
+  system::EquationSystem system = derive::lagrange(m, system::Approach::two);
   for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
-    conserved.push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)},
-                         {"certainty", derive::name(c.certainty)}});
+    found["conserved"].push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)},
+                                  {"certainty", derive::name(c.certainty)}});
   }
+  found["singular"] = singular_of(m, found["left_out"]);
+}
+
+}  // namespace
+
+json examine(const model::Model& model, bool* interrupted) {
+  const work::Stage stage("examining the model");
+  json found{{"format", 1}, {"model", model.id}, {"title", model.title}};
+  for (const char* key : {"coordinates", "dof", "parameters", "inputs", "constraints", "joints", "forces", "contacts", "conserved", "singular", "charts",
+                          "units", "warnings", "left_out"}) {
+    found[key] = json::array();
+  }
+  found["dof"] = 0;
+  found["units"] = "checked where they are given";
   for (const Warning& w : model.warnings) {
-    warnings.push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
+    found["warnings"].push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
   }
-  return {{"format", 1}, {"model", model.id}, {"title", model.title}, {"coordinates", coordinates},
-          {"dof", m.freedom()}, {"parameters", parameters}, {"inputs", inputs},
-          {"constraints", constraints_of(m)}, {"joints", joints_of(m)}, {"forces", forces_of(m)}, {"contacts", contacts_of(m)}, {"conserved", conserved},
-          {"singular", singular_of(m)}, {"charts", charts_of_model(m)},
-          {"units", every_unit ? "checked" : "checked where they are given"}, {"warnings", warnings}};
+  try {
+    fill_in(model, found);
+  } catch (const work::Interrupted&) {
+    if (interrupted == nullptr) throw;
+    *interrupted = true;
+  }
+  return found;
 }
 
 namespace {
@@ -221,6 +242,8 @@ void print_readable(const json& found) {
   }
   if (!found["singular"].empty()) heading("singular sets");
   for (const json& s : found["singular"]) fmt::print("  {:<20} (approach {})\n", text(s["set"]), text(s["approach"]));
+  if (!found["left_out"].empty()) heading("left out");
+  for (const json& l : found["left_out"]) fmt::print("  {}: {}\n", text(l["what"]), text(l["why"]));
   if (!found["charts"].empty()) heading("charts");
   for (const json& c : found["charts"]) {
     const bool exchanged = c["exchanged"].get<bool>();
@@ -237,13 +260,17 @@ Execute declare_check(CLI::App& app) {
   app.add_option("MODEL", *name, "a model file, or the name of one in models/")->required();
   return [name](const Common& common) {
     const model::Model model = load_model(*name);
-    const json found = examine(model);
+    bool interrupted = false;
+    json found = examine(model, &interrupted);
+    const work::Kept kept;
+    if (interrupted) found["left_out"].push_back({{"what", "what is not shown"}, {"why", "interrupted"}});
     if (common.json) {
       print_document(found);
     } else {
       print_readable(found);
     }
-    return 0;
+    if (interrupted) tell_interrupted(nullptr);
+    return interrupted ? exit_interrupted : 0;
   };
 }
 

@@ -9,6 +9,7 @@
 #include "cli/output.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
+#include "cli/watch.hpp"
 #include "derive/lagrange.hpp"
 #include "model/names.hpp"
 #include "mechanics/dependent.hpp"
@@ -52,7 +53,27 @@ const std::string& in_format(const print::Item& item, const std::string& format)
   return format == "latex" ? item.latex : format == "mathml" ? item.mathml : item.text;
 }
 
-json to_json(const std::vector<print::Item>& items, const std::string& approach, const std::vector<std::string>& show) {
+std::string name_of(const print::Item& item) {
+  std::string name = item.key;
+  for (const std::string* part : {&item.name, &item.coordinate, &item.role}) {
+    if (!part->empty()) name += (name == item.key ? ": " : ", ") + *part;
+  }
+  return name;
+}
+
+/// Items that took more than their budget, and the equations where they are shown by parts.
+std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::ReadingForm& form) {
+  std::vector<work::LeftOut> result;
+  if (form.by_parts) result.push_back({"equations written out", form.why_by_parts});
+  if (!form.no_spins.empty()) result.push_back({"angular velocities", form.no_spins});
+  for (const print::Item& item : items) {
+    if (!item.left_out.empty()) result.push_back({name_of(item), item.left_out});
+  }
+  return result;
+}
+
+json to_json(const std::vector<print::Item>& items, const std::string& approach, const std::vector<std::string>& show,
+             const std::vector<work::LeftOut>& left_out) {
   json result{{"format", 1}, {"approach", approach}, {"equations", json::array()}, {"reactions", json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : show_keys()) {
@@ -61,6 +82,7 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
     if (wanted && key != "all") result[key] = json::array();  // also where there turns out to be nothing to show
   }
   for (const print::Item& item : items) {
+    if (!item.left_out.empty()) continue;
     json entry;
     if (!item.coordinate.empty()) entry["coordinate"] = item.coordinate;
     if (!item.name.empty()) entry["name"] = item.name;
@@ -70,18 +92,24 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
     entry["mathml"] = item.mathml;
     result[item.key].push_back(entry);
   }
+  result["left_out"] = json::array();
+  for (const work::LeftOut& l : left_out) result["left_out"].push_back({{"what", l.what}, {"why", l.why}});
   return result;
 }
 
-void print_readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format) {
+void print_readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format,
+                    const std::vector<work::LeftOut>& left_out) {
   fmt::print("Approach {}\n", approach);
   std::string heading;
   for (const print::Item& item : items) {
+    if (!item.left_out.empty()) continue;
     const std::string next = item.role.empty() ? item.key : item.key + ": " + item.role;
     if (next != heading) fmt::print("\n{}\n", next);
     heading = next;
     fmt::print("  {}\n", in_format(item, format));
   }
+  if (!left_out.empty()) fmt::print("\nleft out\n");
+  for (const work::LeftOut& l : left_out) fmt::print("  {}: {}\n", l.what, l.why);
 }
 
 /// The same quantity from the reading form, where functions of time keep their names; nothing if it has no such form.
@@ -124,21 +152,33 @@ int execute(const Options& options, const Common& common) {
   require_keys(options.show);
   require_format(options.format);
   const ApproachChoice choice = approach_choice(options.approach);
+  const work::Stage stage("deriving the equations");
   model::Model model = load_model(options.model);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   // Approach I shows the constraint forces too, so it is what `auto` means wherever something is eliminated.
   const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
-  std::vector<print::Item> items = print::render(mechanics, form, options.show);
-  add_conserved(mechanics, options.show, items);
-  add_routh(mechanics, options.show, items);
-  if (common.json) {
-    print_document(to_json(items, system::name(approach), options.show));
-  } else {
-    print_readable(items, system::name(approach), options.format);
+  bool interrupted = false;
+  std::vector<print::Item> items = print::render(mechanics, form, options.show, &interrupted);
+  try {
+    if (!interrupted) {
+      add_conserved(mechanics, options.show, items);
+      add_routh(mechanics, options.show, items);
+    }
+  } catch (const work::Interrupted&) {
+    interrupted = true;
   }
-  return 0;
+  const work::Kept kept;
+  std::vector<work::LeftOut> left_out = left_out_of(items, form);
+  if (interrupted) left_out.push_back({"what is not shown", "interrupted"});
+  if (common.json) {
+    print_document(to_json(items, system::name(approach), options.show, left_out));
+  } else {
+    print_readable(items, system::name(approach), options.format, left_out);
+  }
+  if (interrupted) tell_interrupted(nullptr);
+  return interrupted ? exit_interrupted : 0;
 }
 
 }  // namespace

@@ -93,6 +93,7 @@ int emit_document(const Options& options, const Common& common) {
   const reading::ReadingForm one = reading::derive_reading(derived->mechanics, system::Approach::one);
   const reading::ReadingForm two = reading::derive_reading(derived->mechanics, system::Approach::two);
   const std::string name = emit::mangled_id(derived->model.id) + ".tex";
+  const work::Kept kept;  // all files or none
   const std::vector<std::string> files =
       write_results(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}}, derived->model.file);
   if (common.json) {

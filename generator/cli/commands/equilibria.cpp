@@ -10,6 +10,8 @@
 #include "cli/output.hpp"
 #include "cli/steady_search.hpp"
 #include "cli/usage.hpp"
+#include "cli/watch.hpp"
+#include "work.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -55,6 +57,7 @@ json to_json(const SteadyMotions& found, const Options& options) {
           {"starts", options.starts},
           {"converged", found.search.converged},
           {"refused", found.search.refused},
+          {"interrupted", found.search.interrupted},
           {"certificate", found.problem.certificate}};
 }
 
@@ -104,11 +107,16 @@ int execute(const Options& options, const Common& common) {
     };
   }
   const SteadyMotions found = steady_motions(request);
+  const work::Kept kept;
   if (shown) tell(fmt::format("\r{:40}\r", ""));
   if (common.json) {
     print_document(to_json(found, options));
   } else {
     fmt::print("{}", text(found, options));
+  }
+  if (found.search.interrupted) {
+    tell_interrupted(nullptr);
+    return exit_interrupted;
   }
   return 0;
 }

@@ -11,6 +11,7 @@
 #include "cli/output.hpp"
 #include "cli/steady.hpp"
 #include "cli/usage.hpp"
+#include "work.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -127,6 +128,7 @@ int execute(const Options& options, const Common& common) {
   overrides.parameters = parse_assignments("linearize", options.set);
   const SteadyProblem problem = steady_problem("linearize", options.model, options.scene, overrides, options.at, common.seed);
   try {
+    const work::Stage stage("linearising");
     const linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, common.seed);
     const Answer answer{problem, l};
     if (common.json) {

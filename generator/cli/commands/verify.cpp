@@ -10,6 +10,7 @@
 #include "cli/output.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
+#include "cli/watch.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -24,7 +25,8 @@ struct Options {
 };
 
 json to_json(const verify::Certificate& certificate) {
-  json routes = json::array(), reasons = json::object();
+  json routes = json::array(), reasons = json::object(), left_out = json::array();
+  for (const work::LeftOut& l : certificate.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
   for (const verify::Comparison& c : certificate.comparisons) {
     routes.push_back({{"a", c.a}, {"b", c.b}, {"shares_code", c.shares_code},
                       {"max_relative_difference", c.max_relative_difference}, {"tolerance", c.tolerance},
@@ -33,7 +35,7 @@ json to_json(const verify::Certificate& certificate) {
   for (const auto& [reason, count] : certificate.rejected) reasons[reason] = count;
   return {{"format", 1}, {"routes", routes}, {"points", certificate.points}, {"digits", certificate.options.digits},
           {"rejected", certificate.rejections()}, {"rejected_reasons", reasons},
-          {"summary", certificate.summary()}, {"verdict", certificate.verdict()}};
+          {"summary", certificate.summary()}, {"verdict", certificate.verdict()}, {"left_out", left_out}};
 }
 
 void print_readable(const verify::Certificate& certificate) {
@@ -45,6 +47,7 @@ void print_readable(const verify::Certificate& certificate) {
     fmt::print("{:<28} {:<28} {:>12.2e} {:>10.0e}  {}{}\n", c.a, c.b, c.max_relative_difference, c.tolerance,
                c.pass ? "agree" : "DISAGREE", c.shares_code ? " (they share code)" : "");
   }
+  for (const work::LeftOut& l : certificate.left_out) fmt::print("{:<28} left out: {}\n", l.what, l.why);
   fmt::print("{} points at {} digits", certificate.points, certificate.options.digits);
   for (const auto& [reason, count] : certificate.rejected) fmt::print(", {} rejected: {}", count, reason);
   fmt::print("\n{}\n", certificate.summary());
@@ -73,16 +76,21 @@ std::optional<verify::Certificate> certify_prescribed(const Options& options, st
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   if (mechanics.freedom() > 0) return std::nullopt;
   verify::Subjects subjects;
-  subjects.systems = verify::all_routes(mechanics);
+  subjects.systems = verify::all_routes(mechanics, &subjects.left_out);
   add_reading_forms(mechanics, subjects);
   return verify::certify(mechanics, subjects, {options.digits, static_cast<std::size_t>(options.points), seed, {}});
 }
 
 int show(const verify::Certificate& certificate, const Common& common) {
+  const work::Kept kept;
   if (common.json) {
     print_document(to_json(certificate));
   } else {
     print_readable(certificate);
+  }
+  if (certificate.interrupted) {
+    tell_interrupted(nullptr);
+    return exit_interrupted;
   }
   return certificate.pass ? 0 : 1;
 }
@@ -93,6 +101,7 @@ int execute(const Options& options, const Common& common) {
   const program::Program program = with_every_function(*derived);
   Verification verification{options.digits, static_cast<std::size_t>(options.points), common.seed, nullptr};
   verification.reductions = true;
+  verification.partial = true;
   std::optional<CompiledCode> code;
   verify::CompiledForm compiled;
   if (!options.no_compile) {

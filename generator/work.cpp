@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "work.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <mutex>
+
+namespace eomgen::work {
+namespace {
+
+// A signal handler and the thread that shows progress can reach nothing but objects of static storage.
+std::atomic<bool> stop{false};
+std::atomic<const char*> under_way{nullptr};
+std::atomic<int> keeping{0};
+static_assert(std::atomic<bool>::is_always_lock_free);
+
+std::mutex line;  // on the terminal
+bool line_is_shown = false;
+
+thread_local std::size_t left = std::numeric_limits<std::size_t>::max();
+
+}  // namespace
+
+void request_stop() noexcept { stop.store(true, std::memory_order_relaxed); }
+void withdraw_stop() noexcept { stop.store(false, std::memory_order_relaxed); }
+bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }
+
+Kept::Kept() noexcept {
+  ++keeping;
+  clear_line();
+}
+Kept::~Kept() { --keeping; }
+
+bool abandoned() noexcept { return stop_requested() && keeping.load(std::memory_order_relaxed) == 0; }
+
+void check() {
+  if (abandoned()) throw Interrupted{};
+}
+
+void spend(std::size_t operations) {
+  check();
+  if (operations > left) {
+    left = 0;
+    throw OverBudget("more operations than are spent on it");
+  }
+  left -= operations;
+}
+
+Budget::Budget(std::size_t operations) : around_(left), given_(std::min(operations, left)) { left = given_; }
+Budget::~Budget() { left = around_ - (given_ - left); }
+
+Stage::Stage(const char* name) noexcept : around_(under_way.exchange(name)) {}
+Stage::~Stage() {
+  under_way.store(around_);
+  if (around_ == nullptr) clear_line();
+}
+
+void show_line(const char* text) {
+  const std::lock_guard lock(line);
+  if (stage() == nullptr || keeping != 0) return;
+  std::fprintf(stderr, "\r\033[K%s", text);
+  std::fflush(stderr);
+  line_is_shown = true;
+}
+
+void clear_line() noexcept {
+  const std::lock_guard lock(line);
+  if (line_is_shown) std::fputs("\r\033[K", stderr);
+  line_is_shown = false;
+}
+
+const char* stage() noexcept { return under_way.load(); }
+
+}  // namespace eomgen::work
