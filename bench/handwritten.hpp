@@ -19,7 +19,7 @@ struct Handwritten {
   Rhs rhs;
 };
 constexpr int variants = 6;
-/// All of them for N links: 1, 2, 3, 6 or 10.
+/// All of them for N links: 1, 2, 3, 6, 10, 20 or 30.
 template <int N>
 const Handwritten (&handwritten())[variants];
 

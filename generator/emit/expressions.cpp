@@ -61,7 +61,9 @@ Expression Expressions::size_of(const Operand& operand) const {
     case Slot::state: return {names_.state[operand.index], Expression::atom};
     case Slot::parameter: return {names_.parameters[operand.index], Expression::atom};
     case Slot::input: return {names_.inputs[operand.index], Expression::atom};
-    case Slot::prepared: return {fmt::format("{}[{}]", names_.w, operand.index), Expression::atom};
+    case Slot::prepared:
+      if (!dialect_.lanes.empty()) return {names_.prepared.at(operand.index), Expression::atom};
+      return {fmt::format("{}[{}]", names_.w, operand.index), Expression::atom};
     case Slot::side: return {names_.sides[operand.index], Expression::atom};
     case Slot::contact: return {names_.contacts[operand.index], Expression::atom};
     case Slot::value: break;
@@ -75,7 +77,39 @@ Expression Expressions::signed_value(const Operand& operand) const {
   return {fmt::format("-{}", at_least(size, Expression::product)), Expression::product};
 }
 
+Expression Expressions::in_lanes(const Operand& operand, bool with_sign) const {
+  const Expression value = with_sign ? signed_value(operand) : size_of(operand);
+  if (dialect_.lanes.empty() || (operand.slot != Slot::constant && operand.slot != Slot::pi)) return value;
+  return {fmt::format("{}all({})", dialect_.lanes, value.text), Expression::atom};
+}
+
+/// What has another form where several states are computed side by side.
+std::optional<Expression> Expressions::of_lanes(const Instruction& instruction) {
+  const auto& o = instruction.operands;
+  const auto value = [&](std::size_t i) { return in_lanes(o[i], true).text; };
+  const auto select = [&](std::size_t a, std::size_t b, std::size_t x, std::size_t y) {
+    return Expression{fmt::format("{0}select(({0}mask)({1} < {2}), {3}, {4})", dialect_.lanes, value(a), value(b), value(x), value(y)), Expression::atom};
+  };
+  switch (instruction.op) {
+    case Op::abs: return Expression{fmt::format("{}abs({})", dialect_.lanes, value(0)), Expression::atom};
+    case Op::sign: return Expression{fmt::format("{}sign({})", dialect_.lanes, value(0)), Expression::atom};
+    case Op::min: return select(1, 0, 1, 0);
+    case Op::max: return select(0, 1, 1, 0);
+    case Op::select: return select(0, 1, 2, 3);
+    case Op::add: case Op::mul: case Op::div: return std::nullopt;
+    default: break;
+  }
+  const std::string name = function_name(instruction.op);
+  called_.insert(name);
+  std::string arguments;
+  for (std::size_t i = 0; i < o.size(); ++i) arguments += (i == 0 ? "" : ", ") + value(i);
+  return Expression{fmt::format("{}{}({})", dialect_.lanes, name, arguments), Expression::atom};
+}
+
 Expression Expressions::of(const Instruction& instruction) {
+  if (!dialect_.lanes.empty()) {
+    if (std::optional<Expression> special = of_lanes(instruction)) return *special;
+  }
   const auto& o = instruction.operands;
   const auto name = [&](std::size_t i) { return at_least(signed_value(o[i]), Expression::atom); };
   switch (instruction.op) {

@@ -2,6 +2,7 @@
 // One instruction of a Function as an expression of C or C++.
 #pragma once
 
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -27,6 +28,8 @@ class Expressions {
   Expression of(const program::Instruction& instruction);
   Expression size_of(const program::Operand& operand) const;
   Expression signed_value(const program::Operand& operand) const;
+  /// Where lanes are asked for: numbers too are one for each.
+  Expression in_lanes(const program::Operand& operand, bool with_sign = false) const;
   /// What stands for the value of instruction `index` from now on.
   void set(std::size_t index, Expression value) { value_[index] = std::move(value); }
 
@@ -34,6 +37,7 @@ class Expressions {
   void call(const std::string& name) { called_.insert(name); }
 
  private:
+  std::optional<Expression> of_lanes(const program::Instruction& instruction);
   Expression call(const std::string& name, const std::vector<program::Operand>& operands);
   std::string first_factor(const program::Operand& operand) const;
   Expression product(const std::vector<program::Operand>& operands) const;

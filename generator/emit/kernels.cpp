@@ -7,10 +7,13 @@
 
 namespace eomgen::emit {
 
+std::string sincos_lanes(const std::string& prefix, const std::string& linkage, const std::string& standard) {
+  return rendered(skeleton::kernels_sincos_lanes, {{"prefix", prefix}, {"inline", linkage}, {"std", standard}}, {});
+}
+
 std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard) {
   std::vector<std::pair<std::string, std::string>> values = {{"prefix", prefix}, {"inline", linkage}, {"std", standard}};
-  const std::string lanes = rendered(skeleton::kernels_sincos_lanes, values, {});
-  values.emplace_back("lanes", lanes);
+  values.emplace_back("lanes", sincos_lanes(prefix, linkage, standard));
   return rendered(skeleton::kernels_sincos, values, {});
 }
 

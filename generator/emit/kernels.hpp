@@ -11,4 +11,7 @@ namespace eomgen::emit {
 /// functions of the C library are called by, "" or "std::".
 std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard);
 
+/// PREFIXsincos_lanes alone, for lanes of whatever width PREFIXlanes and PREFIXbits have.
+std::string sincos_lanes(const std::string& prefix, const std::string& linkage, const std::string& standard);
+
 }  // namespace eomgen::emit

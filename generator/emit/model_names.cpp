@@ -12,6 +12,8 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
     for (const char* name : {"_sincos", "_sincos_near", "_sincos_far", "_sincos_lanes", "_is_near", "_lanes", "_bits", "_rhs_from", "_rhs_far", "_rhs_prepared_from",
                              "_rhs_prepared_far", "_taylor_start", "_taylor_next", "_taylor_sums", "_differs"}) table.declare(prefix + name);
   }
+  for (const char* name : {"block", "state", "call", "kernel", "lanes", "mask", "bits", "memory", "load", "store", "at", "all", "select", "abs", "sign", "any", "place", "side",
+                           "slides", "presses", "sincos", "sincos_lanes", "far", "alone", "apart", "run", "INLINE", "WIDTH", "MOST"}) table.declare(mangled_id(context.id) + "_batch_" + name);
   for (const Quantity& coordinate : context.coordinates) names.all_coordinates.push_back(identifier(coordinate.name));
   for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name));
   for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name + "_dot"));

@@ -7,10 +7,12 @@
 #include <set>
 
 #include "emit/expressions.hpp"
+#include "emit/leaves.hpp"
 #include "emit/names.hpp"
+#include "emit/parts.hpp"
 #include "emit/signature.hpp"
 #include "emit/text.hpp"
-#include "program/kinks.hpp"
+#include "emit/value_names.hpp"
 
 namespace eomgen::emit {
 namespace {
@@ -24,9 +26,6 @@ using Expression = Expressions::Expression;
 
 // Shorter values that are used once are written where they are used.
 constexpr std::size_t longest_inline = 64;
-
-// Instructions of a function that stays whole, and of a part of a longer one.
-constexpr std::size_t longest_function = 3000, longest_part = 1000;
 
 // Of a function that has been told that its angles are near, and found that they are not.
 constexpr int code_too_far = -1;
@@ -50,8 +49,9 @@ class Printer {
       test_ready(static_cast<std::ptrdiff_t>(i));
     }
     write_results();
-    if (leaves_.size() == 1) text_.body = unused_arguments() + using_declarations() + loads(leaves_[0]) + body_;
+    if (leaves_.size() == 1) text_.body = (in_lanes() ? left_begins(0) : unused_arguments() + using_declarations()) + loads(leaves_[0]) + body_;
     else close_part(leaves_.size() - 1);
+    if (in_lanes()) text_.library = expressions_.called();
     return std::move(text_);
   }
 
@@ -62,33 +62,32 @@ class Printer {
     }
     for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode}) table_.declare(name);
     if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
+    if (in_lanes()) {
+      text_.block = table_.declare("block");
+      left_ = table_.declare("left");
+    }
     for (const auto& result : function_.results) {
       if (!program::is_code(result.first)) text_.results.push_back(table_.declare(result.first));
     }
   }
 
-  /// Which part each instruction is in; sines and cosines that are computed together stay so.
   void divide() {
-    const auto& code = function_.code;
-    part_.assign(code.size(), 0);
-    std::size_t parts = 1;
-    const bool long_one = code.size() > longest_function && function_.name != "taylor_next";
-    for (std::size_t i = 0, since = 0; long_one && i < code.size(); ++i, ++since) {
-      const bool together = i > 0 && code[i].pack != 0 && code[i].pack == code[i - 1].pack;
-      if (since >= longest_part && !together) {
-        ++parts;
-        since = 0;
-      }
-      part_[i] = parts - 1;
-    }
-    leaves_.resize(parts);
-    kept_.assign(code.size(), false);
-    if (parts == 1) return;
+    part_ = parts_of(function_);
+    leaves_.resize(part_.empty() ? 1 : part_.back() + 1);
+    kept_.assign(part_.size(), false);
+    if (leaves_.size() == 1) return;
     text_.work = table_.declare("work");
+    if (in_lanes()) kept_count_ = 1;
     text_.code = table_.declare("code");
   }
   void close_part(std::size_t part) {
-    text_.parts.push_back(all_arguments() + using_declarations() + loads(leaves_[part]) + body_ + (part + 1 < leaves_.size() ? "  return 0;\n" : ""));
+    const bool last = part + 1 == leaves_.size();
+    if (in_lanes()) {  // which lanes are left is handed on in the first entry of the array
+      const std::string hand_on = last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, left_);
+      text_.parts.push_back(fmt::format("  (void){}; (void){};\n", text_.block, text_.work) + left_begins(part) + loads(leaves_[part]) + body_ + hand_on);
+    } else {
+      text_.parts.push_back(all_arguments() + using_declarations() + loads(leaves_[part]) + body_ + (last ? "" : "  return 0;\n"));
+    }
     body_.clear();
     printed_section_.clear();
   }
@@ -122,36 +121,6 @@ class Printer {
     for (const auto& test : function_.pivots) use(test.pivot, true, part_of(test)), use(test.scale, true, part_of(test));
   }
 
-  /// "{3}_ddot" -> "phi_ddot".
-  std::string suggested(const std::string& pattern) const {
-    std::string result;
-    for (std::size_t i = 0; i < pattern.size(); ++i) {
-      const std::size_t close = pattern[i] == '{' ? pattern.find('}', i) : std::string::npos;
-      if (close == std::string::npos) {
-        result += pattern[i];
-      } else {
-        result += names_.all_coordinates.at(std::stoul(pattern.substr(i + 1, close - i - 1)));
-        i = close;
-      }
-    }
-    return result;
-  }
-
-  /// A name that says what a sine or cosine is of: "sin_theta", "cos_theta1_minus_theta2".
-  std::string trig_name(const Instruction& instruction) const {
-    const std::string head = instruction.op == Op::sin ? "sin_" : "cos_";
-    const Operand& argument = instruction.operands[0];
-    if (argument.negated) return "";
-    if (argument.slot != Slot::value) return argument.slot == Slot::constant ? "" : head + expressions_.size_of(argument).text;
-    const Instruction& inner = function_.code[argument.index];
-    const auto& o = inner.operands;
-    if (inner.op != Op::add || o.size() != 2 || o[0].negated) return "";
-    for (const Operand& operand : o) {
-      if (operand.slot != Slot::state && operand.slot != Slot::parameter) return "";
-    }
-    return head + expressions_.size_of(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") + expressions_.size_of(o[1]).text;
-  }
-
   void statement(std::size_t index) {
     const Instruction& instruction = function_.code[index];
     if (!instruction.section.empty()) section_ = instruction.section;
@@ -164,9 +133,9 @@ class Printer {
       expressions_.set(index, {place, Expression::atom});
       return;
     }
-    std::string name = suggested(instruction.name);
+    std::string name = suggested_name(instruction.name, names_);
     const bool trig = instruction.op == Op::sin || instruction.op == Op::cos;
-    if (name.empty() && trig) name = trig_name(instruction);
+    if (name.empty() && trig) name = trig_name(function_, instruction, expressions_);
     if (name.empty() && !trig && uses_[index] <= 1 && e.text.size() <= longest_inline) {
       expressions_.set(index, e);
       return;
@@ -182,16 +151,17 @@ class Printer {
     std::vector<std::string> angles;
     for (std::size_t i = first; i < function_.code.size() && function_.code[i].pack == text_.packs; ++i) {
       const Instruction& instruction = function_.code[i];
-      if (instruction.lane == angles.size()) angles.push_back(expressions_.signed_value(instruction.operands[0]).text);
+      if (instruction.lane == angles.size()) angles.push_back(expressions_.in_lanes(instruction.operands[0], true).text);
     }
     const std::size_t count = angles.size();
-    if (count % 2 == 1) angles.push_back(dialect_.constant(0));
+    if (count % 2 == 1 && !in_lanes()) angles.push_back(dialect_.constant(0));
     const auto declared = [this](const char* name) {
       return table_.declare(text_.packs == 1 ? name : fmt::format("{}_{}", name, text_.packs));
     };
     sine_ = declared("sine");
     cosine_ = declared("cosine");
     line(fmt::format("{0} {2}[{1}], {3}[{1}];", dialect_.real, angles.size(), sine_, cosine_));
+    if (in_lanes()) return sincos_of_lanes(angles, declared("reach"));
     if (!text_.near_first) return sincos_of(angles, "  ", "sincos", "");
     const std::string reach = declared("reach");
     line(fmt::format("{}lanes {} = {{0}};", dialect_.kernels, reach));
@@ -208,6 +178,15 @@ class Printer {
       body_ += wrapped(fmt::format("{}{}{}({}, {}, {}{}, {}{}{});", indent, dialect_.kernels, function, angles[i], angles[i + 1],
                                    sine_, place, cosine_, place, more), indent + "    ") + "\n";
     }
+  }
+  void sincos_of_lanes(const std::vector<std::string>& angles, const std::string& reach) {
+    body_ += fmt::format("  {} {} = {{0}};\n", dialect_.real, reach);
+    for (std::size_t i = 0; i < angles.size(); ++i) {
+      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lanes, angles[i], sine_, cosine_, i, reach), "      ") + "\n";
+    }
+    body_ += fmt::format("  if ({0}any({0}far({1}))) {{\n", dialect_.lanes, reach);
+    for (const std::string& angle : angles) body_ += wrapped(fmt::format("    {0} |= {1}far({1}abs({2}));", left_, dialect_.lanes, angle), "        ") + "\n";
+    body_ += "  }\n";
   }
   Expression from_pack(const Instruction& instruction) const {
     return {fmt::format("{}[{}]", instruction.op == Op::sin ? sine_ : cosine_, instruction.lane), Expression::atom};
@@ -233,9 +212,13 @@ class Printer {
         if (operand->slot == Slot::value) needs = std::max(needs, static_cast<std::ptrdiff_t>(operand->index));
       }
       if (needs != last) continue;
-      const std::string pivot = expressions_.size_of(test.pivot).text;
+      const std::string pivot = expressions_.in_lanes(test.pivot).text;
       const bool exact = test.scale.slot == Slot::constant && function_.constants[test.scale.index] == 0;
-      if (exact) {
+      if (in_lanes()) {
+        leave(exact ? fmt::format("{} == {}", pivot, dialect_.constant(0))
+                    : fmt::format("{0}abs({1}) <= {2}*{0}abs({3})", dialect_.lanes, pivot, dialect_.value(program::pivot_tolerance),
+                                  expressions_.in_lanes(test.scale).text));
+      } else if (exact) {
         line(fmt::format("if ({} == {}) return 1;", pivot, dialect_.constant(0)));
       } else {
         expressions_.call(dialect_.absolute);
@@ -247,6 +230,7 @@ class Printer {
 
   void write_results() {
     section_ = "results";
+    if (in_lanes()) return results_of_lanes();
     for (std::size_t r = 0; r < function_.results.size(); ++r) {
       const auto& entries = function_.results[r].second;
       if (program::is_code(function_.results[r].first)) {
@@ -275,28 +259,62 @@ class Printer {
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
+  /// Lanes that do not end as others do are left to the function of one state, which tells why.
+  void results_of_lanes() {
+    std::string finite;
+    for (const auto& [name, entries] : function_.results) {
+      if (!program::is_code(name)) continue;
+      for (const Operand& entry : entries) leave(fmt::format("{} < {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
+    }
+    for (std::size_t i = 0; is_rhs() && i < function_.results[0].second.size(); ++i) {
+      const std::size_t place = function_.places.empty() ? i : function_.places[i];
+      if (place >= names_.acceleration.size()) finite += (finite.empty() ? "" : " + ") + expressions_.in_lanes(function_.results[0].second[i], true).text;
+    }
+    if (!finite.empty()) {
+      const std::string sum = table_.declare("finite");
+      line(fmt::format("const {} {} = {};", dialect_.real, sum, finite));
+      line(fmt::format("{0} |= ~({1}mask)({2} - {2} <= {3});", left_, dialect_.lanes, sum, dialect_.constant(0)));
+    }
+    const std::string place = table_.declare("place");
+    line(fmt::format("const struct {0}block* {1} = {0}place({2}, {3});", dialect_.lanes, place, text_.block, left_));
+    const std::string step = table_.declare("step");
+    line(fmt::format("const size_t {0} = {1}->to_step;", step, place));
+    for (std::size_t r = 0, k = 0; r < function_.results.size(); ++r) {
+      const auto& [name, entries] = function_.results[r];
+      if (program::is_code(name)) continue;
+      const std::string& to = text_.results[k];
+      body_ += fmt::format("  double* const {} = {}->to[{}];\n", to, place, k++);
+      if (entries.empty()) body_ += fmt::format("  (void){};\n", to);
+      const bool optional = function_.name == "jac" && r == 1;
+      if (optional) body_ += fmt::format("  if ({}) {{\n", to);
+      for (std::size_t i = 0; i < entries.size(); ++i) {
+        const std::size_t at = r > 0 || function_.places.empty() ? i : function_.places[i];
+        line(fmt::format("{}{}store({} + {}*{}, {});", optional ? "  " : "", dialect_.lanes, to, at, step, expressions_.in_lanes(entries[i], true).text) + remark(r, at));
+      }
+      if (optional) body_ += "  }\n";
+    }
+    line(fmt::format("return {} != {};", place, text_.block));
+  }
+  void leave(const std::string& condition) { line(fmt::format("{} |= ({}mask)({});", left_, dialect_.lanes, condition)); }
+  std::string left_begins(std::size_t part) const {
+    return part == 0 ? fmt::format("  {}mask {} = {{0}};\n", dialect_.lanes, left_) : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, left_, text_.work);
+  }
+
   void end_where_negative(const std::string& code, const std::vector<Operand>& entries) {
     for (const Operand& entry : entries) {
       line(fmt::format("if ({} < {}) return {};", expressions_.signed_value(entry).text, dialect_.constant(0), code.substr(1)));
     }
   }
 
-  /// What an entry is, behind its line.
   std::string remark(std::size_t result, std::size_t entry) const {
-    const std::size_t n = names_.acceleration.size(), all = names_.state.size();
-    std::string text;
-    if (function_.name == "rhs" && entry >= n && entry < 2 * n) text = names_.acceleration[entry - n];
-    if (function_.name == "jac" && result == 0 && entry % all == 0) text = fmt::format("d/d {}", names_.state[entry / all]);
-    if (function_.name == "jac_p" && entry % all == 0) text = fmt::format("d/d {}", names_.parameters[entry / all]);
-    if (function_.name == "outputs") text = names_.outputs[entry];
-    if (function_.name == "reactions") text = names_.reactions[entry];
-    if (function_.name == "events") text = names_.events[entry];
+    const std::string text = name_of_entry(function_, names_, result, entry);
     if (text.empty()) return "";
     return dialect_.line_comments ? fmt::format("  // {}", text) : fmt::format("  /* {} */", text);
   }
 
   /// What a declaration begins with.
   std::string constant() const { return dialect_.typed ? "const " + dialect_.real : "const"; }
+  bool in_lanes() const { return !dialect_.lanes.empty(); }
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
   bool is_used(Slot slot) const {
     return std::any_of(leaves_[0].begin(), leaves_[0].end(), [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
@@ -343,27 +361,12 @@ class Printer {
       }
       if (!list.empty()) result += wrapped(list + ";", "      ") + "\n";
     };
-    load(Slot::state, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.x, i); });
-    load(Slot::parameter, [&](std::uint32_t i) { return fmt::format("{}[{}]", names_.p, i); });
-    load(Slot::contact, [&](std::uint32_t i) {
-      std::string digit = fmt::format("({} & {})", names_.mode, eom::contact_bits);
-      for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
-      if (!dialect_.typed) digit = fmt::format("({} | 0)", digit);  // whole numbers do not divide as such there
-      const std::string one = dialect_.constant(1);
-      if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
-      return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect_.constant(0));
-    });
-    load(Slot::input, [&](std::uint32_t i) {
-      if (!takes_inputs()) return dialect_.value(context_.inputs.at(i).value);
-      return fmt::format("{0} ? {0}[{1}] : {2}", names_.u, i, dialect_.value(context_.inputs.at(i).value));
-    });
-    // Two bits for each kink: held above its surface, held below.
-    load(Slot::side, [&](std::uint32_t i) {
-      const std::size_t bit = program::first_kink_bit + 2 * i;
-      const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names_.mode, bit, bit + 1);
-      if (!dialect_.typed) return side;
-      return dialect_.using_std ? dialect_.real + side : fmt::format("({}){}", dialect_.real, side);
-    });
+    for (const Slot slot : {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
+      if ((slot == Slot::time || slot == Slot::prepared) && !in_lanes()) continue;
+      load(slot, [&](std::uint32_t i) {
+        return in_lanes() ? leaf_of_lanes(dialect_, context_, text_.block, slot, i, takes_inputs()) : leaf_value(dialect_, names_, context_, slot, i, takes_inputs());
+      });
+    }
     return result;
   }
 
@@ -379,21 +382,11 @@ class Printer {
   std::vector<bool> kept_;         // values that a later part needs
   std::size_t kept_count_ = 0;
   std::vector<Leaves> leaves_;     // of each part
-  std::string body_, section_, printed_section_, sine_, cosine_, guarded_;
+  std::string body_, section_, printed_section_, sine_, cosine_, guarded_, left_;
   std::size_t temporaries_ = 0;
 };
 
 }  // namespace
-
-std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments, const std::string& real) {
-  std::string result = fmt::format("  {} {}[{}];\n", real, text.work, text.work_size);
-  for (std::size_t k = 1; k <= text.parts.size(); ++k) {
-    const std::string call = fmt::format("{}_part{}({}, {})", name, k, arguments, text.work);
-    if (k == text.parts.size()) result += fmt::format("  return {};\n", call);
-    else result += fmt::format("  {}{} = {};\n  if ({} != 0) return {};\n", k == 1 ? "int " : "", text.code, call, text.code, text.code);
-  }
-  return result;
-}
 
 FunctionText print_function(const program::Function& function, const ModelNames& names, const EmissionContext& context,
                             const Dialect& dialect) {

@@ -2,6 +2,7 @@
 // A Function as statements of C or C++; everything but the function's head, which targets write themselves.
 #pragma once
 
+#include <set>
 #include <span>
 #include <string>
 #include <string_view>
@@ -26,6 +27,7 @@ struct Dialect {
   bool line_comments = false;
   bool using_std = false;                            // `using std::sin;` before calls
   bool typed = true;                                 // false: JavaScript, where constants are declared without a type
+  std::string lanes;                                 // several states side by side: the prefix of the functions of templates/batch
 };
 
 /// Identifiers of one model: the same in all its functions.
@@ -36,6 +38,7 @@ struct ModelNames {
   std::vector<std::string> contacts;    // per contact: slides_NAME, presses_NAME (eom/modes/contact_state.hpp)
   std::vector<std::string> acceleration;     // "theta_ddot", of the free coordinates
   std::vector<std::string> all_coordinates;  // of the model, also eliminated ones (for names that a Program suggests)
+  std::vector<std::string> prepared;         // of w, where lanes are loaded one by one
   std::string arguments_t = "t", x, p, w, u, mode;  // names of the arguments that are left
 };
 /// `taken`: further words that no name may be.
@@ -52,10 +55,10 @@ struct FunctionText {
   std::vector<std::string> parts;
   std::string work, code;      // names of the array and of what a part returns
   std::size_t work_size = 1;
+  // Of lanes: the name of the only argument, and functions of the C library that are called lane by lane.
+  std::string block;
+  std::set<std::string> library;
 };
-
-/// "NAME_part2(t, x, .., work)" for every part, and what returns where one of them does not return 0.
-std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments, const std::string& real);
 
 /// `checks_finite`: code 5 where an entry of the results' lower half is not finite.
 FunctionText print_function(const program::Function& function, const ModelNames& names, const EmissionContext& context,

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/targets.hpp"
 
+#include "emit/batch/batch.hpp"
 #include "emit/c/c.hpp"
 #include "emit/cpp/cpp.hpp"
 #include "emit/javascript/javascript.hpp"
@@ -13,6 +14,7 @@ namespace {
 constexpr TargetEntry registry[] = {
     {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
     {"c", "C11 sources with the C ABI", emit_c},
+    {"batch", "C11 sources, and the same functions for any number of states at once", emit_batch},
     {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python},
     {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript},
 };

@@ -155,9 +155,7 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
   if (name == "momenta") return functions.momenta();
   if (name == "reactions") return functions.reactions();
   if (name == "events") return functions.events();
-  const bool later = name == "rhs_batch";
-  throw Error("program", {},
-              later ? fmt::format("function `{}` is not supported yet", name) : fmt::format("there is no function `{}`", name),
+  throw Error("program", {}, fmt::format("there is no function `{}`", name),
               "functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
 }
 

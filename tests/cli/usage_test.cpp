@@ -70,7 +70,7 @@ TEST_CASE("names that are not there: the nearest one is told") {
       {{"run", P2, "--approach", "III"}, "there is no approach 'III'", "choose auto, I or II"},
       {{"emit", P2, "-o", "out", "--fix", "LL"}, "there is no parameter 'LL' to fix", "did you mean 'L'?"},
       {{"emit", P2, "-o", "out", "--with", "jacc"}, "there is no function 'jacc'", "did you mean 'jac'?"},
-      {{"emit", P2, "-o", "out", "--with", "jac,rhs_batch"}, "the function rhs_batch is not supported yet", "choose from: jac"},
+      {{"emit", P2, "-o", "out", "--with", "jac,rhs_batch"}, "there is no function 'rhs_batch'", "--target batch writes batches of rhs"},
       {{"emit", P2, "-o", "out", "--target", "ccp"}, "there is no target 'ccp'", "did you mean 'cpp'?"},
       {{"emit", P2, "-o", "out", "--form", "multiplier"}, "there is no form 'multiplier'",
        "choose auto, multipliers, nullspace or chaplygin"},

@@ -114,7 +114,7 @@ TEST_CASE("program: what does not exist is refused by name") {
     }
     return "";
   };
-  CHECK(message({"rhs_batch"}, {}) == "function `rhs_batch` is not supported yet / functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
+  CHECK(message({"rhs_batch"}, {}) == "there is no function `rhs_batch` / functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));
   CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
 }

@@ -70,10 +70,9 @@ void require_with(const std::vector<std::string>& with) {
   const std::vector<std::string> known{"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "outputs", "events", "energy", "taylor", "charts"};
   for (const std::string& name : with) {
     if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const bool later = name == "rhs_batch";
-    throw Error("emit", {}, later ? fmt::format("the function {} is not supported yet", name)
-                                  : fmt::format("there is no function {} to emit", model::quote(name)),
-                choice_of(name, known));
+    const bool batch = name.ends_with("_batch");
+    throw Error("emit", {}, fmt::format("there is no function {} to emit", model::quote(name)),
+                batch ? "--target batch writes batches of rhs and of all that --with and --output ask for" : choice_of(name, known));
   }
 }
 
@@ -191,7 +190,7 @@ Execute declare_emit(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   add_place(app, "-o,--out", options->folder, "the folder for the sources; it is made if need be");
-  app.add_option("--target", options->target, "cpp, c, python, javascript, or latex for a document")->capture_default_str();
+  app.add_option("--target", options->target, "cpp, c, batch, python, javascript, or latex for a document")->capture_default_str();
   add_list(app, "--with", options->with,
            "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, taylor; charts: second ones");
   add_list(app, "--output", options->outputs, "names for the function outputs");

@@ -12,6 +12,7 @@
 #include "emit/file_parts.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
+#include "emit/parts.hpp"
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/taylor.hpp"

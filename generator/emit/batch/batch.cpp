@@ -1,0 +1,225 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/batch/batch.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <eom/modes/contact_state.hpp>
+#include <set>
+
+#include "emit/c/c.hpp"
+#include "emit/kernels.hpp"
+#include "emit/metadata.hpp"
+#include "emit/names.hpp"
+#include "emit/parts.hpp"
+#include "emit/signature.hpp"
+#include "emit/text.hpp"
+#include "error.hpp"
+#include "skeletons/batch_model_batch_c.hpp"
+#include "skeletons/batch_model_batch_h.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+using program::Function;
+using program::Slot;
+
+// The numbers of one block are on the stack: of so many at most, all entries and results of a state taken together.
+constexpr std::size_t most_numbers = 8192;
+
+// In the order of `from` of a block.
+struct Array {
+  Slot slot;
+  const char* name;  // of the argument, and of what says that it is each state's own
+  const char* own;
+};
+constexpr Array arrays[] = {{Slot::time, "t", "own_time"}, {Slot::state, "x", nullptr}, {Slot::parameter, "p", "own_parameters"},
+                            {Slot::prepared, "w", "own_prepared"}, {Slot::input, "u", "own_inputs"}};
+
+class File {
+ public:
+  File(const program::Program& program, const EmissionContext& context)
+      : program_(program), context_(context), name_(mangled_id(context.id)), prefix_(name_ + "_batch_"), names_(model_names(program, context)) {
+    dialect_.real = prefix_ + "lanes";
+    dialect_.constant = [](const symbolic::Rational& value) { return decimal(nearest_double(value)); };
+    dialect_.value = decimal;
+    dialect_.pi = "3.141592653589793";
+    dialect_.absolute = "fabs";
+    dialect_.lanes = prefix_;
+    NameTable table;
+    for (const auto* list : {&names_.state, &names_.contacts, &names_.parameters, &names_.inputs, &names_.sides}) {
+      for (const std::string& name : *list) table.declare(name);
+    }
+    for (std::size_t i = 0; i < program.prepared_count(); ++i) names_.prepared.push_back(table.declare(fmt::format("w_{}", i)));
+  }
+
+  std::vector<EmittedFile> run() {
+    for (const Function& function : program_.functions) add(function);
+    std::vector<std::pair<std::string, std::string>> values = {
+        {"banner", banner(program_, context_, "/* ", " * ", " */")}, {"name", name_}, {"prefix", prefix_}, {"library", library()},
+        {"contact_bits", std::to_string(eom::contact_bits)}, {"contact_states", std::to_string(eom::contact_states)},
+        {"sincos", packs_ ? sincos() : ""}};
+    return {{name_ + "_batch.c", rendered(skeleton::batch_model_batch_c, values, defined_)},
+            {name_ + "_batch.h", rendered(skeleton::batch_model_batch_h, values, declared_)}};
+  }
+
+ private:
+  std::size_t entries(const Array& array) const {
+    switch (array.slot) {
+      case Slot::time: return 1;
+      case Slot::state: return program_.state_count();
+      case Slot::parameter: return context_.parameters.size();
+      case Slot::prepared: return program_.prepared_count();
+      default: return context_.inputs.size();
+    }
+  }
+
+  void add(const Function& function) {
+    const bool gives = std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.second.empty(); });
+    if (!gives) return;
+    const FunctionText text = print_function(function, names_, context_, dialect_);
+    FunctionText plain;
+    for (const auto& result : function.results) {
+      if (!program::is_code(result.first)) plain.results.push_back(result.first);
+    }
+    const std::vector<Argument> list = arguments(function.name, plain, abi_names());
+    std::size_t numbers = 0;
+    for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array) : 0;
+    for (const auto& result : function.results) numbers += result.second.size();
+    if (numbers > most_numbers) return;
+    packs_ = packs_ || text.packs > 0;
+    library_.insert(text.library.begin(), text.library.end());
+    const std::string head = wrapped(fmt::format("int {}_{}_batch({})", name_, function.name, batch_arguments(list)), "    ");
+    declared_.push_back({{"purpose", purpose(function.name)}, {"prototype", head}});
+    defined_.push_back({{"definition", kernel(function, text) + adaptor(function, list) + driver(function, list, head)}});
+  }
+
+  static bool takes(const std::vector<Argument>& list, Slot slot) {
+    return std::any_of(list.begin(), list.end(), [&](const Argument& a) { return a.kind != Argument::Kind::mode && a.kind != Argument::Kind::result && a.slot == slot; });
+  }
+
+  static std::string batch_arguments(const std::vector<Argument>& list) {
+    std::string inputs, results;
+    for (const Argument& a : list) {
+      if (a.kind == Argument::Kind::result) results += fmt::format("double* {}, ", a.name);
+      else inputs += a.kind == Argument::Kind::mode ? "const int* mode, " : fmt::format("const double* {}, ", a.name);
+    }
+    return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
+  }
+
+  std::string kernel(const Function& function, const FunctionText& text) const {
+    const std::string full = fmt::format("{}{}", prefix_, function.name), argument = fmt::format("const struct {}block* {}", prefix_, text.block);
+    std::string result = fmt::format("#if {}WIDTH > 1\n", prefix_);
+    for (std::size_t k = 0; k < text.parts.size(); ++k) {
+      result += fmt::format("__attribute__((noinline))\nstatic int {}_part{}({}, {}* {})\n{{\n{}}}\n\n", full, k + 1, argument, dialect_.real, text.work, text.parts[k]);
+    }
+    const std::string body = text.parts.empty() ? text.body : calls_of_parts(full, text, text.block, dialect_.real);
+    return result + fmt::format("static int {}({})\n{{\n{}}}\n#else\n#define {} NULL\n#endif\n\n", full, argument, body, full);
+  }
+
+  std::string adaptor(const Function& function, const std::vector<Argument>& list) const {
+    std::string handed;
+    std::size_t results = 0;
+    for (const Argument& a : list) {
+      handed += handed.empty() ? "" : ", ";
+      if (a.kind == Argument::Kind::result) handed += fmt::format("state->to[{}]", results++);
+      else if (a.kind == Argument::Kind::mode) handed += "state->mode";
+      else handed += fmt::format("{}state->from[{}]", a.kind == Argument::Kind::number ? "*" : "", place_of(a.slot));
+    }
+    return fmt::format("static int {0}{1}_alone(const struct {0}state* state)\n{{\n{2}\n}}\n\n", prefix_, function.name,
+                       wrapped(fmt::format("  return {}_{}({});", name_, function.name, handed), "      "));
+  }
+  static std::size_t place_of(Slot slot) {
+    return static_cast<std::size_t>(std::find_if(std::begin(arrays), std::end(arrays), [slot](const Array& a) { return a.slot == slot; }) - std::begin(arrays));
+  }
+
+  std::string driver(const Function& function, const std::vector<Argument>& list, const std::string& head) const {
+    std::string body = fmt::format("  struct {}call call;\n", prefix_), numbers;
+    const bool inputs = takes(list, Slot::input) && !context_.inputs.empty();
+    if (inputs) {
+      std::string values;
+      for (const Quantity& input : context_.inputs) values += (values.empty() ? "" : ", ") + decimal(input.value);
+      body += wrapped(fmt::format("  static const double standing[] = {{{}}};", values), "      ") + "\n";
+    }
+    const auto size = [&](std::size_t count) {
+      if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);
+      return count;
+    };
+    std::string fill = fmt::format("  memset(&call, 0, sizeof call);\n  call.kernel = {0}{1};\n  call.one = {0}{1}_alone;\n", prefix_, function.name);
+    for (std::size_t k = 0; k < std::size(arrays); ++k) {
+      const Array& array = arrays[k];
+      if (!takes(list, array.slot)) continue;
+      const bool input = array.slot == Slot::input;
+      const std::size_t count = size(entries(array));
+      if (input && !inputs) {
+        fill += "  (void)u;\n";
+        continue;
+      }
+      fill += fmt::format("  call.from[{}] = {};\n  call.entries[{}] = {};\n", k, input ? "u ? u : standing" : array.name, k, count);
+      const std::string own = array.own == nullptr ? "1" : fmt::format("{}(own & {}_{}) != 0", input ? "u && " : "", name_, array.own);
+      fill += fmt::format("  call.own[{}] = {};\n", k, own);
+    }
+    if (std::any_of(list.begin(), list.end(), [](const Argument& a) { return a.kind == Argument::Kind::mode; })) {
+      fill += fmt::format("  call.mode = mode;\n  call.own_modes = mode && (own & {}_own_modes) != 0;\n", name_);
+    }
+    std::size_t r = 0;
+    for (const auto& [result, list_of] : function.results) {
+      if (program::is_code(result)) continue;
+      fill += fmt::format("  call.to[{0}] = {1};\n  call.results[{0}] = {2};\n", r++, result, size(list_of.size()));
+    }
+    body += fmt::format("  double room[({}WIDTH + 1)*({})];\n", prefix_, numbers.empty() ? "1" : numbers);
+    return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill, prefix_);
+  }
+
+  std::string sincos() const {
+    constexpr const char* together = R"(
+/* Sines and cosines of the lanes of one angle, right up to 65536. Adds their sizes to `reach`. */
+{0}INLINE void {0}sincos({0}lanes angle, {0}lanes* sine, {0}lanes* cosine, {0}lanes* reach)
+{{
+  {0}lanes size;
+  {0}sincos_lanes(&angle, &size, sine, cosine);
+  *reach += size;
+}}
+
+/* Beyond that, or not finite: left to the function of one state. */
+{0}INLINE {0}mask {0}far({0}lanes size)
+{{
+  return ~({0}mask)(size <= 65536.0);
+}}
+)";
+    return sincos_lanes(prefix_, "static inline", "") + fmt::format(together, prefix_);
+  }
+
+  std::string library() const {
+    std::string text;
+    for (const std::string& function : library_) {
+      const bool two = function == "pow" || function == "atan2";
+      const std::string arguments = two ? fmt::format("{0}lanes a, {0}lanes b", prefix_) : fmt::format("{}lanes a", prefix_);
+      text += fmt::format("{0}INLINE {0}lanes {1}({2})\n{{\n  for (int k = 0; k < {0}WIDTH; ++k) a[k] = {3}({4});\n  return a;\n}}\n\n", prefix_,
+                          prefix_ + function, arguments, function, two ? "a[k], b[k]" : "a[k]");
+    }
+    return text;
+  }
+
+  const program::Program& program_;
+  const EmissionContext& context_;
+  std::string name_, prefix_;
+  ModelNames names_;
+  Dialect dialect_;
+  bool packs_ = false;
+  std::set<std::string> library_;
+  std::vector<std::vector<std::pair<std::string, std::string>>> defined_, declared_;
+};
+
+}  // namespace
+
+std::vector<EmittedFile> emit_batch(const program::Program& program, const EmissionContext& context) {
+  if (!program.charts.empty()) {
+    throw Error("emit", {}, "the target batch does not know charts yet", "use the target c or cpp, or leave --with charts out");
+  }
+  std::vector<EmittedFile> files = emit_c(program, context);
+  for (EmittedFile& file : File(program, context).run()) files.push_back(std::move(file));
+  return files;
+}
+
+}  // namespace eomgen::emit

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/leaves.hpp"
+
+#include <fmt/format.h>
+
+#include <eom/modes/contact_state.hpp>
+#include <stdexcept>
+
+#include "program/kinks.hpp"
+
+namespace eomgen::emit {
+
+using program::Slot;
+
+std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot, std::uint32_t i, bool takes_inputs) {
+  switch (slot) {
+    case Slot::state: return fmt::format("{}[{}]", names.x, i);
+    case Slot::parameter: return fmt::format("{}[{}]", names.p, i);
+    case Slot::contact: {
+      std::string digit = fmt::format("({} & {})", names.mode, eom::contact_bits);
+      for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
+      if (!dialect.typed) digit = fmt::format("({} | 0)", digit);  // whole numbers do not divide as such there
+      const std::string one = dialect.constant(1);
+      if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
+      return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect.constant(0));
+    }
+    case Slot::input: {
+      const std::string standing = dialect.value(context.inputs.at(i).value);
+      return takes_inputs ? fmt::format("{0} ? {0}[{1}] : {2}", names.u, i, standing) : standing;
+    }
+    case Slot::side: {  // two bits for each kink: held above its surface, held below
+      const std::size_t bit = program::first_kink_bit + 2 * i;
+      const std::string side = fmt::format("(({0} >> {1} & 1) - ({0} >> {2} & 1))", names.mode, bit, bit + 1);
+      if (!dialect.typed) return side;
+      return dialect.using_std ? dialect.real + side : fmt::format("({}){}", dialect.real, side);
+    }
+    default: break;
+  }
+  throw std::logic_error("this operand is no leaf");
+}
+
+std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot, std::uint32_t i, bool takes_inputs) {
+  const auto entry = [&](int array) { return fmt::format("{}at({}, {}, {})", dialect.lanes, block, array, i); };  // of the arrays t, x, p, w, u
+  switch (slot) {
+    case Slot::time: return entry(0);
+    case Slot::state: return entry(1);
+    case Slot::parameter: return entry(2);
+    case Slot::prepared: return entry(3);
+    case Slot::input: return takes_inputs ? entry(4) : fmt::format("{}all({})", dialect.lanes, dialect.value(context.inputs.at(i).value));
+    case Slot::contact: {
+      int power = 1;
+      for (std::uint32_t j = 0; j < i / 2; ++j) power *= eom::contact_states;
+      return fmt::format("{}{}({}->mode, {})", dialect.lanes, i % 2 == 1 ? "presses" : "slides", block, power);
+    }
+    case Slot::side: return fmt::format("{}side({}->mode, {})", dialect.lanes, block, program::first_kink_bit + 2 * i);
+    default: break;
+  }
+  throw std::logic_error("this operand is no leaf");
+}
+
+}  // namespace eomgen::emit

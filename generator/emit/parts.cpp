@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/parts.hpp"
+
+#include <fmt/format.h>
+
+namespace eomgen::emit {
+namespace {
+
+// Instructions of a function that stays whole, and of a part of a longer one.
+constexpr std::size_t longest_function = 3000, longest_part = 1000;
+
+}  // namespace
+
+std::vector<std::size_t> parts_of(const program::Function& function) {
+  const auto& code = function.code;
+  std::vector<std::size_t> part(code.size(), 0);
+  if (code.size() <= longest_function || function.name == "taylor_next") return part;
+  std::size_t now = 0;
+  for (std::size_t i = 0, since = 0; i < code.size(); ++i, ++since) {
+    const bool together = i > 0 && code[i].pack != 0 && code[i].pack == code[i - 1].pack;
+    if (since >= longest_part && !together) {
+      ++now;
+      since = 0;
+    }
+    part[i] = now;
+  }
+  return part;
+}
+
+std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments, const std::string& real) {
+  std::string result = fmt::format("  {} {}[{}];\n", real, text.work, text.work_size);
+  for (std::size_t k = 1; k <= text.parts.size(); ++k) {
+    const std::string call = fmt::format("{}_part{}({}, {})", name, k, arguments, text.work);
+    if (k == text.parts.size()) result += fmt::format("  return {};\n", call);
+    else result += fmt::format("  {}{} = {};\n  if ({} != 0) return {};\n", k == 1 ? "int " : "", text.code, call, text.code, text.code);
+  }
+  return result;
+}
+
+}  // namespace eomgen::emit

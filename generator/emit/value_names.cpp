@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/value_names.hpp"
+
+#include <fmt/format.h>
+
+namespace eomgen::emit {
+
+using program::Instruction;
+using program::Operand;
+using program::Slot;
+using symbolic::Op;
+
+std::string suggested_name(const std::string& pattern, const ModelNames& names) {
+  std::string result;
+  for (std::size_t i = 0; i < pattern.size(); ++i) {
+    const std::size_t close = pattern[i] == '{' ? pattern.find('}', i) : std::string::npos;
+    if (close == std::string::npos) {
+      result += pattern[i];
+    } else {
+      result += names.all_coordinates.at(std::stoul(pattern.substr(i + 1, close - i - 1)));
+      i = close;
+    }
+  }
+  return result;
+}
+
+std::string trig_name(const program::Function& function, const program::Instruction& instruction, const Expressions& expressions) {
+  const std::string head = instruction.op == Op::sin ? "sin_" : "cos_";
+  const Operand& argument = instruction.operands[0];
+  if (argument.negated) return "";
+  if (argument.slot != Slot::value) return argument.slot == Slot::constant ? "" : head + expressions.size_of(argument).text;
+  const Instruction& inner = function.code[argument.index];
+  const auto& o = inner.operands;
+  if (inner.op != Op::add || o.size() != 2 || o[0].negated) return "";
+  for (const Operand& operand : o) {
+    if (operand.slot != Slot::state && operand.slot != Slot::parameter) return "";
+  }
+  return head + expressions.size_of(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") + expressions.size_of(o[1]).text;
+}
+
+std::string name_of_entry(const program::Function& function, const ModelNames& names, std::size_t result, std::size_t entry) {
+  const std::size_t n = names.acceleration.size(), all = names.state.size();
+  if (function.name == "rhs" && entry >= n && entry < 2 * n) return names.acceleration[entry - n];
+  if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);
+  if (function.name == "jac_p" && entry % all == 0) return fmt::format("d/d {}", names.parameters[entry / all]);
+  if (function.name == "outputs") return names.outputs[entry];
+  if (function.name == "reactions") return names.reactions[entry];
+  return function.name == "events" ? names.events[entry] : "";
+}
+
+}  // namespace eomgen::emit

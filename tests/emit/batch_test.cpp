@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Batches in the hands of compilers: batch_harness.c compares each state with what it is alone.
+#include <doctest/doctest.h>
+
+#include "emit/examples.hpp"
+#include "error.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+
+namespace {
+
+struct Width {
+  int lanes;
+  std::vector<std::string> flags;
+};
+
+/// What the processor of this machine can run.
+std::vector<Width> widths() {
+  std::vector<Width> all{{2, {}}, {1, {"-DEOM_BATCH_LANES=1"}}};
+#if defined(__x86_64__) && defined(__GNUC__)
+  if (__builtin_cpu_supports("avx2")) all.push_back({4, {"-mavx2"}});
+  if (__builtin_cpu_supports("avx512f")) all.push_back({8, {"-mavx512f"}});
+#endif
+  return all;
+}
+
+/// What is wrong with the batch of these files; empty where every state has the bits that it has alone.
+std::string wrong(const std::string& folder, const Example& e, const Width& width, const std::string& modes) {
+  const std::string name = emit::mangled_id(e.context.id), program = folder + "/use";
+  const auto has = [&](const char* function) { return e.program.entries(function) > 0; };
+  std::vector<std::string> command{EOMGEN_TEST_CC, "-std=gnu11", "-O1", "-ffp-contract=off", "-o", program, "-DNAME=" + name,
+                                   "-DHEADER=\"" + name + "_batch.h\"", "-DMODES=" + modes, fmt::format("-DWIDTH={}", width.lanes), "-I" + folder};
+  command.insert(command.end(), width.flags.begin(), width.flags.end());
+  for (const auto& [function, define] : {std::pair{"prepare", "-DPREPARED"}, {"jac", "-DJAC"}, {"outputs", "-DOUTPUTS"}, {"events", "-DEVENTS"}}) {
+    if (has(function)) command.emplace_back(define);
+  }
+  const std::string said = complaints(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
+  if (!said.empty()) return said;
+  const emit::Finished finished = emit::run_process({program});
+  return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
+}
+
+std::string wrong(const Example& e, const std::string& modes = "0") {
+  const Folder folder;
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
+  for (const Width& width : widths()) {
+    const std::string found = wrong(folder.path, e, width, modes);
+    if (!found.empty()) return fmt::format("{} lanes: {}", width.lanes, found);
+  }
+  return "";
+}
+
+}  // namespace
+
+TEST_CASE("batch: every state has the bits and the code that it has alone, whatever its neighbours are, for every width") {
+  for (const Example& e : examples()) {
+    INFO(e.context.id);
+    CHECK(wrong(e) == "");
+  }
+}
+
+TEST_CASE("batch: a function of thousands of operations comes in parts") {
+  constexpr std::uint32_t n = 22;
+  std::vector<std::string> coordinates, parameters;
+  for (std::uint32_t i = 1; i <= n; ++i) coordinates.push_back(fmt::format("theta{}", i));
+  for (const char* of : {"m", "l"}) {
+    for (std::uint32_t i = 1; i <= n; ++i) parameters.push_back(fmt::format("{}{}", of, i));
+  }
+  parameters.push_back("g");
+  const Example e = example("long_chain", chain(n), coordinates, parameters, {}, {});
+  REQUIRE(e.program.functions[0].code.size() > 3000);
+  const Folder folder;
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
+  CHECK(wrong(folder.path, e, widths().back(), "0") == "");
+}
+
+TEST_CASE("batch: hostile names, and every compiler there is") {
+  Example e = example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"left", "place", "step", "w_0", "dx"});
+  CHECK(wrong(e) == "");
+  const Folder folder;
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
+  const std::string c = folder.path + "/two_batch.c";
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) == "");
+  if (emit::run_process({"clang", "--version"}).started) {
+    CHECK(complaints({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
+  }
+  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c}).find("without -ffast-math") != std::string::npos);
+}
+
+TEST_CASE("batch: what the other target writes stays as it is") {
+  for (const Example& e : examples()) {
+    const auto alone = emit::emit(e.program, e.context, "c"), with = emit::emit(e.program, e.context, "batch");
+    REQUIRE(with.size() == 4);
+    for (std::size_t i = 0; i < alone.size(); ++i) CHECK(with[i].text == alone[i].text);
+  }
+}
