@@ -50,15 +50,15 @@ constexpr std::string_view runtime[] = {
     "EINTR", "EISDIR", "ELOOP", "F_DUPFD_CLOEXEC", "O_CLOEXEC", "O_CREAT", "O_EXCL", "O_NOCTTY", "O_NOFOLLOW", "O_RDONLY", "O_RDWR", "O_WRONLY",
     "S_ISCHR", "S_ISDIR", "S_ISREG",  // macros of what its headers include
     "STDERR_FILENO", "STDIN_FILENO", "STDOUT_FILENO", "StepBound", "WholeFile",
-    "AtEvent", "Automatic", "Choice", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
-    "Crossing", "CsvWriter", "Direction", "Drift", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Lu",
+    "AtEvent", "Automatic", "Choice", "CompiledBatch", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
+    "Crossing", "CsvWriter", "Direction", "Drift", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Lu",
     "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "NoObserver", "NoProjection", "Options",
     "Outcome", "Plot", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Result", "Rhs",
     "Run", "Statistics", "StepView", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "chart_bits",
     "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "contact_allows", "contact_bits",
     "contact_digit", "contact_leaf", "contact_modes", "contact_states", "contact_values", "detail", "divergence_bound",
-    "estimate_error", "events", "events_without_progress", "explicit_rk", "first_chart_bit", "implicit", "integrate",
-    "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
+    "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "first_chart_bit", "implicit", "integrate",
+    "integrate_ensemble", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
     "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "slips_on", "smallest_step_in_ulps", "svg",
     "taylor", "variational", "with_contact_digit"};
 

@@ -5,6 +5,7 @@
 #include <new>
 #include <string>
 
+#include "eom/ensemble/integrate.hpp"
 #include "eom/ode.hpp"
 #include "lib/series_problems.hpp"
 
@@ -86,4 +87,33 @@ TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tent
     else check(method, Kepler{});
   }
   check({eom::Automatic::name, eom::Automatic::order, 4, true}, Kepler{});
+}
+
+TEST_CASE("ensembles: a hundred members over 100 periods allocate as often as one over a tenth of a period") {
+  const Kepler kepler;
+  const auto rhs = [&](std::size_t count, std::size_t stride, const double* t, const double* x, const double*, double* dx, int* codes) {
+    for (std::size_t s = 0; s < count; ++s) {
+      double one[4], slope[4];
+      for (std::size_t i = 0; i < 4; ++i) one[i] = x[i * stride + s];
+      codes[s] = kepler(t[s], one, slope);
+      for (std::size_t i = 0; i < 4; ++i) dx[i * stride + s] = slope[i];
+    }
+    return 0;
+  };
+  for (const char* method : {"dopri5", "tsit5", "dop853"}) {
+    CAPTURE(std::string(method));
+    const auto count = [&](std::size_t members, double t1) {
+      const std::size_t before = allocations;
+      std::size_t ended = 0;
+      eom::integrate_ensemble(method, rhs, members, 4, 0, {}, [&](std::size_t, eom::EnsembleStart& start) {
+        std::copy(kepler.start.begin(), kepler.start.end(), start.x.begin());
+        start.t1 = t1;
+      }, [&](const eom::EnsembleEnd&) { ++ended; });
+      CHECK(ended == members);
+      return allocations - before;
+    };
+    const std::size_t of_one = count(1, 0.6);
+    CHECK(of_one > 0);
+    CHECK(count(100, 600) == of_one);
+  }
 }

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: MIT
+// What an ensemble is made of. In: where each member starts. Out: where it ended. Plain data and callables.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <functional>
+#include <limits>
+#include <span>
+
+#include "eom/run_types.hpp"
+
+namespace eom {
+
+/// How one member starts; x and p are there to be written.
+struct EnsembleStart {
+  double t0 = 0, t1 = 0;
+  std::span<double> x, p;
+};
+
+/// How one member ended; valid only during the call.
+struct EnsembleEnd {
+  std::size_t member = 0;
+  Outcome outcome = Outcome::done;
+  double t = 0;                      // the time reached: t1 exactly when the outcome is done
+  std::span<const double> x, p;      // the state at t, and the parameters
+  Statistics statistics;
+};
+
+/// Derivatives of `count` states, entry i of state s at [i*stride + s] of x, p and dx, its time t[s]; writes a code of the C ABI for each
+/// and returns one that is not 0, if there is any.
+using EnsembleRhs = std::function<int(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx, int* codes)>;
+
+struct EnsembleOptions {
+  double rtol = 1e-9, atol = 1e-12;
+  double initial_step = 0;           // 0: chosen
+  double max_step = std::numeric_limits<double>::infinity();
+  double fixed_step = 0;             // > 0: steps of this size without error control; rk4 needs it
+  std::size_t max_steps = 50'000'000;
+  std::size_t quadratures = 0;       // trailing components of x kept out of the error norm
+  const std::atomic<bool>* interrupt = nullptr;
+  std::size_t lanes = 32;            // members that a thread has under way
+  std::size_t threads = 1;           // 0: one for each processor
+};
+
+}  // namespace eom
