@@ -65,29 +65,54 @@ TEST_CASE("report: one page with equations, certificate, run, plots and animatio
   }
 }
 
-TEST_CASE("report: the animation moves as the run does") {
+TEST_CASE("report: a page that runs the model carries the states of the run, one that replays what is drawn, and says why") {
   const Folder folder;
   expect(0, folder, {"report", "S5_double_pendulum", "-o", "page.html", "--t-end", "1"});
-  const Json moving = motion(folder.read("page.html"));
-  REQUIRE(moving["places"].size() == 2);
+  Json moving = motion(folder.read("page.html"));
+  REQUIRE(moving["parts"]["places"].size() == 2);
   CHECK(moving["t"].back() == 1.0);
-  CHECK(moving["flat"] == true);
-  CHECK(moving["places"][0]["from"] == -1);
-  CHECK(moving["places"][1]["from"] == 0);
-  for (const Json& r : moving["places"][0]["r"]) {  // on a circle of radius L1 = 1, as far as six digits go
-    CHECK(std::hypot(r[0].get<double>(), r[1].get<double>()) == doctest::Approx(1).epsilon(1e-5));
-  }
+  CHECK(moving["parts"]["places"][0]["from"] == -1);
+  CHECK(moving["parts"]["places"][1]["from"] == 0);
+  CHECK(moving["live"]["n"] == 2);
+  CHECK(moving["reason"] == "");
+  CHECK(moving["y"].is_null());
+  expect(0, folder, {"run", "S5_double_pendulum", "--t-end", "1", "--out", "rows.csv", "--every", "1"});
+  const Table rows = read_table(folder.read("rows.csv"));
+  CHECK(moving["x"].back()[1].get<double>() == doctest::Approx(rows.at(1, "theta2")).epsilon(1e-9));
+
+  expect(0, folder, {"report", "bouncing_ball", "-o", "page.html"});
+  moving = motion(folder.read("page.html"));
+  CHECK(moving["live"].is_null());
+  CHECK(contains(moving["reason"].get<std::string>(), "contacts"));
+  CHECK(moving["x"].is_null());
+  CHECK(moving["down"] == Json({0.0, -9.81, 0.0}));
+  const std::size_t at = moving["parts"]["places"][0]["at"];
+  CHECK(moving["y"].front()[at + 1] == 1);
+  double lowest = 1, highest = 0;
+  for (const Json& y : moving["y"]) lowest = std::min(lowest, y[at + 1].get<double>()), highest = std::max(highest, y[at + 1].get<double>());
+  CHECK(lowest == doctest::Approx(0).epsilon(1e-5));
+  CHECK(highest == 1);
+}
+
+TEST_CASE("report: parameters that depend on others follow on the page and have no slider of their own; those that are set are numbers") {
+  const Folder folder;
+  expect(0, folder, {"report", "R6_rolling_disk", "-o", "page.html", "--set", "J=0.01", "--t-end", "0.1"});
+  const Json moving = motion(folder.read("page.html"));
+  for (const Json& p : moving["live"]["parameters"]) CHECK(p["moved"] == (p["name"] != "J3"));
+  CHECK(contains(folder.read("page.html"), "p_all"));
 }
 
 TEST_CASE("report: what a model writes stays text") {
   const Folder folder;
   folder.write("hostile.toml", "format = 1\ntitle = \"</title><script>alert(1)</script>\"\nnotes = \"<img src=x onerror=alert(2)> {{{body}}} & </script>\"\n"
-                               "[parameters]\nm = { value = 1, note = \"<b>\" }\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+                               "[parameters]\nm = { value = 1, note = \"</script><b>\", unit = \"kg\" }\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
                                "[scene.default]\nt = [0, 1]\ninitial = { x_dot = 1 }\n# </pre><script>alert(3)</script>\n");
   expect(0, folder, {"report", "hostile.toml"});
   const std::string page = folder.read("report.html");
   CHECK(unbalanced(page) == "");
-  CHECK(count(page, "<script") == 2);  // the motion and the page's own
+  CHECK(count(page, "<script") == 2);  // the motion, and the page's own with the model
+  CHECK(count(page, "</script") == 2);
+  CHECK(count(page, "<!--") == 0);
   CHECK(count(page, "<img") == 0);
   CHECK(contains(page, "&lt;script&gt;alert(1)"));
   CHECK(contains(page, "{{{body}}}"));

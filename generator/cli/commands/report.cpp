@@ -5,13 +5,16 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 
 #include "cli/commands/commands.hpp"
 #include "cli/decimal.hpp"
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/report/drawing.hpp"
 #include "cli/report/html.hpp"
+#include "cli/report/live_model.hpp"
 #include "cli/report/recorded_motion.hpp"
 #include "cli/run_report.hpp"
 #include "cli/simulate.hpp"
@@ -31,19 +34,17 @@ struct Options {
   std::optional<std::string> solver;
 };
 
-constexpr double rows_of_a_page = 300;
+constexpr double rows_of_a_page = 400;
+constexpr std::size_t longest_formula = 60000, longest_formulas = 350000;  // bytes of MathML
 
 std::string text(const Json& value) { return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump(); }
 
-// What a reader looks for first: the mechanism, moving.
+// What a reader looks for first: the mechanism, moving. The script fills in the controls, which do nothing without it.
 void add_head(Html& html, const model::Model& model, bool moving) {
   html.heading(1, model.title.empty() ? model.id : model.title);
   html.paragraph(model.id + ".toml", "quiet");
   if (!model.notes.empty()) html.paragraph(model.notes);
-  if (!moving) return;
-  html.markup("<canvas id=\"scene\" width=\"1100\" height=\"800\"></canvas>\n<div class=\"bar\"><button id=\"play\">Play</button>"
-              "<input id=\"time\" type=\"range\" min=\"0\" value=\"0\" aria-label=\"time\"><span id=\"clock\"></span></div>");
-  html.paragraph("Drag to turn the view.", "quiet");
+  if (moving) html.markup("<section id=\"stage\" aria-label=\"animation\"></section>");
 }
 
 void add_model(Html& html, const model::Model& model, const Json& found) {
@@ -65,11 +66,22 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
   html.preformatted("The model file", source);
 }
 
+// A page that is opened anywhere stays small: what is longer than a reader follows is left to `derive`.
+void add_formula(Html& html, const std::string& mathml, std::size_t& room) {
+  if (mathml.size() > std::min(longest_formula, room)) {
+    html.paragraph(fmt::format("Left out: {} kB of formula, more than a page shows. `eomgen derive` writes it.", (mathml.size() + 999) / 1000), "quiet");
+    return;
+  }
+  room -= mathml.size();
+  html.formula(mathml);
+}
+
 void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<derive::Conserved>& conserved) {
   const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(m, approach);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(approach)));
+  std::size_t room = longest_formulas;
   const std::vector<std::pair<std::string, std::string>> sections{
       {"constraints", "Constraints and functions of time"}, {"energies", "Energies"}, {"equations", "Equations of motion"},
       {"reactions", "Constraint forces"},                   {"friction", "Contacts"},  {"singular", "Where the equations fail"}};
@@ -82,14 +94,14 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
       const std::string what = item.key == "explicit" ? "written out" : item.key == "singular" ? "approach " + item.role : item.role;
       if (what != before && !what.empty()) html.paragraph(what, "quiet");
       before = what;
-      html.formula(item.mathml);
+      add_formula(html, item.mathml, room);
     }
   }
   if (conserved.empty()) return;
   html.heading(3, "Conserved");
   for (const derive::Conserved& c : conserved) {
     html.paragraph(c.title, "quiet");
-    html.formula(print::render_expression(m, "", "", c.expression).mathml);
+    add_formula(html, print::render_expression(m, "", "", c.expression).mathml, room);
   }
 }
 
@@ -105,9 +117,9 @@ void add_certificate(Html& html, const verify::Certificate& certificate) {
   html.markup("</details>");
 }
 
-void add_run(Html& html, const Simulation& simulation, const Json& run, const RecordedMotion& motion) {
+void add_run(Html& html, const Simulation& simulation, const Json& run, const std::string& plots) {
   html.heading(2, "The run: scene " + simulation.scene.name);
-  html.markup(motion.plots(simulation.derived->model));
+  html.markup("<section id=\"plots\">\n" + plots + "</section>");
   html.table({"", ""}, {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
                         {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
                         {"tolerances", fmt::format("rtol {}, atol {}", simulation.scene.rtol, simulation.scene.atol)},
@@ -115,6 +127,7 @@ void add_run(Html& html, const Simulation& simulation, const Json& run, const Re
   std::vector<std::vector<std::string>> rows;
   const Json& estimate = run["error_estimate"];
   for (const auto& [name, value] : run["final"].items()) {
+    if (name.starts_with(drawn_prefix)) continue;
     rows.push_back({name, text(value), estimate.is_object() && estimate.contains(name) ? fmt::format("{:.1e}", estimate[name].get<double>()) : ""});
   }
   html.heading(3, "At the end");
@@ -138,7 +151,7 @@ void add_run(Html& html, const Simulation& simulation, const Json& run, const Re
 int execute(const Options& options, const Common& common) {
   const std::string file = options.out.empty() ? "report.html" : options.out;
   require_places({{"--out", file, ".html"}}, locate_model(options.model), common.json);
-  RecordedMotion motion;
+  RecordedMotion recorded;
   SimulationRequest request;
   request.model = options.model;
   request.scene = options.scene;
@@ -149,20 +162,37 @@ int execute(const Options& options, const Common& common) {
   request.overrides.t_end = options.t_end;
   request.overrides.solver = options.solver;
   request.rows = rows_of_a_page;
-  request.prepare = [](Derived& derived) { return RecordedMotion::needed(derived.model); };
-  request.begin = [&](const Derived&, const run::Scene&, const std::vector<std::string>& names) { motion.begin(names); };
-  request.row = [&](double t, std::span<const double> y) { motion.row(t, y); };
+  request.with = {"mass"};  // a point that is dragged moves the lightest most
+  std::optional<Drawing> drawing;
+  std::vector<std::string> outputs;  // what the page draws and plots beside the state
+  std::vector<Panel> curves;
+  request.prepare = [&](Derived& derived) {
+    drawing.emplace(derived);
+    outputs = drawing->outputs();
+    curves = panels(derived.model, run::expand_outputs(derived.mechanics, derived.candidates.front(), derived.model.scene(options.scene).outputs));
+    for (const Panel& panel : curves) {
+      for (const std::string& name : panel.names) {
+        if (std::find(outputs.begin(), outputs.end(), name) == outputs.end()) outputs.push_back(name);
+      }
+    }
+    return outputs;
+  };
+  request.begin = [&](const Derived&, const run::Scene&, const std::vector<std::string>& names) { recorded.begin(names); };
+  request.row = [&](double t, std::span<const double> y) { recorded.row(t, y); };
   const Simulation simulation = simulate(request);
   const model::Model& model = simulation.derived->model;
   const Json run = RunReport{simulation, true}.json();
-  const std::string animation = motion.animation(model);
+  std::set<std::string> set;
+  for (const auto& [name, value] : request.overrides.parameters) set.insert(name);
+  const LiveModel live = live_model(simulation, *drawing, outputs, set);
+  const Json moving = recorded.json(simulation, *drawing, live, outputs, curves);
   Html html;
-  add_head(html, model, !animation.empty());
+  add_head(html, model, !moving.is_null());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved);
-  add_run(html, simulation, run, motion);
+  add_run(html, simulation, run, recorded.plots(curves));
   add_model(html, model, examine(model));
   add_certificate(html, simulation.certificate);
-  write_text(file, page(model.title.empty() ? model.id : model.title, html.text(), animation));
+  write_text(file, page({model.title.empty() ? model.id : model.title, html.text(), moving.is_null() ? "" : moving.dump(), live.script, live.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1}, {"model", model.id}, {"scene", simulation.scene.name}, {"outcome", eom::name(outcome)}, {"file", file}});

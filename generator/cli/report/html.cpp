@@ -7,7 +7,18 @@
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
 
-#include "cli/page_skeleton.hpp"
+#include "cli/report_skeletons/controls_js.hpp"
+#include "cli/report_skeletons/drag_js.hpp"
+#include "cli/report_skeletons/fit_js.hpp"
+#include "cli/report_skeletons/integrator_js.hpp"
+#include "cli/report_skeletons/linear_js.hpp"
+#include "cli/report_skeletons/main_js.hpp"
+#include "cli/report_skeletons/motion_js.hpp"
+#include "cli/report_skeletons/page_css.hpp"
+#include "cli/report_skeletons/page_html.hpp"
+#include "cli/report_skeletons/plots_js.hpp"
+#include "cli/report_skeletons/scene_js.hpp"
+#include "cli/report_skeletons/shapes_js.hpp"
 #include "print/notation.hpp"
 
 namespace eomgen::cli {
@@ -51,14 +62,23 @@ void Html::table(const std::vector<std::string>& head, const std::vector<std::ve
   text_ += "</table>\n";
 }
 
-std::string page(const std::string& title, const std::string& body, const std::string& motion) {
-  kainjow::mustache::mustache skeleton{std::string(page_skeleton)};
+std::string page(const PageParts& parts) {
+  kainjow::mustache::mustache skeleton{std::string(report::page_html)};
   if (!skeleton.is_valid()) throw std::logic_error(skeleton.error_message());
   kainjow::mustache::data all{kainjow::mustache::data::type::object};
-  all.set("title", escape_html(title));
-  all.set("body", body);
-  all.set("motion", inside_of_script(motion));
-  all.set("moving", motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);
+  all.set("title", escape_html(parts.title));
+  all.set("style", std::string(report::page_css));
+  all.set("body", parts.body);
+  all.set("motion", inside_of_script(parts.motion));
+  // The target escapes what the model says; a script may hold nothing that ends it.
+  all.set("model", parts.model.empty() ? "return null;" : parts.model + "return " + parts.name + ";");
+  std::string scripts;
+  for (const char* script : {report::linear_js, report::integrator_js, report::motion_js, report::shapes_js, report::scene_js, report::plots_js, report::drag_js, report::controls_js,
+                             report::fit_js, report::main_js}) {
+    scripts += script;
+  }
+  all.set("scripts", scripts);
+  all.set("moving", parts.motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);
   return skeleton.render(all);
 }
 

@@ -22,7 +22,15 @@ class Html {
   std::string text_;
 };
 
-/// The whole page: `title` is escaped here, `motion` is JSON for the animation, or empty.
-std::string page(const std::string& title, const std::string& body, const std::string& motion);
+struct PageParts {
+  std::string title;   // escaped here
+  std::string body;
+  std::string motion;  // JSON for the script; empty: the page has none
+  std::string model;   // JavaScript of the target javascript, or empty
+  std::string name;    // of the constant that it defines
+};
+
+/// The whole page: the skeleton of templates/report with its style and scripts.
+std::string page(const PageParts& parts);
 
 }  // namespace eomgen::cli

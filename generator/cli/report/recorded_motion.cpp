@@ -6,7 +6,8 @@
 #include <cstdlib>
 #include <eom/output/svg_plot.hpp>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
+
+#include "symbolic/evaluate.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -14,26 +15,56 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double least_seconds = 4, most_seconds = 20;  // of an animation, whatever the time span of the run
+constexpr int digits_of_states = 10, digits_of_screens = 6;
 
-bool is_shown(const model::Model& model, std::uint32_t place) { return place > 0 && place < model.places.size(); }
+// As many digits as are needed; fewer bytes.
+double shortened(double x, int digits) { return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0; }
 
-std::string position(const model::Place& place, int axis) { return place.name + ".position" + std::to_string(axis); }
+// A curve that no unit is known of, or that is a pure number.
+bool is_plain(const std::string& unit) { return unit.empty() || unit == "1"; }
 
-// Six digits are more than a screen has; fewer bytes.
-double shortened(double x) { return std::isfinite(x) ? std::strtod(fmt::format("{:.6g}", x).c_str(), nullptr) : 0; }
+void add(std::vector<Panel>& panels, const std::string& what, const std::string& unit, const std::string& name) {
+  const std::string title = is_plain(unit) ? what : what + " in " + unit;
+  const auto found = std::find_if(panels.begin(), panels.end(), [&](const Panel& panel) { return panel.title == title; });
+  if (found == panels.end()) panels.push_back({title, {name}});
+  else found->names.push_back(name);
+}
 
-bool has_mass(const model::Model& model, std::uint32_t place) {
-  const auto at = [=](const auto& heavy) { return heavy.place == place; };
-  return std::any_of(model.particles.begin(), model.particles.end(), at) || std::any_of(model.bodies.begin(), model.bodies.end(), at);
+std::string unit_of_output(const model::Model& model, const std::string& name) {
+  for (const model::Definition& d : model.definitions) {
+    if (d.name == name) return d.unit.text;
+  }
+  if (name.find(".position") != std::string::npos) return "m";
+  if (name.find(".velocity") != std::string::npos) return "m/s";
+  if (name.find(".omega") != std::string::npos) return "rad/s";
+  return "";
+}
+
+/// Sizes of the drawing at the parameters of the run.
+Json values(const std::vector<symbolic::Ref>& sizes, const Simulation& simulation) {
+  constexpr int digits = 20;
+  Json result = Json::array();
+  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return cln::cl_R(simulation.scene.parameters[s.index]); };
+  for (const symbolic::Ref size : sizes) {
+    try {
+      result.push_back(shortened(cln::double_approx(symbolic::evaluate(*simulation.derived->mechanics.dag, {size}, lookup, digits)[0]), digits_of_states));
+    } catch (const std::exception&) {
+      result.push_back(-1);  // unknown, as where it depends on more than parameters
+    }
+  }
+  return result;
 }
 
 }  // namespace
 
-std::vector<std::string> RecordedMotion::needed(const model::Model& model) {
-  std::vector<std::string> result;
-  for (std::uint32_t i = 1; i < model.places.size(); ++i) {
-    for (int axis = 1; axis <= 3; ++axis) result.push_back(position(model.places[i], axis));
+std::vector<Panel> panels(const model::Model& model, const std::vector<std::string>& outputs) {
+  std::vector<Panel> result;
+  for (const model::Coordinate& c : model.coordinates) add(result, "coordinates", c.unit.text, c.name);
+  for (const std::string& name : outputs) {
+    if (name == "energy" || name == "kinetic" || name == "potential") continue;
+    add(result, "outputs", unit_of_output(model, name), name);
   }
+  result.push_back({"energies in J", {"energy", "kinetic", "potential"}});
   return result;
 }
 
@@ -51,53 +82,56 @@ std::vector<double> RecordedMotion::column(const std::string& name) const {
   return result;
 }
 
-std::string RecordedMotion::plots(const model::Model& model) const {
+std::string RecordedMotion::plots(const std::vector<Panel>& panels) const {
   std::string result;
-  const auto add = [&](const std::string& label, const std::vector<std::string>& names) {
+  for (const Panel& panel : panels) {
     eom::Plot plot;
     plot.x_label = "t in s";
-    plot.y_label = label;
+    plot.y_label = panel.title;
     plot.height = 320;
-    for (const std::string& name : names) plot.series.push_back({name, t_, column(name)});
-    result += eom::svg(plot);
-  };
-  std::vector<std::string> units;
-  for (const model::Coordinate& c : model.coordinates) {
-    if (std::find(units.begin(), units.end(), c.unit.text) == units.end()) units.push_back(c.unit.text);
+    for (const std::string& name : panel.names) plot.series.push_back({name, t_, column(name)});
+    result += "<figure>" + eom::svg(plot) + "</figure>\n";
   }
-  for (const std::string& unit : units) {
-    std::vector<std::string> names;
-    for (const model::Coordinate& c : model.coordinates) {
-      if (c.unit.text == unit) names.push_back(c.name);
-    }
-    add(unit.empty() || unit == "1" ? "coordinates" : "coordinates in " + unit, names);
-  }
-  add("energies in J", {"energy", "kinetic", "potential"});
   return result;
 }
 
-std::string RecordedMotion::animation(const model::Model& model) const {
-  if (model.places.size() < 2 || t_.size() < 2) return "";
-  Json places = Json::array();
-  bool flat = true;
-  for (std::uint32_t i = 1; i < model.places.size(); ++i) {
-    const model::Place& place = model.places[i];
-    Json r = Json::array();
-    std::array<std::vector<double>, 3> x;
-    for (int axis = 1; axis <= 3; ++axis) x[static_cast<std::size_t>(axis - 1)] = column(position(place, axis));
-    for (std::size_t k = 0; k < t_.size(); ++k) {
-      r.push_back({shortened(x[0][k]), shortened(x[1][k]), shortened(x[2][k])});
-      flat = flat && x[2][k] == 0;
-    }
-    // What a position is measured from, a rod or a thread as often as not; free coordinates of space are no line to the origin.
-    const bool linked = place.chart && (place.from > 0 || place.chart->system != "cartesian") && is_shown(model, i);
-    places.push_back({{"name", place.name}, {"heavy", has_mass(model, i)},
-                      {"from", linked ? Json(static_cast<int>(place.from) - 1) : Json(nullptr)}, {"r", r}});
+Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) const {
+  std::vector<std::vector<double>> columns;
+  for (const std::string& name : names) columns.push_back(column(name));
+  Json result = Json::array();
+  for (std::size_t k = 0; k < t_.size(); ++k) {
+    Json row = Json::array();
+    for (const std::vector<double>& values : columns) row.push_back(values.empty() ? 0 : shortened(values[k], digits));
+    result.push_back(std::move(row));
   }
-  Json times = Json::array();
-  for (const double t : t_) times.push_back(shortened(t));
+  return result;
+}
+
+Json RecordedMotion::json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live, const std::vector<std::string>& outputs,
+                          const std::vector<Panel>& panels) const {
+  if (t_.size() < 2) return nullptr;
+  const model::Model& model = simulation.derived->model;
+  const std::vector<std::string> states = state_names(*simulation.derived);
+  Json times = Json::array(), curves = Json::array(), events = Json::array();
+  for (const double t : t_) times.push_back(shortened(t, digits_of_states));
+  for (const Panel& panel : panels) {
+    Json of = Json::array();
+    for (const std::string& name : panel.names) {
+      const auto state = std::find(states.begin(), states.end(), name);
+      const bool is_state = !live.script.empty() && state != states.end();
+      const auto place = is_state ? state - states.begin() : std::find(outputs.begin(), outputs.end(), name) - outputs.begin();
+      of.push_back({{"name", name}, {"state", is_state}, {"at", place}});
+    }
+    curves.push_back({{"title", panel.title}, {"of", of}});
+  }
+  for (const run::RunEvent& event : simulation.result.events) events.push_back({{"t", event.t}, {"name", event.name}});
   const double span = t_.back() - t_.front();
-  return Json{{"t", times}, {"flat", flat}, {"speed", span / std::clamp(span, least_seconds, most_seconds)}, {"places", places}}.dump();
+  const auto down = falling(*simulation.derived, simulation.scene.parameters);
+  const bool is_live = !live.script.empty();
+  return {{"t", times}, {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)}, {"y", is_live ? Json(nullptr) : rows(outputs, digits_of_screens)},
+          {"t0", simulation.scene.t0}, {"t1", simulation.scene.t1}, {"speed", span / std::clamp(span, least_seconds, most_seconds)},
+          {"down", down ? Json(*down) : Json(nullptr)}, {"parts", drawing.parts()}, {"sizes", values(drawing.sizes(), simulation)}, {"panels", curves},
+          {"events", events}, {"live", is_live ? live.start : Json(nullptr)}, {"reason", live.reason}, {"model", model.id}};
 }
 
 }  // namespace eomgen::cli

@@ -1,30 +1,42 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rows of a run, kept for plots and for the animation of a page.
+// The rows of a run, kept for the plots and the animation of a page.
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
-#include "model/model.hpp"
+#include "cli/report/drawing.hpp"
+#include "cli/report/live_model.hpp"
 
 namespace eomgen::cli {
 
+/// Curves with one unit.
+struct Panel {
+  std::string title;
+  std::vector<std::string> names;
+};
+
+/// One for each unit of coordinates, of their rates, of the scene's outputs; and the energies.
+std::vector<Panel> panels(const model::Model& model, const std::vector<std::string>& outputs);
+
 class RecordedMotion {
  public:
-  /// The outputs that the animation needs beside the coordinates: positions of all particles, bodies and points.
-  static std::vector<std::string> needed(const model::Model& model);
-
   void begin(const std::vector<std::string>& names) { names_ = names; }
   void row(double t, std::span<const double> values);
 
-  /// Plots of coordinates, one for each unit, and of the energies, as SVG.
-  std::string plots(const model::Model& model) const;
-  /// JSON for the page; empty where nothing moves in space.
-  std::string animation(const model::Model& model) const;
+  /// The panels as SVG, which a page without scripts and paper show.
+  std::string plots(const std::vector<Panel>& panels) const;
+
+  /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from which the script computes
+  /// the rest; else all `outputs`.
+  nlohmann::ordered_json json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live, const std::vector<std::string>& outputs,
+                              const std::vector<Panel>& panels) const;
 
  private:
   std::vector<double> column(const std::string& name) const;
+  nlohmann::ordered_json rows(const std::vector<std::string>& names, int digits) const;
 
   std::vector<std::string> names_;
   std::vector<double> t_;

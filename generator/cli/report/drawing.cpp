@@ -1,0 +1,148 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/report/drawing.hpp"
+
+#include <cln/exception.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "mechanics/imposition.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::cli {
+
+using Json = nlohmann::ordered_json;
+using symbolic::Ref;
+using symbolic::SymbolKind;
+using symbolic::Vec3;
+
+bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
+  const std::vector<symbolic::Symbol> symbols = dag.symbols({expression});
+  return std::all_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& s) { return s.kind == SymbolKind::parameter; });
+}
+
+Drawing::Drawing(Derived& derived) {
+  places(derived.model);
+  bodies(derived);
+  forces(derived);
+  joints(derived);
+  contacts(derived);
+}
+
+std::size_t Drawing::vector_of(const std::string& base) {
+  for (int axis = 1; axis <= 3; ++axis) outputs_.push_back(base + std::to_string(axis));
+  return outputs_.size() - 3;
+}
+
+std::size_t Drawing::vector(Derived& derived, const Vec3& value) {
+  symbolic::Substitution imposed = mechanics::impose(derived.mechanics), written = mechanics::write_out(derived.mechanics);
+  const std::string base = drawn_prefix + std::to_string(outputs_.size()) + ".";
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Ref finished = written(imposed(value[k]));
+    for (system::EquationSystem& candidate : derived.candidates) candidate.outputs.push_back({base + std::to_string(k + 1), finished});
+  }
+  return vector_of(base);
+}
+
+std::size_t Drawing::size(Derived& derived, model::NodeId value) {
+  symbolic::Dag& dag = *derived.mechanics.dag;
+  Ref lowered = value == model::no_node ? dag.integer(-1) : mechanics::lower_scalar(derived.mechanics, value);
+  if (!is_of_parameters(dag, lowered)) lowered = dag.integer(-1);
+  sizes_.push_back(lowered);
+  return sizes_.size() - 1;
+}
+
+void Drawing::places(const model::Model& model) {
+  parts_["places"] = Json::array();
+  const auto massive = [](std::uint32_t i, const auto& list) { return std::any_of(list.begin(), list.end(), [i](const auto& heavy) { return heavy.place == i; }); };
+  for (std::uint32_t i = 1; i < model.places.size(); ++i) {
+    const model::Place& place = model.places[i];
+    // What a position is measured from is a rod or a thread as often as not; free coordinates of space are no line to the origin.
+    const bool linked = place.chart && (place.from > 0 || place.chart->system != "cartesian");
+    parts_["places"].push_back({{"name", place.name}, {"kind", massive(i, model.particles) ? "particle" : massive(i, model.bodies) ? "body" : "point"},
+                                {"from", linked ? Json(static_cast<int>(place.from) - 1) : Json(nullptr)}, {"at", vector_of(place.name + ".position")}});
+  }
+}
+
+void Drawing::bodies(Derived& derived) {
+  parts_["bodies"] = Json::array();
+  for (const model::Body& body : derived.model.bodies) {
+    const model::Frame& frame = derived.model.frames[body.frame];
+    if (frame.stages.empty()) continue;
+    Json axes = Json::array();
+    for (std::size_t k = 0; k < 2; ++k) axes.push_back(vector(derived, mechanics::lower_vector(derived.mechanics, frame.stages.back().e[k])));
+    Json inertia = Json::array();
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = 0; k < 3; ++k) inertia.push_back(size(derived, body.inertia[i][k]));
+    }
+    parts_["bodies"].push_back({{"place", body.place - 1}, {"axes", axes}, {"mass", size(derived, body.mass)}, {"inertia", inertia}});
+  }
+}
+
+void Drawing::forces(Derived& derived) {
+  parts_["springs"] = parts_["dampers"] = Json::array();
+  const auto ends = [&](const auto& force) {
+    return Json{{"a", vector(derived, mechanics::lower_vector(derived.mechanics, force.a))}, {"b", vector(derived, mechanics::lower_vector(derived.mechanics, force.b))}};
+  };
+  for (const model::Force& force : derived.model.forces) {
+    if (const auto* spring = std::get_if<model::Spring>(&force.kind)) parts_["springs"].push_back(ends(*spring));
+    if (const auto* damper = std::get_if<model::Damper>(&force.kind)) parts_["dampers"].push_back(ends(*damper));
+  }
+}
+
+void Drawing::joints(Derived& derived) {
+  parts_["joints"] = Json::array();
+  const auto place_of = [&](std::uint32_t frame) -> Json {
+    for (const model::Body& body : derived.model.bodies) {
+      if (body.frame == frame) return body.place - 1;
+    }
+    return nullptr;
+  };
+  for (const model::Joint& joint : derived.model.joints) {
+    if (joint.points[1] == model::no_node) continue;
+    parts_["joints"].push_back({{"name", joint.name}, {"at", vector(derived, mechanics::lower_vector(derived.mechanics, joint.points[1]))},
+                                {"of", {place_of(joint.frames[0]), place_of(joint.frames[1])}}});
+  }
+}
+
+void Drawing::contacts(Derived& derived) {
+  parts_["contacts"] = Json::array();
+  mechanics::Mechanics& m = derived.mechanics;
+  for (const model::Constraint& constraint : derived.model.constraints) {
+    if (!constraint.touch || constraint.touch->arm == model::no_node) continue;
+    const model::Touch& touch = *constraint.touch;
+    Vec3 at = *m.place_position[touch.place];
+    const Vec3 arm = mechanics::lower_vector(m, touch.arm);
+    for (std::size_t k = 0; k < 3; ++k) at[k] = m.dag->add(at[k], arm[k]);
+    Json tangents = nullptr;
+    if (touch.other_place == 0 && touch.tangents[0] != model::no_node && touch.tangents[1] != model::no_node) {
+      tangents = {vector(derived, mechanics::lower_vector(m, touch.tangents[0])), vector(derived, mechanics::lower_vector(m, touch.tangents[1]))};
+    }
+    parts_["contacts"].push_back({{"name", constraint.name}, {"at", vector(derived, at)}, {"tangents", tangents}});
+  }
+}
+
+std::optional<std::array<double, 3>> falling(Derived& derived, const std::vector<double>& parameters) {
+  constexpr int digits = 20;
+  for (const model::Force& force : derived.model.forces) {
+    const auto* gravity = std::get_if<model::Gravity>(&force.kind);
+    if (gravity == nullptr) continue;
+    const Vec3 g = mechanics::lower_vector(derived.mechanics, gravity->acceleration);
+    std::array<double, 3> down{};
+    double length = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (!is_of_parameters(*derived.mechanics.dag, g[k])) return std::nullopt;
+      const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return cln::cl_R(parameters[s.index]); };
+      try {
+        down[k] = cln::double_approx(symbolic::evaluate(*derived.mechanics.dag, {g[k]}, lookup, digits)[0]);
+      } catch (const std::exception&) {
+        return std::nullopt;  // no value: the page draws E3 upwards then
+      }
+      length = std::hypot(length, down[k]);
+    }
+    if (length > 0) return down;
+  }
+  return std::nullopt;
+}
+
+}  // namespace eomgen::cli

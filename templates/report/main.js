@@ -1,0 +1,142 @@
+// The page: the drawing with its controls, the model that it runs or the run that it replays, the plots.
+const data = JSON.parse(document.getElementById("motion").textContent);
+const stage = document.getElementById("stage"), view = document.createElement("div"), canvas = document.createElement("canvas");
+const bar = document.createElement("div"), tools = document.createElement("div"), told = document.createElement("p");
+const live = data.live ? new Live(model, data.live, data) : null;
+const recorded = new Motion(data.t, data.x ? data.x.map((x) => Float64Array.from(x)) : null, data.y, live, data.events);
+let motion = recorded, pending = 0;
+
+canvas.id = "scene";
+canvas.setAttribute("role", "img");
+canvas.setAttribute("aria-label", "the mechanism, moving");
+view.className = "view";
+bar.className = tools.className = "bar";
+told.className = "told quiet";
+told.id = "told";
+told.setAttribute("role", "status");
+view.append(canvas, bar, tools, told);
+stage.append(view);
+
+const scene = new Scene(canvas, data.parts, data.down), plots = new Plots(document.getElementById("plots"), data.panels, (t) => { player.play(false); player.jump(t); });
+const player = new Player(bar, (t) => { scene.show(t); plots.show(t); });
+const redraw = () => scene.show(player.at);
+if (data.parts.places.length === 0) canvas.hidden = true;
+
+function take(next, find) {
+  motion = next;
+  scene.take(motion, live ? live.sizes : data.sizes, find);
+  player.take(motion, data.speed);
+  plots.take(motion);
+  player.jump(Math.min(player.at, player.t1));
+}
+
+// Runs the model from where it stands now; what is under way is given up.
+function run(play) {
+  const mine = ++pending;
+  player.play(false);
+  live.prepare();
+  const integration = live.integration(500);
+  const work = () => {
+    if (mine !== pending) return;
+    if (!integration.advance(25)) { told.textContent = "running: t = " + integration.t.toPrecision(3) + " s"; setTimeout(work, 0); return; }
+    const steps = integration.steps + " steps in this page";
+    told.textContent = integration.outcome === "done" ? steps : steps + "; " + integration.outcome;
+    if (integration.times.length > 1) {
+      player.at = live.t0;
+      take(new Motion(integration.times, integration.states, null, live, integration.found), false);
+      player.play(play);
+    }
+  };
+  work();
+}
+
+function grab(at) {
+  if (!live || canvas.hidden) return null;
+  let best = null, nearest = 24;
+  data.parts.places.forEach((place) => {
+    const p = scene.camera.project(scene.position(scene.now, place.at)), distance = Math.hypot(p[0] - at[0], p[1] - at[1]);
+    if (distance < nearest) { nearest = distance; best = place; }
+  });
+  if (best === null) return null;
+  player.play(false);
+  const x = motion.state(player.at), drag = new Drag(live, best.at, scene.camera);
+  let pulled = false;
+  return {
+    move: (now) => {
+      pulled = true;
+      const here = drag.place(x), p = scene.camera.project(here);
+      drag.move(x, plus(here, scene.camera.lift(now[0] - p[0], now[1] - p[1])));
+      take(new Motion([live.t0, live.t1], [x, x].map((state) => Float64Array.from(state)), null, live, []), false);
+      player.jump(live.t0);
+    },
+    release: () => {
+      if (!pulled) return;
+      live.placed = Float64Array.from(x);
+      run(true);
+    }};
+}
+
+function checkbox(text, key) {
+  const label = document.createElement("label"), box = document.createElement("input");
+  Object.assign(box, {type: "checkbox", checked: scene.shown[key]});
+  box.addEventListener("change", () => { scene.shown[key] = box.checked; redraw(); });
+  label.append(box, document.createTextNode(" " + text));
+  return label;
+}
+
+function panel() {
+  const place = document.createElement("div"), sliders = [];
+  place.className = "panel";
+  const group = (title, open) => {
+    const field = document.createElement("fieldset"), details = document.createElement("details"), summary = document.createElement("summary");
+    summary.textContent = title;
+    details.open = open;
+    details.append(summary);
+    field.append(details);
+    place.append(field);
+    return details;
+  };
+  const parameters = group("Parameters", true), starts = group("Start", false);
+  live.parameters.forEach((p, i) => {
+    if (!p.moved) return;
+    const [low, high] = rangeOf(p.value, p.positive);
+    const made = slider(p.name, p.unit, p.note, p.value, low, high, (v) => { live.chosen[i] = v; run(true); });
+    sliders.push(() => made.set(p.value));
+    parameters.append(made.row);
+  });
+  live.states.forEach((state, k) => {
+    const value = live.x[k], reach = state.unit === "rad" ? Math.PI : Math.max(1, 2 * Math.abs(value));
+    const made = slider(state.name, state.unit, "", value, Math.min(-reach, value), Math.max(reach, value), (v) => { live.placed = null; live.starts_chosen.set(k, v); run(true); });
+    sliders.push(() => made.set(value));
+    starts.append(made.row);
+  });
+  place.append(button("As in the model", "All values as the model has them", () => {
+    ++pending;
+    live.reset();
+    sliders.forEach((set) => set());
+    told.textContent = "";
+    player.at = recorded.t[0];
+    take(recorded, true);
+    player.play(true);
+  }));
+  stage.append(place);
+  stage.classList.add("live");
+}
+
+tools.append(button("+", "Zoom in (+)", () => { scene.camera.zoom *= 1.25; redraw(); }), button("\u2212", "Zoom out (-)", () => { scene.camera.zoom /= 1.25; redraw(); }),
+             button("View", "The first view (0)", () => { scene.camera.home(); redraw(); }), checkbox("traces", "traces"), checkbox("axes", "axes"), checkbox("names", "names"));
+const help = document.createElement("p");
+help.className = "quiet";
+help.textContent = live ? "Drag a point to place it and let go; drag beside it to turn the view, with shift to move it." : "Drag to turn the view, with shift to move it. This page replays the run and does not compute: " + data.reason + ".";
+view.append(help);
+pointers(canvas, scene.camera, redraw, grab);
+keys(canvas, player, scene.camera, redraw);
+take(recorded, true);
+if (live) panel();
+fitFormulas();
+window.addEventListener("resize", () => { redraw(); fitFormulas(); });
+matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
+player.jump(player.t0);
+if (!matchMedia("(prefers-reduced-motion: reduce)").matches) player.play(true);
+// For who looks closer, from the console of a browser.
+window.report = {data, live, scene, player, run, motion: () => motion};

@@ -1,0 +1,71 @@
+// Bodies as polygons in their own axes, from what the model says of their shape, or from their inertia: of homogeneous bodies with the same mass
+// and moments the sphere, the cylinder about the axis of two equal moments, the box.
+function boxFaces(a, b, c) {
+  const corner = (k) => [(k & 1 ? a : -a) / 2, (k & 2 ? b : -b) / 2, (k & 4 ? c : -c) / 2];
+  return [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]].map((face) => face.map(corner));
+}
+
+// About the third axis; a stripe on the caps shows how it turns.
+function cylinderFaces(radius, length) {
+  const sides = 28, ring = (z) => Array.from({length: sides}, (_, k) => [radius * Math.cos(2 * Math.PI * k / sides), radius * Math.sin(2 * Math.PI * k / sides), z]);
+  const top = ring(length / 2), bottom = ring(-length / 2), faces = [top, bottom.slice().reverse()];
+  for (let k = 0; k < sides; ++k) faces.push([bottom[k], bottom[(k + 1) % sides], top[(k + 1) % sides], top[k]]);
+  return faces;
+}
+
+// Axes as rows (right-handed) with the k-th axis of `axes` third.
+function aboutAxis(axes, k) { return [axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]]; }
+
+function placed(faces, axes) {
+  return faces.map((face) => face.map((r) => plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2]))));
+}
+
+function shapeOfInertia(mass, inertia) {
+  if (!(mass > 0) || inertia.length !== 9) return null;
+  const matrix = [inertia.slice(0, 3), inertia.slice(3, 6), inertia.slice(6, 9)].map((row) => Array.from(row));
+  const {values, axes} = principalAxes(matrix), largest = Math.max(...values);
+  if (!(largest > 0) || Math.min(...values) < -1e-9 * largest) return null;
+  // One moment alone, of a body that turns about one direction: no homogeneous body has it; see barOfInertia.
+  if (2 * largest > (1 + 1e-6) * (values[0] + values[1] + values[2])) return null;
+  if (dot(cross(axes[0], axes[1]), axes[2]) < 0) axes[2] = scaled(axes[2], -1);
+  const same = (i, j) => Math.abs(values[i] - values[j]) < 1e-6 * largest;
+  if (same(0, 1) && same(1, 2)) return {kind: "sphere", radius: Math.sqrt(2.5 * values[0] / mass), faces: []};
+  for (let k = 0; k < 3; ++k) {
+    const i = (k + 1) % 3, j = (k + 2) % 3;
+    if (!same(i, j)) continue;
+    let radius = Math.sqrt(Math.max(0, 2 * values[k] / mass));
+    let length = Math.sqrt(Math.max(0, 12 * values[i] / mass - 3 * radius * radius));
+    radius = Math.max(radius, 0.02 * length);
+    length = Math.max(length, 0.03 * radius);
+    return {kind: "cylinder", faces: placed(cylinderFaces(radius, length), aboutAxis(axes, k)), radius: Math.hypot(radius, length / 2)};
+  }
+  const sides = values.map((_, k) => Math.sqrt(Math.max(0, 6 * (values[(k + 1) % 3] + values[(k + 2) % 3] - values[k]) / mass)));
+  const longest = Math.max(...sides), [a, b, c] = sides.map((side) => Math.max(side, 0.03 * longest));
+  return {kind: "box", faces: placed(boxFaces(a, b, c), axes), radius: Math.hypot(a, b, c) / 2};
+}
+
+// A bar towards `spot` (in its own axes), where something is attached to it: as long as a uniform one of its largest moment.
+function barOfInertia(mass, inertia, spot) {
+  const largest = Math.max(inertia[0], inertia[4], inertia[8]), length = Math.sqrt(12 * largest / mass), reach = Math.hypot(...spot);
+  if (!(mass > 0) || !(largest > 0) || !(reach > 1e-9 * length)) return null;
+  const along = unit(spot), other = [[1, 0, 0], [0, 1, 0], [0, 0, 1]].find((e) => Math.abs(dot(e, along)) < 0.8), side = unit(cross(along, other));
+  return {kind: "bar", faces: placed(cylinderFaces(0.025 * length, length), [side, cross(along, side), along]), radius: length / 2};
+}
+
+// What [draw] says: kind, the place of its lengths among the sizes, the axis that it is about, where its middle is.
+function shapeOfModel(drawn, sizes) {
+  const lengths = drawn.lengths.map((i) => sizes[i]), at = drawn.at.map((i) => sizes[i]);
+  if (lengths.some((length) => !Number.isFinite(length))) return null;
+  const axes = aboutAxis([[1, 0, 0], [0, 1, 0], [0, 0, 1]], drawn.axis), reach = Math.hypot(...at);
+  const made = (faces, radius) => ({kind: drawn.kind, faces: placed(faces, axes).map((face) => face.map((r) => plus(r, at))), radius: radius + reach, at});
+  switch (drawn.kind) {
+    case "sphere": return {kind: "sphere", faces: [], radius: lengths[0], at};
+    case "box": return {kind: "box", faces: boxFaces(...lengths).map((face) => face.map((r) => plus(r, at))), radius: Math.hypot(...lengths) / 2 + reach, at};
+    case "cylinder": return made(cylinderFaces(lengths[0], lengths[1]), Math.hypot(lengths[0], lengths[1] / 2));
+    case "disk": return made(cylinderFaces(lengths[0], 0.03 * lengths[0]), lengths[0]);
+    case "rod": return made(cylinderFaces(0.02 * lengths[0], lengths[0]), lengths[0] / 2);
+    case "arrow": return {kind: "arrow", faces: [], radius: Math.hypot(...lengths) + reach, at, tip: plus(at, lengths)};
+  }
+  return null;
+}
+

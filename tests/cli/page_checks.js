@@ -1,0 +1,152 @@
+// Opens pages of `eomgen report` in frames of two widths and tells what it finds, as JSON in the element `found`. In: `cases`, each {name, page, slider, csv}.
+"use strict";
+const widths = [1280, 390];
+const later = (milliseconds) => new Promise((done) => setTimeout(done, milliseconds));
+
+// What the page writes to the console or throws.
+const listen = "<script>window.messages = []; for (const kind of ['log', 'info', 'warn', 'error']) console[kind] = (...all) => messages.push(kind + ': ' + all.join(' '));" +
+  "addEventListener('error', (e) => messages.push('error: ' + e.message)); addEventListener('unhandledrejection', (e) => messages.push('rejected: ' + e.reason));" +
+  "addEventListener('securitypolicyviolation', (e) => messages.push('policy: ' + e.violatedDirective));<" + "/script>";
+
+async function open(page, width) {
+  const frame = document.createElement("iframe");
+  frame.style.cssText = "border: 0; width: " + width + "px; height: 900px";
+  frame.srcdoc = page.replace("<head>", "<head>" + listen);
+  await new Promise((done) => { frame.addEventListener("load", done); document.body.prepend(frame); });
+  await later(50);
+  return frame;
+}
+
+const box = (node) => node.getBoundingClientRect();
+const hasInk = (node) => { const b = box(node); return b.width > 0.5 && b.height > 0.5 && node.textContent.trim() !== ""; };
+
+// Of every formula: neighbours that lie on one another, functions that run into what they are applied to, lines wider than their column.
+function formulas(frame) {
+  const found = {count: 0, overlaps: [], tight: [], wide: []};
+  for (const math of frame.contentDocument.querySelectorAll("math")) {
+    ++found.count;
+    const column = math.closest("p") || math.parentElement;
+    if (column.scrollWidth > column.clientWidth + 1) found.wide.push(math.textContent.slice(0, 60));
+    for (const row of math.querySelectorAll("mrow, math")) {
+      const inked = [...row.children].filter(hasInk);
+      for (let i = 1; i < inked.length; ++i) {
+        const a = box(inked[i - 1]), b = box(inked[i]);
+        if (b.left < a.right - 1.5 && b.right > a.left && b.top < a.bottom - 2 && b.bottom > a.top + 2) found.overlaps.push(inked[i - 1].textContent.slice(-12) + " | " + inked[i].textContent.slice(0, 12));
+      }
+      const children = [...row.children];
+      children.forEach((child, i) => {
+        if (child.textContent !== "\u2061") return;
+        const before = children.slice(0, i).reverse().find(hasInk), after = children.slice(i + 1).find(hasInk);
+        if (!before || !after || after.textContent.startsWith("(")) return;
+        if (box(after).top < box(before).bottom && box(after).left - box(before).right < 0.5) found.tight.push(before.textContent + " | " + after.textContent.slice(0, 12));
+      });
+    }
+  }
+  for (const key of ["overlaps", "tight", "wide"]) found[key] = [found[key].length, ...found[key].slice(0, 3)];
+  return found;
+}
+
+function picture(canvas) {
+  const pixels = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data;
+  let sum = 0, ink = 0;
+  for (let i = 3; i < pixels.length; i += 4) if (pixels[i] > 0) { ++ink; sum = (sum * 31 + pixels[i] + pixels[i - 1] * 3 + i) % 1000000007; }
+  return {sum, ink};
+}
+
+// How far, in pixels, drawn positions are from where the rows of the run put them.
+function furthest(report, csv) {
+  let far = 0;
+  for (const row of csv.rows) {
+    const y = report.motion().at(row[0]);
+    report.data.parts.places.forEach((place) => {
+      const column = csv.columns.indexOf(place.name + ".position1");
+      if (column < 0) return;
+      const a = report.scene.camera.project([y[place.at], y[place.at + 1], y[place.at + 2]]), b = report.scene.camera.project(row.slice(column, column + 3));
+      far = Math.max(far, Math.hypot(a[0] - b[0], a[1] - b[1]));
+    });
+  }
+  return far;
+}
+
+// Frames are drawn in the browser's time, timers run in a time of their own, which passes faster.
+async function wait(condition) {
+  for (let k = 0; k < 30000 && !condition(); ++k) await later(20);
+  return condition();
+}
+
+// Takes a drawn point by hand and pulls it; where it is put, and how far off the constraints that is.
+async function drag(frame, report, name) {
+  const page = frame.contentDocument, canvas = page.getElementById("scene"), place = report.data.parts.places.find((p) => p.name === name), {camera} = report.scene;
+  const at = () => camera.project(report.scene.position(report.scene.now, place.at)), corner = box(canvas);
+  const send = (kind, [x, y]) => canvas.dispatchEvent(new frame.contentWindow.PointerEvent(kind, {pointerId: 7, button: 0, buttons: kind === "pointerup" ? 0 : 1, clientX: corner.left + x, clientY: corner.top + y, bubbles: true}));
+  report.player.play(false);
+  report.player.jump(report.player.t0);
+  const begin = at(), end = [begin[0] - 40, begin[1] - 30];
+  send("pointerdown", begin);
+  for (let k = 1; k <= 8; ++k) send("pointermove", [begin[0] + (end[0] - begin[0]) * k / 8, begin[1] + (end[1] - begin[1]) * k / 8]);
+  const reached = at();
+  send("pointerup", end);
+  await wait(() => report.motion().t.length === 501);
+  report.player.play(false);
+  const {psi} = report.live.constraintsAt(report.live.t0, report.motion().x[0]);
+  return {moved: Math.hypot(reached[0] - begin[0], reached[1] - begin[1]), nearer: Math.hypot(reached[0] - end[0], reached[1] - end[1]) < Math.hypot(begin[0] - end[0], begin[1] - end[1]) - 3,
+          psi: Math.max(0, ...Array.from(psi, Math.abs)), ran: report.motion().t.length === 501};
+}
+
+async function look(entry) {
+  const found = {name: entry.name, widths: {}};
+  for (const width of widths) {
+    const frame = await open(entry.page, width), page = frame.contentDocument, report = frame.contentWindow.report;
+    const at = {formulas: formulas(frame), sideways: page.documentElement.scrollWidth - page.documentElement.clientWidth};
+    if (report) {
+      const canvas = page.getElementById("scene");
+      report.player.play(false);
+      if (report.data.parts.places.length > 0) {
+        report.player.jump(report.player.t0);
+        const first = picture(canvas);
+        report.player.jump(report.player.t0 + 0.37 * (report.player.t1 - report.player.t0));
+        const second = picture(canvas);
+        at.ink = first.ink;
+        at.moves = first.sum !== second.sum;
+      }
+      page.getElementById("play").click();
+      const before = report.player.at;
+      at.plays = await wait(() => report.player.at !== before);
+      report.player.play(false);
+      at.curves = page.querySelectorAll("#plots.drawn path").length;
+      if (width === widths[0] && entry.csv) at.furthest = furthest(report, entry.csv);
+      if (width === widths[0] && entry.slider && report.live) {
+        const range = [...page.querySelectorAll(".slider input[type=number]")].find((input) => input.dataset.name === entry.slider.name);
+        range.value = entry.slider.value;
+        range.dispatchEvent(new frame.contentWindow.Event("change"));
+        const old = report.data.t.length;
+        at.ran = await wait(() => report.motion().x !== null && report.motion().t.length === 501 && page.getElementById("told").textContent.includes("steps in"));
+        report.player.play(false);
+        at.told = page.getElementById("told").textContent;
+        const x = report.motion().x[report.motion().x.length - 1];
+        at.end = {};
+        report.live.states.forEach((state, k) => { at.end[state.name] = x[k]; });
+        at.rows = old;
+      }
+      at.live = report.live !== null;
+      if (width === widths[0] && entry.drag) at.drag = await drag(frame, report, entry.drag);
+    }
+    at.messages = frame.contentWindow.messages;
+    found.widths[width] = at;
+    frame.remove();
+  }
+  return found;
+}
+
+(async () => {
+  const found = [];
+  for (const entry of cases) {
+    try {
+      found.push(await look(entry));
+    } catch (error) {
+      found.push({name: entry.name, failed: String(error && error.stack || error)});
+    }
+  }
+  document.getElementById("cases").remove();
+  document.getElementById("found").textContent = JSON.stringify(found);
+})();

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The pages of `report` in a browser without a window: what they show, that they move, and that they compute what the program computes. Skipped with a word
+// where there is no Chromium (scripts/setup --with page).
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+
+#include "program.hpp"
+#include "support/folders.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+constexpr std::size_t largest_page = 1000000;   // bytes
+constexpr double as_run_does = 1e-5;            // the page integrates with rtol 1e-8, the run with 1e-9 and another method
+constexpr double a_pixel = 1;
+
+struct Case {
+  std::string model;                // a name, or a file in the folder
+  bool live = true;                 // the page runs it
+  std::string slider = {};          // a parameter that is moved
+  double value = 0;
+  std::string drag = {};            // a place that is taken by hand
+};
+
+std::string replaced(std::string text, const std::string& what, const std::string& with) {
+  const std::size_t at = text.find(what);
+  REQUIRE(at != std::string::npos);
+  return text.replace(at, what.size(), with);
+}
+
+std::string source(const std::string& path) {
+  std::ifstream file(eomgen::test::source_folder() + "/" + path);
+  std::stringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string in_script(const Json& value) {
+  std::string result;
+  for (const char c : value.dump()) result += c == '<' ? "\\u003c" : std::string(1, c);
+  return result;
+}
+
+std::optional<std::string> browser() {
+  for (const char* name : {"chromium", "chromium-browser", "google-chrome"}) {
+    try {
+      if (run_child({{name, "--version"}}).status == 0) return name;
+    } catch (const std::exception&) {  // there is no such program
+    }
+  }
+  return std::nullopt;
+}
+
+ChildResult browse(const Folder& folder, const std::string& program, Words words) {
+  Words all{program, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--user-data-dir=" + (folder / "profile")};
+  all.insert(all.end(), words.begin(), words.end());
+  ChildCommand command{all, folder.path(), {}, 240};
+  return run_child(command);
+}
+
+/// What page_checks.js finds of the cases.
+Json looked_at(const Folder& folder, const std::string& program, const Json& cases) {
+  folder.write("checks.html", "<!DOCTYPE html><html><body><pre id=\"found\"></pre><script id=\"cases\">const cases = " + in_script(cases) + ";</script><script>" +
+                                  source("tests/cli/page_checks.js") + "</script></body></html>");
+  const ChildResult result = browse(folder, program, {"--window-size=1300,1000", "--virtual-time-budget=100000000", "--dump-dom", "file://" + (folder / "checks.html")});
+  const std::string mark = "<pre id=\"found\">";
+  const std::size_t begin = result.out.find(mark);
+  REQUIRE(begin != std::string::npos);
+  std::string text = result.out.substr(begin + mark.size(), result.out.find("</pre>", begin) - begin - mark.size());
+  for (const auto& [escaped, plain] : std::vector<std::pair<std::string, std::string>>{{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&nbsp;", " "}, {"&amp;", "&"}}) {
+    for (std::size_t at = 0; (at = text.find(escaped, at)) != std::string::npos; at += plain.size()) text.replace(at, escaped.size(), plain);
+  }
+  const Json found = Json::parse(text, nullptr, false);
+  CAPTURE(text);
+  REQUIRE(found.is_array());
+  REQUIRE(found.size() == cases.size());
+  return found;
+}
+
+Json positions(const Folder& folder, const std::string& model, const Json& parts) {
+  Words words{"run", model, "--out", "rows.csv", "--every", "0.25"};
+  for (const Json& place : parts) {
+    for (const char* axis : {"1", "2", "3"}) {
+      words.push_back("--output");
+      words.push_back(place["name"].get<std::string>() + ".position" + axis);
+    }
+  }
+  expect(0, folder, words);
+  const Table table = read_table(folder.read("rows.csv"));
+  return {{"columns", table.columns}, {"rows", table.rows}};
+}
+
+void check(const Json& found, const Case& c, const Json& wanted) {
+  CAPTURE(c.model);
+  CAPTURE(found.dump());
+  REQUIRE_FALSE(found.contains("failed"));
+  for (const std::string width : {"1280", "390"}) {
+    const Json& at = found["widths"][width];
+    CAPTURE(width);
+    CHECK(at["messages"] == Json::array());
+    CHECK(at["sideways"] == 0);
+    CHECK(at["formulas"]["count"] > 5);
+    CHECK(at["formulas"]["overlaps"][0] == 0);
+    CHECK(at["formulas"]["tight"][0] == 0);
+    CHECK(at["formulas"]["wide"][0] == 0);
+    CHECK(at["ink"] > 500);
+    CHECK(at["moves"] == true);
+    CHECK(at["plays"] == true);
+    CHECK(at["curves"] >= 4);
+    CHECK(at["live"] == c.live);
+  }
+  const Json& wide = found["widths"]["1280"];
+  CHECK(wide["furthest"] < a_pixel);
+  if (!c.drag.empty()) {
+    CHECK(wide["drag"]["moved"] > 5);
+    CHECK(wide["drag"]["nearer"] == true);
+    CHECK(wide["drag"]["psi"] < 1e-9);
+    CHECK(wide["drag"]["ran"] == true);
+  }
+  if (c.slider.empty()) return;
+  CHECK(wide["ran"] == true);
+  for (const auto& [name, value] : wide["end"].items()) {
+    CAPTURE(name);
+    const double expected = wanted[name].get<double>();
+    CHECK(std::fabs(value.get<double>() - expected) <= as_run_does * (1 + std::fabs(expected)));
+  }
+}
+
+void keep_picture(const Folder& folder, const std::string& program, const std::string& name) {
+  const std::string place = eomgen::test::build_folder() + "/pages";
+  std::filesystem::create_directories(place);
+  browse(folder, program, {"--window-size=1280,1600", "--virtual-time-budget=1500", "--screenshot=" + place + "/" + name + ".png", "file://" + (folder / "page.html")});
+}
+
+}  // namespace
+
+TEST_CASE("page: in a browser reports show their equations whole, move as the run does, and run the model themselves") {
+  const std::optional<std::string> program = browser();
+  if (!program) {
+    MESSAGE("skipped: there is no chromium");
+    return;
+  }
+  const Folder folder;
+  folder.write("chain_10.toml", replaced(source("models/S6_chain_6.toml"), "n = 6", "n = 10"));
+  const std::vector<Case> list{{"P7_moving_sphere", true, "m", 2},    {"S5_double_pendulum", true, "m2", 1.5, "P2"}, {"R6_rolling_disk", true, "R", 0.25},
+                               {"R7_satellite"},                      {"R10_lagrange_top"},                    {"R15_pin_joint", true, "m1", 2},
+                               {"R16_sphere_on_sphere"},              {"R16_disk_on_disk", false},             {"six_bar_spatial", true, "k", 170, "plate"},
+                               {"n_four_bar_2", true, "", 0, "K1"},                      {"chain_10.toml", true, "L", 1.2}};
+  Json cases = Json::array();
+  std::vector<Json> wanted;
+  for (const Case& c : list) {
+    CAPTURE(c.model);
+    expect(0, folder, {"report", c.model, "-o", "page.html"});
+    const std::string page = folder.read("page.html");
+    CHECK(page.size() < largest_page);
+    const std::size_t begin = page.find("id=\"motion\">") + 12;
+    const Json motion = Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
+    Json entry{{"name", c.model}, {"page", page}, {"csv", positions(folder, c.model, motion["parts"]["places"])}};
+    if (!c.drag.empty()) entry["drag"] = c.drag;
+    wanted.emplace_back();
+    if (!c.slider.empty()) {
+      entry["slider"] = {{"name", c.slider}, {"value", c.value}};
+      wanted.back() = document(folder, {"run", c.model, "--set", c.slider + "=" + std::to_string(c.value)})["final"];
+    }
+    if (c.live) CHECK(motion["reason"] == "");
+    else CHECK(motion["reason"] != "");
+    if (c.model == "S5_double_pendulum" || c.model == "six_bar_spatial") keep_picture(folder, *program, c.model);
+    cases.push_back(std::move(entry));
+  }
+  const Json found = looked_at(folder, *program, cases);
+  for (std::size_t k = 0; k < list.size(); ++k) check(found[k], list[k], wanted[k]);
+}
