@@ -115,3 +115,64 @@ TEST_CASE("sweep: what is wrong with a grid is told") {
   refused({"--grid", "k=1,2", "--set", "k=3"}, "a grid and a value");
   refused({"--grid", "k=1:2:1000", "--grid", "m=1:2:1001"}, "more than 1000000 points");
 }
+
+TEST_CASE("sweep: an ensemble gives the bytes of runs one by one, for any number of threads, and goes on from what is there") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  folder.write("diverging.toml", "format = 1\n[parameters]\nk = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-k*x^3/3\"\n"
+                                 "[scene.default]\nt = [0, 10]\ninitial = { x = 1 }\n");
+  folder.write("pushed.toml", "format = 1\n[parameters]\nm = 1\nc = 0.5\n[inputs]\nF = { unit = \"N\" }\n[coordinates]\nx = {}\n[energy]\nkinetic = \"m*x_dot^2/2\"\n"
+                              "[[force]]\nname = \"push\"\ngeneralized = { x = \"F - c*x_dot\" }\n[scene.default]\nt = [0, 3]\ninitial = { x = 1 }\ninputs = { F = \"2*m\" }\n");
+  const auto rows_of = [&](const std::string& file) {
+    const std::string text = folder.read(file);
+    return text.substr(text.find('\n'));  // the first line tells sweeps apart
+  };
+  struct Case {
+    const char* model;
+    Words options;
+    int status;
+  };
+  for (const Case& c : {Case{"S5_double_pendulum", {"--grid", "L1=0.5:2:5", "--grid", "g=1,9.81,30", "--t-end", "3", "--solver", "dop853"}, 0},
+                        Case{"S6_chain_2", {"--grid", "L=0.5:2:9", "--solver", "tsit5", "--rtol", "1e-7", "--output", "all"}, 0},
+                        Case{"oscillator.toml", {"--grid", "m=1,-1,2,0", "--grid", "k=1:100:log:4", "--solver", "rk4", "--step", "0.01"}, 3},
+                        Case{"diverging.toml", {"--grid", "k=0:1:7", "--solver", "dopri5"}, 3},
+                        Case{"pushed.toml", {"--grid", "m=1:3:7", "--solver", "dop853"}, 0}}) {
+    CAPTURE(std::string(c.model));
+    const auto sweep = [&](const Words& more) {
+      Words words{"sweep", c.model};
+      words.insert(words.end(), c.options.begin(), c.options.end());
+      words.insert(words.end(), more.begin(), more.end());
+      expect(c.status, folder, words);
+    };
+    sweep({"--no-error-estimate", "--out", "alone.csv"});
+    sweep({"--ensemble", "--jobs", "1", "--out", "one.csv"});
+    sweep({"--ensemble", "--jobs", "3", "--out", "three.csv"});
+    CHECK(rows_of("one.csv") == rows_of("alone.csv"));
+    CHECK(folder.read("three.csv") == folder.read("one.csv"));
+  }
+  // The rows of some runs are there.
+  const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:50", "--ensemble", "--out", "all.csv"};
+  expect(0, folder, words);
+  const std::string whole = folder.read("all.csv");
+  std::size_t at = 0;
+  for (int line = 0; line < 22; ++line) at = whole.find('\n', at) + 1;
+  folder.write("all.csv.partial", whole.substr(0, at + 7));
+  folder.write("all.csv", "something else");
+  CHECK(document(folder, words)["resumed"] == 20);
+  CHECK(folder.read("all.csv") == whole);
+}
+
+TEST_CASE("sweep: what an ensemble cannot look after is told") {
+  const Folder folder;
+  const auto refused = [&](const Words& more, const std::string& what) {
+    Words words{"sweep"};
+    words.insert(words.end(), more.begin(), more.end());
+    words.emplace_back("--ensemble");
+    CAPTURE(what);
+    CHECK(contains(expect(2, folder, words).err, what));
+  };
+  refused({"S5_double_pendulum", "--grid", "g=1,2", "--solver", "radau5"}, "solver 'radau5' is no explicit Runge-Kutta method");
+  refused({"stick_slip_belt", "--grid", "m=1,2"}, "contacts with friction");
+  refused({"bouncing_ball", "--grid", "m=1,2"}, "cannot be made side by side");
+  refused({"R1_free_body", "--grid", "m=1,2"}, "cannot be made side by side");
+}

@@ -14,6 +14,7 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/simulate.hpp"
+#include "cli/sweep/ensemble.hpp"
 #include "cli/sweep/grid.hpp"
 #include "cli/sweep/ledger.hpp"
 #include "cli/sweep/workers.hpp"
@@ -29,7 +30,7 @@ struct Options {
   std::optional<double> rtol, atol, step, t_end;
   std::optional<std::string> solver;
   std::size_t jobs = 0;
-  bool no_error_estimate = false;
+  bool no_error_estimate = false, ensemble = false;
 };
 
 constexpr const char* refused = "refused";  // in place of an outcome, where a run could not begin
@@ -49,12 +50,13 @@ run::Overrides overrides_of(const Options& options) {
 
 /// What makes two sweeps the same: the model's bytes and all that was asked.
 std::string key_of(const Options& options, const model::Model& model) {
-  std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate ? "plain" : "estimate");
+  std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
   for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
     text += '\n';
     for (const std::string& entry : *list) text += entry + '\x1f';
   }
   for (const auto& value : {options.rtol, options.atol, options.step, options.t_end}) text += '\n' + (value ? shortest(*value) : "");
+  if (options.ensemble) text += "\nensemble";
   return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
 }
 
@@ -74,6 +76,7 @@ class Sweep {
   Sweep(const Options& options, const Common& common, const model::Model& model)
       : options_(options), seed_(common.seed), grid_(options.grid), file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
         ledger_((require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_), key_of(options, model)), resumed_(ledger_.rows().size()) {
+    if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
     const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
     for (const Axis& axis : grid_.axes()) {
       const auto named = [&](const model::Parameter& p) { return p.name == axis.parameter; };
@@ -123,6 +126,7 @@ class Sweep {
 
   run::Overrides at(std::size_t index) const {
     run::Overrides o = overrides_of(options_);
+    if (options_.ensemble) o.solver = solver_;
     o.parameters.merge(grid_.point(index));
     return o;
   }
@@ -131,7 +135,7 @@ class Sweep {
     SimulationRequest request;
     request.model = options_.model;
     request.scene = options_.scene;
-    request.estimate = !options_.no_error_estimate;
+    request.estimate = !options_.no_error_estimate && !options_.ensemble;
     request.seed = seed_;
     std::optional<Interrupt> interrupt;
     request.ready = [&interrupt] { interrupt.emplace(); };
@@ -150,6 +154,7 @@ class Sweep {
       }
     }
     if (!first) throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", refusals.front().second), "change the grid or the scene");
+    if (options_.ensemble) require_plain(*first);
     columns(first->scene);
     if (ledger_.rows().empty()) resumed_ = 0;
     for (const auto& [run, why] : refusals) ledger_.add(run, refusal(run, why));
@@ -165,6 +170,13 @@ class Sweep {
         return refusal(run, error.message());
       }
     };
+    if (options_.ensemble) {
+      const std::size_t threads = options_.jobs > 0 ? options_.jobs : std::max(1u, std::thread::hardware_concurrency());
+      run_ensemble(*first, {open, threads, [this](std::size_t run) { return at(run); },
+                            [this](std::size_t run, const run::RunResult& result) { ledger_.add(run, row(run, result)); },
+                            [this](std::size_t run, const std::string& why) { ledger_.add(run, refusal(run, why)); }, &Interrupt::flag()});
+      return;
+    }
     const std::size_t jobs = options_.jobs > 0 ? options_.jobs : std::max(1u, std::thread::hardware_concurrency());
     by_processes(open, jobs, line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); }, Interrupt::flag());
   }
@@ -212,6 +224,7 @@ class Sweep {
   Ledger ledger_;
   std::size_t resumed_;
   std::vector<std::string> names_;
+  std::string solver_;  // of an ensemble
 };
 
 int execute(const Options& options, const Common& common) {
@@ -247,8 +260,9 @@ Execute declare_sweep(CLI::App& app) {
   app.add_option("--t-end", options->t_end, "the end of the runs")->check(finite_number());
   add_place(app, "-o,--out", options->out, "the table, a CSV file; without it MODEL_sweep.csv in this folder");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
-  app.add_option("--jobs", options->jobs, "processes; without it one for each processor")->check(whole_number(1, 1024));
+  app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")->check(whole_number(1, 1024));
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");
+  app.add_flag("--ensemble", options->ensemble, "many runs side by side in the lanes of vector registers, without error estimates");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/ensemble.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/ensemble/integrate.hpp>
+#include <limits>
+#include <mutex>
+#include <optional>
+
+#include "cli/interrupt.hpp"
+#include "emit/shared_library/loaded_batch.hpp"
+#include "emit/targets.hpp"
+#include "error.hpp"
+#include "model/names.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+// What a run without an error estimate may lose of its energy is ten times this (run/balance.cpp): nearer to that it is made alone, where
+// the energy is looked at after every step.
+constexpr double doubtful_energy = 1e-2;
+
+emit::LoadedBatch compile_batch(const Simulation& first) {
+  Derived& derived = *first.derived;
+  const run::Scene defaults = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
+  const emit::EmissionContext context = emission_context(derived, first.program, defaults, first.certificate);
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch")) files.emplace_back(file.name, file.text);
+  const Interrupt heeded;  // by what waits for the compiler
+  return emit::compile_and_load_batch(files, emit::mangled_id(context.id), &Interrupt::flag());
+}
+
+bool stands_still(const run::Scene& scene) {
+  const auto still = [](const run::Signal& signal) { return !signal.moves() && signal.jumps().empty(); };
+  return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && !scene.jumps && scene.clock.bounds.empty() && scene.clock.breaks.empty();
+}
+
+/// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands still.
+std::string ranged(const Simulation& first, const run::Code& code) {
+  const run::Scene& scene = first.scene;
+  const std::size_t n = code.free.size();
+  std::vector<double> u;
+  for (const run::Signal& input : scene.inputs) u.push_back(input(scene.t0, scene.t0));
+  std::vector<double> here(code.output_names.size()), there(here.size());
+  const auto at = [&](double away, std::vector<double>& y) {
+    std::vector<double> x(2 * n);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] = scene.q[code.free[i]] + away * (0.37 + 0.11 * static_cast<double>(i));
+      x[n + i] = scene.qdot[code.free[i]] - away * (0.23 + 0.07 * static_cast<double>(i));
+    }
+    return code.outputs(scene.t0 + away, x.data(), scene.parameters.data(), u.data(), 0, y.data()) == 0;
+  };
+  const bool known = at(0, here) && at(0.7, there);
+  for (std::size_t i = 0; i < scene.lower.size(); ++i) {  // outputs begin with every coordinate and its rate
+    if (!std::isfinite(scene.lower[i]) && !std::isfinite(scene.upper[i])) continue;
+    if (!known || here[2 * i] != there[2 * i]) return first.derived->model.coordinates[i].name;
+  }
+  return "";
+}
+
+class Runs {
+ public:
+  Runs(const Simulation& first, const EnsembleRuns& asked)
+      : first_(first), asked_(asked), code_(first.code.for_run()), batch_(compile_batch(first)), how_(asked.runs.size(), How::together), energy_(asked.runs.size()) {
+    states_ = 2 * code_.free.size();
+    p_ = first.scene.parameters.size();
+    w_ = batch_.rhs_prepared != nullptr ? code_.prepared : 0;
+    u_ = first.scene.inputs.size();
+    const auto place = [&](const char* name) {
+      return static_cast<std::size_t>(std::find(code_.output_names.begin(), code_.output_names.end(), name) - code_.output_names.begin());
+    };
+    kinetic_ = place("kinetic");
+    potential_ = place("potential");
+    const auto& conserved = first.derived->conserved;
+    watches_energy_ = std::any_of(conserved.begin(), conserved.end(), [](const derive::Conserved& c) { return c.name == "energy"; });
+  }
+
+  void run() {
+    const run::Scene& scene = first_.scene;
+    eom::EnsembleOptions options;
+    options.rtol = scene.rtol;
+    options.atol = scene.atol;
+    options.fixed_step = scene.step;
+    if (scene.max_step > 0) options.max_step = scene.max_step;
+    if (scene.step > 0) options.max_steps = std::numeric_limits<std::size_t>::max();
+    options.interrupt = asked_.interrupt;
+    options.threads = asked_.threads;
+    const auto rhs = [this](std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx, int* codes) {
+      const double* const w = p + p_ * stride;
+      const double* const u = u_ > 0 ? w + w_ * stride : nullptr;
+      constexpr int own = emit::own_time + emit::own_parameters + emit::own_inputs;
+      return w_ > 0 ? batch_.rhs_prepared(count, stride, t, x, p, w, u, nullptr, own + emit::own_prepared, dx, codes)
+                    : batch_.rhs(count, stride, t, x, p, u, nullptr, own, dx, codes);
+    };
+    eom::integrate_ensemble(scene.solver, rhs, asked_.runs.size(), states_, p_ + w_ + u_, options,
+                            [this](std::size_t member, eom::EnsembleStart& start) { begin(member, start); },
+                            [this](const eom::EnsembleEnd& end) { finish(end); });
+  }
+
+ private:
+  enum class How : char { together, alone, refused };
+
+  /// A run that is not to be made side by side ends where it begins.
+  void begin(std::size_t member, eom::EnsembleStart& start) {
+    const std::lock_guard<std::mutex> guard(lock_);  // scenes are resolved in the model's own graph
+    start.t0 = start.t1 = 0;
+    std::fill(start.x.begin(), start.x.end(), 0.0);
+    std::fill(start.p.begin(), start.p.end(), 0.0);
+    if (asked_.interrupt != nullptr && *asked_.interrupt) return;
+    Derived& derived = *first_.derived;
+    std::optional<run::Scene> scene;
+    try {
+      scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name), asked_.values(asked_.runs[member]));
+    } catch (const Error& error) {
+      if (error.stage() != "scene") throw;
+      how_[member] = How::refused;
+      asked_.refused(asked_.runs[member], error.message());
+      return;
+    }
+    const auto finite = [](double value) { return std::isfinite(value); };
+    how_[member] = How::alone;
+    if (!stands_still(*scene) || !std::all_of(scene->parameters.begin(), scene->parameters.end(), finite)) return;
+    std::copy(scene->parameters.begin(), scene->parameters.end(), start.p.begin());
+    if (w_ > 0 && batch_.model.prepare(start.p.data(), start.p.data() + p_) != 0) return;
+    for (std::size_t i = 0; i < u_; ++i) start.p[p_ + w_ + i] = scene->inputs[i](scene->t0, scene->t0);
+    for (std::size_t i = 0; i < code_.free.size(); ++i) {
+      start.x[i] = scene->q[code_.free[i]];
+      start.x[code_.free.size() + i] = scene->qdot[code_.free[i]];
+    }
+    start.t0 = scene->t0;
+    start.t1 = scene->t1;
+    how_[member] = How::together;
+    if (watches_energy_) energy_[member] = energy(outputs(start.t0, start.x, start.p)).first;
+  }
+
+  std::vector<double> outputs(double t, std::span<const double> x, std::span<const double> p) const {
+    std::vector<double> y(code_.output_names.size());
+    code_.outputs(t, x.data(), p.data(), u_ > 0 ? p.data() + p_ + w_ : nullptr, 0, y.data());
+    return y;
+  }
+  /// The energy, and the size of its parts.
+  std::pair<double, double> energy(const std::vector<double>& y) const {
+    return {y[kinetic_] + y[potential_], std::abs(y[kinetic_]) + std::abs(y[potential_])};
+  }
+
+  void finish(const eom::EnsembleEnd& end) {
+    const std::size_t run = asked_.runs[end.member];
+    const bool stopped = end.outcome == eom::Outcome::interrupted || (asked_.interrupt != nullptr && *asked_.interrupt);
+    if (how_[end.member] == How::refused || stopped) return;
+    run::RunResult result;
+    if (how_[end.member] == How::together && end.outcome == eom::Outcome::done) {
+      const std::vector<double> y = outputs(end.t, end.x, end.p);
+      const auto [now, size] = energy(y);
+      if (!watches_energy_ || std::abs(now - energy_[end.member]) <= doubtful_energy * size) {
+        result.outcome = end.outcome;
+        result.t = end.t;
+        result.statistics = end.statistics;
+        for (std::size_t i = 0; i < y.size(); ++i) result.final.emplace_back(code_.output_names[i], y[i]);
+        const std::lock_guard<std::mutex> guard(lock_);
+        return asked_.done(run, result);
+      }
+    }
+    const std::lock_guard<std::mutex> guard(lock_);
+    result = run_again(first_, asked_.values(run), false);
+    if (asked_.interrupt == nullptr || !*asked_.interrupt) asked_.done(run, result);
+  }
+
+  const Simulation& first_;
+  const EnsembleRuns& asked_;
+  run::Code code_;
+  emit::LoadedBatch batch_;
+  std::vector<How> how_;
+  std::vector<double> energy_;  // at the start of each
+  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;  // rows: parameters, what is prepared of them, inputs
+  std::size_t kinetic_ = 0, potential_ = 0;
+  bool watches_energy_ = false;
+  std::mutex lock_;
+};
+
+}  // namespace
+
+std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides) {
+  if (overrides.solver || scene.solver != "auto") return overrides.solver.value_or(scene.solver);
+  return overrides.step ? "rk4" : "dop853";
+}
+
+void require_plain(const Simulation& first) {
+  const run::Code code = first.code.for_run();
+  const eom::MethodInfo& method = run::method_named(first.scene.solver);
+  std::string why;
+  if (method.name == std::string(eom::Automatic::name) || method.implicit || method.series || method.variational || method.constrained) {
+    why = fmt::format("solver '{}' is no explicit Runge-Kutta method", first.scene.solver);
+  } else if (!code.contacts.empty()) {
+    why = "the model has contacts with friction, or that can be left";
+  } else if (!first.derived->model.events.empty()) {
+    why = "the model has events";
+  } else if (!code.kinks.empty()) {
+    why = "the equations have kinks (abs, sign, min, max, if), which are located";
+  } else if (code.active_constraints > 0) {
+    why = "constraints keep multipliers, and each step is projected onto them";
+  } else if (first.charts != nullptr) {
+    why = "coordinates that fail are exchanged for second charts";
+  } else if (code.integrals > 0) {
+    why = "an integral over time is a state of the model";
+  } else if (const std::string name = ranged(first, code); !name.empty()) {
+    why = fmt::format("'{}' has a range, which is looked at after every step", name);
+  } else if (!stands_still(first.scene)) {
+    why = "inputs or functions of time move, whose jumps and pulses are located";
+  }
+  if (why.empty()) return;
+  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why,
+              "leave --ensemble out; with it take --solver dop853, tsit5 or dopri5, or rk4 with --step");
+}
+
+void run_ensemble(const Simulation& first, const EnsembleRuns& asked) { Runs(first, asked).run(); }
+
+}  // namespace eomgen::cli

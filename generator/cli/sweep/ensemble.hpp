@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of a sweep side by side in the lanes of vector registers (eom/ensemble), by threads. In: a run that has been made, values for the
+// others. Out: their results, to the last bit those that they have alone.
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/simulate.hpp"
+
+namespace eomgen::cli {
+
+struct EnsembleRuns {
+  std::vector<std::size_t> runs;
+  std::size_t threads = 1;
+  std::function<run::Overrides(std::size_t run)> values;
+  /// Called by one thread at a time, in no particular order; not for runs that an interruption ended.
+  std::function<void(std::size_t run, const run::RunResult& result)> done;
+  std::function<void(std::size_t run, const std::string& why)> refused;  // could not begin
+  const std::atomic<bool>* interrupt = nullptr;
+};
+
+/// Where nothing is said an ensemble is integrated by this: no method that could change on the way.
+std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides);
+
+/// Throws Error{stage "sweep"} where the scene has what only a run alone looks after: contacts, events, kinks, constraints with
+/// multipliers, charts that are exchanged, ranges, inputs that move, integrals, a solver that is not explicit.
+void require_plain(const Simulation& first);
+
+/// Runs that do not end as planned, and those in which time alone does something, are made once more alone.
+void run_ensemble(const Simulation& first, const EnsembleRuns& asked);
+
+}  // namespace eomgen::cli

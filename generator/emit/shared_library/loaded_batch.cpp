@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/shared_library/loaded_batch.hpp"
+
+#include <dlfcn.h>
+
+#include <cstring>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "emit/shared_library/build.hpp"
+#include "error.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+/// Registers as wide as this processor has them.
+std::vector<std::string> flags_of_processor() {
+#if defined(__x86_64__) && defined(__GNUC__)
+  if (__builtin_cpu_supports("avx512f")) return {"-mavx512f"};
+  if (__builtin_cpu_supports("avx2")) return {"-mavx2"};
+#endif
+  return {};
+}
+
+/// Whether lanes of the default state have the bits of that state alone.
+bool agrees(const LoadedBatch& batch) {
+  const auto info = nlohmann::json::parse(batch.model.info);
+  const std::size_t n = info["states"].size(), count = 11, stride = 11;
+  std::vector<double> x(n), p(info["parameters"].size() + 1), dx(n), lanes(n * stride), results(n * stride);
+  std::vector<int> codes(count);
+  batch.model.defaults(x.data(), p.data());
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t s = 0; s < count; ++s) lanes[i * stride + s] = x[i] + 0.0625 * static_cast<double>(s * (i + 1));
+  }
+  const double t = 0.5;
+  batch.rhs(count, stride, &t, lanes.data(), p.data(), nullptr, nullptr, 0, results.data(), codes.data());
+  for (std::size_t s = 0; s < count; ++s) {
+    for (std::size_t i = 0; i < n; ++i) x[i] = lanes[i * stride + s], dx[i] = 0;
+    const int code = batch.model.rhs(t, x.data(), p.data(), nullptr, 0, dx.data());
+    if (code != codes[s]) return false;
+    for (std::size_t i = 0; code == 0 && i < n; ++i) {
+      if (std::memcmp(&dx[i], &results[i * stride + s], sizeof(double)) != 0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : model(path, name) {
+  handle_ = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  const auto find = [&](const char* what) { return handle_ == nullptr ? nullptr : ::dlsym(handle_, (name + what).c_str()); };
+  rhs = reinterpret_cast<BatchFunction>(find("_rhs_batch"));
+  rhs_prepared = reinterpret_cast<PreparedBatchFunction>(find("_rhs_prepared_batch"));
+  const auto width_of = reinterpret_cast<int (*)()>(find("_batch_width"));
+  if (width_of != nullptr) width = width_of();
+  const bool whole = rhs != nullptr && width_of != nullptr && (model.rhs_prepared == nullptr || rhs_prepared != nullptr);
+  if (whole && agrees(*this)) return;
+  if (handle_ != nullptr) ::dlclose(handle_);
+  throw Error("compile", {}, whole ? "a batch of compiled code has other bits than its states alone: " + path : "compiled code lacks batches: " + path,
+              "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again; without --ensemble no batch is needed", Fault::tool);
+}
+
+LoadedBatch::~LoadedBatch() {
+  if (handle_ != nullptr) ::dlclose(handle_);
+}
+
+LoadedBatch::LoadedBatch(LoadedBatch&& other) noexcept
+    : model(std::move(other.model)), rhs(other.rhs), rhs_prepared(other.rhs_prepared), width(other.width), folder(std::move(other.folder)),
+      handle_(std::exchange(other.handle_, nullptr)) {}
+
+LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files, const std::string& name, const std::atomic<bool>* interrupt) {
+  Recipe recipe;
+  recipe.name = name;
+  recipe.files = {{name + "_all.c", "#include \"" + name + ".c\"\n#include \"" + name + "_batch.c\"\n"}};
+  recipe.files.insert(recipe.files.end(), files.begin(), files.end());
+  recipe.flags = {"-std=c11", "-O2", "-fno-math-errno", "-ffp-contract=off", "-fPIC", "-shared"};
+  for (const std::string& flag : flags_of_processor()) recipe.flags.push_back(flag);
+  recipe.libraries = {"-lm"};
+  recipe.what = "emitted batches";
+  recipe.remedy = "check the compiler (EOMGEN_CC, CC); if it is in order, please report the model";
+  recipe.interrupt = interrupt;
+  const Built built = build_library(recipe, [&name](const std::string& path) { LoadedBatch(path, name); });
+  LoadedBatch loaded(built.path, name);
+  loaded.folder = built.folder;
+  return loaded;
+}
+
+}  // namespace eomgen::emit

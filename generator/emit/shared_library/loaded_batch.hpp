@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// In: what the target batch emitted. Out: its functions for many states, compiled for the processor of this machine and loaded. The
+// same cache as that of loaded_model.hpp; fused multiplications are left out, so that every processor computes the same bits.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "emit/shared_library/loaded_model.hpp"
+
+namespace eomgen::emit {
+
+using BatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, const double* u, const int* mode,
+                              int own, double* dx, int* codes);
+using PreparedBatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, const double* w,
+                                      const double* u, const int* mode, int own, double* dx, int* codes);
+
+/// NAME_own_time, ... of every NAME_batch.h (docs/abi.md).
+inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepared = 16;
+
+class LoadedBatch {
+ public:
+  /// Throws Error{Fault::tool} as LoadedModel does, and where a batch of the default state has other bits than that state alone.
+  LoadedBatch(const std::string& path, const std::string& name);
+  ~LoadedBatch();
+  LoadedBatch(LoadedBatch&& other) noexcept;
+  LoadedBatch& operator=(LoadedBatch&&) = delete;
+
+  LoadedModel model;
+  BatchFunction rhs = nullptr;
+  PreparedBatchFunction rhs_prepared = nullptr;  // there with `prepare`
+  int width = 1;                                 // states side by side
+  std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
+
+ private:
+  void* handle_ = nullptr;
+};
+
+/// `files`: name and text of NAME.c, NAME.h, NAME_batch.c and NAME_batch.h.
+LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files, const std::string& name, const std::atomic<bool>* interrupt);
+
+}  // namespace eomgen::emit
