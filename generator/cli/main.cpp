@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <cln/float.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -99,6 +100,9 @@ int main(int argc, char** argv) try {
 } catch (const eomgen::work::Interrupted&) {
   eomgen::cli::tell_interrupted(nullptr);
   return eomgen::cli::exit_interrupted;
+} catch (const cln::floating_point_exception&) {
+  return report(eomgen::Error("numbers", eomgen::Where{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
+                              "use units in which its masses, lengths and times are nearer to 1"));
 } catch (const std::bad_alloc&) {
   eomgen::cli::tell("error: out of memory\n  remedy: make the model smaller\n");
   return exit_internal;

@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/abi_values.hpp"
 
+#include <cln/dfloat.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
 #include <algorithm>
 #include <cmath>
 #include <eom/modes/chart_state.hpp>
@@ -112,17 +116,23 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
   return coefficients;
 }
 
+/// Infinite where binary64 ends.
+double to_binary64(const cl_R& value) {
+  const bool held = cln::abs(value) <= cln::rational(cln::cl_R(cln::cl_DF(std::numeric_limits<double>::max())));
+  return held ? cln::double_approx(value) : std::copysign(std::numeric_limits<double>::infinity(), cln::minusp(value) ? -1.0 : 1.0);
+}
+
 Arguments<double> in_binary64(const Arguments<cl_R>& at) {
-  Arguments<double> result{cln::double_approx(at.t), {}, {}, {}, {}, {}, at.mode};
+  Arguments<double> result{to_binary64(at.t), {}, {}, {}, {}, {}, at.mode};
   for (const auto& [from, to] : {std::pair{&at.x, &result.x}, {&at.p, &result.p}, {&at.u, &result.u}}) {
-    for (const cl_R& value : *from) to->push_back(cln::double_approx(value));
+    for (const cl_R& value : *from) to->push_back(to_binary64(value));
   }
   return result;
 }
 
 std::vector<double> in_binary64(const std::vector<cl_R>& values) {
   std::vector<double> result;
-  for (const cl_R& value : values) result.push_back(cln::double_approx(value));
+  for (const cl_R& value : values) result.push_back(to_binary64(value));
   return result;
 }
 
@@ -188,7 +198,7 @@ std::vector<std::vector<double>> abi_bounds(const Program& program, const std::s
     std::vector<double> off;
     double largest = 0;
     for (const double value : got) largest = std::max(largest, std::fabs(value));
-    for (std::size_t i = 0; i < got.size(); ++i) off.push_back(caution * (std::fabs(got[i] - cln::double_approx(exact->front()[i])) + half_unit * largest));
+    for (std::size_t i = 0; i < got.size(); ++i) off.push_back(caution * (std::fabs(got[i] - to_binary64(exact->front()[i])) + half_unit * largest));
     return {off};
   }
   if (function == "prepare") {

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/comparisons.hpp"
 
+#include <cln/dfloat.h>
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
@@ -255,16 +258,23 @@ double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, co
   return largest;
 }
 
+constexpr const char* beyond_binary64 = "a value beyond what binary64 holds";
+
+double to_binary64(const Real& value) {
+  if (cln::abs(value) > cln::rational(Real(cln::cl_DF(std::numeric_limits<double>::max())))) throw std::domain_error(beyond_binary64);
+  return cln::double_approx(value);
+}
+
 std::vector<double> rounded(const std::vector<Real>& values) {
   std::vector<double> result;
-  for (const Real& value : values) result.push_back(cln::double_approx(value));
+  for (const Real& value : values) result.push_back(to_binary64(value));
   return result;
 }
 
 /// The state as binary64 has it.
 State in_binary64(const State& state, const Judge& judge) {
   const auto exactly = [&](const Real& value) {
-    return judge.precision().round(cln::rational(Real(cln::cl_DF(cln::double_approx(value)))));
+    return judge.precision().round(cln::rational(Real(cln::cl_DF(to_binary64(value)))));
   };
   State at = state;
   at.t = exactly(at.t);
@@ -286,6 +296,12 @@ std::vector<Real> rounding_of_rhs(const Subjects& subjects, const At& at, const 
   return sizes;
 }
 
+bool overflows(const Subjects& subjects, const At& at) {
+  if (subjects.programs.empty() || !subjects.programs.front().bounds) return false;
+  const std::vector<std::vector<double>> bounds = subjects.programs.front().bounds("rhs", at);
+  return std::any_of(bounds[0].begin(), bounds[0].end(), [](double bound) { return !std::isfinite(bound); });
+}
+
 /// Code in binary64 against the system at the same binary64 numbers.
 double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v, const Judge& judge, int mode) {
   const EquationSystem& s = subjects.systems.front();
@@ -293,13 +309,16 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
   const std::vector<Real> reference = right_hand_side(s, judge, at);
   const At arguments = arguments_at(s, at, mode);
   const auto dx = form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
-  if (!dx) return 1;
-  std::vector<Real> precise;
-  for (const double value : *dx) {
-    if (!std::isfinite(value)) return 1;
-    precise.push_back(cln::rational(Real(cln::cl_DF(value))));
+  const std::vector<Real> rounding = rounding_of_rhs(subjects, arguments, judge);
+  const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });
+  if (!finite) {
+    // Where its bounds are not finite either, it is a value on the way that is too large.
+    if (rounding.empty() && overflows(subjects, arguments)) throw std::domain_error(beyond_binary64);
+    return 1;
   }
-  return rhs_difference(precise, reference, s, v, rounding_of_rhs(subjects, arguments, judge));
+  std::vector<Real> precise;
+  for (const double value : *dx) precise.push_back(cln::rational(Real(cln::cl_DF(value))));
+  return rhs_difference(precise, reference, s, v, rounding);
 }
 
 /// Programs and compiled code against the first system, whose friction forces are those of the law in `mode`.

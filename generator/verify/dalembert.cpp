@@ -37,7 +37,9 @@ void Residual::add(const Real& term, const Real& size) {
 
 double relative(const Real& difference, const Real& scale) {
   if (cln::zerop(difference)) return 0;
-  return cln::zerop(scale) ? 1 : cln::double_approx(cln::abs(difference) / scale);
+  if (cln::zerop(scale)) return 1;
+  const Real quotient = cln::abs(difference) / scale;
+  return quotient > cln::expt(cln::cl_RA(10), cln::cl_I(300)) ? 1e300 : cln::double_approx(quotient);
 }
 
 double Residual::relative() const { return verify::relative(value, scale); }

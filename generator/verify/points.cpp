@@ -73,17 +73,40 @@ void Points::read_scene() {
   }
   start.q.assign(m.coordinates.size(), exact(0));
   start.qdot = start.qddot = start.q;
+  std::vector<bool> given(m.coordinates.size(), false);
   if (scene != nullptr)
     for (const auto* values : {&scene->guess, &scene->initial})
-      for (const model::InitialValue& given : *values) {
-        std::vector<Real>& target = given.order == 0 ? start.q : start.qdot;
+      for (const model::InitialValue& value : *values) {
+        std::vector<Real>& target = value.order == 0 ? start.q : start.qdot;
         try {
-          target[given.coordinate] = judge_.value(given.value, start);
+          target[value.coordinate] = judge_.value(value.value, start);
+          if (values == &scene->initial && value.order == 0) given[value.coordinate] = true;
         } catch (const Singular&) {
           continue;  // a start that needs values which only the constraints give
         }
       }
   read_ranges(start);
+  read_scales();
+  settle(std::move(start), given);
+}
+
+/// What the scene leaves to the constraints is where they put it: neither its guess nor a zero says where the system lives, or how large it is.
+void Points::settle(State start, const std::vector<bool>& given) {
+  const bool holonomic = [&] {
+    for (std::size_t k = 0; k < judge_.constraints().size(); ++k)
+      if (judge_.holonomic(k)) return true;
+    return false;
+  }();
+  if (!holonomic || std::find(given.begin(), given.end(), false) == given.end()) return;
+  for (std::size_t i = 0; i < choices_.size(); ++i) start.q[i] = exact(choices_[i].center);
+  for (const std::size_t j : leavable_) start.apart.insert(j);  // they need not touch
+  try {
+    project_positions(start, &given);
+    require_inside(start);
+  } catch (const std::runtime_error&) {
+    return;  // given values may be moved too, or the guess is too far away: the states are looked for from there
+  }
+  for (std::size_t i = 0; i < choices_.size(); ++i) choices_[i].center = cln::double_approx(start.q[i]);
   read_scales();
 }
 
@@ -170,7 +193,7 @@ State Points::draw() {
 }
 
 /// The least change, measured by the scales, that removes the defect: W A^T (A W A^T)^-1 (-defect).
-std::vector<Real> Points::correction(const State& state, bool rates) const {
+std::vector<Real> Points::correction(const State& state, bool rates, const std::vector<bool>* held) const {
   State at = state;
   at.qddot.clear();  // nobody asks for psi_ddot here
   ConstraintValues c = judge_.constraint_values(at);
@@ -184,8 +207,8 @@ std::vector<Real> Points::correction(const State& state, bool rates) const {
   const std::size_t rows = c.gradient.size();
   if (rows == 0) return std::vector<Real>(n, Real(0));
   std::vector<Real> weight;
-  for (const Choice& choice : choices_) {
-    const Real scale = exact(rates ? choice.rate_scale : choice.scale);
+  for (std::size_t i = 0; i < n; ++i) {
+    const Real scale = exact(held != nullptr && (*held)[i] ? 0.0 : rates ? choices_[i].rate_scale : choices_[i].scale);
     weight.push_back(scale * scale);
   }
   std::vector<Real> gram(rows * rows, Real(0)), right;
@@ -208,12 +231,15 @@ std::vector<Real> Points::correction(const State& state, bool rates) const {
   return change;
 }
 
-void Points::project_positions(State& s) const {
+void Points::project_positions(State& s, const std::vector<bool>* held) const {
   if (judge_.constraints().empty()) return;
   // Convergence is quadratic: after a step of relative size 10^-h the error is of the order 10^-2h.
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 + 2));
+  const Real own = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() / 2 - 8));
+  constexpr int most_settling = 8;
+  int settled = 0;
   for (int iteration = 0; iteration < 40; ++iteration) {
-    const std::vector<Real> step = correction(s, false);
+    const std::vector<Real> step = correction(s, false, held);
     Real size = 0;
     for (std::size_t i = 0; i < step.size(); ++i) {
       s.q[i] = s.q[i] + step[i];
@@ -221,7 +247,13 @@ void Points::project_positions(State& s) const {
     }
     // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a scale.
     if (iteration > 0 && size > 1000) break;
-    if (size < small) return;
+    if (size >= small) continue;
+    // A coordinate far below its scale, as a height of 1 beside a width of 1e300, has digits of its own to come.
+    const auto coarse = [&](std::size_t i) { return cln::abs(step[i]) > cln::abs(s.q[i]) * own; };
+    if (++settled == most_settling) return;
+    bool any = false;
+    for (std::size_t i = 0; i < step.size(); ++i) any = any || coarse(i);
+    if (!any) return;
   }
   throw Unclosed("no configuration on the constraints was found");
 }
@@ -233,7 +265,7 @@ void Points::project_velocities(State& s) const {
   std::vector<Real> size;
   for (std::size_t i = 0; i < choices_.size(); ++i) size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
   for (int round = 0; round < 2; ++round) {
-    const std::vector<Real> change = correction(s, true);
+    const std::vector<Real> change = correction(s, true, nullptr);
     for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
   }
   for (std::size_t i = 0; i < size.size(); ++i) {

@@ -50,12 +50,14 @@ class Points {
   void read_scene();
   void read_ranges(const State& start);
   void read_scales();
+  void settle(State start, const std::vector<bool>& given);
   void fix(std::vector<Real>& parameters) const;
   State draw();
   double draw_coordinate(const Choice& choice);
-  void project_positions(State& state) const;
+  /// Those that are `held` stay where they are.
+  void project_positions(State& state, const std::vector<bool>* held = nullptr) const;
   void project_velocities(State& state) const;
-  std::vector<Real> correction(const State& state, bool rates) const;
+  std::vector<Real> correction(const State& state, bool rates, const std::vector<bool>* held) const;
   void require_implied(const State& state) const;
   void require_inside(const State& state) const;
   void require_smooth(const State& state) const;

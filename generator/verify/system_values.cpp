@@ -27,6 +27,7 @@ struct Solved {
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
   std::vector<Real> M;
+  std::vector<Real> lost;  // of each row: terms that cancel in the route's own expressions, by what their last digits leave
   double condition = 1;
 };
 
@@ -34,6 +35,37 @@ std::vector<Ref> concatenate(std::initializer_list<const std::vector<Ref>*> list
   std::vector<Ref> all;
   for (const auto* list : lists) all.insert(all.end(), list->begin(), list->end());
   return all;
+}
+
+// Of numbers that are far smaller than the largest, some may be what is left of terms that cancel.
+bool may_have_cancelled(const std::vector<Real>& values) {
+  Real largest = 0;
+  for (const Real& value : values) largest = cln::max(largest, cln::abs(value));
+  const Real small = largest / cln::expt(cln::cl_RA(10), cln::cl_I(8));
+  return std::any_of(values.begin(), values.end(), [&](const Real& value) { return !cln::zerop(value) && cln::abs(value) < small; });
+}
+
+/// A force that is 0 because terms cancel leaves their last digits: the same with more digits tells how large they are.
+std::vector<Real> lost_in_rows(const EquationSystem& s, const Lookup& lookup, int digits, const std::vector<Real>& value, const Solved& out) {
+  constexpr int more = 20;
+  const std::size_t n = s.free.size(), m = s.active.size();
+  const std::vector<Real> precise = symbolic::evaluate(*s.dag, concatenate({&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma}), lookup, digits + more);
+  const Real size = cln::expt(cln::cl_RA(10), cln::cl_I(digits));
+  const auto lost = [&](std::size_t at) { return Real(cln::abs(value[at] - precise[at]) * size); };
+  const std::size_t f = n * n, A = f + n + m, gamma = A + m * n + m;
+  std::vector<Real> rows;
+  for (std::size_t i = 0; i < n; ++i) {
+    Real sum = lost(f + i);
+    for (std::size_t k = 0; k < n; ++k) sum = sum + lost(i * n + k) * cln::abs(out.qddot[k]);
+    for (std::size_t k = 0; k < m; ++k) sum = sum + lost(A + k * n + i) * cln::abs(out.lambda[k]);
+    rows.push_back(sum);
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    Real sum = lost(gamma + k);
+    for (std::size_t i = 0; i < n; ++i) sum = sum + lost(A + k * n + i) * cln::abs(out.qddot[i]);
+    rows.push_back(sum);
+  }
+  return rows;
 }
 
 /// [M A^T; A 0][qddot; -lambda] = [f; -gamma]
@@ -81,6 +113,9 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     out.lambda = symbolic::evaluate(*s.dag, s.solution->lambda, lookup, digits);
   }
   out.inverse = std::move(solution.inverse);
+  if (with_inverse && (may_have_cancelled(f) || may_have_cancelled(out.M) || may_have_cancelled(out.A) || may_have_cancelled(out.gamma))) {
+    out.lost = lost_in_rows(s, lookup, digits, value, out);
+  }
   return out;
 }
 
@@ -138,6 +173,7 @@ std::vector<Real> sizes_of_rows(const EquationSystem& s, const Solved& solved, c
     for (std::size_t i = 0; i < n; ++i) sum = sum + cln::abs(solved.A[k * n + i] * qddot[i]);
     sizes.push_back(sum);
   }
+  for (std::size_t i = 0; i < solved.lost.size(); ++i) sizes[i] = sizes[i] + solved.lost[i];
   return sizes;
 }
 
