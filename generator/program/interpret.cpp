@@ -2,6 +2,10 @@
 #include "program/interpret.hpp"
 
 #include <functional>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <type_traits>
 
 #include "symbolic/dag.hpp"
@@ -40,6 +44,12 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
                  const std::function<Real(const symbolic::Rational&)>& number, const Real& pi) {
   std::vector<Real> value;
   value.reserve(function.code.size());
+  std::vector<std::string> reasons;           // why values are missing; the branch that is not taken may be
+  std::map<std::size_t, std::size_t> missing;  // values, by reason
+  const auto why = [&](const Operand& operand) -> std::optional<std::size_t> {
+    const auto found = operand.slot == Slot::value ? missing.find(operand.index) : missing.end();
+    return found == missing.end() ? std::nullopt : std::optional(found->second);
+  };
   const auto read = [&](const Operand& operand) -> Real {
     const Real size = [&]() -> Real {
       switch (operand.slot) {
@@ -58,7 +68,25 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
     }();
     return operand.negated ? Real(-size) : size;
   };
+  const auto needed = [&](const Operand& operand) -> Real {
+    if (const std::optional<std::size_t> reason = why(operand)) throw std::domain_error(reasons[*reason]);
+    return read(operand);
+  };
+  const auto gap = [&](const Instruction& instruction) -> std::optional<std::size_t> {
+    if (missing.empty()) return std::nullopt;
+    const bool select = instruction.op == Op::select;
+    for (std::size_t i = 0; i < (select ? 2 : instruction.operands.size()); ++i) {
+      if (const std::optional<std::size_t> reason = why(instruction.operands[i])) return reason;
+    }
+    if (!select) return std::nullopt;
+    return why(instruction.operands[read(instruction.operands[0]) < read(instruction.operands[1]) ? 2 : 3]);
+  };
   for (const Instruction& instruction : function.code) {
+    if (const std::optional<std::size_t> reason = gap(instruction)) {
+      missing.emplace(value.size(), *reason);
+      value.emplace_back(0);
+      continue;
+    }
     std::vector<Real> operands;
     for (const Operand& operand : instruction.operands) operands.push_back(read(operand));
     if (instruction.op == Op::add || instruction.op == Op::mul) {
@@ -68,16 +96,22 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
       }
       value.push_back(result);
     } else {
-      value.push_back(call(instruction.op, operands, digits));
+      try {
+        value.push_back(call(instruction.op, operands, digits));
+      } catch (const std::domain_error& outside) {
+        missing.emplace(value.size(), reasons.size());
+        reasons.emplace_back(outside.what());
+        value.emplace_back(0);
+      }
     }
   }
   Values<Real> values;
   for (const auto& [name, entries] : function.results) {
     std::vector<Real> list;
-    for (const Operand& entry : entries) list.push_back(read(entry));
+    for (const Operand& entry : entries) list.push_back(needed(entry));
     values.results.push_back(std::move(list));
   }
-  for (const PivotTest& test : function.pivots) values.pivots.emplace_back(read(test.pivot), read(test.scale));
+  for (const PivotTest& test : function.pivots) values.pivots.emplace_back(needed(test.pivot), needed(test.scale));
   return values;
 }
 

@@ -7,7 +7,9 @@
 #include <cln/integer.h>
 
 #include <cmath>
+#include <map>
 #include <stdexcept>
+#include <string>
 
 namespace eomgen::symbolic {
 namespace {
@@ -97,33 +99,63 @@ struct Binary64 {
 };
 
 template <class Real, class Arithmetic, class Lookup>
+Real value_of(const Dag& dag, Ref r, const std::vector<Real>& value, const Lookup& lookup, const Arithmetic& number) {
+  const Node& node = dag[r];
+  const auto arg = [&](std::size_t i) -> const Real& { return value[node.args[i].id]; };
+  switch (node.op) {
+    case Op::constant: return number.constant(dag.value(r));
+    case Op::pi: return number.pi();
+    case Op::symbol: return lookup(dag.symbol_of(r));
+    case Op::add: return arg(0) + arg(1);
+    case Op::sub: return arg(0) - arg(1);
+    case Op::mul: return arg(0) * arg(1);
+    case Op::div: return number.divide(arg(0), arg(1));
+    case Op::neg: return -arg(0);
+    case Op::power: return number.power(arg(0), node.payload);
+    case Op::pow: return number.pow(arg(0), arg(1));
+    case Op::atan2: return number.atan2(arg(0), arg(1));
+    case Op::min: return number.less(arg(1), arg(0)) ? arg(1) : arg(0);
+    case Op::max: return number.less(arg(0), arg(1)) ? arg(1) : arg(0);
+    case Op::select: return number.less(arg(0), arg(1)) ? arg(2) : arg(3);
+    default: return number.call(node.op, arg(0));
+  }
+}
+
+template <class Real, class Arithmetic, class Lookup>
 std::vector<Real> run(const Dag& dag, const std::vector<Ref>& roots, const Lookup& lookup, const Arithmetic& number) {
   std::vector<Real> value(dag.size());
-  for (const Ref r : dag.reachable(roots)) {
+  std::map<std::uint32_t, std::string> missing;  // outside of a domain, and why; the branch that is not taken may be
+  // What the value is made of lacks one.
+  const auto gap = [&](Ref r) -> const std::string* {
+    if (missing.empty()) return nullptr;
     const Node& node = dag[r];
-    const auto arg = [&](std::size_t i) -> const Real& { return value[node.args[i].id]; };
-    Real result;
-    switch (node.op) {
-      case Op::constant: result = number.constant(dag.value(r)); break;
-      case Op::pi: result = number.pi(); break;
-      case Op::symbol: result = lookup(dag.symbol_of(r)); break;
-      case Op::add: result = arg(0) + arg(1); break;
-      case Op::sub: result = arg(0) - arg(1); break;
-      case Op::mul: result = arg(0) * arg(1); break;
-      case Op::div: result = number.divide(arg(0), arg(1)); break;
-      case Op::neg: result = -arg(0); break;
-      case Op::power: result = number.power(arg(0), node.payload); break;
-      case Op::pow: result = number.pow(arg(0), arg(1)); break;
-      case Op::atan2: result = number.atan2(arg(0), arg(1)); break;
-      case Op::min: result = number.less(arg(1), arg(0)) ? arg(1) : arg(0); break;
-      case Op::max: result = number.less(arg(0), arg(1)) ? arg(1) : arg(0); break;
-      case Op::select: result = number.less(arg(0), arg(1)) ? arg(2) : arg(3); break;
-      default: result = number.call(node.op, arg(0)); break;
+    const auto in = [&](std::size_t i) -> const std::string* {
+      const auto found = missing.find(node.args[i].id);
+      return found == missing.end() ? nullptr : &found->second;
+    };
+    const std::size_t operands = node.op == Op::select ? 2 : node.arity;
+    for (std::size_t i = 0; i < operands; ++i) {
+      if (const std::string* why = in(i)) return why;
     }
-    value[r.id] = result;
+    if (node.op != Op::select) return nullptr;
+    return in(number.less(value[node.args[0].id], value[node.args[1].id]) ? 2 : 3);
+  };
+  for (const Ref r : dag.reachable(roots)) {
+    if (const std::string* why = gap(r)) {
+      missing.emplace(r.id, *why);
+      continue;
+    }
+    try {
+      value[r.id] = value_of(dag, r, value, lookup, number);
+    } catch (const std::domain_error& outside) {
+      missing.emplace(r.id, outside.what());
+    }
   }
   std::vector<Real> results;
-  for (const Ref root : roots) results.push_back(value[root.id]);
+  for (const Ref root : roots) {
+    if (const auto found = missing.find(root.id); found != missing.end()) throw std::domain_error(found->second);
+    results.push_back(value[root.id]);
+  }
   return results;
 }
 

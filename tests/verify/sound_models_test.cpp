@@ -132,3 +132,26 @@ initial = {{ x = 0.5, y = 1 }}
 )toml", far));
   }
 }
+
+TEST_CASE("sound models: the branch of `if` that is not taken need not have a value") {
+  for (const char* force : {"if(x > 0, sqrt(x), 0)", "if(x > 0, sqrt(x), -sqrt(-x))", "if(x > 0, log(x), 1/(x - 1))", "if(x < 0, 0, x^1.5)"}) {
+    CAPTURE(force);
+    check_passes(fmt::format(R"toml(
+[coordinates]
+x = {{}}
+[[particle]]
+name = "P"
+mass = 1
+position = "x*E1"
+[[force]]
+generalized = {{ x = "{}" }}
+[scene.default]
+t = [0, 1]
+initial = {{ x = 0.1, x_dot = -2 }}
+)toml", force));
+  }
+}
+
+TEST_CASE("sound models: at rest in the corner of two oblique curves") {
+  for (std::uint64_t seed = 1; seed <= 4; ++seed) check_passes(particle_above({"y - 0.3*x", "y + 0.5*x"}), seed);
+}
