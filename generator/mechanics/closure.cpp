@@ -25,6 +25,7 @@ constexpr int digits = 50;
 constexpr int steps = 120;               // Newton's steps halve the distance where rows become dependent, until that is `dependent`
 constexpr int closed_digits = 38;        // |psi| of a configuration
 constexpr double longest_step = 0.7;     // of a coordinate, in units of its scale: angles of 40 degrees
+constexpr double stride = 0.25;          // from one configuration of a motion to the next, likewise
 constexpr double other_values = 0.04;    // how far parameters are varied, relative
 
 constexpr int plain_steps = 40;               // of Newton's method in binary64
@@ -273,6 +274,24 @@ std::optional<Configuration> Closure::near(const Configuration& from, std::uint6
       if (settle(at, all)) return at;
     } catch (const std::exception&) {  // outside the domain of a function
     }
+  }
+  return std::nullopt;
+}
+
+std::optional<Configuration> Closure::beyond(const Configuration& before, const Configuration& at) {
+  const std::vector<double> scale = scales(m_, at.q);
+  double largest = 0;
+  std::vector<double> way;
+  for (std::size_t i = 0; i < at.q.size(); ++i) {
+    way.push_back(cln::double_approx(at.q[i] - before.q[i]));
+    largest = std::max(largest, std::abs(way[i]) / scale[i]);
+  }
+  if (largest == 0) return std::nullopt;
+  Configuration next = at;
+  for (std::size_t i = 0; i < at.q.size(); ++i) next.q[i] = next.q[i] + exact(stride / largest * way[i]);
+  try {
+    if (settle(next, std::vector<bool>(m_.q.size(), true))) return next;
+  } catch (const std::exception&) {  // outside the domain of a function
   }
   return std::nullopt;
 }

@@ -39,6 +39,8 @@ class Closure {
   std::optional<Configuration> start();
   /// Another configuration, not far away; with other values of the parameters, if asked.
   std::optional<Configuration> near(const Configuration& from, std::uint64_t seed, bool other_parameters);
+  /// The one behind `at`, on the way that leads there from `before`.
+  std::optional<Configuration> beyond(const Configuration& before, const Configuration& at);
   /// d psi/d q of all constraints (coefficients of velocities) by all coordinates.
   std::vector<Row> rows(const Configuration& at) const;
   /// b of all constraints: d psi/d t at fixed q, or what is there at rest.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "mechanics/degenerate.hpp"
 #include "mechanics/stages.hpp"
 #include "mechanics/vanishes.hpp"
 
@@ -112,6 +113,20 @@ void check_touch(const Mechanics& m, Lowering& lower, const model::Constraint& c
   }
 }
 
+// (r - L)^2 is refused as it is read; here what is that when it is multiplied out, or 1 - cos(x).
+void refuse_power(const Mechanics& m, const Constraint& c) {
+  std::vector<Symbol> of;
+  std::vector<Ref> slopes;
+  for (const std::uint32_t i : coordinates_in(*m.dag, c.psi)) {
+    of.push_back({SymbolKind::coordinate, i, 0});
+    slopes.push_back(c.gradient[i]);
+  }
+  if (!is_degenerate(*m.dag, c.psi, of, slopes)) return;
+  throw Error("mechanics", m.model->where(m.model->arena[c.written].span),
+              "constraint '" + c.label + "' is a square or a higher power: its gradient vanishes where it holds, so that it has no force",
+              "write what is raised to the power (r - L in place of r^2 - 2*L*r + L^2), or one equation for each coordinate that it fixes");
+}
+
 // Of a vector or of rolling an equation may say nothing, as a distance from the plane that no coordinate changes.
 bool may_hold(const model::Constraint& constraint) {
   const bool several = constraint.joint || constraint.rolling || constraint.psi.size() > (constraint.velocity ? 1 : 2);
@@ -169,6 +184,7 @@ void add_constraints(Mechanics& m, Lowering& lower) {
                     : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
                                         : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
+      if (result.need == Need::holds && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit) refuse_power(m, result);
       result.determined = result.need == Need::holds;
       m.constraints.push_back(std::move(result));
     }

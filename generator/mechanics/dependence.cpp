@@ -5,6 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
 
 #include "mechanics/closure.hpp"
 #include "mechanics/stages.hpp"
@@ -169,6 +172,82 @@ std::vector<Configuration> around(Closure& closure, const Configuration& start) 
   return points;
 }
 
+/// Where the motion leads from the start, both ways: once around a loop.
+std::vector<Configuration> on_the_way(Closure& closure, const Configuration& start, const Configuration& beside) {
+  constexpr int strides = 14;
+  std::vector<Configuration> way;
+  for (const auto& [from, to] : {std::pair{start, beside}, std::pair{beside, start}}) {
+    Configuration before = from, at = to;
+    for (int k = 0; k < strides; ++k) {
+      std::optional<Configuration> next = closure.beyond(before, at);
+      if (!next) break;
+      before = std::move(at);
+      at = *next;
+      way.push_back(std::move(*next));
+    }
+  }
+  return way;
+}
+
+/// The volume that these rows span, each in units of its usual length.
+double volume(const std::vector<Row>& rows, const std::vector<double>& usual, const std::vector<std::size_t>& of) {
+  double result = 1;
+  std::vector<std::vector<double>> basis;
+  for (const std::size_t k : of) {
+    std::vector<double> left;
+    for (const cl_R& x : rows[k]) left.push_back(cln::double_approx(x) / usual[k]);
+    for (const std::vector<double>& e : basis) {
+      const double part = std::inner_product(e.begin(), e.end(), left.begin(), 0.0);
+      for (std::size_t i = 0; i < left.size(); ++i) left[i] -= part * e[i];
+    }
+    const double length = std::sqrt(std::inner_product(left.begin(), left.end(), left.begin(), 0.0));
+    if (length == 0) return 0;
+    for (double& x : left) x /= length;
+    basis.push_back(std::move(left));
+    result *= length;
+  }
+  return result;
+}
+
+/// An equation that is chosen at the start may say nothing at a configuration that the motion passes (a length between bars in line), where one
+/// of those that follow from it does: they change places.
+void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, Selection& chosen) {
+  constexpr double nearly_nothing = 0.2, plainly_better = 3;
+  std::vector<double> usual(of.constraints.size(), 0);
+  for (const std::vector<Row>& rows : way) {
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      double square = 0;
+      for (const cl_R& x : rows[k]) square += std::pow(cln::double_approx(x), 2);
+      usual[k] = std::max(usual[k], std::sqrt(square));
+    }
+  }
+  for (std::size_t turn = 0; turn < of.constraints.size(); ++turn) {
+    std::vector<Selection> candidates{chosen};
+    for (std::size_t i = 0; i < chosen.kept.size(); ++i) {
+      for (std::size_t j = 0; j < chosen.rest.size(); ++j) {
+        const Turn own = of.turns[chosen.kept[i]];
+        if (own == Turn::always || own != of.turns[chosen.rest[j]] || usual[chosen.rest[j]] == 0) continue;
+        Selection other = chosen;
+        std::swap(other.kept[i], other.rest[j]);
+        candidates.push_back(std::move(other));
+      }
+    }
+    if (candidates.size() == 1) return;
+    std::vector<double> worst(candidates.size(), 1);
+    for (const std::vector<Row>& rows : way) {
+      std::vector<double> here;
+      for (const Selection& candidate : candidates) here.push_back(volume(rows, usual, candidate.kept));
+      const double best = *std::max_element(here.begin(), here.end());
+      for (std::size_t c = 0; c < candidates.size() && best > 0; ++c) worst[c] = std::min(worst[c], here[c] / best);
+    }
+    const std::size_t best = static_cast<std::size_t>(std::max_element(worst.begin(), worst.end()) - worst.begin());
+    if (worst[0] > nearly_nothing || worst[best] < plainly_better * worst[0]) return;
+    chosen = candidates[best];
+    std::sort(chosen.kept.begin(), chosen.kept.end());
+    std::sort(chosen.rest.begin(), chosen.rest.end());
+  }
+}
+
 // Of the equations of a loop those that follow from the others at every configuration, whatever the parameters are.
 void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const std::vector<Configuration>& points) {
   const Bound of = bound(m);
@@ -183,6 +262,11 @@ void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const s
   if (there.kept.size() == chosen.kept.size() && !holds_at(at_start, chosen)) chosen = there;
   std::erase_if(chosen.rest, [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run will tell
   if (chosen.rest.empty()) return;
+  std::vector<std::vector<Row>> way;
+  for (const std::vector<Configuration>& some : {std::vector{start}, points, on_the_way(closure, start, points.front())}) {
+    for (const Configuration& at : some) way.push_back(rows_of(closure, of, at));
+  }
+  keep_on_the_way(of, way, chosen);
   std::size_t others = 0;
   for (std::uint64_t seed = 11; seed <= 16 && others < 2; ++seed) {
     const std::optional<Configuration> found = closure.near(start, seed, true);

@@ -11,4 +11,7 @@ namespace eomgen::mechanics {
 /// such a point.
 bool vanishes(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
 
+/// A value at one of these points refutes that it vanishes identically: no proof need be tried.
+bool is_somewhere_nonzero(const symbolic::Dag& dag, symbolic::Ref expression);
+
 }  // namespace eomgen::mechanics

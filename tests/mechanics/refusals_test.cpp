@@ -110,3 +110,16 @@ TEST_CASE("mechanics: a constraint that can be left takes no degree of freedom; 
   CHECK(r.message == "with 'plane' friction can hold 1 directions, and the system has 0 degrees of freedom while everything touches: "
                      "where all stick, the forces are not determined");
 }
+
+TEST_CASE("mechanics refuses: a constraint whose gradient vanishes where it holds, however the power is written") {
+  for (const char* power : {"x^2 - 2*y*x + y^2", "1 - cos(x - y)", "x^2 + y^2", "(x^2 + y^2)^2 - 2*(x^2 + y^2)*m^2 + m^4", "x^3 - 3*x^2*y + 3*x*y^2 - y^3"}) {
+    CAPTURE(power);
+    const Refusal r = refusal(planar + "[[constraint]]\nname = \"c\"\nholonomic = \"" + power + "\"\n");
+    CHECK(r.message == "constraint 'c' is a square or a higher power: its gradient vanishes where it holds, so that it has no force");
+    CHECK(r.line == 11);
+  }
+  for (const char* sound : {"x^2 - y^2", "x^2 + y^2 - m^2", "cos(x - y)", "x^3 - y", "sqrt(x^2 + y^2) - m", "x*y", "abs(x - y) - m", "x - y^2"}) {
+    CAPTURE(sound);
+    CHECK(refusal(planar + "[[constraint]]\nname = \"c\"\nholonomic = \"" + sound + "\"\n").message == "accepted");
+  }
+}
