@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// random_mechanisms PROGRAM FROM TO: every seed's model through the program; a line for each that breaks a promise, and the sum.
+// random_mechanisms PROGRAM FROM TO [N]: every seed's model through the program; a line for each that breaks a promise, and the sum.
+// Every N-th (each, if N is left out) is compiled, run and linearised too.
+// random_mechanisms PROGRAM --found FOLDER: the models that broke a promise once; run, if their name begins with run_.
 // random_mechanisms PROGRAM --print SEED | --shrink SEED: the text of one; the smallest text that breaks the same promise.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <map>
+#include <set>
 #include <string>
 
 #include "random/trial.hpp"
@@ -16,13 +22,15 @@ using namespace eomgen::random_models;
 std::uint64_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
 // 0: all kept their promises, 1: some did not.
-int try_seeds(const std::string& program, const std::string& folder, std::uint64_t from, std::uint64_t to) {
+int try_seeds(const std::string& program, const std::string& folder, std::uint64_t from, std::uint64_t to, std::uint64_t every) {
   std::map<std::string, std::size_t> features;
   std::size_t tried = 0, refused = 0, failed = 0;
   double slowest = 0;
   for (std::uint64_t seed = from; seed <= to; ++seed) {
     const Mechanism m = mechanism(seed);
-    const Trial trial = try_model(program, folder, m.text, {});
+    Limits limits;
+    limits.moved = seed % every == 0;
+    const Trial trial = try_model(program, folder, m.text, limits);
     ++tried;
     refused += trial.refusal.empty() ? 0 : 1;
     if (trial.refusal.empty()) {
@@ -42,11 +50,29 @@ int try_seeds(const std::string& program, const std::string& folder, std::uint64
   return failed == 0 && 4 * refused <= tried ? 0 : 1;
 }
 
+int try_found(const std::string& program, const std::string& folder, const std::filesystem::path& found) {
+  std::set<std::filesystem::path> files;
+  for (const auto& entry : std::filesystem::directory_iterator(found)) files.insert(entry.path());
+  std::size_t failed = 0;
+  for (const std::filesystem::path& file : files) {
+    std::ifstream in(file);
+    const std::string text{std::istreambuf_iterator<char>(in), {}};
+    Limits limits;
+    limits.moved = file.filename().string().starts_with("run_");
+    const Trial trial = try_model(program, folder, text, limits);
+    if (!trial.refusal.empty()) std::printf("%s: refused: %s\n", file.filename().c_str(), trial.refusal.c_str());
+    for (const Finding& finding : trial.findings) std::printf("%s: %s: %s\n", file.filename().c_str(), finding.command.c_str(), finding.what.c_str());
+    failed += trial.refusal.empty() && trial.findings.empty() ? 0 : 1;
+  }
+  std::printf("%zu models of former findings, %zu fail\n", files.size(), failed);
+  return failed == 0 && !files.empty() ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int count, char** words) {
-  if (count != 4) {
-    std::fputs("usage: random_mechanisms PROGRAM FROM TO\n       random_mechanisms PROGRAM --print SEED\n       random_mechanisms PROGRAM --shrink SEED\n", stderr);
+  if (count != 4 && count != 5) {
+    std::fputs("usage: random_mechanisms PROGRAM FROM TO [N]\n       random_mechanisms PROGRAM --found FOLDER\n       random_mechanisms PROGRAM --print SEED\n       random_mechanisms PROGRAM --shrink SEED\n", stderr);
     return 2;
   }
   const std::string program = std::filesystem::absolute(words[1]).string(), second = words[2];
@@ -57,8 +83,10 @@ int main(int count, char** words) {
     std::fputs(mechanism(number(words[3])).text.c_str(), stdout);
   } else if (second == "--shrink") {
     std::fputs(shrink(program, folder, mechanism(number(words[3])).text, {}).c_str(), stdout);
+  } else if (second == "--found") {
+    status = try_found(program, folder, words[3]);
   } else {
-    status = try_seeds(program, folder, number(words[2]), number(words[3]));
+    status = try_seeds(program, folder, number(words[2]), number(words[3]), count == 5 ? std::max<std::uint64_t>(1, number(words[4])) : 1);
   }
   std::filesystem::remove_all(folder);
   return status;

@@ -24,6 +24,9 @@ const std::vector<std::string>& refusals() {
       "cannot be satisfied",
       "has no mass",                        // a coordinate that nothing with inertia moves along
       "no inertia",
+      "changes no equation of motion",      // a force that does no work: friction at a pivot
+      "contains no velocity",               // a knife edge along an arm: its point never moves that way
+      "does not depend on any velocity",
   };
   return texts;
 }
@@ -46,6 +49,9 @@ std::string message(const ChildResult& result) {
   for (std::string line; std::getline(lines, line);) {
     if (line.find("error") != std::string::npos) return line;
   }
+  // A certificate says who disagrees.
+  const Json document = Json::parse(result.out, nullptr, false);
+  if (!document.is_discarded() && document.contains("summary")) return document["summary"].get<std::string>();
   return result.in_time ? "no message" : "out of time";
 }
 
@@ -57,6 +63,8 @@ class Attempt {
     std::ofstream(folder_ + "/m.toml", std::ios::binary) << text;
     if (!command("check", {})) return trial_;
     command("derive", {"--show", "all"});
+    command("verify", {"--no-compile", "--points", "3"});
+    if (!limits_.moved) return trial_;
     if (command("run", {})) inspect_run();
     command("linearize", {});
     return trial_;
@@ -142,8 +150,11 @@ Trial try_model(const std::string& program, const std::string& folder, const std
   return Attempt(program, folder, limits)(text);
 }
 
-std::string shrink(const std::string& program, const std::string& folder, std::string text, const Limits& limits) {
-  const std::string wanted = signature(try_model(program, folder, text, limits));
+std::string shrink(const std::string& program, const std::string& folder, std::string text, Limits limits) {
+  const Trial whole = try_model(program, folder, text, limits);
+  const std::string wanted = signature(whole);
+  if (wanted.empty()) return text;
+  limits.moved = whole.findings.front().command == "run" || whole.findings.front().command == "linearize";
   for (bool smaller = true; smaller;) {
     smaller = false;
     const std::vector<std::string> parts = sections(text);

@@ -10,8 +10,9 @@
 namespace eomgen::random_models {
 
 struct Limits {
-  int seconds = 20;          // of the processor, for each command
+  int seconds = 40;          // of the processor, for each command
   int megabytes = 1500;      // of address space, sanitizers excepted
+  bool moved = true;         // compiled, run and linearised too
 };
 
 struct Finding {
@@ -30,6 +31,6 @@ struct Trial {
 Trial try_model(const std::string& program, const std::string& folder, const std::string& text, const Limits& limits);
 
 /// The smallest text, by leaving out sections, that breaks the same promise.
-std::string shrink(const std::string& program, const std::string& folder, std::string text, const Limits& limits);
+std::string shrink(const std::string& program, const std::string& folder, std::string text, Limits limits);
 
 }  // namespace eomgen::random_models
