@@ -20,6 +20,7 @@ std::span<const Command> commands() {
       Command{"stress", "stiff and extreme variations: what each solver makes of them", declare_stress},
       Command{"inverse", "the forces that prescribed motions need", declare_inverse},
       Command{"sweep", "many runs over a grid of parameters, in parallel, resumable", declare_sweep},
+      Command{"merge", "the tables of a sweep's shards into one", declare_merge},
       Command{"report", "one self-contained page: equations, verification, a run, plots, an animation", declare_report},
   };
   return entries;

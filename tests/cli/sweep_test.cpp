@@ -2,6 +2,7 @@
 // The command sweep: its table against single runs, going on after an interruption, and what it refuses.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <sstream>
 
@@ -175,4 +176,158 @@ TEST_CASE("sweep: what an ensemble cannot look after is told") {
   refused({"stick_slip_belt", "--grid", "m=1,2"}, "contacts with friction");
   refused({"bouncing_ball", "--grid", "m=1,2"}, "cannot be made side by side");
   refused({"R1_free_body", "--grid", "m=1,2"}, "cannot be made side by side");
+}
+
+namespace {
+
+std::vector<double> column(const std::string& table, const std::string& name) {
+  const std::vector<Words> lines = rows(table);
+  const auto place = static_cast<std::size_t>(std::find(lines[1].begin(), lines[1].end(), name) - lines[1].begin());
+  std::vector<double> values;
+  for (std::size_t i = 2; i < lines.size(); ++i) values.push_back(std::stod(lines[i].at(place)));
+  return values;
+}
+
+/// How many of `parts` equal parts of [0, 1) hold exactly one value.
+std::size_t held_once(const std::vector<double>& values, std::size_t parts) {
+  std::vector<int> held(parts);
+  for (const double value : values) ++held[static_cast<std::size_t>(value * static_cast<double>(parts))];
+  return static_cast<std::size_t>(std::count(held.begin(), held.end(), 1));
+}
+
+}  // namespace
+
+TEST_CASE("sweep: samples lie as their design says, follow from the seed, and go with every point of the grid") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const auto table = [&](const Words& more) {
+    Words words{"sweep", "oscillator.toml", "--solver", "rk4", "--step", "0.5", "--no-error-estimate", "--out", "s.csv", "--sample", "m=1:2", "--sample", "k=0:1", "--samples", "64"};
+    words.insert(words.end(), more.begin(), more.end());
+    expect(0, folder, words);
+    return folder.read("s.csv");
+  };
+  for (const char* design : {"random", "latin", "sobol"}) {
+    CAPTURE(std::string(design));
+    const std::string text = table({"--design", design}), again = table({"--design", design, "--jobs", "2"}), other = table({"--design", design, "--seed", "7"});
+    CHECK(text == again);
+    CHECK(text != other);
+    std::vector<double> m = column(text, "m"), k = column(text, "k");
+    REQUIRE(m.size() == 64);
+    for (double& value : m) value -= 1;
+    const bool even = std::string(design) != "random";
+    CHECK((held_once(m, 64) == 64) == even);
+    CHECK((held_once(k, 64) == 64) == even);
+    if (std::string(design) != "sobol") continue;
+    std::vector<double> squares;  // of 8 by 8: a net holds one point in each
+    for (std::size_t i = 0; i < 64; ++i) squares.push_back((std::floor(8 * m[i]) + std::floor(8 * k[i]) / 8) / 8);
+    CHECK(held_once(squares, 64) == 64);
+  }
+  expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2,3", "--sample", "k=1:100:log", "--samples", "5", "--out", "both.csv"});
+  const std::vector<double> k = column(folder.read("both.csv"), "k"), m = column(folder.read("both.csv"), "m");
+  REQUIRE(k.size() == 15);
+  for (std::size_t i = 0; i < 15; ++i) {
+    CHECK(m[i] == 1 + static_cast<double>(i / 5));
+    CHECK(k[i] == k[i % 5]);
+    CHECK((k[i] >= 1 && k[i] < 100));
+  }
+}
+
+TEST_CASE("sweep: Sobol' points fill every axis of ten evenly") {
+  const Folder folder;
+  std::string model = "format = 1\n[parameters]\n";
+  Words words{"sweep", "many.toml", "--solver", "rk4", "--step", "1", "--no-error-estimate", "--out", "s.csv", "--samples", "128", "--design", "sobol"};
+  for (int i = 0; i < 10; ++i) {
+    model += "a" + std::to_string(i) + " = 1\n";
+    words.insert(words.end(), {"--sample", "a" + std::to_string(i) + "=0:1"});
+  }
+  folder.write("many.toml", model + "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[scene.default]\nt = [0, 1]\n");
+  expect(0, folder, words);
+  const std::string text = folder.read("s.csv");
+  std::vector<std::vector<double>> axes;
+  for (int i = 0; i < 10; ++i) {
+    axes.push_back(column(text, "a" + std::to_string(i)));
+    CHECK(held_once(axes.back(), 128) == 128);
+    for (int j = 0; j < i; ++j) CHECK(axes[static_cast<std::size_t>(j)] != axes.back());
+  }
+  words.insert(words.end(), {"--sample", "b=0:1"});
+  CHECK(contains(expect(2, folder, words).err, "at most 10 parameters"));
+}
+
+TEST_CASE("sweep: statistics are those of the table's columns") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--sample", "m=10:2:normal", "--samples", "400", "--design", "latin", "--t-end", "0", "--statistics", "--grid", "k=1,-1"});
+  const auto of = [&](const std::string& name) {
+    for (const Json& column : found["statistics"]) {
+      if (column["column"] == name) return column;
+    }
+    return Json();
+  };
+  CHECK(of("x")["count"] == 800);
+  CHECK(of("x")["mean"] == 1);
+  CHECK(of("x")["deviation"] == 0);
+  CHECK(of("energy")["mean"].get<double>() == 0);  // k/2 of either sign
+  CHECK(of("energy")["min"] == -0.5);
+  CHECK(of("energy")["max"] == 0.5);
+  CHECK(of("energy")["deviation"].get<double>() == doctest::Approx(0.5 * std::sqrt(800.0 / 799)).epsilon(1e-14));
+  CHECK(of("energy")["quantiles"][0]["value"] == -0.5);
+  CHECK(of("detail").is_null());
+  // The samples themselves are normal: a Latin hypercube has their moments closely.
+  std::vector<double> m = column(folder.read("oscillator_sweep.csv"), "m");
+  double mean = 0, square = 0;
+  for (const double value : m) mean += value / 800, square += (value - 10) * (value - 10) / 800;
+  CHECK(std::abs(mean - 10) < 0.02);
+  CHECK(std::abs(square - 4) < 0.2);
+  std::sort(m.begin(), m.end());
+  CHECK(std::abs(m[671] - 12) < 0.06);  // 84.1 % lie below one deviation
+}
+
+TEST_CASE("merge: shards come to the bytes of the sweep in one call, interrupted or not") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Words sweep{"sweep", "oscillator.toml", "--grid", "m=1,2,-1", "--sample", "k=1:9", "--samples", "5", "--no-error-estimate"};
+  const auto with = [&](const Words& more) {
+    Words words = sweep;
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  };
+  expect(3, folder, with({"--out", "whole.csv"}));
+  for (const char* i : {"1", "2", "3", "4"}) document(folder, with({"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/4"}), 3);
+  const Json found = document(folder, {"merge", "3.csv", "1.csv", "4.csv", "2.csv", "--out", "merged.csv", "--statistics"});
+  CHECK(found["runs"] == 15);
+  CHECK(found["shards"] == 4);
+  CHECK(found["statistics"].size() > 0);
+  CHECK(folder.read("merged.csv") == folder.read("whole.csv"));
+  // One that was interrupted lacks runs, and its call makes them.
+  const std::string whole = folder.read("2.csv");
+  const std::size_t cut = whole.rfind('\n', whole.size() - 2) + 1;
+  folder.write("2.csv", whole.substr(0, cut));
+  const Words merge{"merge", "1.csv", "2.csv", "3.csv", "4.csv", "--out", "again.csv"};
+  const std::string told = expect(2, folder, merge).err;
+  CHECK(contains(told, "run 13 is missing, and 1 of 15 in all"));
+  CHECK(contains(told, "sweep --shard 2/4"));
+  CHECK(document(folder, with({"--out", "2.csv", "--shard", "2/4"}), 3)["resumed"] == 3);
+  expect(0, folder, merge);
+  CHECK(folder.read("again.csv") == folder.read("whole.csv"));
+  const auto refused = [&](const Words& words, const std::string& what) {
+    CAPTURE(what);
+    CHECK(contains(expect(2, folder, words).err, what));
+  };
+  refused({"merge", "1.csv", "2.csv", "4.csv", "-o", "no.csv"}, "shard 3/4 is missing");
+  refused({"merge", "1.csv", "1.csv", "-o", "no.csv"}, "are the same shard");
+  refused({"merge", "whole.csv", "-o", "no.csv"}, "is not the table of a shard");
+  refused({"merge", "none.csv", "-o", "no.csv"}, "cannot read");
+  expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--out", "other.csv", "--shard", "2/2"});
+  refused({"merge", "1.csv", "other.csv", "-o", "no.csv"}, "are of different sweeps");
+  CHECK_FALSE(folder.has("no.csv"));
+  refused({"sweep", "oscillator.toml", "--grid", "m=1,2", "--shard", "0/2"}, "is no shard");
+  refused({"sweep", "oscillator.toml", "--grid", "m=1,2", "--shard", "3/3"}, "has no runs");
+  refused({"sweep", "oscillator.toml", "--samples", "3"}, "no --sample says of what");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2"}, "does not say how many");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1", "--samples", "3"}, "is no range of samples");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:0:normal", "--samples", "3"}, "is not above 0");
+  refused({"sweep", "oscillator.toml", "--sample", "k=-1:1:log", "--samples", "3"}, "goes through 0");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--sample", "k=1:2", "--samples", "3"}, "is sampled twice");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--grid", "k=1,2"}, "has a grid and is sampled");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--design", "lattice"}, "choose random, latin or sobol");
 }

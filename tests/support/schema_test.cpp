@@ -79,6 +79,7 @@ const std::map<std::string, json>& right_documents() {
         {"equilibria", {{"format", 1}, {"points", json::array({{{"values", {{"q", 0.5}}}, {"eigenvalues", json::array({{{"re", -1}, {"im", 0}}})}, {"stable", true}}})}}},
         {"linearize", {{"format", 1}, {"states", {"q", "q_dot"}}, {"A", {{0, 1}, {-1, 0}}}, {"B", json::array({json::array(), json::array()})}, {"eigenvalues", json::array({{{"re", 0}, {"im", 1}}, {{"re", 0}, {"im", -1}}})}, {"structural_zeros", 0}}},
         {"sweep", {{"format", 1}, {"runs", 6}, {"done", 5}, {"failed", 1}, {"file", "P7_sweep.csv"}}},
+        {"merge", {{"format", 1}, {"shards", 2}, {"runs", 6}, {"file", "all.csv"}}},
         {"report", {{"format", 1}, {"file", "report.html"}}},
         {"stress",
          {{"format", 1},

@@ -18,6 +18,7 @@ Execute declare_equilibria(CLI::App& app);
 Execute declare_linearize(CLI::App& app);
 Execute declare_inverse(CLI::App& app);
 Execute declare_sweep(CLI::App& app);
+Execute declare_merge(CLI::App& app);
 Execute declare_report(CLI::App& app);
 Execute declare_bench(CLI::App& app);
 Execute declare_stress(CLI::App& app);

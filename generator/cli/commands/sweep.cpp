@@ -15,8 +15,9 @@
 #include "cli/output.hpp"
 #include "cli/simulate.hpp"
 #include "cli/sweep/ensemble.hpp"
-#include "cli/sweep/grid.hpp"
 #include "cli/sweep/ledger.hpp"
+#include "cli/sweep/points.hpp"
+#include "cli/sweep/statistics.hpp"
 #include "cli/sweep/workers.hpp"
 #include "cli/usage.hpp"
 #include "model/content_hash.hpp"
@@ -26,11 +27,12 @@ namespace {
 
 struct Options {
   std::string model, scene = "default", out;
-  std::vector<std::string> grid, set, outputs;
+  std::vector<std::string> grid, sample, set, outputs;
   std::optional<double> rtol, atol, step, t_end;
   std::optional<std::string> solver;
-  std::size_t jobs = 0;
-  bool no_error_estimate = false, ensemble = false;
+  std::size_t jobs = 0, samples = 0;
+  std::string design = "random", shard;
+  bool no_error_estimate = false, ensemble = false, statistics = false;
 };
 
 constexpr const char* refused = "refused";  // in place of an outcome, where a run could not begin
@@ -49,7 +51,7 @@ run::Overrides overrides_of(const Options& options) {
 }
 
 /// What makes two sweeps the same: the model's bytes and all that was asked.
-std::string key_of(const Options& options, const model::Model& model) {
+std::string key_of(const Options& options, const model::Model& model, std::uint64_t seed) {
   std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
   for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
     text += '\n';
@@ -57,6 +59,10 @@ std::string key_of(const Options& options, const model::Model& model) {
   }
   for (const auto& value : {options.rtol, options.atol, options.step, options.t_end}) text += '\n' + (value ? shortest(*value) : "");
   if (options.ensemble) text += "\nensemble";
+  if (!options.sample.empty()) {
+    text += fmt::format("\n{} {} {}", options.samples, options.design, seed);
+    for (const std::string& entry : options.sample) text += '\x1f' + entry;
+  }
   return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
 }
 
@@ -71,22 +77,31 @@ std::string field(std::string text) {
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value)) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
 
+std::optional<Sampling> samples_of(const Options& options, std::uint64_t seed) {
+  if (options.sample.empty() && options.samples == 0) return std::nullopt;
+  return Sampling(options.sample, options.samples, options.design, seed);
+}
+
 class Sweep {
  public:
   Sweep(const Options& options, const Common& common, const model::Model& model)
-      : options_(options), seed_(common.seed), grid_(options.grid), file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
-        ledger_((require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_), key_of(options, model)), resumed_(ledger_.rows().size()) {
+      : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed)),
+        shard_(options.shard.empty() ? Shard{} : parse_shard(options.shard)), file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
+        ledger_((require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_), key_of(options, model, common.seed) + shard_note(shard_, points_.size())), resumed_(ledger_.rows().size()) {
+    if (shard_.number > points_.size()) {
+      throw Error("sweep", {}, fmt::format("shard {}/{} has no runs: there are {} in all", shard_.number, shard_.count, points_.size()), "take fewer shards");
+    }
     if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
     const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
-    for (const Axis& axis : grid_.axes()) {
-      const auto named = [&](const model::Parameter& p) { return p.name == axis.parameter; };
+    for (const std::string& name : points_.names()) {
+      const auto named = [&](const model::Parameter& p) { return p.name == name; };
       if (std::none_of(model.parameters.begin(), model.parameters.end(), named)) {
         std::vector<std::string> known;
         for (const model::Parameter& p : model.parameters) known.push_back(p.name);
-        throw Error("sweep", {}, fmt::format("there is no parameter '{}'", axis.parameter), choice_of(axis.parameter, known));
+        throw Error("sweep", {}, fmt::format("there is no parameter '{}'", name), choice_of(name, known));
       }
-      if (set.contains(axis.parameter)) {
-        throw Error("sweep", {}, fmt::format("'{}' has a grid and a value by --set", axis.parameter), "leave one of them out");
+      if (set.contains(name)) {
+        throw Error("sweep", {}, fmt::format("'{}' has a grid and a value by --set", name), "leave one of them out");
       }
     }
   }
@@ -94,11 +109,12 @@ class Sweep {
   /// Whether all runs are there.
   bool run() {
     std::vector<std::size_t> open;
-    for (std::size_t i = 0; i < grid_.size(); ++i) {
-      if (!ledger_.rows().contains(i)) open.push_back(i);
+    for (std::size_t i = 0; i < points_.size(); ++i) {
+      runs_ += shard_.has(i) ? 1 : 0;
+      if (shard_.has(i) && !ledger_.rows().contains(i)) open.push_back(i);
     }
     if (!open.empty()) compute(open);
-    if (ledger_.rows().size() < grid_.size()) {
+    if (ledger_.rows().size() < runs_) {
       ledger_.interrupt();
       return false;
     }
@@ -107,13 +123,22 @@ class Sweep {
   }
 
   nlohmann::ordered_json document(const model::Model& model) const {
-    return {{"format", 1}, {"model", model.id}, {"scene", options_.scene}, {"runs", grid_.size()}, {"done", ended(true)},
-            {"failed", ended(false)}, {"resumed", resumed_}, {"file", ledger_.place()}};
+    nlohmann::ordered_json found = {{"format", 1}, {"model", model.id}, {"scene", options_.scene}, {"runs", runs_}, {"done", ended(true)},
+                                    {"failed", ended(false)}, {"resumed", resumed_}, {"file", ledger_.place()}};
+    if (!options_.shard.empty()) found["shard"] = options_.shard;
+    if (options_.statistics) found["statistics"] = to_json(statistics());
+    return found;
+  }
+
+  std::vector<ColumnStatistics> statistics() const {
+    std::vector<const std::string*> rows;
+    for (const auto& [run, line] : ledger_.rows()) rows.push_back(&line);
+    return statistics_of_table(ledger_.header(), rows);
   }
 
  private:
   std::size_t ended(bool well) const {
-    const std::size_t at = grid_.axes().size() + 1;
+    const std::size_t at = points_.names().size() + 1;
     std::size_t count = 0;
     for (const auto& [run, line] : ledger_.rows()) {
       std::size_t begin = 0;
@@ -127,7 +152,7 @@ class Sweep {
   run::Overrides at(std::size_t index) const {
     run::Overrides o = overrides_of(options_);
     if (options_.ensemble) o.solver = solver_;
-    o.parameters.merge(grid_.point(index));
+    o.parameters.merge(points_.point(index));
     return o;
   }
 
@@ -142,23 +167,32 @@ class Sweep {
     request.interrupt = &Interrupt::flag();
     std::vector<std::pair<std::size_t, std::string>> refusals;
     std::optional<Simulation> first;
-    while (!open.empty() && !first) {  // the first run that can begin compiles the code for all
-      request.overrides = at(open.front());
+    const auto begins = [&](std::size_t run) {  // the first run that can begin compiles the code for all
+      request.overrides = at(run);
       try {
         first = simulate(request);
       } catch (const Error& error) {
-        if (Interrupt::flag()) return;
+        if (Interrupt::flag()) return true;
         if (error.stage() != "scene") throw;
-        refusals.emplace_back(open.front(), error.message());
-        open.erase(open.begin());
+        refusals.emplace_back(run, error.message());
       }
+      return first.has_value();
+    };
+    while (!open.empty() && !begins(open.front())) open.erase(open.begin());
+    // Where none of these can, another one tells the columns.
+    const std::size_t refused_here = refusals.size();
+    for (std::size_t run = 0; open.empty() && run < points_.size() && !first && !Interrupt::flag(); ++run) {
+      const bool tried = std::any_of(refusals.begin(), refusals.begin() + static_cast<std::ptrdiff_t>(refused_here), [run](const auto& r) { return r.first == run; });
+      if (!tried) begins(run);
     }
+    if (Interrupt::flag() && !first) return;
     if (!first) throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", refusals.front().second), "change the grid or the scene");
+    refusals.resize(refused_here);
     if (options_.ensemble) require_plain(*first);
     columns(first->scene);
     if (ledger_.rows().empty()) resumed_ = 0;
     for (const auto& [run, why] : refusals) ledger_.add(run, refusal(run, why));
-    if (first->result.outcome == eom::Outcome::interrupted) return;
+    if (open.empty() || first->result.outcome == eom::Outcome::interrupted) return;
     ledger_.add(open.front(), row(open.front(), first->result));
     open.erase(open.begin());
     const auto line = [&](std::size_t run) {
@@ -184,7 +218,7 @@ class Sweep {
   void columns(const run::Scene& scene) {
     names_ = scene.outputs;
     std::string header = "run";
-    for (const Axis& axis : grid_.axes()) header += "," + axis.parameter;
+    for (const std::string& name : points_.names()) header += "," + name;
     header += ",outcome,t,steps,rhs_evaluations";
     const model::Model model = model::read_model(locate_model(options_.model));
     std::vector<std::string> all;
@@ -200,8 +234,8 @@ class Sweep {
 
   std::string beginning(std::size_t run) const {
     std::string text = std::to_string(run);
-    const std::map<std::string, symbolic::Rational> point = grid_.point(run);
-    for (const Axis& axis : grid_.axes()) text += "," + number(cln::double_approx(point.at(axis.parameter)));
+    const std::map<std::string, symbolic::Rational> point = points_.point(run);
+    for (const std::string& name : points_.names()) text += "," + number(cln::double_approx(point.at(name)));
     return text;
   }
   std::string refusal(std::size_t run, const std::string& why) const {
@@ -219,10 +253,11 @@ class Sweep {
 
   const Options& options_;
   std::uint64_t seed_;
-  Grid grid_;
+  Points points_;
+  Shard shard_;
   std::string file_;
   Ledger ledger_;
-  std::size_t resumed_;
+  std::size_t resumed_, runs_ = 0;
   std::vector<std::string> names_;
   std::string solver_;  // of an ensemble
 };
@@ -239,6 +274,7 @@ int execute(const Options& options, const Common& common) {
                                    found["done"].get<std::size_t>(), found["failed"].get<std::size_t>());
     if (found["resumed"] != 0) text += fmt::format(" ({} of them were there)", found["resumed"].get<std::size_t>());
     text += fmt::format("\nwrote  {}\n", found["file"].get<std::string>());
+    if (options.statistics) text += "\n" + to_text(sweep.statistics());
     print_readable(text, is_standard_output(options.out));
   }
   if (!whole) tell("interrupted: the same command goes on from the rows that are there\n");
@@ -251,6 +287,11 @@ Execute declare_sweep(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   add_list(app, "--grid", options->grid, "PARAMETER=FROM:TO:COUNT, PARAMETER=FROM:TO:log:COUNT or PARAMETER=a,b,c; may be repeated", '\0');
+  add_list(app, "--sample", options->sample, "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
+  app.add_option("--samples", options->samples, "how many, at every point of the grid")->check(whole_number(1, 1'000'000));
+  app.add_option("--design", options->design, "of samples: random, latin (hypercube) or sobol; all follow from --seed")->capture_default_str();
+  app.add_option("--shard", options->shard, "NUMBER/COUNT: only these runs; eomgen merge joins the tables");
+  app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
   app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
   app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());

@@ -21,6 +21,7 @@ class Ledger {
   Ledger(std::string file, std::string key);
 
   const std::map<std::size_t, std::string>& rows() const { return rows_; }  // by the number of the run
+  const std::string& header() const { return header_; }
   /// What the columns are called; the file is begun with it. Nothing to do where all rows are there.
   void set_header(const std::string& header);
   void add(std::size_t run, const std::string& line);

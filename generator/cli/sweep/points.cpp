@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/points.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+
+#include "error.hpp"
+#include "model/names.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr std::size_t most_points = 1'000'000;
+constexpr const char* note = " shard ";
+
+std::optional<std::size_t> whole(const std::string& text) {
+  std::size_t value = 0;
+  const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || stop != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+std::optional<Shard> shard_of(const std::string& text) {
+  const std::size_t slash = text.find('/');
+  if (slash == std::string::npos) return std::nullopt;
+  const auto number = whole(text.substr(0, slash)), count = whole(text.substr(slash + 1));
+  if (!number || !count || *number < 1 || *number > *count) return std::nullopt;
+  return Shard{*number, *count};
+}
+
+}  // namespace
+
+Points::Points(const std::vector<std::string>& grid, std::optional<Sampling> samples) : samples_(std::move(samples)) {
+  if (!grid.empty() || !samples_) grid_.emplace(grid);
+  if (grid_) {
+    size_ = grid_->size();
+    for (const Axis& axis : grid_->axes()) names_.push_back(axis.parameter);
+  }
+  if (!samples_) return;
+  for (const std::string& name : samples_->names()) {
+    if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+      throw Error("sweep", {}, fmt::format("{} has a grid and is sampled", model::quote(name)), "leave one of them out");
+    }
+    names_.push_back(name);
+  }
+  if (samples_->size() > most_points / size_) {
+    throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", most_points), "take fewer");
+  }
+  size_ *= samples_->size();
+}
+
+std::map<std::string, symbolic::Rational> Points::point(std::size_t index) const {
+  std::map<std::string, symbolic::Rational> result;
+  const std::size_t each = samples_ ? samples_->size() : 1;
+  if (grid_) result = grid_->point(index / each);
+  if (!samples_) return result;
+  const std::vector<std::string> names = samples_->names();
+  const std::vector<symbolic::Rational> values = samples_->point(index % each);
+  for (std::size_t i = 0; i < names.size(); ++i) result[names[i]] = values[i];
+  return result;
+}
+
+Shard parse_shard(const std::string& text) {
+  if (const auto shard = shard_of(text)) return *shard;
+  throw Error("sweep", {}, fmt::format("{} is no shard", model::quote(text)), "write --shard NUMBER/COUNT, such as 2/8; numbers begin with 1");
+}
+
+std::string shard_note(const Shard& shard, std::size_t runs) {
+  return shard.count == 1 ? "" : fmt::format("{}{}/{} of {}", note, shard.number, shard.count, runs);
+}
+
+std::optional<ShardNote> read_shard_note(const std::string& line) {
+  const std::size_t at = line.find(note);
+  if (at == std::string::npos) return std::nullopt;
+  const std::string rest = line.substr(at + std::string(note).size());
+  const std::size_t of = rest.find(" of ");
+  if (of == std::string::npos) return std::nullopt;
+  const auto shard = shard_of(rest.substr(0, of));
+  const auto runs = whole(rest.substr(of + 4));
+  if (!shard || !runs) return std::nullopt;
+  return ShardNote{line.substr(0, at), *shard, *runs};
+}
+
+}  // namespace eomgen::cli

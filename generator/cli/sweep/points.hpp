@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runs of a sweep: every point of its grid with every sample; and which of them a shard has.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/sweep/grid.hpp"
+#include "cli/sweep/sampling.hpp"
+
+namespace eomgen::cli {
+
+class Points {
+ public:
+  /// Throws Error where nothing is varied, a parameter is in both, or the points are more than a million.
+  Points(const std::vector<std::string>& grid, std::optional<Sampling> samples);
+
+  const std::vector<std::string>& names() const { return names_; }
+  std::size_t size() const { return size_; }
+  /// Samples change fastest.
+  std::map<std::string, symbolic::Rational> point(std::size_t index) const;
+
+ private:
+  std::optional<Grid> grid_;
+  std::optional<Sampling> samples_;
+  std::vector<std::string> names_;
+  std::size_t size_ = 1;
+};
+
+/// Runs of one shard of several: every `count`-th, since neighbours take about as long as one another.
+struct Shard {
+  std::size_t number = 1, count = 1;
+  bool has(std::size_t run) const { return run % count == number - 1; }
+};
+/// "2/8". Throws Error for anything else.
+Shard parse_shard(const std::string& text);
+
+/// What stands in the first line of a shard's table behind the key of its sweep.
+std::string shard_note(const Shard& shard, std::size_t runs);
+struct ShardNote {
+  std::string key;  // of the sweep
+  Shard shard;
+  std::size_t runs = 0;
+};
+std::optional<ShardNote> read_shard_note(const std::string& line);
+
+}  // namespace eomgen::cli

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the runs of a sweep came to, column by column: mean, deviation, extremes, quantiles of those that ended well.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace eomgen::cli {
+
+struct ColumnStatistics {
+  std::string name;
+  std::size_t count = 0;  // of finite values
+  double mean = 0, deviation = 0, least = 0, greatest = 0;
+  std::vector<double> quantiles;  // at quantile_parts
+};
+inline constexpr double quantile_parts[] = {0.05, 0.25, 0.5, 0.75, 0.95};
+
+/// Of sums that are carried with their remainders, so that a million values of one sign lose no digits; quantiles lie between
+/// neighbours in proportion. `values` are sorted.
+ColumnStatistics statistics_of(const std::string& name, std::vector<double>& values);
+
+/// Of every column behind the outcome that holds numbers, of the rows of a sweep's table whose outcome is done or stopped_by_event.
+std::vector<ColumnStatistics> statistics_of_table(const std::string& header, const std::vector<const std::string*>& rows);
+
+nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns);
+std::string to_text(const std::vector<ColumnStatistics>& columns);
+
+}  // namespace eomgen::cli
