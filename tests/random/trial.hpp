@@ -7,12 +7,24 @@
 
 #include "random/mechanisms.hpp"
 
+#if defined(__has_feature)
+#if __has_feature(address_sanitizer)
+#define EOMGEN_RANDOM_SANITIZED
+#endif
+#endif
+
 namespace eomgen::random_models {
 
+#ifdef EOMGEN_RANDOM_SANITIZED
+inline constexpr int processor_seconds = 400, address_megabytes = 0;  // shadow memory has terabytes of addresses
+#else
+inline constexpr int processor_seconds = 40, address_megabytes = 1500;
+#endif
+
 struct Limits {
-  int seconds = 40;          // of the processor, for each command
-  int megabytes = 1500;      // of address space, sanitizers excepted
-  bool moved = true;         // compiled, run and linearised too
+  int seconds = processor_seconds;    // of the processor, for each command
+  int megabytes = address_megabytes;  // of address space; 0: any
+  bool moved = true;                  // compiled, run and linearised too
 };
 
 struct Finding {
