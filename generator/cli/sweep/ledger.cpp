@@ -10,7 +10,8 @@
 #include <algorithm>
 #include <charconv>
 #include <filesystem>
-#include <iterator>
+#include <functional>
+#include <string_view>
 #include <system_error>
 
 #include "cli/output.hpp"
@@ -40,14 +41,21 @@ int open_own(const std::string& path) {
   return -1;
 }
 
-std::optional<std::string> contents(const std::string& path) {
+/// Whole lines only, as long as `take` wants them: the last may have been cut off. False where the file is not to be read.
+bool each_line(const std::string& path, const std::function<bool(const std::string& line)>& take) {
   const int file = open_own(path);
-  if (file < 0) return std::nullopt;
+  if (file < 0) return false;
   std::string text;
-  char buffer[1 << 14];
-  for (ssize_t n; (n = ::read(file, buffer, sizeof buffer)) > 0;) text.append(buffer, static_cast<std::size_t>(n));
+  std::vector<char> buffer(1 << 18);
+  bool more = true;
+  for (ssize_t n; more && (n = ::read(file, buffer.data(), buffer.size())) > 0;) {
+    text.append(buffer.data(), static_cast<std::size_t>(n));
+    std::size_t begin = 0;
+    for (std::size_t end; more && (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) more = take(text.substr(begin, end - begin));
+    text.erase(0, begin);
+  }
   ::close(file);
-  return text;
+  return true;
 }
 
 }  // namespace
@@ -77,36 +85,38 @@ std::vector<Ledger::Unfinished> Ledger::unfinished() const {
     const std::string other = entry.path().filename().string();
     if (other != name && !(other.starts_with(name + "-") && other.size() == name.size() + 7)) continue;
     const std::string path = target.has_parent_path() ? entry.path().string() : other;
-    const std::optional<std::string> text = contents(path);
-    if (!text || !text->starts_with(mark)) continue;  // a run's, or somebody's who is writing to it
-    found.push_back({path, text->starts_with(mark + key_ + "\n")});
+    std::string first;
+    const bool own = each_line(path, [&](const std::string& line) { return first = line, false; });
+    if (!own || !first.starts_with(mark)) continue;  // a run's, or somebody's who is writing to it
+    found.push_back({path, first == mark + key_});
   }
   std::sort(found.begin(), found.end(), [](const Unfinished& a, const Unfinished& b) { return a.path < b.path; });
   return found;
 }
 
-// Whole lines only: the last may have been cut off.
-bool Ledger::read(const std::string& path) {
-  const std::optional<std::string> known = contents(path);
-  if (!known) return false;
-  const std::string& text = *known;
-  std::size_t begin = 0, number = 0;
-  for (std::size_t end; (end = text.find('\n', begin)) != std::string::npos; begin = end + 1, ++number) {
-    const std::string line = text.substr(begin, end - begin);
+void Ledger::read(const std::string& path) {
+  std::size_t number = 0;
+  each_line(path, [&](const std::string& line) {
     if (number == 0 && line != mark + key_) return false;
     if (number == 1) header_ = line;
-    if (number < 2) continue;
+    if (number++ < 2) return true;
     std::size_t run = 0;
     const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), run);
     if (error == std::errc() && stop != line.data() + line.size() && *stop == ',') rows_[run] = line;
-  }
-  return number > 0;
+    return true;
+  });
 }
 
-std::string Ledger::text() const {
-  std::string result = mark + key_ + "\n" + header_ + "\n";
-  for (const auto& [run, line] : rows_) result += line + "\n";
-  return result;
+void Ledger::write(const std::function<void(std::string_view)>& to) const {
+  constexpr std::size_t enough = 1 << 20;  // a table of a million rows is not there twice
+  std::string text = mark + key_ + "\n" + header_ + "\n";
+  for (const auto& [run, line] : rows_) {
+    text += line + "\n";
+    if (text.size() < enough) continue;
+    to(text);
+    text.clear();
+  }
+  to(text);
 }
 
 void Ledger::set_header(const std::string& header) try {
@@ -116,7 +126,7 @@ void Ledger::set_header(const std::string& header) try {
   out_.emplace(file_);
   ::flock(out_->descriptor(), LOCK_EX | LOCK_NB);  // as long as this process is there; where locks are unknown nothing is lost
   place_ = out_->partial();
-  out_->write(text());
+  write([this](std::string_view text) { out_->write(text); });
   for (const std::string& old : taken_over_) ::unlink(old.c_str());
   taken_over_.clear();
 } catch (const std::system_error& error) {
@@ -130,16 +140,37 @@ void Ledger::add(std::size_t run, const std::string& line) try {
   lost(error);
 }
 
+void Ledger::whole() const {
+  if (!kept_) {
+    std::string text;
+    write([&text](std::string_view piece) { text += piece; });
+    write_text(file_, text);
+    return;
+  }
+  try {
+    eom::WholeFile file(file_);
+    try {
+      write([&file](std::string_view piece) { file.write(piece); });
+      file.finish();
+    } catch (const std::system_error&) {
+      file.discard();  // the rows are kept in the other one
+      throw;
+    }
+  } catch (const std::system_error& error) {
+    lost(error);
+  }
+}
+
 void Ledger::finish() {
   if (kept_ && !out_ && taken_over_.empty()) return;  // all was there
-  write_text(file_, text());
+  whole();
   place_ = file_;
   if (out_) out_->discard();
   for (const std::string& old : taken_over_) ::unlink(old.c_str());
 }
 
 void Ledger::interrupt() {
-  if (!kept_ && !header_.empty()) write_text(file_, text());
+  if (!kept_ && !header_.empty()) whole();
 }
 
 }  // namespace eomgen::cli

@@ -3,9 +3,11 @@
 
 #include <cstddef>
 #include <eom/output/whole_file.hpp>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace eomgen::cli {
@@ -37,8 +39,9 @@ class Ledger {
     bool same = false;  // of this sweep
   };
   std::vector<Unfinished> unfinished() const;
-  bool read(const std::string& path);
-  std::string text() const;
+  void read(const std::string& path);
+  void write(const std::function<void(std::string_view)>& to) const;
+  void whole() const;  // to FILE
 
   std::string file_, place_, key_, header_;
   bool kept_ = true;  // in a file of its own while it grows
