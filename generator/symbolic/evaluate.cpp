@@ -6,6 +6,7 @@
 #include <cln/float.h>
 #include <cln/integer.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -98,8 +99,25 @@ struct Binary64 {
   static bool less(double a, double b) { return a < b; }
 };
 
+/// Values of some nodes, ascending: of a few among many there are no places for the others.
+template <class Real>
+class Values {
+ public:
+  Values(const std::vector<Ref>& nodes, std::size_t all) : nodes_(nodes), few_(nodes.size() < all / 16), values_(few_ ? nodes.size() : all) {}
+  Real& operator[](std::uint32_t id) { return values_[place(id)]; }
+  const Real& operator[](std::uint32_t id) const { return values_[place(id)]; }
+
+ private:
+  std::size_t place(std::uint32_t id) const {
+    return few_ ? static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), Ref{id}) - nodes_.begin()) : id;
+  }
+  const std::vector<Ref>& nodes_;
+  bool few_;
+  std::vector<Real> values_;
+};
+
 template <class Real, class Arithmetic, class Lookup>
-Real value_of(const Dag& dag, Ref r, const std::vector<Real>& value, const Lookup& lookup, const Arithmetic& number) {
+Real value_of(const Dag& dag, Ref r, const Values<Real>& value, const Lookup& lookup, const Arithmetic& number) {
   const Node& node = dag[r];
   const auto arg = [&](std::size_t i) -> const Real& { return value[node.args[i].id]; };
   switch (node.op) {
@@ -123,7 +141,8 @@ Real value_of(const Dag& dag, Ref r, const std::vector<Real>& value, const Looku
 
 template <class Real, class Arithmetic, class Lookup>
 std::vector<Real> run(const Dag& dag, const std::vector<Ref>& roots, const Lookup& lookup, const Arithmetic& number) {
-  std::vector<Real> value(dag.size());
+  const std::vector<Ref> nodes = dag.reachable(roots);
+  Values<Real> value(nodes, dag.size());
   std::map<std::uint32_t, std::string> missing;  // outside of a domain, and why; the branch that is not taken may be
   // What the value is made of lacks one.
   const auto gap = [&](Ref r) -> const std::string* {
@@ -140,7 +159,7 @@ std::vector<Real> run(const Dag& dag, const std::vector<Ref>& roots, const Looku
     if (node.op != Op::select) return nullptr;
     return in(number.less(value[node.args[0].id], value[node.args[1].id]) ? 2 : 3);
   };
-  for (const Ref r : dag.reachable(roots)) {
+  for (const Ref r : nodes) {
     if (const std::string* why = gap(r)) {
       missing.emplace(r.id, *why);
       continue;

@@ -102,3 +102,17 @@ TEST_CASE("dag: roots of squares are taken of what is assumed positive, and of n
   CHECK(dag.call(Op::sqrt, dag.power(dag.add(x, dag.one()), 4)) == dag.power(dag.add(x, dag.one()), 2));
   CHECK(dag[dag.call(Op::sqrt, dag.mul(dag.power(x, 2), dag.power(y, 2)))].op == Op::sqrt);
 }
+
+TEST_CASE("dag: a value is the same among few nodes and among very many that it does not need") {
+  Dag dag;
+  const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
+  const Ref early = dag.add(dag.call(Op::sin, x), dag.mul(y, dag.integer(3)));
+  const auto lookup = [](const Symbol& s) { return s.index == 0 ? 0.5 : 0.25; };
+  const double before = evaluate(dag, {early, x}, lookup)[0];
+  for (long i = 4; i < 5000; ++i) dag.integer(i);
+  const Ref late = dag.div(early, dag.integer(4999));
+  const std::vector<double> after = evaluate(dag, {late, early, x}, lookup);
+  CHECK(after[1] == before);
+  CHECK(after[0] == before / 4999);
+  CHECK(after[2] == 0.5);
+}
