@@ -53,7 +53,7 @@ constexpr std::string_view runtime[] = {
     "AtEvent", "Automatic", "Choice", "CompiledBatch", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
     "Crossing", "CsvWriter", "Direction", "Drift", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Lu",
     "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "NoObserver", "NoProjection", "Options",
-    "Outcome", "Plot", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Result", "Rhs",
+    "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Result", "Rhs",
     "Run", "Statistics", "StepView", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "chart_bits",
     "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "contact_allows", "contact_bits",
     "contact_digit", "contact_leaf", "contact_modes", "contact_states", "contact_values", "detail", "divergence_bound",

@@ -237,6 +237,16 @@ struct Event {  // a change of sign of `when`
 };
 const char* name(Event::Direction direction);  // "any", "up", "down"
 
+/// A shape of [draw], about its middle along the own axes of a body; of a particle along E1 E2 E3.
+struct Drawn {
+  std::uint32_t place = 0;
+  std::string kind;              // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z
+  std::vector<NodeId> lengths;
+  std::uint32_t axis = 2;        // that a cylinder, disk or rod is about
+  std::vector<NodeId> at;        // of its middle; none: 0
+  Span span;
+};
+
 struct Energy {
   NodeId kinetic = no_node, potential = no_node;
 };
@@ -302,6 +312,7 @@ struct Model {
   std::vector<Constraint> constraints;
   std::vector<Joint> joints;
   std::vector<Event> events;
+  std::vector<Drawn> drawn;
   std::vector<Scene> scenes;  // scenes[0] is "default" (made up if the file has none)
   std::vector<Warning> warnings;
 

@@ -55,7 +55,7 @@ Reader::Reader(const Source& source, const Value& root)
 Model Reader::read() {
   check_keys(root_, {"a model",
                      {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
-                      "energy", "particle", "body", "frame", "point", "chain", "force", "constraint", "joint", "event", "scene"},
+                      "energy", "particle", "body", "frame", "point", "chain", "force", "constraint", "joint", "event", "draw", "scene"},
                      {}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
@@ -98,6 +98,7 @@ Model Reader::read() {
   read_constraints();
   read_units();
   read_events();
+  read_draw();
   if (model_.particles.empty() && model_.bodies.empty() && model_.energy.kinetic == no_node) {
     source_.fail(root_.span, "nothing moves: the model has no particle, no body and no kinetic energy",
                  "add a [[particle]] or [[body]], or kinetic = \"..\" in [energy]");

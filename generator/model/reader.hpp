@@ -205,6 +205,11 @@ private:
   void read_events();
   void read_stop(Scene& scene, const Value& value);
 
+  // read_draw.cpp: [draw]
+  void read_draw();
+  Drawn drawn_shape(std::uint32_t place, const Value& value);
+  std::vector<NodeId> drawn_lengths(const Value& value, std::size_t count, const std::string& what, bool positive);
+
   // read_scenes.cpp, scene_values.cpp: [scene.NAME]
   void read_scenes();
   std::vector<const Entry*> merged(const Entry& scene, std::vector<std::string>& from) const;

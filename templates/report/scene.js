@@ -71,8 +71,10 @@ class Scene {
   take(motion, sizes, find) {
     const rows = motion.drawn(), {parts} = this;
     this.motion = motion;
-    this.shapes = parts.bodies.map((body) => {
-      const drawn = (parts.shapes || []).filter((shape) => shape.place === body.place);
+    // Bodies, and particles that the model gives a shape: these keep the fixed axes.
+    this.solids = [...parts.bodies, ...parts.places.map((_, place) => ({place, axes: null})).filter(({place}) => parts.shapes.some((shape) => shape.place === place) && !parts.bodies.some((body) => body.place === place))];
+    this.shapes = this.solids.map((body) => {
+      const drawn = parts.shapes.filter((shape) => shape.place === body.place);
       if (drawn.length > 0) return drawn.map((shape) => shapeOfModel(shape, sizes)).filter((shape) => shape !== null);
       const inertia = body.inertia.map((i) => sizes[i]), shape = shapeOfInertia(sizes[body.mass], inertia) || barOfInertia(sizes[body.mass], inertia, this.attached(body, rows[0]));
       return shape ? [shape] : [];
@@ -103,6 +105,7 @@ class Scene {
   }
 
   axesOf(body, y) {
+    if (body.axes === null) return [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
     const e1 = this.position(y, body.axes[0]), e2 = this.position(y, body.axes[1]);
     return [e1, e2, cross(e1, e2)];
   }
@@ -201,9 +204,13 @@ class Scene {
     }
   }
 
+  // From own axes to space.
+  worldOf(body, y) {
+    const centre = this.position(y, this.parts.places[body.place].at), axes = this.axesOf(body, y);
+    return (r) => plus(centre, plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2])));
+  }
   bodyItems(body, index, y, items) {
-    const centre = this.position(y, this.parts.places[body.place].at), axes = this.axesOf(body, y), colour = palette[body.place % palette.length];
-    const world = (r) => plus(centre, plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2])));
+    const world = this.worldOf(body, y), centre = world([0, 0, 0]), axes = this.axesOf(body, y), colour = palette[body.place % palette.length];
     for (const shape of this.shapes[index]) {
       if (shape.kind === "sphere") items.push({depth: this.camera.depth(world(shape.at || [0, 0, 0])), paint: () => this.ball(world(shape.at || [0, 0, 0]), axes, shape.radius, colour)});
       if (shape.kind === "arrow") items.push({depth: this.camera.depth(centre), paint: () => this.arrow(world(shape.at), world(shape.tip), colour, 3)});
@@ -213,7 +220,7 @@ class Scene {
         items.push({depth: this.camera.depth(middle), paint: () => this.face(points, mixed(colour, this.paper, 0.75 - 0.45 * light), colour)});
       }
     }
-    if (!this.shown.axes) return;
+    if (!this.shown.axes || body.axes === null) return;
     const reach = Math.max(0.12 * this.camera.size, ...this.shapes[index].map((shape) => 1.15 * shape.radius));
     axes.forEach((e, k) => items.push({depth: Infinity, paint: () => {
       const tip = this.arrow(centre, plus(centre, scaled(e, reach)), colour, 1.5);
@@ -289,13 +296,13 @@ class Scene {
         const from = place.from < 0 ? origin : this.position(y, parts.places[place.from].at);
         items.push({depth: Math.min(camera.depth(from), camera.depth(here)) - 1e-9, paint: () => this.line([from, here], this.ink, 2.5, 0.75)});
       }
-      const bodyIndex = parts.bodies.findIndex((body) => body.place === i), solid = bodyIndex >= 0 && this.shapes[bodyIndex].length > 0;
+      const bodyIndex = this.solids.findIndex((body) => body.place === i), solid = bodyIndex >= 0 && this.shapes[bodyIndex].length > 0;
       items.push({depth: solid ? Infinity : camera.depth(here), paint: () => {
         if (place.kind === "point") this.dot(here, 3, this.quiet);
         else this.dot(here, solid ? 3 : 8, colour, solid ? null : this.paper);
       }});
     });
-    parts.bodies.forEach((body, index) => this.bodyItems(body, index, y, items));
+    this.solids.forEach((body, index) => this.bodyItems(body, index, y, items));
     for (const joint of parts.joints) {
       const at = this.position(y, joint.at);
       for (const of of joint.of) if (of !== null) items.push({depth: camera.depth(at), paint: () => this.line([this.position(y, parts.places[of].at), at], this.ink, 1.5, 0.5)});

@@ -54,7 +54,7 @@ function barOfInertia(mass, inertia, spot) {
 
 // What [draw] says: kind, the place of its lengths among the sizes, the axis that it is about, where its middle is.
 function shapeOfModel(drawn, sizes) {
-  const lengths = drawn.lengths.map((i) => sizes[i]), at = drawn.at.map((i) => sizes[i]);
+  const lengths = drawn.lengths.map((i) => sizes[i]), at = drawn.at.length === 3 ? drawn.at.map((i) => sizes[i]) : [0, 0, 0];
   if (lengths.some((length) => !Number.isFinite(length))) return null;
   const axes = aboutAxis([[1, 0, 0], [0, 1, 0], [0, 0, 1]], drawn.axis), reach = Math.hypot(...at);
   const made = (faces, radius) => ({kind: drawn.kind, faces: placed(faces, axes).map((face) => face.map((r) => plus(r, at))), radius: radius + reach, at});

@@ -73,7 +73,10 @@ TEST_CASE("links are followed, devices and pipes are written through, - is stand
   CHECK(fs::is_fifo(folder / "pipe"));
   expect(0, folder, {"run", "p.toml", "--out", "/dev/null"});
   CHECK(fs::is_character_file("/dev/null"));
-  CHECK(expect(0, folder, {"run", "p.toml", "--plot", "-"}).out.starts_with("<svg"));
+  const std::string drawn = expect(0, folder, {"run", "p.toml", "--plot", "-"}).out;  // in characters, for a terminal
+  CHECK(contains(drawn, "*"));
+  CHECK_FALSE(contains(drawn, "<svg"));
+  CHECK(expect(0, folder, {"run", "p.toml", "--plot", "/dev/stdout"}).out.starts_with("<svg"));
   CHECK(contains(expect(0, folder, {"report", "p.toml", "-o", "-"}).out, "<!DOCTYPE html>"));
   expect(0, folder, {"sweep", "p.toml", "--grid", "k=1,2", "--out", "s.csv"});
   CHECK(expect(0, folder, {"sweep", "p.toml", "--grid", "k=1,2", "--out", "-"}).out == folder.read("s.csv"));
@@ -97,7 +100,7 @@ TEST_CASE("places that cannot be, and two results for one place, are refused bef
   refused({"run", "p.toml", "--out", ""}, "names no file");
   refused({"report", "p.toml", "--out", ""}, "names no file");
   refused({"run", "p.toml", "--out", "x.png"}, "this option writes csv, and the name says png");
-  refused({"run", "p.toml", "--plot", "x.PNG"}, "this option writes svg, and the name says png");
+  refused({"run", "p.toml", "--plot", "x.PDF"}, "this option writes svg, and the name says pdf");
   refused({"report", "p.toml", "-o", "x.pdf"}, "this option writes html, and the name says pdf");
   refused({"sweep", "p.toml", "--grid", "k=1,2", "-o", "x.json"}, "this option writes csv");
   refused({"bench", "p.toml", "--csv", "x.svg"}, "this option writes csv, and the name says svg");

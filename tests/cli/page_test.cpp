@@ -22,12 +22,39 @@ constexpr std::size_t largest_page = 1000000;   // bytes
 constexpr double as_run_does = 1e-5;            // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
 
+// A box in free flight, drawn as it is said to be, with a point at one of its corners.
+const char* const brick = R"(format = 1
+title = "Brick & <b>hostile</b> \"name\" </script>"
+[parameters]
+m = "2 kg"
+a = "0.4 m"
+g = { value = "9.81 m/s^2", note = "</script><script>throw 1</script>" }
+[[body]]
+name = "brick"
+mass = "m"
+inertia = { box = ["a", "0.3 m", "0.1 m"] }
+position = { cartesian = ["x", "y", "z"] }
+rotation = { euler = "321", angles = ["psi", "theta", "phi"] }
+[[point]]
+name = "corner"
+on = "brick"
+at = ["a/2", "0.15 m", "-0.05 m"]
+[[force]]
+gravity = "-g*E3"
+[draw]
+brick = { box = ["a", "0.3 m", "0.1 m"] }
+[scene.default]
+t = [0, 1]
+initial = { psi_dot = 2, theta_dot = 0.7, phi_dot = 4, x_dot = 1, z_dot = 4 }
+)";
+
 struct Case {
   std::string model;                // a name, or a file in the folder
   bool live = true;                 // the page runs it
   std::string slider = {};          // a parameter that is moved
   double value = 0;
   std::string drag = {};            // a place that is taken by hand
+  std::string corner = {};          // a point that is a corner of a drawn body
 };
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -119,6 +146,7 @@ void check(const Json& found, const Case& c, const Json& wanted) {
   }
   const Json& wide = found["widths"]["1280"];
   CHECK(wide["furthest"] < a_pixel);
+  if (!c.corner.empty()) CHECK(wide["corner"] < a_pixel);
   if (!c.drag.empty()) {
     CHECK(wide["drag"]["moved"] > 5);
     CHECK(wide["drag"]["nearer"] == true);
@@ -150,7 +178,9 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
   }
   const Folder folder;
   folder.write("chain_10.toml", replaced(source("models/S6_chain_6.toml"), "n = 6", "n = 10"));
-  const std::vector<Case> list{{"P7_moving_sphere", true, "m", 2},    {"S5_double_pendulum", true, "m2", 1.5, "P2"}, {"R6_rolling_disk", true, "R", 0.25},
+  folder.write("brick.toml", brick);
+  const std::vector<Case> list{{"brick.toml", true, "a", 0.5, "", "corner"},
+                               {"P7_moving_sphere", true, "m", 2},    {"S5_double_pendulum", true, "m2", 1.5, "P2"}, {"R6_rolling_disk", true, "R", 0.25},
                                {"R7_satellite"},                      {"R10_lagrange_top"},                    {"R15_pin_joint", true, "m1", 2},
                                {"R16_sphere_on_sphere"},              {"R16_disk_on_disk", false},             {"six_bar_spatial", true, "k", 170, "plate"},
                                {"n_four_bar_2", true, "", 0, "K1"},                      {"chain_10.toml", true, "L", 1.2}};
@@ -165,6 +195,7 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
     const Json motion = Json::parse(page.substr(begin, page.find("</script>", begin) - begin));
     Json entry{{"name", c.model}, {"page", page}, {"csv", positions(folder, c.model, motion["parts"]["places"])}};
     if (!c.drag.empty()) entry["drag"] = c.drag;
+    if (!c.corner.empty()) entry["corner"] = c.corner;
     wanted.emplace_back();
     if (!c.slider.empty()) {
       entry["slider"] = {{"name", c.slider}, {"value", c.value}};

@@ -30,6 +30,8 @@ constexpr const char* rotations_are =
     "{ euler_parameters = [..] }, { rodrigues = [..] } or { fixed = true }";
 constexpr const char* inertias_are =
     "write inertia = { principal = [\"A\", \"B\", \"C\"] }, a symmetric [[..], [..], [..]], or a shape such as { sphere = \"R\" }";
+constexpr const char* shapes_are =
+    "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod = \"L\" } or { arrow = [\"x\", \"y\", \"z\"] }";
 const std::string angles = "{ euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }";
 const std::string moments = "{ principal = [\"J\", \"J\", \"J\"] }";
 
@@ -37,6 +39,13 @@ const std::string moments = "{ principal = [\"J\", \"J\", \"J\"] }";
 
 std::vector<WrongModel> wrong_bodies() {
   return {
+      {"a drawing of nothing", top({}, "[draw]\nC = { sphere = \"1 m\" }\n"), "15:1", "[draw] names 'C', which is no particle or body", "particles and bodies are B"},
+      {"a drawing without a shape", top({}, "[draw]\nB = { axis = \"e1\" }\n"), "15:5", "the drawing of 'B' has no shape", shapes_are},
+      {"a drawing of two shapes", top({}, "[draw]\nB = { sphere = \"1 m\", disk = \"1 m\" }\n"), "15:30", "the drawing of 'B' is both 'sphere' and 'disk'", "draw one of them, or give an array of tables"},
+      {"a box of two sides", top({}, "[draw]\nB = { box = [\"1 m\", \"2 m\"] }\n"), "15:13", "the drawing of 'B' has 2 lengths here", "give 3 of them"},
+      {"a drawing that moves", top({}, "[draw]\nB = { sphere = \"phi\" }\n"), "15:17", "'phi' depends on coordinates, which a length in the drawing of 'B' cannot", "what is drawn is made of numbers and parameters"},
+      {"a drawing of no size", top({}, "[draw]\nB = { sphere = 0 }\n"), "15:16", "a length in the drawing of 'B' is not greater than 0", "give a length"},
+      {"a drawing about no axis", top({}, "[draw]\nB = { disk = \"1 m\", axis = \"E3\" }\n"), "15:28", "there is no own axis 'E3'", "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about"},
       {"a body without a rotation", top({{"rotation = " + angles + "\n", ""}}), "6:1", "'B' has no rotation", rotations_are},
       {"a body without inertia", top({{"inertia = " + moments + "\n", ""}}), "6:1", "'B' has no inertia", inertias_are},
       {"a body without mass", top({{"mass = \"m\"\n", ""}}), "6:1", "'B' has no mass", "add mass = \"m\" or a value such as \"2 kg\""},

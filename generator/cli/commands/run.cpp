@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
+#include <sys/ioctl.h>
 #include <unistd.h>
 
+#include <algorithm>
+#include <cctype>
 #include <chrono>
-#include <eom/output/svg_plot.hpp>
+#include <filesystem>
 #include <optional>
 
 #include "cli/commands/commands.hpp"
@@ -11,6 +14,10 @@
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/panels.hpp"
+#include "cli/picture/png_file.hpp"
+#include "cli/picture/svg_picture.hpp"
+#include "cli/run_plot.hpp"
 #include "cli/run_report.hpp"
 #include "cli/sensitivities.hpp"
 #include "cli/simulate.hpp"
@@ -22,7 +29,7 @@ namespace {
 
 struct Options {
   std::string model, scene = "default", out, plot, approach = "auto", form = "auto";
-  std::vector<std::string> set, outputs, sensitivity;
+  std::vector<std::string> set, outputs, sensitivity, plot_of;
   std::optional<double> rtol, atol, step, max_step, t_end, every;
   std::optional<std::string> solver;
   std::size_t max_steps = 0;
@@ -47,9 +54,9 @@ run::Overrides overrides_of(const Options& options) {
 /// Rows to the CSV file and to the plot.
 class Rows {
  public:
-  Rows(const std::string& csv, bool keep, bool yes, const model::Model& model, const run::Scene& scene,
-       const std::vector<std::string>& code)
-      : keep_(keep), coordinates_(model.coordinates.size()) {
+  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const model::Model& model, const run::Scene& scene,
+       const std::vector<std::string>& code) {
+    if (!panels.empty()) plot_.emplace(panels, model, code);
     for (const model::Coordinate& c : model.coordinates) {
       columns_.push_back(c.name);
       columns_.push_back(c.name + "_dot");
@@ -69,9 +76,7 @@ class Rows {
   void operator()(double t, std::span<const double> y) {
     for (std::size_t i = 0; i < index_.size(); ++i) values_[i] = y[index_[i]];
     if (csv_) csv_->row(t, values_);
-    if (!keep_ || rows_++ % stride_ != 0) return;
-    t_.push_back(t);
-    kept_.push_back(values_);
+    if (plot_ && rows_++ % stride_ == 0) plot_->row(t, y);
   }
 
   void finish(eom::Outcome outcome) {
@@ -80,19 +85,7 @@ class Rows {
 
   const eom::CsvWriter* table() const { return csv_ ? &csv_->writer() : nullptr; }
 
-  std::uint64_t plot(const std::string& file, const std::string& title) const {
-    eom::Plot plot;
-    plot.title = title;
-    plot.x_label = "t in s";
-    for (std::size_t i = 0; i < coordinates_; ++i) {
-      eom::PlotSeries series;
-      series.name = columns_[2 * i];
-      series.x = t_;
-      for (const std::vector<double>& row : kept_) series.y.push_back(row[2 * i]);
-      plot.series.push_back(std::move(series));
-    }
-    return write_text(file, eom::svg(plot));
-  }
+  const RunPlot& plot() const { return *plot_; }
 
  private:
   static constexpr double most_points = 1e5;
@@ -100,11 +93,9 @@ class Rows {
   std::vector<std::string> columns_;
   std::vector<std::size_t> index_;
   std::uint64_t rows_ = 0, stride_ = 1;
-  std::vector<double> values_, t_;
-  std::vector<std::vector<double>> kept_;
+  std::vector<double> values_;
   std::optional<TableFile> csv_;
-  bool keep_ = false;
-  std::size_t coordinates_ = 0;
+  std::optional<RunPlot> plot_;
 };
 
 /// One line on a terminal, written over and over, and wiped at the end.
@@ -142,10 +133,36 @@ Simulation simulate_until_interrupted(const SimulationRequest& request) {
   }
 }
 
+/// Outputs that are plotted, by all their names; coordinates are in every row.
+std::vector<std::string> plotted_outputs(const Options& options, Derived& derived) {
+  std::vector<model::Named> wanted;
+  for (const std::string& item : options.plot_of) {
+    const std::size_t comma = item.find(',');
+    wanted.push_back({item.substr(0, comma), {}});
+    if (comma != std::string::npos && comma + 1 < item.size()) wanted.push_back({item.substr(comma + 1), {}});
+  }
+  return wanted.empty() ? std::vector<std::string>{} : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted);
+}
+
+constexpr double pixels_of_a_unit = 2;  // of a PNG: sharp where screens are fine
+
+bool is_png(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".png";
+}
+
+std::size_t terminal_columns() {
+  constexpr std::size_t usual = 80, most = 160;
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return usual;
+  return std::min<std::size_t>(size.ws_col, most);
+}
+
 int execute(const Options& options, const Common& common) {
   std::vector<Place> places;
   if (!options.out.empty()) places.push_back({"--out", options.out, ".csv"});
-  if (!options.plot.empty()) places.push_back({"--plot", options.plot, ".svg"});
+  if (!options.plot.empty()) places.push_back({"--plot", options.plot, is_png(options.plot) ? ".png" : ".svg"});
   require_places(places, locate_model(options.model), common.json);
   SimulationRequest request;
   request.model = options.model;
@@ -164,9 +181,15 @@ int execute(const Options& options, const Common& common) {
   request.interrupt = &Interrupt::flag();
   request.max_steps = options.max_steps;
   std::optional<Rows> rows;
+  if (!options.plot_of.empty() && options.plot.empty()) {
+    throw Error("run", {}, "--plot-of says what is plotted, and there is no plot", "add --plot F.svg, or --plot - for characters");
+  }
+  request.prepare = [&options](Derived& derived) { return plotted_outputs(options, derived); };
   if (!options.out.empty() || !options.plot.empty()) {
     request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
-      rows.emplace(options.out, !options.plot.empty(), options.yes, derived.model, scene, names);
+      std::vector<Panel> panels;
+      if (!options.plot.empty()) panels = options.plot_of.empty() ? coordinate_panels(derived.model) : chosen_panels(derived.model, options.plot_of);
+      rows.emplace(options.out, panels, options.yes, derived.model, scene, names);
     };
     request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
   }
@@ -176,7 +199,13 @@ int execute(const Options& options, const Common& common) {
   if (rows) rows->finish(simulation.result.outcome);
   std::vector<WrittenFile> files;
   if (rows && rows->table() != nullptr) files.push_back({options.out, rows->table()->rows(), rows->table()->bytes()});
-  if (!options.plot.empty()) files.push_back({options.plot, std::nullopt, rows->plot(options.plot, model.title.empty() ? model.id : model.title)});
+  if (!options.plot.empty()) {
+    const std::string title = model.title.empty() ? model.id : model.title;
+    const bool terminal = options.plot == "-";
+    std::string plot = terminal ? rows->plot().characters(title, simulation.result, terminal_columns()) : rows->plot().svg(title, simulation.result);
+    if (is_png(options.plot)) plot = png(drawn(plot, pixels_of_a_unit));
+    files.push_back({options.plot, std::nullopt, write_text(options.plot, plot)});
+  }
   const eom::Outcome outcome = simulation.result.outcome;
   const bool ended = outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event;
   RunReport report{simulation, request.estimate, {}, std::move(files)};
@@ -210,7 +239,8 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
   add_place(app, "-o,--out", options->out, "the table, a CSV file");
-  add_place(app, "--plot", options->plot, "an SVG plot of the coordinates over time");
+  add_place(app, "--plot", options->plot, "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
+  app.add_option("--plot-of", options->plot_of, "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")->allow_extra_args(false)->take_all();
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   add_list(app, "--sensitivity", options->sensitivity, "derivatives of the end by these parameters and values of the start");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");

@@ -27,6 +27,7 @@ Drawing::Drawing(Derived& derived) {
   forces(derived);
   joints(derived);
   contacts(derived);
+  shapes(derived);
 }
 
 std::size_t Drawing::vector_of(const std::string& base) {
@@ -119,6 +120,16 @@ void Drawing::contacts(Derived& derived) {
       tangents = {vector(derived, mechanics::lower_vector(m, touch.tangents[0])), vector(derived, mechanics::lower_vector(m, touch.tangents[1]))};
     }
     parts_["contacts"].push_back({{"name", constraint.name}, {"at", vector(derived, at)}, {"tangents", tangents}});
+  }
+}
+
+void Drawing::shapes(Derived& derived) {
+  parts_["shapes"] = Json::array();
+  for (const model::Drawn& drawn : derived.model.drawn) {
+    Json lengths = Json::array(), at = Json::array();
+    for (const model::NodeId length : drawn.lengths) lengths.push_back(size(derived, length));
+    for (const model::NodeId x : drawn.at) at.push_back(size(derived, x));
+    parts_["shapes"].push_back({{"place", drawn.place - 1}, {"kind", drawn.kind}, {"lengths", lengths}, {"axis", drawn.axis}, {"at", at}});
   }
 }
 

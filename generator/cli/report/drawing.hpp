@@ -36,6 +36,7 @@ class Drawing {
   void forces(Derived& derived);
   void joints(Derived& derived);
   void contacts(Derived& derived);
+  void shapes(Derived& derived);
 
   std::vector<std::string> outputs_;
   std::vector<symbolic::Ref> sizes_;

@@ -20,26 +20,6 @@ constexpr int digits_of_states = 10, digits_of_screens = 6;
 // As many digits as are needed; fewer bytes.
 double shortened(double x, int digits) { return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0; }
 
-// A curve that no unit is known of, or that is a pure number.
-bool is_plain(const std::string& unit) { return unit.empty() || unit == "1"; }
-
-void add(std::vector<Panel>& panels, const std::string& what, const std::string& unit, const std::string& name) {
-  const std::string title = is_plain(unit) ? what : what + " in " + unit;
-  const auto found = std::find_if(panels.begin(), panels.end(), [&](const Panel& panel) { return panel.title == title; });
-  if (found == panels.end()) panels.push_back({title, {name}});
-  else found->names.push_back(name);
-}
-
-std::string unit_of_output(const model::Model& model, const std::string& name) {
-  for (const model::Definition& d : model.definitions) {
-    if (d.name == name) return d.unit.text;
-  }
-  if (name.find(".position") != std::string::npos) return "m";
-  if (name.find(".velocity") != std::string::npos) return "m/s";
-  if (name.find(".omega") != std::string::npos) return "rad/s";
-  return "";
-}
-
 /// Sizes of the drawing at the parameters of the run.
 Json values(const std::vector<symbolic::Ref>& sizes, const Simulation& simulation) {
   constexpr int digits = 20;
@@ -56,17 +36,6 @@ Json values(const std::vector<symbolic::Ref>& sizes, const Simulation& simulatio
 }
 
 }  // namespace
-
-std::vector<Panel> panels(const model::Model& model, const std::vector<std::string>& outputs) {
-  std::vector<Panel> result;
-  for (const model::Coordinate& c : model.coordinates) add(result, "coordinates", c.unit.text, c.name);
-  for (const std::string& name : outputs) {
-    if (name == "energy" || name == "kinetic" || name == "potential") continue;
-    add(result, "outputs", unit_of_output(model, name), name);
-  }
-  result.push_back({"energies in J", {"energy", "kinetic", "potential"}});
-  return result;
-}
 
 void RecordedMotion::row(double t, std::span<const double> values) {
   t_.push_back(t);

@@ -7,19 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "cli/panels.hpp"
 #include "cli/report/drawing.hpp"
 #include "cli/report/live_model.hpp"
 
 namespace eomgen::cli {
-
-/// Curves with one unit.
-struct Panel {
-  std::string title;
-  std::vector<std::string> names;
-};
-
-/// One for each unit of coordinates, of their rates, of the scene's outputs; and the energies.
-std::vector<Panel> panels(const model::Model& model, const std::vector<std::string>& outputs);
 
 class RecordedMotion {
  public:

@@ -23,6 +23,13 @@ struct PlotSeries {
   std::vector<double> x, y;   // of one length
   bool line = true;
   bool markers = false;
+  double error_at_end = 0;    // of the last value: a bar where that is more than the line
+};
+
+/// A place on the horizontal axis, such as an event.
+struct PlotMark {
+  double x = 0;
+  std::string name;
 };
 
 struct Plot {
@@ -31,6 +38,7 @@ struct Plot {
   bool log_x = false, log_y = false;
   bool equal_scales = false;  // one unit as long on both axes, for paths in space (linear axes only)
   int width = 760, height = 460;
+  std::vector<PlotMark> marks;
 };
 
 namespace plot {
@@ -87,6 +95,7 @@ class Drawing {
   std::string document() {
     open();
     draw_grid();
+    draw_marks();
     for (std::size_t k = 0; k < plot_.series.size(); ++k) draw_series(k);
     draw_frame_and_labels();
     draw_legend();
@@ -217,6 +226,29 @@ class Drawing {
            (dash.empty() ? "" : " stroke-dasharray=\"" + dash + "\"");
   }
 
+  /// Those within the axis; of many as many as can be told apart.
+  void draw_marks() {
+    double last = -1e300;
+    for (const PlotMark& mark : plot_.marks) {
+      if (!x_.shows(mark.x)) continue;
+      const double x = x_at(mark.x);
+      if (x < left_ - 0.5 || x > right_ + 0.5 || std::abs(x - last) < 1) continue;
+      out_ += "<line x1=\"" + number(x) + "\" y1=\"" + number(top_) + "\" x2=\"" + number(x) + "\" y2=\"" + number(bottom_) +
+              "\" stroke=\"#8b949e\" stroke-dasharray=\"2 4\"><title>" + escaped(mark.name) + "</title></line>\n";
+      last = x;
+    }
+  }
+
+  /// The estimated error of the last value, where it is longer than the line is wide.
+  void draw_error(const PlotSeries& series, std::size_t k) {
+    if (!(series.error_at_end > 0) || series.x.empty() || !x_.shows(series.x.back()) || !y_.shows(series.y.back())) return;
+    const double x = x_at(series.x.back()), high = y_at(std::min(series.y.back() + series.error_at_end, 1e300)), low = y_at(std::max(series.y.back() - series.error_at_end, -1e300));
+    if (!(low - high > 2 * line_width)) return;
+    const std::string top = number(std::max(high, top_)), bottom = number(std::min(low, bottom_)), left = number(x - 4), right = number(x + 4), middle = number(x);
+    out_ += "<path d=\"M" + middle + " " + top + "V" + bottom + "M" + left + " " + top + "H" + right + "M" + left + " " + bottom + "H" + right + "\" fill=\"none\" " + stroke_of(k) +
+            "><title>estimated error of " + escaped(series.name) + "</title></path>\n";
+  }
+
   /// Points nearer than a third of a pixel to the one drawn before are left out: long runs stay small files.
   void draw_series(std::size_t k) {
     const PlotSeries& series = plot_.series[k];
@@ -242,6 +274,7 @@ class Drawing {
     }
     if (series.line && !path.empty())
       out_ += "<path d=\"" + path + "\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" " + stroke_of(k) + "/>\n";
+    if (series.line) draw_error(series, k);
     if (series.markers && !marks.empty())
       out_ += std::string("<g stroke=\"#fff\" fill=\"") + colours[k % colours.size()] + "\">" + marks + "</g>\n";
   }
@@ -286,6 +319,7 @@ class Drawing {
   };
 
   static constexpr double least_height = 160;  // of the axes
+  static constexpr double line_width = 1.9;
 
   const Plot& plot_;
   int height_ = 0;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The plot of a run: panels over time or in phase planes, with the events and the estimated errors, as SVG or in characters.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/panels.hpp"
+#include "run/runner.hpp"
+
+namespace eomgen::cli {
+
+class RunPlot {
+ public:
+  /// `code`: names of what rows hold. Throws Error where a name of a panel is not among them.
+  RunPlot(std::vector<Panel> panels, const model::Model& model, const std::vector<std::string>& code);
+
+  void row(double t, std::span<const double> values);
+
+  std::string svg(const std::string& title, const run::RunResult& result) const;
+  /// For a terminal of so many columns.
+  std::string characters(const std::string& title, const run::RunResult& result, std::size_t columns) const;
+
+ private:
+  const std::vector<double>& curve(const std::string& name) const;
+
+  std::vector<Panel> panels_;
+  std::vector<std::string> names_, over_;  // the names that are kept; labels of horizontal axes, per panel
+  std::vector<std::size_t> index_;
+  std::vector<double> t_;
+  std::vector<std::vector<double>> columns_;
+};
+
+}  // namespace eomgen::cli

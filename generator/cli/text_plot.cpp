@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/text_plot.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace eomgen::cli {
+namespace {
+
+constexpr std::size_t rows = 16, margin = 11;  // of the labels on the left
+constexpr const char* letters = "*+ox#@%&=~abcdefghijklmnpqrstuvwyz";
+
+struct Range {
+  double low = std::numeric_limits<double>::infinity(), high = -low;
+  void see(double value) {
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  /// Never empty, so that a constant is a line in the middle.
+  void close() {
+    if (!(low <= high)) low = high = 0;
+    const double least = 1e-9 * std::max(std::fabs(low), std::fabs(high));
+    if (high - low > least) return;
+    const double half = std::max(0.5 * std::fabs(low), 0.5);
+    low -= half;
+    high += half;
+  }
+  /// 0 .. cells - 1.
+  std::size_t cell(double value, std::size_t cells) const {
+    const double place = (value - low) / (high - low) * static_cast<double>(cells - 1);
+    return static_cast<std::size_t>(std::clamp(std::round(place), 0.0, static_cast<double>(cells - 1)));
+  }
+};
+
+}  // namespace
+
+std::string in_characters(const TextPlot& plot, std::size_t columns) {
+  const std::size_t wide = std::max<std::size_t>(columns, margin + 24) - margin - 2;
+  Range x, y;
+  const auto see = [&](const TextCurve& curve, auto&& take) {
+    for (std::size_t i = 0; i < curve.x->size(); ++i) {
+      if (std::isfinite((*curve.x)[i]) && std::isfinite((*curve.y)[i])) take((*curve.x)[i], (*curve.y)[i]);
+    }
+  };
+  for (const TextCurve& curve : plot.curves) see(curve, [&](double a, double b) { x.see(a), y.see(b); });
+  x.close();
+  y.close();
+  std::vector<std::string> field(rows, std::string(wide, ' '));
+  for (const double mark : plot.marks) {
+    if (mark < x.low || mark > x.high) continue;
+    for (std::string& line : field) line[x.cell(mark, wide)] = ':';
+  }
+  const std::size_t known = std::string(letters).size();
+  std::string legend;
+  for (std::size_t k = 0; k < plot.curves.size(); ++k) {
+    const char letter = letters[k % known];
+    if (!plot.curves[k].name.empty()) legend += fmt::format("{}{} {}", legend.empty() ? "" : "   ", letter, plot.curves[k].name);
+    see(plot.curves[k], [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
+  }
+  std::string text = plot.y_label + "\n";
+  if (!legend.empty()) text += legend + "\n";
+  for (std::size_t r = 0; r < rows; ++r) {
+    const bool told = r % 5 == 0;
+    const double value = y.high - (y.high - y.low) * static_cast<double>(r) / static_cast<double>(rows - 1);
+    std::string line = fmt::format("{:>{}} {}{}", told ? fmt::format("{:.4g}", std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value) : "", margin - 1, told ? '+' : '|', field[r]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += line + "\n";
+  }
+  text += std::string(margin, ' ') + "+" + std::string(wide, '-') + "\n";
+  const std::string low = fmt::format("{:.4g}", x.low), high = fmt::format("{:.4g}", x.high);
+  std::string below = std::string(margin + 1, ' ') + low;
+  const std::size_t end = margin + 1 + wide - high.size(), middle = margin + 1 + (wide - std::min(wide, plot.x_label.size())) / 2;
+  if (below.size() + 1 < middle && middle + plot.x_label.size() + 1 < end) below += std::string(middle - below.size(), ' ') + plot.x_label;
+  if (below.size() < end) below += std::string(end - below.size(), ' ') + high;
+  return text + below + "\n";
+}
+
+}  // namespace eomgen::cli

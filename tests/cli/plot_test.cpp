@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Plots of `run`: panels by units, phase planes, events, estimated errors, characters.
+#include <doctest/doctest.h>
+
+#include <sstream>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
+  return found;
+}
+
+std::string plotted(const Folder& folder, Words words) {
+  words.insert(words.begin(), "run");
+  words.insert(words.end(), {"--plot", "plot.svg"});
+  expect(0, folder, words);
+  return folder.read("plot.svg");
+}
+
+}  // namespace
+
+TEST_CASE("plot: one panel for each unit, with the title of the model once and the unit at its axis") {
+  const Folder folder;
+  const std::string cart = plotted(folder, {"cart_pendulum"});
+  CHECK(contains(cart, ">x in m<"));
+  CHECK(contains(cart, ">theta in rad<"));
+  CHECK(count(cart, "<svg") == 3);
+  CHECK(count(cart, "font-size=\"17\"") == 1);
+  CHECK(count(plotted(folder, {"S6_chain_2"}), "<svg") == 1);
+  CHECK(contains(plotted(folder, {"S5_double_pendulum"}), ">coordinates in rad<"));
+}
+
+TEST_CASE("plot: what is asked for, by units; a phase plane is one quantity over another") {
+  const Folder folder;
+  const std::string chosen = plotted(folder, {"S5_double_pendulum", "--plot-of", "energy", "--plot-of", "theta1", "--plot-of", "theta2", "--plot-of", "kinetic", "--plot-of", "theta1,theta1_dot"});
+  CHECK(count(chosen, "<svg") == 4);
+  CHECK(contains(chosen, ">in J<"));
+  CHECK(contains(chosen, ">in rad<"));
+  CHECK(contains(chosen, ">theta1 in rad<"));
+  CHECK(contains(chosen, ">theta1_dot in rad/s<"));
+  CHECK(count(chosen, ">t in s<") == 2);
+  CHECK(contains(plotted(folder, {"S5_double_pendulum", "--plot-of", "P2.position1,P2.position2"}), ">P2.position2 in m<"));
+}
+
+TEST_CASE("plot: events are marked with their names, and an estimated error that is more than a line is a bar") {
+  const Folder folder;
+  const std::string sphere = plotted(folder, {"leaving_sphere"});
+  CHECK(contains(sphere, "<title>halfway</title>"));
+  CHECK_FALSE(contains(sphere, "estimated error"));
+  CHECK(contains(plotted(folder, {"S5_double_pendulum", "--rtol", "1e-2", "--atol", "1e-2", "--t-end", "20"}), "estimated error of theta2"));
+}
+
+TEST_CASE("plot: a PNG has the pixels of the SVG: the paper is white, curves have their colours, and its checksums are right") {
+  const Folder folder;
+  expect(0, folder, {"run", "cart_pendulum", "--plot", "plot.PNG"});
+  const std::string png = folder.read("plot.PNG");
+  CHECK(png.substr(0, 8) == std::string("\x89PNG\r\n\x1a\n", 8));
+  CHECK(png.size() < 400000);
+  CHECK(png.substr(png.size() - 8) == std::string("IEND\xae\x42\x60\x82", 8));
+  // Node's inflate holds the stream, and counts what is drawn.
+  folder.write("read.js", R"(const b = require('fs').readFileSync('plot.PNG'), zlib = require('zlib'); let at = 8, data = [], size = null;
+while (at < b.length) { const n = b.readUInt32BE(at), kind = b.toString('latin1', at + 4, at + 8); if (kind === 'IHDR') size = [b.readUInt32BE(at + 8), b.readUInt32BE(at + 12)]; if (kind === 'IDAT') data.push(b.subarray(at + 8, at + 8 + n)); at += 12 + n; }
+const raw = zlib.inflateSync(Buffer.concat(data)), row = 3 * size[0] + 1, p = Buffer.alloc(raw.length); let white = 0, blue = 0, red = 0;
+for (let y = 0; y < size[1]; ++y) for (let i = 1; i < row; ++i) p[y * row + i] = raw[y * row + i] + (y > 0 ? p[(y - 1) * row + i] : 0);
+for (let y = 0; y < size[1]; ++y) for (let x = 0; x < size[0]; ++x) { const [r, g, c] = p.subarray(y * row + 1 + 3 * x); if (r + g + c === 765) ++white; if (r === 0x0b && g === 0x6a && c === 0xb0) ++blue; if (r === 0xd1 && g === 0x49) ++red; }
+console.log(JSON.stringify({size, whole: raw.length === row * size[1], white, blue, red}));)");
+  try {
+    const ChildResult result = run_child({{"node", "read.js"}, folder.path()});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const Json found = Json::parse(result.out);
+    CHECK(found["size"][0] == 1520);
+    CHECK(found["whole"] == true);
+    CHECK(found["white"] > 500000);
+    CHECK(found["blue"] > 2000);
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: there is no node");
+  }
+}
+
+TEST_CASE("plot: characters fit into eighty columns and show each curve with a letter of its own") {
+  const Folder folder;
+  const std::string text = expect(0, folder, {"run", "S5_double_pendulum", "--plot", "-", "--plot-of", "theta1", "--plot-of", "theta2"}).out;
+  CHECK(contains(text, "* theta1   + theta2"));
+  CHECK(contains(text, "t in s"));
+  std::istringstream lines(text);
+  std::size_t drawn = 0;
+  for (std::string line; std::getline(lines, line);) {
+    CHECK(line.size() <= 80);
+    for (const char c : line) CHECK((c >= ' ' && c <= '~'));
+    if (contains(line, "|") && (contains(line, "*") || contains(line, "+"))) ++drawn;
+  }
+  CHECK(drawn > 8);
+}
+
+TEST_CASE("plot: names that there are not, and what is no phase plane, are refused with what to do") {
+  const Folder folder;
+  const auto refused = [&](const Words& words, const std::string& what) {
+    Words all{"run", "S5_double_pendulum"};
+    all.insert(all.end(), words.begin(), words.end());
+    const ChildResult result = expect(2, folder, all);
+    CAPTURE(result.err);
+    CHECK(contains(result.err, what));
+    CHECK(contains(result.err, "remedy: "));
+  };
+  refused({"--plot", "a.svg", "--plot-of", "theta3"}, "there is no output 'theta3'");
+  refused({"--plot", "a.svg", "--plot-of", "theta1,theta2,theta1_dot"}, "there is no output 'theta2,theta1_dot'");
+  refused({"--plot", "a.svg", "--plot-of", "theta1,"}, "is no phase plane");
+  refused({"--plot", "a.svg", "--plot-of", "all"}, "stands for several outputs");
+  refused({"--plot-of", "theta1"}, "there is no plot");
+  CHECK(folder.names().empty());
+}
