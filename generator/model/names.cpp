@@ -124,7 +124,7 @@ bool looks_misspelt(std::string_view name, std::string_view known) {
     known.remove_suffix(1);
   }
   const bool transposed = name.size() == 2 && known.size() == 2 && name[0] == known[1] && name[1] == known[0];
-  if (transposed) return true;
+  if (transposed) return !(digit(name[0]) && digit(name[1]));  // x12 and x21
   if (name.size() > 1 || known.size() > 1) return false;
   // Different numbers are different names, and so are phi and psi, thetaA and thetaB, x_cart and y_cart, phi_a and phi_b.
   if ((!name.empty() && digit(name[0])) || (!known.empty() && digit(known[0]))) return false;

@@ -179,12 +179,13 @@ bool is_singular(std::vector<cln::cl_R> M, std::size_t n) {
     }
     if (cln::abs(M[k * n + k]) <= smallest) return true;
     done[k] = true;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (done[i]) continue;
+    std::vector<std::size_t> filled;  // large matrices are mostly empty
+    for (std::size_t j = 0; j < n; ++j) {
+      if (!done[j] && !cln::zerop(M[k * n + j])) filled.push_back(j);
+    }
+    for (const std::size_t i : filled) {
       const cln::cl_R l = M[i * n + k] / M[k * n + k];
-      for (std::size_t j = 0; j < n; ++j) {
-        if (!done[j]) M[i * n + j] = M[i * n + j] - l * M[k * n + j];
-      }
+      for (const std::size_t j : filled) M[i * n + j] = M[i * n + j] - l * M[k * n + j];
     }
   }
   return false;

@@ -9,9 +9,15 @@ Factorisation::Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, T
     : dag_(dag), n_(n), w_(std::move(matrix)) {
   std::vector<bool> done(n, false);
   std::vector<Ref> diagonal(n);
+  std::vector<std::size_t> degrees(n);
   for (std::size_t i = 0; i < n; ++i) diagonal[i] = w_[i * n + i];
+  for (std::size_t i = 0; i < n; ++i) degrees[i] = degree(done, i);
   for (std::size_t step = 0; step < n; ++step) {
-    const std::size_t k = next_row(done, ties);
+    // Minimum degree: the row whose elimination touches the fewest others, so that zeros stay zeros.
+    std::size_t k = n;
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!done[i] && (k == n || degrees[i] < degrees[k] || (degrees[i] == degrees[k] && ties == Ties::descending))) k = i;
+    }
     done[k] = true;
     order_.push_back(k);
     const Ref pivot = w_[k * n + k];
@@ -26,22 +32,17 @@ Factorisation::Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, T
         w_[i * n + j] = w_[j * n + i] = dag.sub(w_[i * n + j], dag.mul(l, w_[j * n + k]));
       }
     }
+    for (std::size_t i = 0; i < n; ++i) {
+      if (!done[i] && !dag.is_zero(w_[i * n + k])) degrees[i] = degree(done, i);
+    }
   }
 }
 
-// Minimum degree: the row whose elimination touches the fewest others, so that zeros stay zeros.
-std::size_t Factorisation::next_row(std::vector<bool>& done, Ties ties) {
-  std::size_t best = n_, best_degree = 0;
-  for (std::size_t i = 0; i < n_; ++i) {
-    if (done[i]) continue;
-    std::size_t degree = 0;
-    for (std::size_t j = 0; j < n_; ++j) degree += !done[j] && j != i && !dag_.is_zero(w_[i * n_ + j]) ? 1 : 0;
-    if (best == n_ || degree < best_degree || (degree == best_degree && ties == Ties::descending)) {
-      best = i;
-      best_degree = degree;
-    }
-  }
-  return best;
+/// Other rows that the row has entries in common with, of those that are left.
+std::size_t Factorisation::degree(const std::vector<bool>& done, std::size_t row) const {
+  std::size_t count = 0;
+  for (std::size_t j = 0; j < n_; ++j) count += !done[j] && j != row && !dag_.is_zero(w_[row * n_ + j]) ? 1 : 0;
+  return count;
 }
 
 std::vector<Ref> Factorisation::forward(const std::vector<Ref>& r) const {

@@ -31,7 +31,7 @@ class Factorisation {
   const std::vector<Pivot>& pivots() const { return pivots_; }
 
  private:
-  std::size_t next_row(std::vector<bool>& done, Ties ties);
+  std::size_t degree(const std::vector<bool>& done, std::size_t row) const;
   Dag& dag_;
   std::size_t n_;
   std::vector<Ref> w_;  // n x n, by rows of the matrix: reduced entries; below the diagonal of step k: l * D

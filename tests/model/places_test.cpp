@@ -91,6 +91,13 @@ TEST_CASE("a misspelt coordinate is a new one, with a warning") {
   CHECK(model.warnings[0].where.line == 9);
 }
 
+TEST_CASE("different numbers are different names, also with their digits exchanged") {
+  const Model model = read(
+      "format = 1\n[[particle]]\nname = \"A\"\nmass = 1\nposition = { cartesian = [\"x12\", \"y12\", \"z12\"] }\n"
+      "[[particle]]\nname = \"B\"\nmass = 1\nposition = { cartesian = [\"x21\", \"y21\", \"z21\"] }\n");
+  CHECK(model.warnings.empty());
+}
+
 TEST_CASE("a particle's basis vectors are there for the coordinates of its position") {
   const Model model = read(placed("{ cylindrical = [\"r\", \"theta\", \"z\"], from = \"A\" }") +
                            "[definitions]\na = \"B.e_theta\"\nb = \"B.a_xA\"\nc = \"B.g_theta\"\n");
