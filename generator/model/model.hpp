@@ -27,6 +27,7 @@ struct Unit {
 struct Parameter {
   std::string name;
   NodeId value = no_node;  // of numbers and other parameters, earlier or later in the file
+  std::string written;     // as the author wrote it: "48.85 deg"
   Unit unit;
   std::string tex, note;
   bool positive = false;

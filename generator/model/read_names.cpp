@@ -144,6 +144,7 @@ Typed Reader::define_parameter(Symbol& symbol) {
                  "correct the value, or leave positive out");
   }
   parameter.value = typed.node;
+  parameter.written = value->text;
   parameter.unit = stated_or(stated ? stated : unit_in(*value), typed.dimension);
   symbol.index = static_cast<std::uint32_t>(model_.parameters.size());
   model_.parameters.push_back(std::move(parameter));

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the constraints exert on a body, as vectors: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, with the slopes of
+// What the constraints exert, as vectors. On a particle: N = sum lambda_k dpsi_k/dq^i a^i along the unit vectors of its coordinates, eqs. (1.22), (2.99). On a body: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, with the slopes of
 // the constraint by the rates of its coordinates and angles as components along the dual bases, eqs. (9.2), (9.84).
 #include <algorithm>
 
 #include "print/formulas.hpp"
+#include "reading/trig.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -124,9 +125,77 @@ class BodyForces {
   std::vector<Statement>& out_;
 };
 
+/// Whether the coordinates move one particle and nothing else: what constraints exert along them is then exerted on it.
+bool move_alone(const Mechanics& m, const std::vector<std::uint32_t>& coordinates, const std::string& particle) {
+  for (const std::uint32_t i : coordinates) {
+    symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, i, 1});
+    const auto moves = [&](Ref r) { return !m.dag->is_zero(by(r)); };
+    for (const mechanics::PointMass& mass : m.masses) {
+      if (m.model->places[mass.place].name != particle && std::any_of(mass.velocity.begin(), mass.velocity.end(), moves)) return false;
+    }
+    for (const auto& spin : m.spins) {
+      if (std::any_of(spin.w.begin(), spin.w.end(), moves)) return false;
+    }
+  }
+  return true;
+}
+
+/// Those of the chart; where it names none the contravariant basis.
+std::vector<Formula> vectors_of(const reading::Geometry& g) {
+  std::vector<Formula> result;
+  if (g.contravariant_unit.empty()) {
+    for (const std::uint32_t i : g.coordinates) result.push_back(mark("a", {}, {reading::symbol({SymbolKind::coordinate, i, 0})}));
+    result.resize(3);
+    return result;
+  }
+  for (const std::optional<std::uint32_t>& name : g.unit_names) {
+    result.push_back(name ? mark("e", {reading::symbol({SymbolKind::coordinate, *name, 0})}) : mark("e"));
+  }
+  return result;
+}
+
+void add_particle_force(const Mechanics& m, const reading::Geometry& g, std::size_t number, std::vector<Statement>& out) {
+  reading::Components force{};
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.holds(k)) continue;
+    const Sum lambda = reading::read(m, m.dag->symbol({SymbolKind::multiplier, k, 0}));
+    for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
+      const Sum slope = reading::read(m, m.constraints[k].gradient[g.coordinates[i]]);
+      if (slope.is_zero()) continue;
+      if (g.contravariant_unit.empty()) force[i] += lambda * slope;
+      else for (std::size_t j = 0; j < 3; ++j) force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
+    }
+  }
+  if (std::all_of(force.begin(), force.end(), [](const Sum& s) { return s.is_zero(); })) return;
+  std::vector<Formula> sub;
+  if (m.masses.size() > 1) sub.push_back(reading::number(static_cast<long>(number)));
+  out.push_back({"reactions", g.name, "", "constraint force", reading::relation({mark("bold N", std::move(sub)), combination(force, vectors_of(g))})});
+}
+
+/// Of particles whose three coordinates, or two in their plane, move them alone.
+void add_particle_forces(const Mechanics& m, std::vector<Statement>& out) {
+  if (m.constraints.empty()) return;
+  std::vector<reading::LeftOut> unseen;
+  for (const reading::Geometry& g : reading::geometry(m, &unseen)) {
+    const auto mass = std::find_if(m.masses.begin(), m.masses.end(), [&](const mechanics::PointMass& p) { return m.model->places[p.place].name == g.name; });
+    if (mass == m.masses.end() || g.inverse.empty()) continue;
+    const auto& chart = m.model->places[mass->place].chart;
+    const std::size_t directions = chart && chart->planar ? 2 : 3;
+    const bool of_body = std::any_of(m.model->bodies.begin(), m.model->bodies.end(), [&](const model::Body& b) { return b.place == mass->place; });
+    if (of_body || g.coordinates.size() != directions || !move_alone(m, g.coordinates, g.name)) continue;
+    try {
+      const work::Budget budget(reading::item_budget);
+      add_particle_force(m, g, static_cast<std::size_t>(mass - m.masses.begin()) + 1, out);
+    } catch (const work::OverBudget& over) {
+      out.push_back(left_out("reactions", g.name, "constraint force", over.what()));
+    }
+  }
+}
+
 }  // namespace
 
 void add_constraint_forces(const Mechanics& m, std::vector<Statement>& out) {
+  add_particle_forces(m, out);
   for (std::uint32_t body = 0; body < m.spins.size(); ++body) BodyForces(m, body, out).add();
 }
 

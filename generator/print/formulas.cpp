@@ -82,6 +82,12 @@ Formula halved(std::vector<Formula> factors) {
   return reading::product(std::move(factors));
 }
 
+/// J/2 times `squares`: 1/24 m l^2 (..), not 1/2 (1/12 m l^2) (..).
+Formula with_half(const Sum& J, Formula squares) {
+  if (J.size() > 1) return halved({arrange(J), std::move(squares)});
+  return reading::product({arrange(symbolic::Rational(1) / 2 * J), std::move(squares)});
+}
+
 Formula component(const reading::ReadSpin& spin, std::size_t k) {
   return mark("omega", {reading::number(static_cast<long>(k + 1)), reading::number(static_cast<long>(spin.frame))});
 }
@@ -104,7 +110,7 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
     }
     together = named ? together : reading::simplify(together);
     if (!named && together.size() < squares.size()) squares = {arrange(together)};  // sin^2 + cos^2
-    if (!squares.empty()) terms.push_back(halved({arrange(spin.J[i][i]), reading::sum(std::move(squares))}));
+    if (!squares.empty()) terms.push_back(with_half(spin.J[i][i], reading::sum(std::move(squares))));
   }
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = i + 1; k < 3; ++k) {

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "print/printer.hpp"
 
+#include <cln/integer.h>
+
 #include <algorithm>
 #include <functional>
+#include <optional>
 
 #include "print/shorten.hpp"
 
@@ -13,13 +16,25 @@ using reading::Form;
 using reading::Formula;
 using reading::Op;
 
+/// 9.81 rather than 981/100: fractions over hundreds that end within four decimals. Nothing for other numbers.
+std::optional<std::string> as_decimal(const reading::Rational& value) {
+  constexpr long most = 10000;
+  const cln::cl_I bottom = cln::denominator(value);
+  if (bottom < 100 || cln::mod(most, bottom) != 0) return std::nullopt;
+  const cln::cl_I shifted = cln::numerator(value) * cln::exquo(cln::cl_I(most), bottom), whole = cln::floor1(shifted, most);
+  if (whole > most) return std::nullopt;
+  std::string decimals = std::to_string(cln::cl_I_to_long(most + cln::mod(shifted, most))).substr(1);
+  decimals.erase(decimals.find_last_not_of('0') + 1);
+  return std::to_string(cln::cl_I_to_long(whole)) + "." + decimals;
+}
+
 class Walk {
  public:
   Walk(const Style& style, const Notation& notation) : style_(style), notation_(notation) {}
 
   Piece operator()(const Formula& f) const {
     switch (f.form) {
-      case Form::number: return f.word.empty() ? style_.number(f.number) : style_.literal(f.word);
+      case Form::number: return number(f);
       case Form::pi: return style_.pi();
       case Form::symbol: return symbol(f.symbol);
       case Form::mark: return style_.mark(f.word, texts(f.lower), texts(f.upper));
@@ -77,6 +92,11 @@ class Walk {
   std::string at_least(const Formula& f, Piece::Binding binding) const {
     const Piece piece = (*this)(f);
     return piece.binding < binding ? style_.bracket(piece.text) : piece.text;
+  }
+  Piece number(const Formula& f) const {
+    if (!f.word.empty()) return style_.literal(f.word);
+    if (const auto decimal = as_decimal(f.number)) return style_.literal(*decimal);
+    return style_.number(f.number);
   }
   Piece symbol(const reading::Symbol& of) const {
     if (of.kind == symbolic::SymbolKind::integral) {

@@ -47,6 +47,7 @@ Formula negative(Formula a) {
 
 Formula product(std::vector<Formula> factors) {
   bool minus = false;
+  Rational number = 1;
   std::vector<Formula> flat;
   for (Formula& f : factors) {
     if (f.form == Form::negative) {
@@ -54,12 +55,17 @@ Formula product(std::vector<Formula> factors) {
       Formula inside = std::move(f.args[0]);
       f = std::move(inside);
     }
-    if (f.form == Form::number && is_one(f.number)) continue;
-    if (f.form == Form::product) flat.insert(flat.end(), f.args.begin(), f.args.end());
-    else flat.push_back(std::move(f));
+    std::vector<Formula> parts;
+    if (f.form == Form::product) parts = std::move(f.args);
+    else parts.push_back(std::move(f));
+    for (Formula& part : parts) {
+      if (part.form == Form::number) number = number * part.number;
+      else flat.push_back(std::move(part));
+    }
   }
-  if (std::any_of(flat.begin(), flat.end(), [](const Formula& f) { return is_zero(f); })) return number(0);
-  Formula result = flat.empty() ? number(1) : flat.size() == 1 ? flat[0] : wrap(Form::product, std::move(flat));
+  if (cln::zerop(number)) return reading::number(0);
+  if (flat.empty() || !is_one(number)) flat.insert(flat.begin(), reading::number(number));
+  Formula result = flat.size() == 1 ? flat[0] : wrap(Form::product, std::move(flat));
   return minus ? negative(std::move(result)) : result;
 }
 

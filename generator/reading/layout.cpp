@@ -67,6 +67,45 @@ Formula negated_bracket(const Sum& base) {
   return sum(std::move(terms));
 }
 
+Formula opposite(Formula f);
+
+// a - b + c as b - a - c; the first that is added leads.
+Formula opposite_sum(Formula f) {
+  for (Formula& term : f.args) term = opposite(std::move(term));
+  const auto added = std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
+  if (added != f.args.end()) std::rotate(f.args.begin(), added, added + 1);
+  return f;
+}
+
+bool subtracts(const Formula& f) {
+  return f.form == Form::sum && std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form == Form::negative; });
+}
+
+// -f without a minus in front, where a bracket can take it: -(a - b) c is (b - a) c.
+Formula opposite(Formula f) {
+  if (f.form == Form::negative) return negative(std::move(f));
+  if (subtracts(f)) return opposite_sum(std::move(f));
+  if (f.form == Form::product) {
+    const auto found = std::find_if(f.args.begin(), f.args.end(), subtracts);
+    if (found != f.args.end()) {
+      *found = opposite_sum(std::move(*found));
+      return f;
+    }
+  }
+  return negative(std::move(f));
+}
+
+// What begins with a minus although another order, or a bracket, avoids it. Accelerations stay in front of equations.
+Formula led_by_plus(Formula f, bool reordered) {
+  if (f.form == Form::negative) return opposite(std::move(f.args[0]));
+  if (f.form != Form::sum || f.args[0].form != Form::negative) return f;
+  f.args[0] = opposite(std::move(f.args[0].args[0]));
+  if (!reordered || f.args[0].form != Form::negative) return f;
+  const auto added = std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
+  if (added != f.args.end()) std::rotate(f.args.begin(), added, added + 1);
+  return f;
+}
+
 // The factor 1/(a - b) of a negative term, which reads better as 1/(b - a) of a positive one.
 const Factor* sign_taker(const Monomial& monomial) {
   for (const Factor& factor : monomial) {
@@ -95,7 +134,8 @@ Formula term_formula(const Rational& coefficient, const Monomial& monomial, std:
   if (!brackets_first) add_brackets();
   add_factors(motion);
   Formula result;
-  if (below.empty()) {
+  const bool of_pi = above.size() == 1 && above[0].form == Form::pi;  // pi/2
+  if (below.empty() && !of_pi) {
     above.insert(above.begin(), number(Rational(top) / bottom));
     result = product(std::move(above));
   } else {
@@ -149,7 +189,7 @@ Factored factor_out(const Sum& sum) {
   return result;
 }
 
-Formula bracket(const Sum& rest) { return sum(polynomial_terms(rest)); }
+Formula bracket(const Sum& rest) { return led_by_plus(sum(polynomial_terms(rest)), true); }
 
 Formula factored_formula(const Factored& f, const Monomial& motion = {}) {
   if (f.rest.is_number()) return term_formula(f.number, f.monomial, {}, motion);
@@ -326,6 +366,6 @@ Formula factored(const Sum& whole) {
   return term_formula(minus ? -parts.content.number : parts.content.number, parts.content.monomial, std::move(brackets));
 }
 
-Formula arrange(const Sum& whole, Layout layout) { return sum(arranged_terms(whole, layout)); }
+Formula arrange(const Sum& whole, Layout layout) { return led_by_plus(sum(arranged_terms(whole, layout)), layout == Layout::grouped); }
 
 }  // namespace eomgen::reading

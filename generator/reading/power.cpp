@@ -3,6 +3,8 @@
 #include <cln/integer.h>
 #include <cln/rational.h>
 
+#include <optional>
+
 #include "reading/sum.hpp"
 
 namespace eomgen::reading {
@@ -119,7 +121,43 @@ Sum power(const Sum& x, const Rational& exponent) {
   return factor * atomic_power(primitive, exponent);
 }
 
+namespace {
+
+/// Quarter turns that stand in an angle beside something else: 1 of pi/2 - x; the angle is left without them. None where what
+/// stands there is no whole number of them.
+long take_quarter_turns(Sum& angle) {
+  for (const auto& [monomial, coefficient] : angle.terms()) {
+    const bool of_pi = monomial.size() == 1 && monomial[0].atom->op == Op::pi && is_one(monomial[0].exponent);
+    if (!of_pi) continue;
+    const Rational quarters = 2 * coefficient;
+    if (!is_integer(quarters)) return 0;
+    const long turns = cln::cl_I_to_long(cln::mod(cln::numerator(quarters), 4));
+    angle -= Sum(monomial, coefficient);
+    return turns;
+  }
+  return 0;
+}
+
+/// sin(pi/2 - x) = cos(x), cos(x + pi) = -cos(x).
+std::optional<Sum> without_quarter_turns(Op function, const Sum& angle) {
+  if (function != Op::sin && function != Op::cos) return std::nullopt;
+  Sum rest = angle;
+  const long turns = take_quarter_turns(rest);
+  if (rest.size() == angle.size()) return std::nullopt;
+  const bool exchanged = turns % 2 == 1;
+  const Op other = function == Op::sin ? Op::cos : Op::sin;
+  const Sum value = call(exchanged ? other : function, {std::move(rest)});
+  // sin: x, cos, -sin, -cos; cos: x, -sin, -cos, sin.
+  const bool minus = function == Op::sin ? turns >= 2 : turns == 1 || turns == 2;
+  return minus ? -value : value;
+}
+
+}  // namespace
+
 Sum call(Op function, std::vector<Sum> args) {
+  if (args.size() == 1) {
+    if (std::optional<Sum> value = without_quarter_turns(function, args[0])) return *std::move(value);
+  }
   const auto negated = [&]() -> Sum { return call(function, {-args[0]}); };
   if (args.size() == 1 && leads_negative(args[0])) {
     switch (function) {

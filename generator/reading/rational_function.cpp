@@ -122,7 +122,10 @@ std::optional<Sum> exact_quotient(const Sum& a, const Sum& b) {
 
 namespace {
 
-Sum cancel_whole(const Sum& sum) {
+/// Of the sums in denominators: the same ones stand under every part.
+using Factorisations = std::map<AtomPtr, Factorisation, AtomLess>;
+
+Sum cancel_whole(const Sum& sum, Factorisations& known) {
   // the largest power of every sum in a denominator
   std::map<AtomPtr, Rational, AtomLess> under;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -137,7 +140,9 @@ Sum cancel_whole(const Sum& sum) {
   std::vector<std::pair<Sum, long>> bases;
   for (const auto& [atom, exponent] : under) {
     numerator = numerator * Sum(Monomial{{atom, exponent}}, 1);
-    const Factorisation parts = factorise(atom->args[0]);
+    auto found = known.find(atom);
+    if (found == known.end()) found = known.emplace(atom, factorise(atom->args[0])).first;
+    const Factorisation& parts = found->second;
     rest = rest * power(Sum(parts.content.monomial, parts.sign * parts.content.number), -exponent);
     for (const auto& [base, times] : parts.factors) bases.emplace_back(base, times * to_long(exponent));
   }
@@ -178,10 +183,11 @@ Sum cancel(const Sum& sum) {
     for (const Factor& factor : monomial) (below.contains(factor.atom) ? inside : outside).push_back(factor);
     parts[outside].add(inside, coefficient);
   }
-  if (parts.size() < 2) return cancel_whole(sum);
+  Factorisations known;
+  if (parts.size() < 2) return cancel_whole(sum, known);
   Sum result;
-  for (const auto& [outside, part] : parts) result += Sum(outside, 1) * cancel_whole(part);
-  return cancel_whole(result.size() <= sum.size() ? result : sum);
+  for (const auto& [outside, part] : parts) result += Sum(outside, 1) * cancel_whole(part, known);
+  return cancel_whole(result.size() <= sum.size() ? result : sum, known);
 }
 
 Sum absorb_roots(const Sum& sum) {

@@ -132,7 +132,7 @@ void fill_in(const model::Model& model, json& found) {
   }
   found["dof"] = m.freedom();
   for (const model::Parameter& p : model.parameters) {
-    found["parameters"].push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[found["parameters"].size()])}});
+    found["parameters"].push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[found["parameters"].size()])}, {"written", p.written}});
     every_unit = every_unit && p.unit.dimension.has_value();
   }
   for (const model::Input& input : model.inputs) {
@@ -181,6 +181,13 @@ namespace {
 
 std::string text(const json& value) { return value.get<std::string>(); }
 
+/// "48.85 deg", as the author has it; a bare number with the unit that it was given.
+std::string as_written(const json& parameter) {
+  const std::string value = text(parameter["value"]), written = text(parameter["written"]), unit = text(parameter["unit"]);
+  const bool bare = written.find_first_not_of("0123456789.+-eE") == std::string::npos;
+  return bare || written.empty() ? fmt::format("{} {}", value, unit) : written;
+}
+
 std::string from_others(const json& constraint) {
   std::string others;
   for (const json& name : constraint["integral_of"]) {
@@ -208,7 +215,7 @@ void print_readable(const json& found) {
   }
   fmt::print("  {} degree{} of freedom\n", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s");
   heading("parameters");
-  for (const json& p : found["parameters"]) fmt::print("  {:<20} {} {}\n", text(p["name"]), text(p["value"]), text(p["unit"]));
+  for (const json& p : found["parameters"]) fmt::print("  {:<20} {}\n", text(p["name"]), as_written(p));
   if (!found["inputs"].empty()) heading("inputs");
   for (const json& u : found["inputs"]) fmt::print("  {:<20} {}  ({} where a scene gives none)\n", text(u["name"]), text(u["unit"]), text(u["default"]));
   if (!found["constraints"].empty()) heading("constraints");

@@ -97,13 +97,20 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
   return result;
 }
 
+/// A contact that can be left is no friction.
+std::string heading_of(const print::Item& item) {
+  if (item.role.empty()) return item.key;
+  const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") || item.role == "impact" || item.role == "normal force";
+  return (item.key == "friction" && of_contact ? "contact" : item.key) + ": " + item.role;
+}
+
 void print_readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format,
                     const std::vector<work::LeftOut>& left_out) {
   fmt::print("Approach {}\n", approach);
   std::string heading;
   for (const print::Item& item : items) {
     if (!item.left_out.empty()) continue;
-    const std::string next = item.role.empty() ? item.key : item.key + ": " + item.role;
+    const std::string next = heading_of(item);
     if (next != heading) fmt::print("\n{}\n", next);
     heading = next;
     fmt::print("  {}\n", in_format(item, format));
