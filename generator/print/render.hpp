@@ -7,6 +7,7 @@
 
 #include "print/printer.hpp"
 #include "reading/reading.hpp"
+#include "reading/linear_form.hpp"
 #include "reading/routh.hpp"
 
 namespace eomgen::print {
@@ -25,6 +26,9 @@ struct Item {
 /// work::Interrupted, or tells so in `interrupted` and gives the items that are there.
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                          const std::vector<std::string>& show, bool* interrupted = nullptr);
+
+/// M, C, K, B under the key "linear": along a motion, and at rest with the equations of an equilibrium.
+std::vector<Item> render_linear(const mechanics::Mechanics& mechanics, const reading::LinearForm& form);
 
 /// Routh's reduction under the key "routh": constant momenta, the rates that they give, the Routhian, the reduced equations.
 std::vector<Item> render_routh(const mechanics::Mechanics& mechanics, const reading::RouthForm& form);

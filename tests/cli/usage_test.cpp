@@ -78,7 +78,6 @@ TEST_CASE("names that are not there: the nearest one is told") {
       {{"emit", P2, "-o", "out", "--form", "nullspace"},
        "form 'nullspace' is one of constraints that keep multipliers, and this model has none", "leave --form out"},
       {{"derive", P2, "--show", "equatons"}, "there is nothing called 'equatons' to show", "did you mean 'equations'?"},
-      {{"derive", P2, "--show", "linear"}, "the linearised equations are not supported yet", "eomgen linearize"},
       {{"derive", P2, "--format", "tex"}, "there is no format 'tex'", "did you mean 'text'?"},
   });
 }

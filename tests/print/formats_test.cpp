@@ -179,3 +179,48 @@ holonomic = "T^2 - L*psi^2"
   CHECK(printed.of("constraints")[0].latex.starts_with("\\Psi = "));
   CHECK(printed.of("equations")[0].text.find("= 2 mu T") != std::string::npos);
 }
+
+TEST_CASE("quarter turns leave the angles of sines and cosines, with the right sign") {
+  CHECK(expression("sin(pi/2 - x)", print::Format::text) == "cos(x)");
+  CHECK(expression("cos(pi/2 - x)", print::Format::text) == "sin(x)");
+  CHECK(expression("sin(x + pi/2)", print::Format::text) == "cos(x)");
+  CHECK(expression("cos(x + pi/2)", print::Format::text) == "-sin(x)");
+  CHECK(expression("sin(x + pi)", print::Format::text) == "-sin(x)");
+  CHECK(expression("cos(x - pi)", print::Format::text) == "-cos(x)");
+  CHECK(expression("sin(x - 3*pi/2)", print::Format::text) == "cos(x)");
+  CHECK(expression("cos(7*pi/2 + x)", print::Format::text) == "sin(x)");
+  CHECK(expression("sin(x + pi/3)", print::Format::text) == "sin(x + pi/3)");
+}
+
+TEST_CASE("no minus leads where a bracket or another order avoids it") {
+  CHECK(expression("x_dot*(b*sin(y)^2 - a*sin(y)^2 + c*cos(y))", print::Format::text).front() != '-');
+  CHECK(expression("-(a - b)*x", print::Format::text) == "(b - a) x");
+  CHECK(expression("y_dot - a*x_dot*cos(y)", print::Format::text).front() != '-');
+}
+
+TEST_CASE("decimals of the author stay decimals, and what textbooks write as fractions stays a fraction") {
+  CHECK(expression("9.81*x", print::Format::text) == "9.81 x");
+  CHECK(expression("9.81*x", print::Format::latex) == "9.81 x");
+  CHECK(expression("0.0125*x", print::Format::text) == "1/80 x");
+  CHECK(expression("x/12", print::Format::text) == "1/12 x");
+  CHECK(expression("3*x/10", print::Format::text) == "3/10 x");
+  CHECK(expression("x*pi/6", print::Format::text) == "1/6 pi x");
+}
+
+TEST_CASE("the constraint force on a particle is a vector along its own unit vectors") {
+  const Printed cone(model::read_model(shipped("P4_moving_cone")), system::Approach::one, {"reactions"});
+  const auto is_force = [](const Item& item) { return item.role == "constraint force"; };
+  const std::vector<Item> of_cone = cone.of("reactions");
+  const auto found = std::find_if(of_cone.begin(), of_cone.end(), is_force);
+  REQUIRE(found != of_cone.end());
+  CHECK(found->text == "N = (lambda/R) e_phi");
+  const Printed helix(model::read_model(shipped("P8_smooth_helix")), system::Approach::one, {"reactions"});
+  CHECK(helix.of("reactions").back().text == "N = lambda_1 a^r + lambda_2 a^nu");
+}
+
+TEST_CASE("moments with numbers in them have one number in front") {
+  const model::Model model = model::read_model_text(
+      "format = 1\n[parameters]\nm = 1\nl = 1\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = { rod = \"l\" }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+      "rotation = { euler = \"313\", angles = [\"psi\", \"theta\", \"phi\"] }\n", "text");
+  for (const Item& item : Printed(model, system::Approach::two, {"energies"}).of("energies")) CHECK(item.text.find("1/2 (1/12") == std::string::npos);
+}

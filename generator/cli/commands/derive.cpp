@@ -37,9 +37,6 @@ void require_keys(const std::vector<std::string>& show) {
       throw Error("derive", {}, fmt::format("there is nothing called {} to show", model::quote(key)),
                   choice_of(key, show_keys()));
     }
-    if (key == "linear") {
-      throw Error("derive", {}, "the linearised equations are not supported yet", "eomgen linearize gives A and B at a state; leave 'linear' out of --show");
-    }
   }
 }
 
@@ -155,6 +152,12 @@ void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& 
   for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
 }
 
+// Only on request: n^2 entries of four matrices, twice.
+void add_linear(const mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
+  if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
+  for (print::Item& item : print::render_linear(mechanics, reading::linear_form(mechanics))) items.push_back(std::move(item));
+}
+
 int execute(const Options& options, const Common& common) {
   require_keys(options.show);
   require_format(options.format);
@@ -172,6 +175,7 @@ int execute(const Options& options, const Common& common) {
     if (!interrupted) {
       add_conserved(mechanics, options.show, items);
       add_routh(mechanics, options.show, items);
+      add_linear(mechanics, options.show, items);
     }
   } catch (const work::Interrupted&) {
     interrupted = true;

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// M dq'' + C dq' + K dq = B du, entry by entry; what is zero is left out.
+#include "print/formulas.hpp"
+#include "print/render.hpp"
+#include "reading/linear_form.hpp"
+
+namespace eomgen::print {
+namespace {
+
+using reading::arrange;
+using reading::Formula;
+using reading::LinearForm;
+using reading::mark;
+using reading::Sum;
+using symbolic::SymbolKind;
+
+class Entries {
+ public:
+  Entries(const LinearForm& form, std::vector<Statement>& out) : f_(form), out_(out) {}
+
+  void show(const reading::Slopes& slopes, const std::string& where) {
+    matrix("M", slopes.mass, false, where);
+    matrix("C", slopes.damping, false, where);
+    matrix("K", slopes.stiffness, false, where);
+    matrix("B", slopes.input, true, where);
+  }
+
+ private:
+  Formula coordinate(std::size_t i) const { return reading::symbol({SymbolKind::coordinate, f_.coordinates[i], 0}); }
+  Formula column(std::size_t j, bool input) const { return input ? reading::symbol({SymbolKind::input, f_.inputs[j], 0}) : coordinate(j); }
+
+  void matrix(const char* letter, const std::vector<Sum>& entries, bool input, const std::string& where) {
+    const std::size_t n = f_.coordinates.size(), columns = input ? f_.inputs.size() : n;
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t j = 0; j < columns; ++j) {
+        const Sum& entry = entries[i * columns + j];
+        if (entry.is_zero()) continue;
+        out_.push_back({"linear", "", "", where + ": " + letter, reading::relation({mark(letter, {coordinate(i), column(j, input)}), arrange(entry)})});
+      }
+    }
+  }
+
+  const LinearForm& f_;
+  std::vector<Statement>& out_;
+};
+
+}  // namespace
+
+std::vector<Item> render_linear(const mechanics::Mechanics& m, const LinearForm& form) {
+  std::vector<Statement> out;
+  if (!form.why_not.empty()) {
+    out.push_back(left_out("linear", "", "", form.why_not));
+    return render(m, out);
+  }
+  Entries entries(form, out);
+  entries.show(form.along, "along a motion");
+  for (std::size_t i = 0; i < form.rest.size(); ++i) {
+    out.push_back({"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
+                   reading::relation({arrange(form.rest[i]), reading::number(0)})});
+  }
+  entries.show(form.at_rest, "at rest");
+  return render(m, out);
+}
+
+}  // namespace eomgen::print

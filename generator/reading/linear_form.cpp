@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/linear_form.hpp"
+
+#include "reading/approaches.hpp"
+#include "reading/rational_function.hpp"
+#include "reading/trig.hpp"
+
+namespace eomgen::reading {
+namespace {
+
+using mechanics::Mechanics;
+
+std::string obstacle(const Mechanics& m, const ReadingForm& form) {
+  if (form.by_parts) return form.why_by_parts;
+  if (!m.contacts.empty()) return "contacts have modes, each with slopes of its own: eomgen linearize gives A and B at a state";
+  for (const Equation& equation : form.equations) {
+    if (!equation.multipliers.empty()) return "constraints keep multipliers: eomgen linearize gives A and B at a state";
+  }
+  return "";
+}
+
+class Linearisation {
+ public:
+  Linearisation(Bridge& bridge, LinearForm& form, const std::vector<Sum>& residuals) : bridge_(bridge), form_(form), r_(residuals) {
+    for (const std::uint32_t q : form.coordinates) {
+      for (const int order : {1, 2}) rest_[coordinate_symbol(q, order)] = Sum();
+    }
+  }
+
+  void run() {
+    for (const Sum& r : r_) {
+      const Sum rest = at_rest(r);
+      form_.rest.push_back(rest);
+      for (const std::uint32_t q : form_.coordinates) {
+        add(slope(r, coordinate_symbol(q, 2)), form_.along.mass, form_.at_rest.mass);
+        add(slope(r, coordinate_symbol(q, 1)), form_.along.damping, form_.at_rest.damping);
+        add(slope(r, coordinate_symbol(q, 0)), form_.along.stiffness, form_.at_rest.stiffness);
+      }
+      for (const std::uint32_t u : form_.inputs) add(-slope(r, {SymbolKind::input, u, 0}), form_.along.input, form_.at_rest.input);
+    }
+  }
+
+ private:
+  Sum slope(const Sum& r, const Symbol& by) { return simplify(cancel(bridge_.derivative(r, by))); }
+  Sum at_rest(const Sum& sum) { return simplify(cancel(bridge_.substitute(sum, rest_))); }
+  void add(const Sum& slope, std::vector<Sum>& along, std::vector<Sum>& rest) {
+    along.push_back(slope);
+    rest.push_back(at_rest(slope));
+  }
+
+  Bridge& bridge_;
+  LinearForm& form_;
+  const std::vector<Sum>& r_;
+  std::map<Symbol, Sum> rest_;
+};
+
+}  // namespace
+
+LinearForm linear_form(const Mechanics& mechanics) {
+  LinearForm form;
+  const ReadingForm read = derive_reading(mechanics, system::Approach::two);
+  form.why_not = obstacle(mechanics, read);
+  if (!form.why_not.empty()) return form;
+  std::vector<Sum> residuals;
+  for (const Equation& equation : read.equations) {
+    if (!equation.of_motion) continue;
+    form.coordinates.push_back(equation.coordinate);
+    residuals.push_back(equation.expanded - equation.force);
+  }
+  for (std::uint32_t u = 0; u < mechanics.model->inputs.size(); ++u) form.inputs.push_back(u);
+  try {
+    const work::Budget budget(form_budget);
+    Bridge bridge(mechanics);
+    Linearisation(bridge, form, residuals).run();
+  } catch (const std::domain_error&) {
+    form = {};
+    form.why_not = "the equations have no slope at rest";
+  } catch (const work::OverBudget& over) {
+    form = {};
+    form.why_not = over.what();
+  }
+  return form;
+}
+
+}  // namespace eomgen::reading
