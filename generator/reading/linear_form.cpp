@@ -23,7 +23,7 @@ class Linearisation {
  public:
   Linearisation(Bridge& bridge, LinearForm& form, const std::vector<Sum>& residuals) : bridge_(bridge), form_(form), r_(residuals) {
     for (const std::uint32_t q : form.coordinates) {
-      for (const int order : {1, 2}) rest_[coordinate_symbol(q, order)] = Sum();
+      for (const std::uint8_t order : {std::uint8_t{1}, std::uint8_t{2}}) rest_[coordinate_symbol(q, order)] = Sum();
     }
   }
 
