@@ -32,7 +32,7 @@ inline std::array<double, 3> angles_of(const std::string& set, const Eigen::Matr
     for (int step = 0; step < 60; ++step) {
       Eigen::Matrix<double, 9, 3> slope;
       for (int k = 0; k < 3; ++k) slope.col(k) = (residual(n + 1e-6 * Eigen::Vector3d::Unit(k)) - residual(n - 1e-6 * Eigen::Vector3d::Unit(k))) / 2e-6;
-      n -= slope.colPivHouseholderQr().solve(residual(n));
+      n -= (slope.transpose() * slope).inverse() * (slope.transpose() * residual(n));  // far from where it has no inverse; a QR takes seconds to compile
     }
     if (residual(n).norm() < 1e-14) return {n[0], n[1], n[2]};
   }
