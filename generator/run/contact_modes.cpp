@@ -32,6 +32,12 @@ int ContactModes::Motion::impact(double t, std::span<double> x, int mode, std::s
   if (code == 0) self->changed_(t, before, x);
   return code;
 }
+int ContactModes::Motion::close(double t, std::span<double> x, int mode) const {
+  const std::vector<double> before(x.begin(), x.end());
+  const int code = self->velocities_.close(t, x, self->inputs_(t), mode);
+  if (code == 0) self->changed_(t, before, x);
+  return code;
+}
 int ContactModes::Motion::stick(double t, std::span<double> x, int mode, std::size_t j) const {
   const std::vector<double> before(x.begin(), x.end());
   const int code = self->velocities_.stick(t, x, self->inputs_(t), mode, j);

@@ -43,6 +43,7 @@ class ContactModes {
   struct Motion {
     ContactModes* self;
     int impact(double t, std::span<double> x, int mode, std::size_t j, double e) const;
+    int close(double t, std::span<double> x, int mode) const;
     int stick(double t, std::span<double> x, int mode, std::size_t j) const;
     int stop(double& t, std::span<double> x, int mode, std::size_t j) const;
     int slide(double t, std::span<double> x, int mode, std::size_t j) const;

@@ -104,6 +104,11 @@ int ContactVelocities::impact(double t, std::span<double> x, const double* u, in
   return 0;
 }
 
+int ContactVelocities::close(double t, std::span<double> x, const double* u, int mode) {
+  rows_.slide_all(mode);
+  return move(t, x, u);
+}
+
 int ContactVelocities::stick(double t, std::span<double> x, const double* u, int mode, std::size_t) {
   rows_.mode(mode);
   return move(t, x, u);

@@ -21,6 +21,7 @@ class ContactVelocities {
 
   /// As eom::ContactMotion; u: the inputs there.
   int impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution);
+  int close(double t, std::span<double> x, const double* u, int mode);
   int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
   double approach(double t, std::span<const double> x, const double* u, std::size_t contact);

@@ -14,6 +14,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -37,6 +38,8 @@ struct Contact : ContactShape {
 struct ContactMotion {
   /// Velocities after an impact at contact j, with the contacts that touch in `mode`. Returns a code of the ABI.
   int impact(double, std::span<double>, int, std::size_t, double) { return 0; }
+  /// Gap speeds 0 of all contacts that touch in `mode`.
+  int close(double, std::span<double>, int) { return 0; }
   /// Slip 0 at contact j in `mode`.
   int stick(double, std::span<double>, int, std::size_t) { return 0; }
   /// Goes on from (t, x), where contact j slides slowly, to where it stops; slips_on where it does not: its slip grows.
@@ -115,14 +118,25 @@ class Contacts {
             code == 4 ? Outcome::friction_many_solutions : Outcome::friction_no_solution};
   }
 
-  /// Bounces that accumulate end with contact.
+  /// Bounces that accumulate end with contact: of all that took turns, as in a corner.
   std::optional<Transition> settle(const ModePoint& point) {
     const std::size_t j = point.crossing.function / contact_values;
     if (point.crossing.function % contact_values != 3 || !contacts_[j].unilateral) return std::nullopt;
-    return hit(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
+    int mode = with_contact_digit(point.mode, j, 0);
+    bool alone = true;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      constexpr std::ptrdiff_t turns = 3;
+      if (i == j || !contacts_[i].unilateral || std::count(hits_.begin(), hits_.end(), i) < turns) continue;
+      mode = with_contact_digit(mode, i, 0);
+      alone = false;
+    }
+    if (alone) return hit(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
+    if (const int code = motion_.close(point.t, point.x, mode); code != 0) return failed(point, code);
+    return Transition{settled(point.t, point.x, mode), "contact", contacts_[j].name};
   }
 
  private:
+  static constexpr std::size_t no_contact = static_cast<std::size_t>(-1);
   Transition failed(const ModePoint& point, int code) const { return {point.mode, "", "", outcome_of_abi_code(code)}; }
 
   double speed(const double* g, std::size_t j) const {
@@ -171,6 +185,7 @@ class Contacts {
 
   /// An impact at contact j, which is apart; it stays so if it bounces.
   Transition hit(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
+    hits_[hit_++ % hits_.size()] = j;
     const double speed = motion_.approach(t, x, j), e = bounces ? contacts_[j].restitution : 0;
     const bool away = e > 0 && -speed * e > motion_.still();
     if (speed < 0) {
@@ -253,6 +268,8 @@ class Contacts {
   std::vector<Contact> contacts_;
   std::vector<double> dx_, g_;
   std::vector<Mode> table_;
+  std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact, no_contact, no_contact, no_contact, no_contact};  // the last ones
+  std::size_t hit_ = 0;
   Rhs rhs_;
   Functions functions_;
   Motion motion_;

@@ -74,30 +74,37 @@ class Chatter {
  public:
   /// The time at which the transitions seen so far accumulate, once they are fast enough to tell.
   std::optional<double> see(double t) {
-    const double interval = std::abs(t - last_), before = interval_;
-    interval_ = interval;
+    const double interval = std::abs(t - last_), sum = interval + interval_, before = sum_, second_before = sum_before_;
     const double direction = t < last_ ? -1 : 1;
+    interval_ = interval;
+    sum_before_ = before;
+    sum_ = sum;
     last_ = t;
-    if (!(interval < before)) {  // also the first, and after NaN
-      first_ = interval;
+    // Where rounding alone is left of the intervals, they shrink no more.
+    stalled_ = sum < rounding * std::abs(t) ? stalled_ + 1 : 0;
+    if (stalled_ >= fewest) return t;
+    if (!(sum < before)) {  // also the first, and after NaN
+      first_ = sum;
       shrinking_ = 0;
       return std::nullopt;
     }
     ++shrinking_;
-    if (shrinking_ < fewest || !(interval < smallest * first_)) return std::nullopt;
-    const double ratio = interval / before;
-    return t + direction * interval * ratio / (1 - ratio);
+    if (shrinking_ < fewest || !(sum < smallest * first_)) return std::nullopt;
+    const double ratio = sum / second_before;  // of two intervals
+    return t + direction * sum * ratio / (1 - ratio);
   }
 
   void forget() { *this = Chatter{}; }
 
  private:
   static constexpr int fewest = 10;
-  static constexpr double smallest = 1e-7;
+  static constexpr double smallest = 1e-7, rounding = 1e-12;
   double last_ = std::numeric_limits<double>::quiet_NaN();
+  // Sums of two intervals: between two walls long ones and short ones take turns.
   double interval_ = std::numeric_limits<double>::quiet_NaN();
+  double sum_ = std::numeric_limits<double>::quiet_NaN(), sum_before_ = std::numeric_limits<double>::quiet_NaN();
   double first_ = 0;
-  int shrinking_ = 0;
+  int shrinking_ = 0, stalled_ = 0;
 };
 
 /// The mode that a run is in, and what becomes of it at the surfaces that bound it.
