@@ -3,6 +3,8 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -60,5 +62,49 @@ TEST_CASE("run: shipped models with springs of 1e8 and 1e10 load their compiled 
       const Json found = document(folder, {"run", model, "--set", stiffness, "--t-end", "1e-4"});
       CHECK(found["outcome"] == "done");
     }
+  }
+}
+
+TEST_CASE("verify: every shipped model passes in every function that may be emitted") {
+  const Folder folder;
+  for (const std::string& model : shipped_models()) {
+    CAPTURE(model);
+    CHECK(document(folder, {"verify", model, "--points", "1", "--no-compile"})["verdict"] == "pass");
+  }
+}
+
+TEST_CASE("run: what falls into a corner of two walls comes to rest there, whatever the tolerance") {
+  const Folder folder;
+  folder.write("corner.toml", R"toml(format = 1
+[parameters]
+m = 1
+g = 9.81
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y"] }
+[[force]]
+gravity = "-g*E2"
+[[constraint]]
+name = "right"
+holonomic = "y - 0.3*x"
+holds = "unilateral"
+[[constraint]]
+name = "left"
+holonomic = "y + 0.5*x"
+holds = "unilateral"
+[scene.default]
+t = [0, 3]
+initial = { x = 0, y = 1 }
+)toml");
+  // At rest the walls bear the weight: 0.3 r = 0.5 l, r + l = m g.
+  for (const char* tolerance : {"1e-9", "1e-11", "1e-13"}) {
+    CAPTURE(tolerance);
+    const Json found = document(folder, {"run", "corner.toml", "--rtol", tolerance, "--atol", tolerance, "--max-steps", "20000"});
+    CHECK(found["outcome"] == "done");
+    CHECK(std::abs(found["final"]["x"].get<double>()) < 1e-6);
+    CHECK(found["final"]["reaction.right"].get<double>() == doctest::Approx(9.81 * 0.5 / 0.8));
+    CHECK(found["final"]["reaction.left"].get<double>() == doctest::Approx(9.81 * 0.3 / 0.8));
+    CHECK(found["estimate_note"].is_null());
   }
 }
