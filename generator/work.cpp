@@ -23,8 +23,6 @@ thread_local std::size_t left = std::numeric_limits<std::size_t>::max();
 }  // namespace
 
 void request_stop() noexcept { stop.store(true, std::memory_order_relaxed); }
-void withdraw_stop() noexcept { stop.store(false, std::memory_order_relaxed); }
-bool stop_requested() noexcept { return stop.load(std::memory_order_relaxed); }
 
 Kept::Kept() noexcept {
   ++keeping;
@@ -32,7 +30,7 @@ Kept::Kept() noexcept {
 }
 Kept::~Kept() { --keeping; }
 
-bool abandoned() noexcept { return stop_requested() && keeping.load(std::memory_order_relaxed) == 0; }
+bool abandoned() noexcept { return stop.load(std::memory_order_relaxed) && keeping.load(std::memory_order_relaxed) == 0; }
 
 void check() {
   if (abandoned()) throw Interrupted{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What long calculations owe to those who wait for them: they end when they are asked to, have budgets counted in operations, and
-// say what they do. The request is one for the process, as the signal that makes it is; budgets and the name of what is under way
+// say what they do. The request and the name of what is under way are one for the process, as the signal and the terminal are; budgets
 // belong to the thread that calculates. Hot loops call `spend`, which is a subtraction.
 #pragma once
 
@@ -27,8 +27,6 @@ struct OverBudget : std::length_error {
 
 /// Safe in a signal handler.
 void request_stop() noexcept;
-void withdraw_stop() noexcept;
-bool stop_requested() noexcept;
 
 /// While one exists, a request to stop is seen to by whoever made it: `spend` does not throw for it, and no progress is shown.
 class Kept {
@@ -38,7 +36,7 @@ class Kept {
   Kept(const Kept&) = delete;
   Kept& operator=(const Kept&) = delete;
 };
-/// Whether what is under way has to be left: stop_requested(), and nothing is kept.
+/// Whether what is under way has to be left: a stop was requested, and nothing is kept.
 bool abandoned() noexcept;
 
 /// Counts operations of some ten nanoseconds to a microsecond. Throws Interrupted, OverBudget.
@@ -69,7 +67,7 @@ class Stage {
  private:
   const char* around_;
 };
-/// Of the thread that entered a stage last; nullptr where none is under way.
+/// The innermost; nullptr where none is under way.
 const char* stage() noexcept;
 
 /// A line on a terminal that the next one replaces; the end of the outermost stage clears it. Nothing is shown outside of stages, nor while anything is kept.

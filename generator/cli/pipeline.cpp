@@ -277,10 +277,11 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   }
   std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
   for (std::size_t i = 0; i < options.default_inputs.size(); ++i) inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
-  subjects.programs.push_back(with_functions(program_form(program, options.digits), program, inputs));
+  const int digits = options.digits + verify::digits_of_range(derived.mechanics);
+  subjects.programs.push_back(with_functions(program_form(program, digits), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
   for (const program::Program& form : forms) {
-    subjects.programs.push_back(program_form(form, options.digits));
+    subjects.programs.push_back(program_form(form, digits));
     subjects.programs.back().name = fmt::format("form {}", system::name(form.form));
   }
   if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);

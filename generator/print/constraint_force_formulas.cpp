@@ -2,6 +2,7 @@
 // What the constraints exert, as vectors. On a particle: N = sum lambda_k dpsi_k/dq^i a^i along the unit vectors of its coordinates, eqs. (1.22), (2.99). On a body: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, with the slopes of
 // the constraint by the rates of its coordinates and angles as components along the dual bases, eqs. (9.2), (9.84).
 #include <algorithm>
+#include <optional>
 
 #include "print/formulas.hpp"
 #include "reading/trig.hpp"
@@ -12,13 +13,43 @@ namespace {
 using mechanics::Mechanics;
 using reading::Formula;
 using reading::mark;
+using reading::ReadingForm;
 using reading::Sum;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
+/// What is shown of multipliers: by approach II those of constraints that are built in are no unknowns, and a vector with them is left out.
+class Multipliers {
+ public:
+  Multipliers(const Mechanics& m, const ReadingForm& form) : m_(m), built_in_(m.constraints.size(), false) {
+    if (form.approach != system::Approach::two) return;
+    for (const reading::ReadConstraint& c : form.constraints) built_in_[c.constraint] = c.fixes.has_value();
+  }
+  bool holds(std::uint32_t k) const { return m_.holds(k); }
+  bool built_in(std::uint32_t k) const { return built_in_[k]; }
+
+ private:
+  const Mechanics& m_;
+  std::vector<bool> built_in_;
+};
+
+/// Whether the coordinate moves anything but the mass at `place` and the body: what constraints exert along it is else exerted on these.
+bool moves_others(const Mechanics& m, std::uint32_t coordinate, std::uint32_t place, std::optional<std::uint32_t> body) {
+  symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, coordinate, 1});
+  const auto moves = [&](Ref r) { return !m.dag->is_zero(by(r)); };
+  for (const mechanics::PointMass& mass : m.masses) {
+    if (mass.place != place && std::any_of(mass.velocity.begin(), mass.velocity.end(), moves)) return true;
+  }
+  for (std::uint32_t b = 0; b < m.spins.size(); ++b) {
+    if (b != body && std::any_of(m.spins[b].w.begin(), m.spins[b].w.end(), moves)) return true;
+  }
+  return false;
+}
+
 class BodyForces {
  public:
-  BodyForces(const Mechanics& m, std::uint32_t body, std::vector<Statement>& out) : m_(m), body_(body), out_(out) {}
+  BodyForces(const Mechanics& m, const Multipliers& multipliers, std::uint32_t body, std::vector<Statement>& out)
+      : m_(m), multipliers_(multipliers), body_(body), out_(out) {}
 
   void add() {
     const model::Body& body = m_.model->bodies[body_];
@@ -46,22 +77,10 @@ class BodyForces {
       if (entry == model::no_node) return {};
       const model::Node& node = m_.model->arena[entry];
       if (node.op != model::Op::coordinate || std::find(result.begin(), result.end(), node.index) != result.end()) return {};
-      if (moves_others(node.index)) return {};
+      if (moves_others(m_, node.index, m_.model->bodies[body_].place, body_)) return {};
       result.push_back(node.index);
     }
     return result;
-  }
-
-  bool moves_others(std::uint32_t i) const {
-    symbolic::Derivation by = symbolic::partial(*m_.dag, {SymbolKind::coordinate, i, 1});
-    const auto moves = [&](Ref r) { return !m_.dag->is_zero(by(r)); };
-    for (const mechanics::PointMass& mass : m_.masses) {
-      if (mass.place != m_.model->bodies[body_].place && std::any_of(mass.velocity.begin(), mass.velocity.end(), moves)) return true;
-    }
-    for (std::size_t b = 0; b < m_.spins.size(); ++b) {
-      if (b != body_ && std::any_of(m_.spins[b].w.begin(), m_.spins[b].w.end(), moves)) return true;
-    }
-    return false;
   }
 
   bool along_fixed_axes(const std::vector<std::uint32_t>& q) const {
@@ -89,6 +108,7 @@ class BodyForces {
   void show(const char* role, const char* letter, const std::vector<std::uint32_t>& along, Vector&& vector) {
     std::vector<Formula> terms;
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
+      if (!multipliers_.holds(k)) continue;
       const Formula lambda = reading::symbol({SymbolKind::multiplier, k, 0});
       std::vector<Formula> parts;
       bool sums = false;  // terms can be broken over lines, brackets within brackets cannot
@@ -101,6 +121,7 @@ class BodyForces {
         sums = sums || slope.size() > 1;
       }
       if (parts.empty()) continue;
+      if (multipliers_.built_in(k)) return;
       if (sums) {
         for (Formula& part : parts) {
           const bool minus = part.form == reading::Form::negative;
@@ -121,24 +142,10 @@ class BodyForces {
   }
 
   const Mechanics& m_;
+  const Multipliers& multipliers_;
   std::uint32_t body_;
   std::vector<Statement>& out_;
 };
-
-/// Whether the coordinates move one particle and nothing else: what constraints exert along them is then exerted on it.
-bool move_alone(const Mechanics& m, const std::vector<std::uint32_t>& coordinates, const std::string& particle) {
-  for (const std::uint32_t i : coordinates) {
-    symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, i, 1});
-    const auto moves = [&](Ref r) { return !m.dag->is_zero(by(r)); };
-    for (const mechanics::PointMass& mass : m.masses) {
-      if (m.model->places[mass.place].name != particle && std::any_of(mass.velocity.begin(), mass.velocity.end(), moves)) return false;
-    }
-    for (const auto& spin : m.spins) {
-      if (std::any_of(spin.w.begin(), spin.w.end(), moves)) return false;
-    }
-  }
-  return true;
-}
 
 /// Those of the chart; where it names none the contravariant basis.
 std::vector<Formula> vectors_of(const reading::Geometry& g) {
@@ -154,14 +161,15 @@ std::vector<Formula> vectors_of(const reading::Geometry& g) {
   return result;
 }
 
-void add_particle_force(const Mechanics& m, const reading::Geometry& g, std::size_t number, std::vector<Statement>& out) {
+void add_particle_force(const Mechanics& m, const Multipliers& multipliers, const reading::Geometry& g, std::size_t number, std::vector<Statement>& out) {
   reading::Components force{};
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!m.holds(k)) continue;
+    if (!multipliers.holds(k)) continue;
     const Sum lambda = reading::read(m, m.dag->symbol({SymbolKind::multiplier, k, 0}));
     for (std::size_t i = 0; i < g.coordinates.size(); ++i) {
       const Sum slope = reading::read(m, m.constraints[k].gradient[g.coordinates[i]]);
       if (slope.is_zero()) continue;
+      if (multipliers.built_in(k)) return;
       if (g.contravariant_unit.empty()) force[i] += lambda * slope;
       else for (std::size_t j = 0; j < 3; ++j) force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
     }
@@ -173,7 +181,7 @@ void add_particle_force(const Mechanics& m, const reading::Geometry& g, std::siz
 }
 
 /// Of particles whose three coordinates, or two in their plane, move them alone.
-void add_particle_forces(const Mechanics& m, std::vector<Statement>& out) {
+void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std::vector<Statement>& out) {
   if (m.constraints.empty()) return;
   std::vector<reading::LeftOut> unseen;
   for (const reading::Geometry& g : reading::geometry(m, &unseen)) {
@@ -182,10 +190,11 @@ void add_particle_forces(const Mechanics& m, std::vector<Statement>& out) {
     const auto& chart = m.model->places[mass->place].chart;
     const std::size_t directions = chart && chart->planar ? 2 : 3;
     const bool of_body = std::any_of(m.model->bodies.begin(), m.model->bodies.end(), [&](const model::Body& b) { return b.place == mass->place; });
-    if (of_body || g.coordinates.size() != directions || !move_alone(m, g.coordinates, g.name)) continue;
+    const auto shared = [&](std::uint32_t i) { return moves_others(m, i, mass->place, std::nullopt); };
+    if (of_body || g.coordinates.size() != directions || std::any_of(g.coordinates.begin(), g.coordinates.end(), shared)) continue;
     try {
       const work::Budget budget(reading::item_budget);
-      add_particle_force(m, g, static_cast<std::size_t>(mass - m.masses.begin()) + 1, out);
+      add_particle_force(m, multipliers, g, static_cast<std::size_t>(mass - m.masses.begin()) + 1, out);
     } catch (const work::OverBudget& over) {
       out.push_back(left_out("reactions", g.name, "constraint force", over.what()));
     }
@@ -194,9 +203,10 @@ void add_particle_forces(const Mechanics& m, std::vector<Statement>& out) {
 
 }  // namespace
 
-void add_constraint_forces(const Mechanics& m, std::vector<Statement>& out) {
-  add_particle_forces(m, out);
-  for (std::uint32_t body = 0; body < m.spins.size(); ++body) BodyForces(m, body, out).add();
+void add_constraint_forces(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+  const Multipliers multipliers(m, form);
+  add_particle_forces(m, multipliers, out);
+  for (std::uint32_t body = 0; body < m.spins.size(); ++body) BodyForces(m, multipliers, body, out).add();
 }
 
 }  // namespace eomgen::print

@@ -201,7 +201,7 @@ class Document {
   void reactions(const ReadingForm& form) {
     std::vector<Statement> statements;
     add_reactions(form, statements);
-    add_constraint_forces(m_, statements);
+    add_constraint_forces(m_, form, statements);
     if (statements.empty()) return;
     heading("Constraint forces");
     text_ += "The force of a constraint $\\psi = 0$ on the system is its multiplier times $\\partial\\psi/\\partial\\mathbf{r}$.\n";

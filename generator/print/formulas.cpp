@@ -325,7 +325,7 @@ void add_statements(const Mechanics& m, const ReadingForm& form, const std::vect
   if (wanted("equations")) add_equations(m, form, out);
   if (wanted("reactions")) {
     add_reactions(form, out);
-    add_constraint_forces(m, out);
+    add_constraint_forces(m, form, out);
   }
   if (wanted("friction")) add_contacts(m, out);
   std::vector<std::string> of_geometry;

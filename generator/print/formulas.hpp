@@ -38,7 +38,7 @@ void add_equations(const mechanics::Mechanics& mechanics, const reading::Reading
 void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
 /// Force and moment of the constraints on every body that has coordinates and angles of its own.
-void add_constraint_forces(const mechanics::Mechanics& mechanics, std::vector<Statement>& out);
+void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 /// x e_1 + y e_2 + z e_3
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
 void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys, std::vector<Statement>& out);

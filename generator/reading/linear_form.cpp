@@ -12,6 +12,7 @@ using mechanics::Mechanics;
 
 std::string obstacle(const Mechanics& m, const ReadingForm& form) {
   if (form.by_parts) return form.why_by_parts;
+  if (!m.model->integrals.empty()) return "integrals over time are states of their own: eomgen linearize gives A and B at a state";
   if (!m.contacts.empty()) return "contacts have modes, each with slopes of its own: eomgen linearize gives A and B at a state";
   for (const Equation& equation : form.equations) {
     if (!equation.multipliers.empty()) return "constraints keep multipliers: eomgen linearize gives A and B at a state";

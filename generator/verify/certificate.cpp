@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/certificate.hpp"
 
+#include <cln/float.h>
+#include <cln/real.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -48,6 +50,18 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
 }
 
 }  // namespace
+
+int digits_of_range(const mechanics::Mechanics& mechanics) {
+  constexpr double decimals = 0.30103;  // of a binary digit
+  constexpr int usual = 30, most = 700;  // of binary64 and their squares
+  double largest = 0;
+  for (const symbolic::Ref value : mechanics.parameter_value) {
+    if (!mechanics.dag->is_constant(value) || mechanics.dag->is_zero(value)) continue;
+    const auto exponent = cln::float_exponent(cln::cl_float(cln::abs(mechanics.dag->value(value)), cln::float_format(20)));
+    largest = std::max(largest, decimals * std::abs(static_cast<double>(exponent)));
+  }
+  return largest < usual ? 0 : std::min(most, static_cast<int>(2 * largest));
+}
 
 std::size_t Certificate::rejections() const {
   std::size_t sum = 0;
@@ -101,7 +115,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   if (options.digits < least_digits || options.digits > most_digits)
     throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
-  Judge judge(*mechanics.model, options.digits + guard_digits);
+  Judge judge(*mechanics.model, options.digits + guard_digits + digits_of_range(mechanics));
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
     if (!mechanics.holds(k)) judge.imply(k);
   }

@@ -104,6 +104,9 @@ struct Certificate {
 /// Every route of derive::routes() by both approaches that applies within its budget; the others are told in `left_out`.
 std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out = nullptr);
 
+/// Digits beyond those of a comparison that parameters far from 1 take: beside a mass of 1e300 kg everything else would be lost. 0 for usual ones.
+int digits_of_range(const mechanics::Mechanics& mechanics);
+
 /// Throws Error{Fault::check} if no states can be found at which to compare. An interruption leaves the points that were compared.
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options = {});
 

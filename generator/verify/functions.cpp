@@ -333,7 +333,6 @@ class Functions {
         if (k > 0) most = cln::max(most, cln::abs(coefficient));
       }
     }
-    if (cln::zerop(last)) return;
     at.x = x;
     at.t = at.t + h;
     const std::optional<Arrays> rhs = program_.call("rhs", at, more);

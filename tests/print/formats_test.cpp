@@ -219,6 +219,16 @@ TEST_CASE("the constraint force on a particle is a vector along its own unit vec
   CHECK(helix.of("reactions").back().text == "N = lambda_1 a^r + lambda_2 a^nu");
 }
 
+TEST_CASE("by approach II no vector holds the multiplier of a constraint that is built in") {
+  for (const char* name : {"P7_moving_sphere", "P4_moving_cone", "P8_smooth_helix"}) {
+    CAPTURE(name);
+    const model::Model model = model::read_model(shipped(name));
+    for (const Item& item : Printed(model, system::Approach::two, {"reactions"}).items) CHECK_MESSAGE(item.text.find("lambda") == std::string::npos, item.text);
+  }
+  const model::Model sphere = model::read_model(shipped("P7_moving_sphere"));
+  CHECK_FALSE(Printed(sphere, system::Approach::one).of("reactions").empty());
+}
+
 TEST_CASE("moments with numbers in them have one number in front") {
   const model::Model model = model::read_model_text(
       "format = 1\n[parameters]\nm = 1\nl = 1\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = { cylinder = [\"l\", \"l\"] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"

@@ -80,9 +80,6 @@ class Chatter {
     sum_before_ = before;
     sum_ = sum;
     last_ = t;
-    // Where rounding alone is left of the intervals, they shrink no more.
-    stalled_ = sum < rounding * std::abs(t) ? stalled_ + 1 : 0;
-    if (stalled_ >= fewest) return t;
     if (!(sum < before)) {  // also the first, and after NaN
       first_ = sum;
       shrinking_ = 0;
@@ -98,13 +95,13 @@ class Chatter {
 
  private:
   static constexpr int fewest = 10;
-  static constexpr double smallest = 1e-7, rounding = 1e-12;
+  static constexpr double smallest = 1e-7;
   double last_ = std::numeric_limits<double>::quiet_NaN();
   // Sums of two intervals: between two walls long ones and short ones take turns.
   double interval_ = std::numeric_limits<double>::quiet_NaN();
   double sum_ = std::numeric_limits<double>::quiet_NaN(), sum_before_ = std::numeric_limits<double>::quiet_NaN();
   double first_ = 0;
-  int shrinking_ = 0, stalled_ = 0;
+  int shrinking_ = 0;
 };
 
 /// The mode that a run is in, and what becomes of it at the surfaces that bound it.
