@@ -108,15 +108,12 @@ verify::ProgramForm with_functions(verify::ProgramForm form, const program::Prog
   form.call = [&program, default_inputs](const std::string& function, const verify::At& at, int digits) {
     return program::abi_values(program, function, abi_arguments(at, default_inputs), digits);
   };
-  form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
-    return program::abi_bounds(program, function, abi_arguments(at, default_inputs));
-  };
   return form;
 }
 
-verify::ProgramForm program_form(const program::Program& program, int digits) {
+verify::ProgramForm program_form(const program::Program& program, int digits, const std::vector<verify::Real>& default_inputs) {
   const program::Function& rhs = program.functions.front();
-  return {"optimised program", [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x,
+  verify::ProgramForm form{"optimised program", [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x,
                                               const std::vector<verify::Real>& p, const std::vector<verify::Real>& u,
                                               int mode) {
             const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, digits);
@@ -127,6 +124,10 @@ verify::ProgramForm program_form(const program::Program& program, int digits) {
             }
             return values.results.front();
           }};
+  form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
+    return program::abi_bounds(program, function, abi_arguments(at, default_inputs));
+  };
+  return form;
 }
 
 /// The k-th state for the self test: the start, then states beside it with other parameters and inputs, no two of which are equal, so that a
@@ -278,10 +279,10 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
   for (std::size_t i = 0; i < options.default_inputs.size(); ++i) inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
   const int digits = options.digits + verify::digits_of_range(derived.mechanics);
-  subjects.programs.push_back(with_functions(program_form(program, digits), program, inputs));
+  subjects.programs.push_back(with_functions(program_form(program, digits, inputs), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
   for (const program::Program& form : forms) {
-    subjects.programs.push_back(program_form(form, digits));
+    subjects.programs.push_back(program_form(form, digits, inputs));
     subjects.programs.back().name = fmt::format("form {}", system::name(form.form));
   }
   if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);

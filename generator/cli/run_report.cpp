@@ -80,7 +80,7 @@ std::string watched(const Simulation& simulation) {
     if (!result.estimate_note.empty()) out += line("", result.estimate_note);
   }
   for (const run::Invariant& i : result.invariants) {
-    out += line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, i.initial, i.max_relative_drift));
+    out += line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, unsigned_zero(i.initial), i.max_relative_drift));
   }
   out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
   if (result.contact_work != 0) out += line("impacts", fmt::format("did the work {:.6g}", result.contact_work));

@@ -5,6 +5,7 @@
 
 #include "derive/conservative.hpp"
 #include "derive/equations.hpp"
+#include "derive/jumps.hpp"
 #include "derive/momenta.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/polynomial.hpp"
@@ -60,7 +61,10 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   Dag& dag = *m.dag;
   std::vector<Conserved> result;
   const bool hit = std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
-  if (const Certainty c = hit ? Certainty::no : vanishing(dag, {s.power}); c != Certainty::no) result.push_back({"energy", "total energy T + U", s.energy, c});
+  symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
+  std::vector<Ref> power{s.power};
+  for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
+  if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no) result.push_back({"energy", "total energy T + U", s.energy, c});
   // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = impose(m), written = write_out(m);
@@ -68,6 +72,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   const std::vector<Ref> Q = generalized_forces(m);
   const Applied applied = energy_conserved ? Applied{dag.zero(), Q} : applied_potentials(m);
   const Ref V = written(imposed(applied.potential));
+  const std::vector<Ref> surfaces = jump_surfaces(dag, {L, V});
   Ref jacobi = dag.sub(V, L);
   Ref input_power = dag.zero();
   for (std::size_t row = 0; row < s.free.size(); ++row) {
@@ -77,7 +82,9 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     const Ref rate = s.dag->symbol({SymbolKind::coordinate, i, 1});
     jacobi = dag.add(jacobi, dag.mul(rate, p));
     input_power = dag.add(input_power, dag.mul(written(imposed(applied.Q[i])), rate));
-    std::vector<Ref> must_vanish{symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(L), force};
+    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, i, 0});
+    std::vector<Ref> must_vanish{by(L), force};
+    for (const Ref surface : surfaces) must_vanish.push_back(by(surface));
     for (std::size_t k = 0; k < s.active.size(); ++k) must_vanish.push_back(s.A[k * s.free.size() + row]);
     const Certainty certainty = vanishing(dag, must_vanish);
     if (certainty == Certainty::no) continue;
@@ -86,7 +93,8 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     s.outputs.push_back({result.back().name, p});
   }
   std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
-  must_vanish.push_back(symbolic::explicit_time(dag, m.model->functions.size())(dag.sub(L, V)));
+  must_vanish.push_back(by_time(dag.sub(L, V)));
+  for (const Ref surface : surfaces) must_vanish.push_back(by_time(surface));
   must_vanish.push_back(input_power);
   if (const Certainty c = energy_conserved || hit ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
     const bool plain = dag.is_zero(V);
@@ -94,7 +102,6 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
                       plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces", jacobi, c});
     s.outputs.push_back({result.back().name, jacobi});
   }
-  symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
   for (const mechanics::Integral& integral : m.integrals) {
     const std::string name = "integral." + integral.label;
     result.push_back({name, "what the constraint keeps, as it is at the start", integral.psi});

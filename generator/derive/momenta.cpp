@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "derive/equations.hpp"
+#include "derive/jumps.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
@@ -97,6 +98,9 @@ class Search {
       const Ref slope = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(s.potential);
       force_.push_back(dag_.sub(written(imposed(Q[i])), slope));
     }
+    for (const Ref surface : jump_surfaces(dag_, {s.kinetic, s.potential})) {
+      for (const std::uint32_t i : s.free) across_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(surface));
+    }
   }
 
   /// `repeats`: whether this expression is of no interest, which is far easier to see than that it is conserved.
@@ -171,7 +175,7 @@ class Search {
     return false;
   }
 
-  // What has to vanish: J xi - d, the work on xi, and the work of the constraint forces on it.
+  // What has to vanish: J xi - d, the work on xi, that of the constraint forces, and of the impulses where energies jump.
   std::vector<Ref> conditions(const std::vector<Ref>& d) {
     std::vector<Ref> y(n_, dag_.zero());
     for (std::size_t i = 0; i < n_; ++i) {
@@ -182,6 +186,7 @@ class Search {
     std::vector<Ref> result;
     for (std::size_t r = 0; r < d.size(); ++r) result.push_back(dag_.sub(along(xi, J_, r), d[r]));
     result.push_back(along(xi, force_, 0));
+    for (std::size_t k = 0; k * n_ < across_.size(); ++k) result.push_back(along(xi, across_, k));
     return result;
   }
 
@@ -210,6 +215,7 @@ class Search {
   Dag& dag_;
   std::size_t n_;
   std::vector<Ref> mass_, J_, force_;
+  std::vector<Ref> across_;  // slopes of the surfaces at which energies jump, row by row
   std::vector<Vec3> r_, v_, w_, H_;
   std::vector<std::array<Vec3, 3>> axes_;  // of the spins
   std::optional<symbolic::Factorisation> factors_;

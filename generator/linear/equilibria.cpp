@@ -54,7 +54,11 @@ class Search {
   void all_starts() {
     std::vector<double> targets;
     for (const Precise& t : held_->targets) targets.push_back(to_double(t));
-    std::vector<State<double>> seen;
+    struct End {
+      State<double> z;
+      bool leads;  // far away, with rates of 1e8, Newton's steps in binary64 are small where there is nothing
+    };
+    std::vector<End> seen;
     for (std::size_t k = 0; k < r_.starts; ++k) {
       if (work::abandoned()) {
         result_.interrupted = true;
@@ -67,15 +71,18 @@ class Search {
         result_.refused_at = rough.z;
       }
       if (!rough.found) continue;
-      ++result_.converged;
       State<Precise> z;
       for (const double x : rough.z) z.push_back(number<Precise>(Precise(x)));
       wrap(z);
-      const auto known = [&](const State<double>& s) { return is_same(s, z); };
-      if (std::any_of(seen.begin(), seen.end(), known)) continue;
-      seen.push_back(rounded(z));
-      if (rough.open && result_.held.empty() && members_ >= enough_members) continue;
-      polish(z);
+      const auto known = std::find_if(seen.begin(), seen.end(), [&](const End& s) { return is_same(s.z, z); });
+      if (known != seen.end()) {
+        result_.converged += known->leads ? 1 : 0;
+        continue;
+      }
+      const bool enough = rough.open && result_.held.empty() && members_ >= enough_members;
+      const bool leads = enough || polish(z);
+      result_.converged += leads ? 1 : 0;
+      seen.push_back({rounded(z), leads});
     }
   }
 
@@ -108,20 +115,22 @@ class Search {
     }
   }
 
-  void polish(State<Precise> rough) {
+  /// Whether there is a steady motion, within the ranges of the coordinates.
+  bool polish(State<Precise> rough) {
     for (const std::size_t i : ignored_positions(symmetry_)) rough[i] = r_.start[i];
     std::optional<Steady> found = steady(rough);
-    if (!found) return;
+    if (!found) return false;
     State<Precise>& z = found->z;
     normalise(z);
     for (std::size_t i = 0; i < n_; ++i) {
       const double q = to_double(z[i]);
-      if (!(q > r_.ranges[i].lower && q < r_.ranges[i].upper)) return;
+      if (!(q > r_.ranges[i].lower && q < r_.ranges[i].upper)) return false;
     }
     const auto known = [&](const FoundPoint& p) { return is_same(rounded(p.z), z); };
-    if (std::any_of(result_.points.begin(), result_.points.end(), known)) return;
+    if (std::any_of(result_.points.begin(), result_.points.end(), known)) return true;
     result_.points.push_back({z, found->off, family_directions(z).cols});
     if (result_.points.back().family > 0) ++members_;
+    return true;
   }
 
   bool is_same(const State<double>& a, const State<Precise>& b) const {

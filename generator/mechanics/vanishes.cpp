@@ -18,15 +18,23 @@ using symbolic::Symbol;
 namespace {
 
 constexpr std::uint64_t points = 4;
-constexpr int digits = 40;
+constexpr int digits = 40, more_digits = 70;
 
 // The values at a point; none outside of the domain of a function, which says nothing.
-std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& expressions, std::uint64_t point) {
+std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& expressions, std::uint64_t point, int with = digits) {
   try {
-    return symbolic::evaluate(dag, expressions, [point](const Symbol& symbol) -> cln::cl_R { return symbolic::sample(symbol, point); }, digits);
+    return symbolic::evaluate(dag, expressions, [point](const Symbol& symbol) -> cln::cl_R { return symbolic::sample(symbol, point); }, with);
   } catch (const std::domain_error&) {
     return {};
   }
+}
+
+/// Far above what is left of terms that cancel; or small, as a narrow bump is far from its place, and the same with more digits.
+bool is_nonzero(const Dag& dag, Ref expression, std::uint64_t point, const cln::cl_R& value) {
+  if (cln::zerop(value)) return false;
+  if (cln::abs(value) > cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30))) return true;
+  const std::vector<cln::cl_R> precise = values_at(dag, {expression}, point, more_digits);
+  return !precise.empty() && cln::abs(precise[0] - value) < cln::abs(value) / 100000;
 }
 
 }  // namespace
@@ -35,24 +43,21 @@ bool vanishes(const Dag& dag, const std::vector<Ref>& expressions) {
   if (std::all_of(expressions.begin(), expressions.end(), [&](Ref r) { return dag.is_zero(r); })) return true;
   // Beyond a kink an expression may be something else: sampling one side proves nothing.
   if (dag.has_kinks(expressions)) return false;
-  const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
   bool evaluated = false;
   for (std::uint64_t point = 1; point <= points; ++point) {
-    for (const cln::cl_R& r : values_at(dag, expressions, point)) {
-      if (cln::abs(r) > small) return false;
-      evaluated = true;
+    const std::vector<cln::cl_R> values = values_at(dag, expressions, point);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      if (is_nonzero(dag, expressions[i], point, values[i])) return false;
     }
+    evaluated = evaluated || !values.empty();
   }
   return evaluated;
 }
 
 bool is_somewhere_nonzero(const Dag& dag, Ref expression) {
-  // Far above what is left of terms that cancel.
-  const cln::cl_R plain = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 10));
   for (std::uint64_t point = 1; point <= points; ++point) {
-    for (const cln::cl_R& r : values_at(dag, {expression}, point)) {
-      if (cln::abs(r) > plain) return true;
-    }
+    const std::vector<cln::cl_R> values = values_at(dag, {expression}, point);
+    if (!values.empty() && is_nonzero(dag, expression, point, values[0])) return true;
   }
   return false;
 }

@@ -7,8 +7,8 @@
 
 namespace eomgen::mechanics {
 
-/// True only if all of `expressions` are zero to 30 digits at every point where they could be evaluated, and there was
-/// such a point.
+/// True only if all of `expressions` are zero at every point where they could be evaluated, but for what rounding leaves of terms
+/// that cancel, and there was such a point.
 bool vanishes(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
 
 /// A value at one of these points refutes that it vanishes identically: no proof need be tried.

@@ -184,7 +184,7 @@ Typed Reader::define_function(Symbol& symbol) {
 Typed Reader::define_input(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the input '{}'", symbol.name);
-  as(Value::Kind::table, declared, what, "write F = { unit = \"N\", default = 0 }");
+  as(Value::Kind::table, declared, what, fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
   check_keys(declared, {what, {"unit", "default", "tex"}, {}});
   Input input;
   input.name = symbol.name;

@@ -284,11 +284,11 @@ State in_binary64(const State& state, const Judge& judge) {
 }
 
 /// What rounding may change in dx at a state, as sizes; none where it is not known.
-std::vector<Real> rounding_of_rhs(const Subjects& subjects, const At& at, const Judge& judge) {
+std::vector<Real> rounding_of_rhs(const ProgramForm& program, const At& at, const Judge& judge) {
   std::vector<Real> sizes;
-  if (subjects.programs.empty() || !subjects.programs.front().bounds) return sizes;
+  if (!program.bounds) return sizes;
   constexpr double least_number = 1e-290;  // smaller numbers have fewer digits
-  const std::vector<std::vector<double>> bounds = subjects.programs.front().bounds("rhs", at);
+  const std::vector<std::vector<double>> bounds = program.bounds("rhs", at);
   for (const double bound : bounds[0]) {
     if (!std::isfinite(bound)) return {};
     sizes.push_back(size_of_rounding(std::max(bound, least_number), judge.precision()));
@@ -309,7 +309,7 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
   const std::vector<Real> reference = right_hand_side(s, judge, at);
   const At arguments = arguments_at(s, at, mode);
   const auto dx = form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
-  const std::vector<Real> rounding = rounding_of_rhs(subjects, arguments, judge);
+  const std::vector<Real> rounding = subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, judge);
   const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });
   if (!finite) {
     // Where its bounds are not finite either, it is a value on the way that is too large.
@@ -326,11 +326,13 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& 
   const EquationSystem& first = subjects.systems.front();
   bool told = false;  // that the law has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
-    const std::vector<Real> x = arguments_at(first, v.state, mode).x;
-    const std::vector<Real> dx = form.rhs(v.state.t, x, v.state.parameters, v.state.inputs, mode);
+    const At arguments = arguments_at(first, v.state, mode);
+    const std::vector<Real> dx = form.rhs(v.state.t, arguments.x, v.state.parameters, v.state.inputs, mode);
     told = told || (dx.empty() && !first.contacts.empty());
     if (told) continue;
-    tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v));
+    // An acceleration may be 0 because the terms of its form cancel: they are what it is compared with.
+    const std::vector<Real> rounding = rounding_of_rhs(form, arguments, judge);
+    tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));
   }
   if (told) return;
   compare_functions(subjects, v, judge, mode, tally);

@@ -41,6 +41,15 @@ TEST_CASE("equilibria: coordinates that are 0 are shown, 0 has no sign, and a se
   CHECK(contains(why, "'stick' has no slope"));
 }
 
+TEST_CASE("equilibria: where there is none, no start is said to lead to one") {
+  const Folder folder;
+  folder.write("shafts.toml", "format = 1\n[coordinates]\na = {}\nb = {}\nc = {}\n[energy]\nkinetic = \"a_dot^2/2 + (a_dot + b_dot)^2 + 3/2*(a_dot + b_dot + c_dot)^2\"\n"
+                              "[[force]]\ngeneralized = { a = \"2\" }\n");
+  const Json found = document(folder, {"equilibria", "shafts.toml"});
+  CHECK(found["points"].empty());
+  CHECK(found["converged"] == 0);
+}
+
 TEST_CASE("equilibria: equations that depend on t, contacts, and what cannot be held are told with a remedy") {
   const Folder folder;
   CHECK(contains(expect(2, folder, {"equilibria", "P1_spherical_pendulum_varying"}).err, "eomgen linearize"));

@@ -53,6 +53,24 @@ TEST_CASE("verify: compiled code may be off by what rounding does to large angle
   }
 }
 
+TEST_CASE("verify: a force that is narrow and far away in numbers acts all the same, and an acceleration may be 0 because the terms of a form cancel") {
+  const Folder folder;
+  folder.write("pulse.toml", particle("", "generalized = { x = \"exp(-((t - 5)/0.01)^2)\" }"));
+  CHECK(document(folder, {"verify", "pulse.toml", "--points", "4"})["verdict"] == "pass");
+  // x goes on as it is, and y without inertia follows: by the null space x_ddot is cos(y) y_ddot - sin(y) y_dot^2 = 0.
+  folder.write("follows.toml", R"toml(format = 1
+[coordinates]
+x = {}
+y = {}
+[energy]
+kinetic = "1/2*x_dot^2"
+[[constraint]]
+name = "curve"
+holonomic = "x - sin(y)"
+)toml");
+  CHECK(document(folder, {"verify", "follows.toml", "--points", "6"})["verdict"] == "pass");
+}
+
 TEST_CASE("run: shipped models with springs of 1e8 and 1e10 load their compiled code") {
   const Folder folder;
   for (const char* model : {"elastic_pendulum", "car_axis", "S4_two_particles"}) {
