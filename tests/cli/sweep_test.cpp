@@ -114,7 +114,10 @@ TEST_CASE("sweep: what is wrong with a grid is told") {
   refused({"--grid", "k=1,x"}, "no decimal number");
   refused({"--grid", "k=1,2", "--grid", "k=3,4"}, "two grids");
   refused({"--grid", "k=1,2", "--set", "k=3"}, "a grid and a value");
-  refused({"--grid", "k=1:2:1000", "--grid", "m=1:2:1001"}, "more than 1000000 points");
+  refused({"--grid", "k=1:2:10000", "--grid", "m=1:2:1001"}, "no more than 10000000 points, and these are 10010000");
+  refused({"--grid", "k=1:2:1000000", "--grid", "m=1:2:1000001"}, "more than 1000000000000 points");
+  refused({"--grid", "k=1:2:3", "--design", "latin"}, "--design is of samples, and there are none");
+  refused({"--grid", "k=1:2:3", "--set", "mm=3"}, "there is no parameter 'mm' to set");
 }
 
 TEST_CASE("sweep: an ensemble gives the bytes of runs one by one, for any number of threads, and goes on from what is there") {

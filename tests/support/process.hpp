@@ -24,6 +24,7 @@ struct ChildResult {
   int status = -1;  // exit code, or 128 + signal
   bool in_time = true;
   double seconds = 0;
+  long peak_kilobytes = 0;  // of memory, its own and of the largest of its children
   std::string out, err;
 };
 

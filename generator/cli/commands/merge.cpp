@@ -1,19 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables that the shards of a sweep wrote, joined: the bytes of the sweep that one call makes.
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
-#include <algorithm>
-#include <charconv>
-#include <filesystem>
-#include <fstream>
+#include <cerrno>
+#include <cstring>
+#include <eom/output/whole_file.hpp>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
 
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep/points.hpp"
+#include "cli/sweep/rows.hpp"
 #include "cli/sweep/statistics.hpp"
 #include "cli/usage.hpp"
+#include "emit/write_files.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
@@ -27,13 +33,91 @@ struct Options {
 
 [[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("merge", {}, what, remedy); }
 
+/// A pipe is copied: rows are read again, in another order.
+OpenFile readable(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOCTTY);
+  struct stat found {};
+  if (descriptor < 0 || ::fstat(descriptor, &found) != 0 || S_ISDIR(found.st_mode)) {
+    if (descriptor >= 0) ::close(descriptor);
+    fail(fmt::format("cannot read {}", model::quote(path)), "name the tables that sweep --shard wrote");
+  }
+  OpenFile file(descriptor);
+  if (S_ISREG(found.st_mode)) return file;
+  OpenFile copy = OpenFile::unnamed();
+  std::string text(1 << 18, '\0');
+  for (ssize_t n; (n = ::read(file.descriptor(), text.data(), text.size())) != 0;) {
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail(fmt::format("cannot read {}: {}", model::quote(path), std::strerror(errno)), "name the tables that sweep --shard wrote");
+    copy.write(std::string_view(text).substr(0, static_cast<std::size_t>(n)));
+  }
+  return copy;
+}
+
 class Tables {
  public:
   void add(const std::string& path) {
-    std::ifstream file(path);
-    if (!file || std::filesystem::is_directory(path)) fail(fmt::format("cannot read {}", model::quote(path)), "name the tables that sweep --shard wrote");
-    std::string line;
-    std::getline(file, line);
+    const OpenFile file = readable(path);
+    const std::uint32_t number = rows_.add(file);
+    std::optional<ShardNote> note;
+    std::size_t lines = 0;
+    each_line(file, [&](std::string_view line, std::uint64_t offset) {
+      if (++lines == 1) {
+        note = begun(path, std::string(line));
+      } else if (lines == 2) {
+        if (header_.empty()) header_ = line;
+        if (line != header_) fail(fmt::format("{} has other columns", model::quote(path)), "make that shard again");
+      } else {
+        take(path, line, note->shard, number, offset);
+      }
+      return true;
+    });
+    if (!note) begun(path, "");
+  }
+
+  void write(const std::string& out) {
+    eom::WholeFile file = is_standard_output(out) ? eom::WholeFile::standard_output() : eom::WholeFile(out);
+    try {
+      constexpr std::size_t enough = 1 << 20;
+      std::string text = note_.key + "\n" + header_ + "\n";
+      rows_.each(0, rows_.size(), [&](std::size_t, std::string_view line) {
+        text.append(line);
+        text += '\n';
+        if (text.size() < enough) return;
+        file.write(text);
+        text.clear();
+      });
+      file.write(text);
+      file.finish();
+    } catch (const std::system_error&) {
+      file.discard();  // it could be made again: nothing is kept of it
+      throw;
+    }
+  }
+  /// Every run of every shard, and each once.
+  void require_all() {
+    for (std::size_t shard = 1; shard <= note_.shard.count; ++shard) {
+      if (!tables_.contains(shard)) fail(fmt::format("shard {}/{} is missing", shard, note_.shard.count), "name the tables of all shards");
+    }
+    const std::size_t lines = rows_.size();
+    rows_.sort();
+    if (rows_.size() < lines) fail(fmt::format("{} lines are of runs that another line has", lines - rows_.size()), "make the shards again in which a run comes twice");
+    if (rows_.size() == note_.runs) return;
+    std::size_t run = 0;
+    while (run < rows_.size() && rows_.run(run) == run) ++run;
+    fail(fmt::format("run {} is missing, and {} of {} in all", run, note_.runs - rows_.size(), note_.runs),
+         fmt::format("sweep --shard {}/{} goes on where it was interrupted", run % note_.shard.count + 1, note_.shard.count));
+  }
+
+  std::size_t runs() const { return rows_.size(); }
+  std::size_t shards() const { return tables_.size(); }
+  std::vector<ColumnStatistics> statistics() const {
+    return statistics_of_table(header_, rows_.size(), [this](const auto& take) {
+      rows_.each(0, rows_.size(), [&take](std::size_t, std::string_view line) { take(line); });
+    });
+  }
+
+ private:
+  ShardNote begun(const std::string& path, const std::string& line) {
     const std::optional<ShardNote> note = read_shard_note(line);
     if (!note) fail(fmt::format("{} is not the table of a shard", model::quote(path)), "name the tables that sweep --shard wrote");
     if (tables_.empty()) note_ = *note;
@@ -43,59 +127,32 @@ class Tables {
     }
     const auto [place, fresh] = tables_.emplace(note->shard.number, path);
     if (!fresh) fail(fmt::format("{} and {} are the same shard", model::quote(place->second), model::quote(path)), "name each shard once");
-    std::getline(file, line);
-    if (header_.empty()) header_ = line;
-    if (line != header_) fail(fmt::format("{} has other columns", model::quote(path)), "make that shard again");
-    while (std::getline(file, line)) take(path, line, note->shard);
+    return *note;
   }
-
-  std::string text() const {
-    std::string result = note_.key + "\n" + header_ + "\n";
-    for (const auto& [run, line] : rows_) result += line + "\n";
-    return result;
-  }
-  void require_all() const {
-    for (std::size_t shard = 1; shard <= note_.shard.count; ++shard) {
-      if (!tables_.contains(shard)) fail(fmt::format("shard {}/{} is missing", shard, note_.shard.count), "name the tables of all shards");
-    }
-    for (std::size_t run = 0; run < note_.runs; ++run) {
-      if (rows_.contains(run)) continue;
-      const std::size_t shard = run % note_.shard.count + 1;
-      fail(fmt::format("run {} is missing, and {} of {} in all", run, note_.runs - rows_.size(), note_.runs),
-           fmt::format("sweep --shard {}/{} goes on where it was interrupted", shard, note_.shard.count));
-    }
-  }
-
-  std::size_t runs() const { return rows_.size(); }
-  std::size_t shards() const { return tables_.size(); }
-  std::vector<ColumnStatistics> statistics() const {
-    std::vector<const std::string*> rows;
-    for (const auto& [run, line] : rows_) rows.push_back(&line);
-    return statistics_of_table(header_, rows);
-  }
-
- private:
-  void take(const std::string& path, const std::string& line, const Shard& shard) {
+  void take(const std::string& path, std::string_view line, const Shard& shard, std::uint32_t file, std::uint64_t offset) {
     std::size_t run = 0;
-    const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), run);
-    const bool whole = error == std::errc() && stop != line.data() + line.size() && *stop == ',' && run < note_.runs && shard.has(run);
-    if (!whole || !rows_.emplace(run, line).second) {
-      fail(fmt::format("{} has a line that is no run of that shard: {}", model::quote(path), model::quote(line.substr(0, 60))), "make that shard again");
+    if (!reads_as_row(line, header_, run) || run >= note_.runs || !shard.has(run)) {
+      fail(fmt::format("{} has a line that is no run of that shard: {}", model::quote(path), model::quote(std::string(line.substr(0, 60)))), "make that shard again");
     }
+    rows_.add(run, file, offset, line.size());
   }
 
   ShardNote note_;
   std::string header_;
   std::map<std::size_t, std::string> tables_;
-  std::map<std::size_t, std::string> rows_;
+  Rows rows_;
 };
 
 int execute(const Options& options, const Common& common) {
   require_places({{"--out", options.out, ".csv"}}, "", common.json);
   Tables tables;
-  for (const std::string& path : options.tables) tables.add(path);
-  tables.require_all();
-  write_text(options.out, tables.text());
+  try {
+    for (const std::string& path : options.tables) tables.add(path);
+    tables.require_all();
+    tables.write(options.out);
+  } catch (const std::system_error& error) {
+    throw Error("merge", {}, error.what(), "see to space on that disk and to your rights there", emit::fault_of_writing(error.code()));
+  }
   if (common.json) {
     nlohmann::ordered_json found{{"format", 1}, {"shards", tables.shards()}, {"runs", tables.runs()}, {"file", options.out}};
     if (options.statistics) found["statistics"] = to_json(tables.statistics());

@@ -11,7 +11,7 @@
 #include <optional>
 
 #include "cli/interrupt.hpp"
-#include "emit/shared_library/loaded_batch.hpp"
+#include "cli/sweep/tidy_graph.hpp"
 #include "emit/targets.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
@@ -63,8 +63,8 @@ std::string ranged(const Simulation& first, const run::Code& code) {
 
 class Runs {
  public:
-  Runs(const Simulation& first, const EnsembleRuns& asked)
-      : first_(first), asked_(asked), code_(first.code.for_run()), batch_(compile_batch(first)), how_(asked.runs.size(), How::together), energy_(asked.runs.size()) {
+  Runs(const Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
+      : first_(first), asked_(asked), graph_(first), code_(first.code.for_run()), batch_(batch), how_(asked.runs.size(), How::together), energy_(asked.runs.size()) {
     states_ = 2 * code_.free.size();
     p_ = first.scene.parameters.size();
     w_ = batch_.rhs_prepared != nullptr ? code_.prepared : 0;
@@ -110,6 +110,7 @@ class Runs {
     std::fill(start.x.begin(), start.x.end(), 0.0);
     std::fill(start.p.begin(), start.p.end(), 0.0);
     if (asked_.interrupt != nullptr && *asked_.interrupt) return;
+    graph_.tidy();
     Derived& derived = *first_.derived;
     std::optional<run::Scene> scene;
     try {
@@ -164,14 +165,16 @@ class Runs {
       }
     }
     const std::lock_guard<std::mutex> guard(lock_);
+    graph_.tidy();
     result = run_again(first_, asked_.values(run), false);
     if (asked_.interrupt == nullptr || !*asked_.interrupt) asked_.done(run, result);
   }
 
   const Simulation& first_;
   const EnsembleRuns& asked_;
+  TidyGraph graph_;
   run::Code code_;
-  emit::LoadedBatch batch_;
+  const emit::LoadedBatch& batch_;
   std::vector<How> how_;
   std::vector<double> energy_;  // at the start of each
   std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;  // rows: parameters, what is prepared of them, inputs
@@ -215,6 +218,8 @@ void require_plain(const Simulation& first) {
               "leave --ensemble out; with it take --solver dop853, tsit5 or dopri5, or rk4 with --step");
 }
 
-void run_ensemble(const Simulation& first, const EnsembleRuns& asked) { Runs(first, asked).run(); }
+Ensemble::Ensemble(const Simulation& first) : first_(first), batch_(compile_batch(first)) {}
+
+void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_, asked).run(); }
 
 }  // namespace eomgen::cli

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cli/simulate.hpp"
+#include "emit/shared_library/loaded_batch.hpp"
 
 namespace eomgen::cli {
 
@@ -29,7 +30,17 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
 /// multipliers, charts that are exchanged, ranges, inputs that move, integrals, a solver that is not explicit.
 void require_plain(const Simulation& first);
 
-/// Runs that do not end as planned, and those in which time alone does something, are made once more alone.
-void run_ensemble(const Simulation& first, const EnsembleRuns& asked);
+/// The code of a scene for many states, compiled once.
+class Ensemble {
+ public:
+  /// `first` has to live as long.
+  explicit Ensemble(const Simulation& first);
+  /// Runs that do not end as planned, and those in which time alone does something, are made once more alone.
+  void run(const EnsembleRuns& asked);
+
+ private:
+  const Simulation& first_;
+  emit::LoadedBatch batch_;
+};
 
 }  // namespace eomgen::cli

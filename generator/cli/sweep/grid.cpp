@@ -16,8 +16,6 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t most_points = 1'000'000;
-
 using symbolic::Rational;
 
 [[noreturn]] void fail(const std::string& what) {
@@ -40,43 +38,49 @@ std::size_t count_of(const std::string& text, const std::string& axis) {
   return static_cast<std::size_t>(cln::double_approx(value));
 }
 
-std::vector<Rational> range(const Rational& from, const Rational& to, bool logarithmic, std::size_t count, const std::string& axis) {
-  if (logarithmic && (cln::minusp(from * to) || cln::zerop(from * to))) fail(fmt::format("{} goes through 0 or changes its sign, which log cannot", model::quote(axis)));
-  std::vector<Rational> values;
-  const auto steps = static_cast<long>(count - 1);
-  const double ratio = logarithmic ? cln::double_approx(to / from) : 1;
-  for (long i = 0; i <= steps; ++i) {
-    if (i == 0 || i == steps) {
-      values.push_back(i == 0 ? from : to);
-    } else if (!logarithmic) {
-      values.push_back(from + (to - from) * i / steps);
-    } else {  // as the shortest decimal that is this binary64, which the table shows
-      const double value = cln::double_approx(from) * std::pow(ratio, static_cast<double>(i) / static_cast<double>(steps));
-      if (!std::isfinite(value) || value == 0) fail(fmt::format("{} leaves the range of binary64", model::quote(axis)));
-      values.push_back(parse_decimal(shortest(value), axis));
-    }
+/// Throws where a value between would not exist.
+void require_range(const Axis& axis, const std::string& text) {
+  if (!axis.logarithmic) return;
+  if (cln::minusp(axis.from * axis.to) || cln::zerop(axis.from * axis.to)) fail(fmt::format("{} goes through 0 or changes its sign, which log cannot", model::quote(text)));
+  for (const Rational& value : {axis.from, axis.to, axis.to / axis.from}) {
+    const double rounded = cln::double_approx(value);
+    if (!std::isfinite(rounded) || rounded == 0) fail(fmt::format("{} leaves the range of binary64", model::quote(text)));
   }
-  return values;
 }
 
 Axis axis_of(const std::string& text) {
   const std::size_t equals = text.find('=');
   if (equals == std::string::npos || equals == 0) fail(fmt::format("{} names no parameter", model::quote(text)));
-  Axis axis{text.substr(0, equals), {}};
+  Axis axis{text.substr(0, equals), {}, 0, 0};
   const std::string values = text.substr(equals + 1);
   const std::vector<std::string> fields = parts(values, ':');
   if (fields.size() == 1) {
-    for (const std::string& value : parts(values, ',')) axis.values.push_back(parse_decimal(value, text));
+    for (const std::string& value : parts(values, ',')) axis.listed.push_back(parse_decimal(value, text));
+    axis.count = axis.listed.size();
     return axis;
   }
   if (fields.size() > 4 || fields.size() == 2) fail(fmt::format("{} is no range of values", model::quote(text)));
   const std::string kind = fields.size() == 4 ? fields[2] : "lin";
   if (kind != "lin" && kind != "log") fail(fmt::format("{} has {} where lin or log is asked", model::quote(text), model::quote(kind)));
-  axis.values = range(parse_decimal(fields[0], text), parse_decimal(fields[1], text), kind == "log", count_of(fields.back(), text), text);
+  axis.from = parse_decimal(fields[0], text);
+  axis.to = parse_decimal(fields[1], text);
+  axis.logarithmic = kind == "log";
+  axis.count = count_of(fields.back(), text);
+  require_range(axis, text);
   return axis;
 }
 
 }  // namespace
+
+Rational Axis::value(std::size_t i) const {
+  if (!listed.empty()) return listed[i];
+  if (i == 0 || i + 1 == count) return i == 0 ? from : to;
+  const auto step = static_cast<long>(i), steps = static_cast<long>(count - 1);
+  if (!logarithmic) return from + (to - from) * step / steps;
+  // The shortest decimal that is this binary64, which the table shows.
+  const double value = cln::double_approx(from) * std::pow(cln::double_approx(to / from), static_cast<double>(step) / static_cast<double>(steps));
+  return parse_decimal(shortest(value), parameter);
+}
 
 Grid::Grid(const std::vector<std::string>& axes) {
   if (axes.empty()) fail("nothing is to be varied");
@@ -85,16 +89,16 @@ Grid::Grid(const std::vector<std::string>& axes) {
     const Axis& axis = axes_.back();
     const auto same = [&](const Axis& other) { return other.parameter == axis.parameter; };
     if (std::count_if(axes_.begin(), axes_.end(), same) > 1) fail(fmt::format("{} has two grids", model::quote(axis.parameter)));
-    if (axis.values.size() > most_points / size_) fail(fmt::format("the grid has more than {} points", most_points));
-    size_ *= axis.values.size();
+    if (axis.count > most_points / size_) fail(fmt::format("the grid has more than {} points", most_points));
+    size_ *= axis.count;
   }
 }
 
 std::map<std::string, Rational> Grid::point(std::size_t index) const {
   std::map<std::string, Rational> result;
   for (std::size_t a = axes_.size(); a-- > 0;) {
-    result[axes_[a].parameter] = axes_[a].values[index % axes_[a].values.size()];
-    index /= axes_[a].values.size();
+    result[axes_[a].parameter] = axes_[a].value(index % axes_[a].count);
+    index /= axes_[a].count;
   }
   return result;
 }

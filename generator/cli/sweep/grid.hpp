@@ -11,15 +11,24 @@
 
 namespace eomgen::cli {
 
+/// More than any sweep makes; products of two stay exact.
+inline constexpr std::size_t most_points = 1'000'000'000'000;
+
+/// The values of one parameter: those that were listed, or of a range each when it is asked for.
 struct Axis {
   std::string parameter;
-  std::vector<symbolic::Rational> values;
+  std::vector<symbolic::Rational> listed;
+  symbolic::Rational from, to;
+  bool logarithmic = false;
+  std::size_t count = 0;
+
+  symbolic::Rational value(std::size_t i) const;
 };
 
 class Grid {
  public:
   /// Each of `axes` is NAME=FROM:TO:COUNT, NAME=FROM:TO:lin:COUNT, NAME=FROM:TO:log:COUNT or NAME=a,b,c. Throws Error for anything else,
-  /// for a name that comes twice, and for more than a million points.
+  /// for a name that comes twice, and for more than most_points.
   explicit Grid(const std::vector<std::string>& axes);
 
   const std::vector<Axis>& axes() const { return axes_; }

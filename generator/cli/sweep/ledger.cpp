@@ -8,10 +8,8 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <charconv>
+#include <cerrno>
 #include <filesystem>
-#include <functional>
-#include <string_view>
 #include <system_error>
 
 #include "cli/output.hpp"
@@ -31,49 +29,42 @@ constexpr const char* mark = "# sweep: ";
               emit::fault_of_writing(error.code()));
 }
 
-/// A file that may be read and taken over: regular, one's own, no link, and nobody is writing to it. -1 else.
-int open_own(const std::string& path) {
-  const int file = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
-  if (file < 0) return -1;
+/// A file that may be read and taken over: regular, one's own, no link, and nobody is writing to it.
+OpenFile open_own(const std::string& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return {};
+  OpenFile file(descriptor);
   struct stat found {};
-  if (::fstat(file, &found) == 0 && S_ISREG(found.st_mode) && found.st_uid == ::geteuid() && ::flock(file, LOCK_SH | LOCK_NB) == 0) return file;
-  ::close(file);
-  return -1;
-}
-
-/// Whole lines only, as long as `take` wants them: the last may have been cut off. False where the file is not to be read.
-bool each_line(const std::string& path, const std::function<bool(const std::string& line)>& take) {
-  const int file = open_own(path);
-  if (file < 0) return false;
-  std::string text;
-  std::vector<char> buffer(1 << 18);
-  bool more = true;
-  for (ssize_t n; more && (n = ::read(file, buffer.data(), buffer.size())) > 0;) {
-    text.append(buffer.data(), static_cast<std::size_t>(n));
-    std::size_t begin = 0;
-    for (std::size_t end; more && (end = text.find('\n', begin)) != std::string::npos; begin = end + 1) more = take(text.substr(begin, end - begin));
-    text.erase(0, begin);
-  }
-  ::close(file);
-  return true;
+  if (::fstat(descriptor, &found) != 0 || !S_ISREG(found.st_mode) || found.st_uid != ::geteuid()) return {};
+  // Where locks are unknown (some file systems of clusters) nobody can tell, and nothing is lost: two that write have a file each.
+  if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return {};
+  return file;
 }
 
 }  // namespace
 
-Ledger::Ledger(std::string file, std::string key) : file_(std::move(file)), place_(file_), key_(std::move(key)) {
+Ledger::Ledger(std::string file, std::string key, std::function<bool(std::size_t)> belongs, Part part)
+    : file_(std::move(file)), place_(file_), key_(std::move(key)), belongs_(std::move(belongs)) {
   std::error_code none;
   kept_ = !is_standard_output(file_) && (!fs::exists(file_, none) || fs::is_regular_file(file_, none));
-  if (!kept_) return;
-  for (const Unfinished& table : unfinished()) {
-    if (!table.same) {
-      throw Error("sweep", {}, fmt::format("{} is the unfinished table of another sweep", model::quote(table.path)),
-                  "finish that sweep with its own options, remove the file, or write to another one with --out");
+  if (!kept_ || part == Part::member) return;
+  try {
+    for (const Unfinished& table : unfinished()) {
+      if (!table.same) {
+        throw Error("sweep", {}, fmt::format("{} is the unfinished table of another sweep", model::quote(table.path)),
+                    "finish that sweep with its own options, remove the file, or write to another one with --out");
+      }
+      read(table.file);
+      taken_over_.push_back(table.path);
+      place_ = table.path;
     }
-    read(table.path);
-    taken_over_.push_back(table.path);
-    place_ = table.path;
+    if (taken_over_.empty()) {
+      if (const OpenFile done = open_own(eom::WholeFile::followed(file_).string())) read(done);
+    }
+  } catch (const std::system_error& error) {
+    lost(error);
   }
-  if (taken_over_.empty()) read(eom::WholeFile::followed(file_).string());
+  rows_.sort();
 }
 
 std::vector<Ledger::Unfinished> Ledger::unfinished() const {
@@ -85,92 +76,121 @@ std::vector<Ledger::Unfinished> Ledger::unfinished() const {
     const std::string other = entry.path().filename().string();
     if (other != name && !(other.starts_with(name + "-") && other.size() == name.size() + 7)) continue;
     const std::string path = target.has_parent_path() ? entry.path().string() : other;
+    OpenFile file = open_own(path);
+    if (!file) continue;  // somebody's who is writing to it
     std::string first;
-    const bool own = each_line(path, [&](const std::string& line) { return first = line, false; });
-    if (!own || !first.starts_with(mark)) continue;  // a run's, or somebody's who is writing to it
-    found.push_back({path, first == mark + key_});
+    each_line(file, [&](std::string_view line, std::uint64_t) { return first = line, false; });
+    if (first.starts_with(mark)) found.push_back({path, std::move(file), first == mark + key_});  // else a run's
   }
   std::sort(found.begin(), found.end(), [](const Unfinished& a, const Unfinished& b) { return a.path < b.path; });
   return found;
 }
 
-void Ledger::read(const std::string& path) {
+void Ledger::read(const OpenFile& file) {
+  const std::uint32_t from = rows_.add(file);
   std::size_t number = 0;
-  each_line(path, [&](const std::string& line) {
+  each_line(file, [&](std::string_view line, std::uint64_t offset) {
     if (number == 0 && line != mark + key_) return false;
-    if (number == 1) header_ = line;
+    if (number == 1 && header_.empty()) header_ = line;
+    if (number == 1 && header_ != line) return false;
     if (number++ < 2) return true;
     std::size_t run = 0;
-    const auto [stop, error] = std::from_chars(line.data(), line.data() + line.size(), run);
-    if (error == std::errc() && stop != line.data() + line.size() && *stop == ',') rows_[run] = line;
+    if (reads_as_row(line, header_, run) && belongs_(run)) rows_.add(run, from, offset, line.size());
     return true;
   });
 }
 
+std::string Ledger::beginning() const { return mark + key_ + "\n" + header_ + "\n"; }
+
 void Ledger::write(const std::function<void(std::string_view)>& to) const {
-  constexpr std::size_t enough = 1 << 20;  // a table of a million rows is not there twice
-  std::string text = mark + key_ + "\n" + header_ + "\n";
-  for (const auto& [run, line] : rows_) {
-    text += line + "\n";
-    if (text.size() < enough) continue;
+  constexpr std::size_t enough = 1 << 20;
+  std::string text = beginning();
+  rows_.each(0, rows_.size(), [&](std::size_t, std::string_view line) {
+    text.append(line);
+    text += '\n';
+    if (text.size() < enough) return;
     to(text);
     text.clear();
-  }
+  });
   to(text);
 }
 
 void Ledger::set_header(const std::string& header) try {
-  if (header_ != header) rows_.clear();  // a table of other columns cannot be gone on with
+  if (header_ != header) rows_ = Rows();  // a table of other columns cannot be gone on with
   header_ = header;
-  if (!kept_) return;
-  out_.emplace(file_);
-  ::flock(out_->descriptor(), LOCK_EX | LOCK_NB);  // as long as this process is there; where locks are unknown nothing is lost
+  if (kept_) {
+    out_.emplace(file_);
+    if (out_->partial().empty()) {  // it is open as standard output
+      out_.reset();
+      kept_ = false;
+    }
+  }
+  if (!kept_) {
+    own_ = OpenFile::unnamed();
+    number_ = rows_.add(own_);
+    return;
+  }
+  ::flock(out_->descriptor(), LOCK_EX | LOCK_NB);  // as long as this process is there
   place_ = out_->partial();
+  own_ = OpenFile(::fcntl(out_->descriptor(), F_DUPFD_CLOEXEC, 3));
+  Rows copied;
+  number_ = copied.add(own_);
+  end_ = beginning().size();
   write([this](std::string_view text) { out_->write(text); });
-  for (const std::string& old : taken_over_) ::unlink(old.c_str());
-  taken_over_.clear();
+  for (std::size_t i = 0; i < rows_.size(); ++i) {
+    copied.add(rows_.run(i), number_, end_, rows_.length(i));
+    end_ += rows_.length(i) + 1;
+  }
+  rows_ = std::move(copied);
+  remove_others();
 } catch (const std::system_error& error) {
   lost(error);
 }
 
 void Ledger::add(std::size_t run, const std::string& line) try {
-  rows_[run] = line;
   if (out_) out_->write(line + "\n");
+  else own_.write(line + "\n");
+  rows_.add(run, number_, end_, line.size());
+  end_ += line.size() + 1;
 } catch (const std::system_error& error) {
   lost(error);
 }
 
-void Ledger::whole() const {
-  if (!kept_) {
-    std::string text;
-    write([&text](std::string_view piece) { text += piece; });
-    write_text(file_, text);
-    return;
-  }
+void Ledger::whole() const try {
+  eom::WholeFile file = is_standard_output(file_) ? eom::WholeFile::standard_output() : eom::WholeFile(file_);
   try {
-    eom::WholeFile file(file_);
-    try {
-      write([&file](std::string_view piece) { file.write(piece); });
-      file.finish();
-    } catch (const std::system_error&) {
-      file.discard();  // the rows are kept in the other one
-      throw;
-    }
-  } catch (const std::system_error& error) {
-    lost(error);
+    write([&file](std::string_view piece) { file.write(piece); });
+    file.finish();
+  } catch (const std::system_error&) {
+    file.discard();  // the rows are kept in the other one
+    throw;
   }
+} catch (const std::system_error& error) {
+  lost(error);
+}
+
+void Ledger::remove_others() {
+  for (const std::string& old : taken_over_) ::unlink(old.c_str());
+  taken_over_.clear();
 }
 
 void Ledger::finish() {
   if (kept_ && !out_ && taken_over_.empty()) return;  // all was there
+  rows_.sort();
   whole();
+  finish_elsewhere();
+}
+
+void Ledger::finish_elsewhere() {
   place_ = file_;
   if (out_) out_->discard();
-  for (const std::string& old : taken_over_) ::unlink(old.c_str());
+  remove_others();
 }
 
 void Ledger::interrupt() {
-  if (!kept_ && !header_.empty()) whole();
+  if (kept_ || header_.empty()) return;
+  rows_.sort();
+  whole();
 }
 
 }  // namespace eomgen::cli

@@ -12,7 +12,6 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t most_points = 1'000'000;
 constexpr const char* note = " shard ";
 
 std::optional<std::size_t> whole(const std::string& text) {
@@ -68,7 +67,7 @@ Shard parse_shard(const std::string& text) {
 }
 
 std::string shard_note(const Shard& shard, std::size_t runs) {
-  return shard.count == 1 ? "" : fmt::format("{}{}/{} of {}", note, shard.number, shard.count, runs);
+  return fmt::format("{}{}/{} of {}", note, shard.number, shard.count, runs);
 }
 
 std::optional<ShardNote> read_shard_note(const std::string& line) {

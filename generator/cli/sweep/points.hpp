@@ -14,7 +14,7 @@ namespace eomgen::cli {
 
 class Points {
  public:
-  /// Throws Error where nothing is varied, a parameter is in both, or the points are more than a million.
+  /// Throws Error where nothing is varied, a parameter is in both, or the points are more than most_points.
   Points(const std::vector<std::string>& grid, std::optional<Sampling> samples);
 
   const std::vector<std::string>& names() const { return names_; }
@@ -33,6 +33,9 @@ class Points {
 struct Shard {
   std::size_t number = 1, count = 1;
   bool has(std::size_t run) const { return run % count == number - 1; }
+  /// Of `all` runs how many it has, and which: from 0 on.
+  std::size_t size(std::size_t all) const { return all < number ? 0 : (all - number) / count + 1; }
+  std::size_t run(std::size_t i) const { return i * count + number - 1; }
 };
 /// "2/8". Throws Error for anything else.
 Shard parse_shard(const std::string& text);

@@ -18,7 +18,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t most_samples = 1'000'000;
+constexpr std::size_t most_samples = 1'000'000'000'000, most_latin = 10'000'000, most_sobol = 1ULL << 32;  // latin keeps 4 bytes of each
 
 [[noreturn]] void fail(const std::string& what) {
   throw Error("sweep", {}, what, "write --sample NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal in SI units, with --samples N");
@@ -92,6 +92,10 @@ Sampling::Sampling(const std::vector<std::string>& axes, std::size_t count, cons
   if (design == "latin") design_ = Design::latin;
   else if (design == "sobol") design_ = Design::sobol;
   else if (design != "random") throw Error("sweep", {}, fmt::format("there is no design {}", model::quote(design)), "choose random, latin or sobol");
+  const std::size_t most = design_ == Design::latin ? most_latin : most_sobol;
+  if (design_ != Design::random && count > most) {
+    throw Error("sweep", {}, fmt::format("--design {} makes at most {} samples", design, most), "take --design random");
+  }
   for (const std::string& text : axes) read(text);
   if (design_ == Design::sobol && axes_.size() > most_dimensions) {
     throw Error("sweep", {}, fmt::format("a Sobol' sequence is made for at most {} parameters", most_dimensions), "take --design latin or random");

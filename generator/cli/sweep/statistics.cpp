@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
-#include <cstdlib>
 #include <eom/outcome.hpp>
 
 namespace eomgen::cli {
@@ -25,16 +25,17 @@ class Sum {
   double sum_ = 0, rest_ = 0;
 };
 
-std::vector<std::string> fields_of(const std::string& line, std::size_t most) {
-  std::vector<std::string> fields;
-  std::size_t begin = 0;
-  while (fields.size() < most) {
-    const std::size_t end = line.find(',', begin);
-    fields.push_back(line.substr(begin, end == std::string::npos ? std::string::npos : end - begin));
-    if (end == std::string::npos) break;
-    begin = end + 1;
+constexpr std::size_t most_values = 16'000'000;  // in memory at a time
+
+/// Calls take(number, field) with the fields of a line; what is quoted stands in the last one only.
+template <class Take>
+void each_field(std::string_view line, std::size_t most, Take&& take) {
+  for (std::size_t k = 0; k < most; ++k) {
+    const std::size_t end = line.find(',');
+    take(k, line.substr(0, end));
+    if (end == std::string_view::npos) return;
+    line.remove_prefix(end + 1);
   }
-  return fields;
 }
 
 }  // namespace
@@ -62,21 +63,31 @@ ColumnStatistics statistics_of(const std::string& name, std::vector<double>& val
   return result;
 }
 
-std::vector<ColumnStatistics> statistics_of_table(const std::string& header, const std::vector<const std::string*>& rows) {
-  const std::vector<std::string> names = fields_of(header, std::string::npos);
+bool ended_well(std::string_view outcome) { return outcome == eom::name(eom::Outcome::done) || outcome == eom::name(eom::Outcome::stopped_by_event); }
+
+std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows, const EachRow& each_row) {
+  std::vector<std::string> names;
+  each_field(header, std::string::npos, [&](std::size_t, std::string_view name) { names.emplace_back(name); });
   const auto outcome = static_cast<std::size_t>(std::find(names.begin(), names.end(), "outcome") - names.begin());
   std::vector<ColumnStatistics> result;
-  if (outcome >= names.size()) return result;
-  for (std::size_t column = outcome + 1; column + 1 < names.size(); ++column) {  // the last one is a sentence
-    std::vector<double> values;
-    for (const std::string* row : rows) {
-      const std::vector<std::string> fields = fields_of(*row, column + 1);
-      if (fields.size() <= column || fields[column].empty()) continue;
-      if (fields[outcome] != eom::name(eom::Outcome::done) && fields[outcome] != eom::name(eom::Outcome::stopped_by_event)) continue;
-      const double value = std::strtod(fields[column].c_str(), nullptr);
-      if (std::isfinite(value)) values.push_back(value);
+  const std::size_t at_once = std::max<std::size_t>(1, most_values / std::max<std::size_t>(rows, 1));
+  const std::size_t end = names.size() - 1;  // the last one is a sentence
+  for (std::size_t first = outcome + 1; first < end; first += at_once) {
+    const std::size_t last = std::min(first + at_once, end);
+    std::vector<std::vector<double>> values(last - first);
+    each_row([&](std::string_view row) {
+      bool well = false;
+      each_field(row, last, [&](std::size_t k, std::string_view text) {
+        if (k == outcome) well = ended_well(text);
+        if (k < first || !well) return;
+        double value = 0;
+        const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+        if (error == std::errc() && stop == text.data() + text.size() && std::isfinite(value)) values[k - first].push_back(value);
+      });
+    });
+    for (std::size_t k = first; k < last; ++k) {
+      if (!values[k - first].empty()) result.push_back(statistics_of(names[k], values[k - first]));
     }
-    if (!values.empty()) result.push_back(statistics_of(names[column], values));
   }
   return result;
 }

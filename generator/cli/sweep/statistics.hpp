@@ -2,8 +2,10 @@
 // What the runs of a sweep came to, column by column: mean, deviation, extremes, quantiles of those that ended well.
 #pragma once
 
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace eomgen::cli {
@@ -20,8 +22,15 @@ inline constexpr double quantile_parts[] = {0.05, 0.25, 0.5, 0.75, 0.95};
 /// neighbours in proportion. `values` are sorted.
 ColumnStatistics statistics_of(const std::string& name, std::vector<double>& values);
 
-/// Of every column behind the outcome that holds numbers, of the rows of a sweep's table whose outcome is done or stopped_by_event.
-std::vector<ColumnStatistics> statistics_of_table(const std::string& header, const std::vector<const std::string*>& rows);
+/// Whether this outcome is one of a run that came to its end.
+bool ended_well(std::string_view outcome);
+
+/// Calls its argument with each row.
+using EachRow = std::function<void(const std::function<void(std::string_view row)>& take)>;
+
+/// Of every column behind the outcome that holds numbers, of the rows of a sweep's table whose outcome is done or stopped_by_event. The rows
+/// are gone through several times where there are so many that not all columns fit into memory.
+std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows, const EachRow& each_row);
 
 nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns);
 std::string to_text(const std::vector<ColumnStatistics>& columns);

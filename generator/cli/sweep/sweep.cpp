@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/sweep.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/outcome.hpp>
+#include <thread>
+
+#include "cli/decimal.hpp"
+#include "cli/locate.hpp"
+#include "cli/output.hpp"
+#include "cli/sweep/tidy_graph.hpp"
+#include "cli/sweep/workers.hpp"
+#include "cli/usage.hpp"
+#include "model/content_hash.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr const char* refused = "refused";  // in place of an outcome, where a run could not begin
+constexpr std::size_t most_runs = 10'000'000;  // of one call; each takes some 40 bytes of memory
+
+run::Overrides overrides_of(const SweepOptions& options) {
+  run::Overrides o;
+  o.parameters = parse_assignments("sweep", options.set);
+  o.rtol = options.rtol;
+  o.atol = options.atol;
+  o.step = options.step;
+  o.t_end = options.t_end;
+  o.at_start = true;
+  o.solver = options.solver;
+  o.outputs = options.outputs;
+  return o;
+}
+
+std::optional<Sampling> samples_of(const SweepOptions& options, std::uint64_t seed) {
+  if (options.sample.empty() && options.samples == 0) {
+    if (options.design) throw Error("sweep", {}, "--design is of samples, and there are none", "add --sample NAME=FROM:TO and --samples N, or leave it out");
+    return std::nullopt;
+  }
+  return Sampling(options.sample, options.samples, options.design.value_or("random"), seed);
+}
+
+/// What makes two sweeps the same: the model's bytes and all that was asked.
+std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed) {
+  std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
+  for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
+    text += '\n';
+    for (const std::string& entry : *list) text += entry + '\x1f';
+  }
+  for (const auto& value : {options.rtol, options.atol, options.step, options.t_end}) text += '\n' + (value ? shortest(*value) : "");
+  if (options.ensemble) text += "\nensemble";
+  if (!options.sample.empty()) {
+    text += fmt::format("\n{} {} {}", options.samples, options.design.value_or("random"), seed);
+    for (const std::string& entry : options.sample) text += '\x1f' + entry;
+  }
+  return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
+}
+
+// A comma, a quotation mark or a line break inside of a field would be read as the end of it.
+std::string field(std::string text) {
+  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value)) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
+
+Shard shard_of(const SweepOptions& options, const Points& points) {
+  const Shard shard = options.shard ? parse_shard(*options.shard) : Shard{};
+  if (shard.size(points.size()) == 0) {
+    throw Error("sweep", {}, fmt::format("shard {}/{} has no runs: there are {} in all", shard.number, shard.count, points.size()), "take fewer shards");
+  }
+  if (shard.size(points.size()) > most_runs) {
+    throw Error("sweep", {}, fmt::format("a call makes no more than {} points, and these are {}", most_runs, shard.size(points.size())),
+                "take fewer, or parts of them by --shard, each in a call of its own");
+  }
+  return shard;
+}
+
+void require_names(const Points& points, const SweepOptions& options, const model::Model& model) {
+  const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
+  for (const std::string& name : points.names()) {
+    const auto named = [&](const model::Parameter& p) { return p.name == name; };
+    if (std::none_of(model.parameters.begin(), model.parameters.end(), named)) {
+      std::vector<std::string> known;
+      for (const model::Parameter& p : model.parameters) known.push_back(p.name);
+      throw Error("sweep", {}, fmt::format("there is no parameter '{}'", name), choice_of(name, known));
+    }
+    if (set.contains(name)) {
+      throw Error("sweep", {}, fmt::format("'{}' has a grid and a value by --set", name), "leave one of them out");
+    }
+  }
+}
+
+std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed, const Shard& shard, const Points& points) {
+  return key_of(options, model, seed) + (options.shard ? shard_note(shard, points.size()) : "");
+}
+
+std::size_t threads_of(const SweepOptions& options) { return options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()); }
+
+}  // namespace
+
+Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Model& model)
+    : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed)), shard_(shard_of(options, points_)),
+      file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
+      ledger_((require_names(points_, options, model), require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_),
+              key_of_table(options, model, common.seed, shard_, points_), [this](std::size_t run) { return run < points_.size() && shard_.has(run); }),
+      resumed_(ledger_.rows().size()) {
+  if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
+}
+
+bool Sweep::run() {
+  std::vector<std::size_t> open = open_runs();
+  if (!open.empty() && prepare(open)) compute(open);
+  ledger_.sort();
+  if (ledger_.rows().size() < runs()) {
+    ledger_.interrupt();
+    return false;
+  }
+  ledger_.finish();
+  return true;
+}
+
+std::vector<std::size_t> Sweep::open_runs() const {
+  std::vector<std::size_t> open;
+  std::size_t next = 0;  // of the rows that are there
+  for (std::size_t i = 0; i < runs(); ++i) {
+    const std::size_t run = shard_.run(i);
+    if (next < ledger_.rows().size() && ledger_.rows().run(next) == run) ++next;
+    else open.push_back(run);
+  }
+  return open;
+}
+
+Sweep::Counts Sweep::counts() const {
+  Counts counts;
+  const std::size_t fields = points_.names().size() + 1;
+  ledger_.rows().each(0, ledger_.rows().size(), [&](std::size_t, std::string_view line) {
+    for (std::size_t k = 0; k < fields; ++k) line.remove_prefix(line.find(',') + 1);
+    ++(ended_well(line.substr(0, line.find(','))) ? counts.done : counts.failed);
+  });
+  return counts;
+}
+
+std::vector<ColumnStatistics> Sweep::statistics() const {
+  const Rows& rows = ledger_.rows();
+  return statistics_of_table(ledger_.header(), rows.size(), [&rows](const auto& take) {
+    rows.each(0, rows.size(), [&take](std::size_t, std::string_view line) { take(line); });
+  });
+}
+
+run::Overrides Sweep::at(std::size_t run) const {
+  run::Overrides o = overrides_of(options_);
+  if (options_.ensemble) o.solver = solver_;
+  o.parameters.merge(points_.point(run));
+  return o;
+}
+
+bool Sweep::simulate_first(std::size_t run, bool integrate) {
+  SimulationRequest request;
+  request.model = options_.model;
+  request.scene = options_.scene;
+  request.estimate = !options_.no_error_estimate && !options_.ensemble;
+  request.integrate = integrate;
+  request.seed = seed_;
+  request.ready = [this] { interrupt_.emplace(); };
+  request.interrupt = &Interrupt::flag();
+  request.overrides = at(run);
+  try {
+    first_.emplace(simulate(request));
+  } catch (const Error& error) {
+    if (Interrupt::flag()) return false;
+    throw;
+  }
+  if (options_.ensemble) require_plain(*first_);
+  columns(first_->scene);
+  return true;
+}
+
+/// One of the open runs; where none of these can begin, another one, which tells the columns.
+std::size_t Sweep::first_that_begins(const std::vector<std::size_t>& open) {
+  const std::unique_ptr<Derived> derived = derive_model(options_.model, ApproachChoice::automatic);
+  const symbolic::Dag was = *derived->mechanics.dag;
+  const bool charts = !exchangeable(charts_of(derived->mechanics)).empty();
+  std::string why, remedy;
+  const auto begins = [&](std::size_t run) {
+    *derived->mechanics.dag = was;
+    run::Overrides overrides = at(run);
+    overrides.exchanges_charts = charts;
+    try {
+      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene(options_.scene), overrides);
+      return true;
+    } catch (const Error& error) {
+      if (error.stage() != "scene") throw;
+      if (why.empty()) why = error.message(), remedy = error.remedy();
+    }
+    return false;
+  };
+  for (const std::size_t run : open) {
+    if (begins(run)) return run;
+  }
+  const std::size_t tried = std::min(points_.size(), most_runs);
+  for (std::size_t run = 0; run < tried; ++run) {
+    if (!std::binary_search(open.begin(), open.end(), run) && begins(run)) return run;
+  }
+  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", why), "change the grid or the scene: " + remedy);
+}
+
+bool Sweep::prepare(std::vector<std::size_t>& open) {
+  std::size_t run = open.front();
+  try {
+    if (!simulate_first(run, true)) return false;
+  } catch (const Error& error) {
+    if (error.stage() != "scene") throw;
+    run = first_that_begins(open);
+    if (!simulate_first(run, std::binary_search(open.begin(), open.end(), run))) return false;
+  }
+  const auto place = std::lower_bound(open.begin(), open.end(), run);
+  if (place == open.end() || *place != run) return true;
+  if (first_->result.outcome == eom::Outcome::interrupted) return false;
+  ledger_.add(run, row(run, first_->result));
+  open.erase(place);
+  return true;
+}
+
+std::string Sweep::made(std::size_t run) const {
+  try {
+    const run::RunResult result = run_again(*first_, at(run), !options_.no_error_estimate);
+    return Interrupt::flag() ? std::string() : row(run, result);
+  } catch (const Error& error) {
+    if (error.stage() != "scene") throw;
+    return refusal(run, error.message());
+  }
+}
+
+void Sweep::compute(const std::vector<std::size_t>& runs) {
+  if (options_.ensemble) {
+    if (!ensemble_) ensemble_.emplace(*first_);
+    ensemble_->run({runs, threads_of(options_), [this](std::size_t run) { return at(run); },
+                    [this](std::size_t run, const run::RunResult& result) { ledger_.add(run, row(run, result)); },
+                    [this](std::size_t run, const std::string& why) { ledger_.add(run, refusal(run, why)); }, &Interrupt::flag()});
+    return;
+  }
+  TidyGraph graph(*first_);
+  const auto line = [&](std::size_t run) {
+    graph.tidy();
+    return made(run);
+  };
+  by_processes(runs, threads_of(options_), line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); }, Interrupt::flag());
+}
+
+void Sweep::columns(const run::Scene& scene) {
+  names_ = scene.outputs;
+  std::string header = "run";
+  for (const std::string& name : points_.names()) header += "," + name;
+  header += ",outcome,t,steps,rhs_evaluations";
+  std::vector<std::string> all;
+  for (const model::Coordinate& c : first_->derived->model.coordinates) {
+    all.push_back(c.name);
+    all.push_back(c.name + "_dot");
+  }
+  if (std::find(names_.begin(), names_.end(), "energy") == names_.end()) all.emplace_back("energy");
+  names_.insert(names_.begin(), all.begin(), all.end());
+  for (const std::string& name : names_) header += "," + name;
+  const std::size_t there = ledger_.rows().size();
+  ledger_.set_header(header + ",error_estimate,detail");
+  if (ledger_.rows().size() < there) resumed_ = 0;
+}
+
+std::string Sweep::beginning(std::size_t run) const {
+  std::string text = std::to_string(run);
+  const std::map<std::string, symbolic::Rational> point = points_.point(run);
+  for (const std::string& name : points_.names()) text += "," + number(cln::double_approx(point.at(name)));
+  return text;
+}
+
+std::string Sweep::refusal(std::size_t run, const std::string& why) const {
+  return beginning(run) + "," + refused + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
+}
+
+std::string Sweep::row(std::size_t run, const run::RunResult& result) const {
+  std::string text = beginning(run) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t), result.statistics.steps, result.statistics.rhs_evaluations);
+  for (const std::string& name : names_) {
+    const auto found = std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
+    text += "," + (found == result.final.end() ? "" : number(found->second));
+  }
+  const auto& estimate = result.error_estimate;
+  return text + "," + (estimate.empty() ? "" : number(estimate.back().second)) + "," + field(result.detail);
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Tables of sweeps that were killed, cut or damaged, and the memory that many runs take.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <random>
+#include <thread>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+const char* const oscillator =
+    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
+    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
+
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+/// The place behind so many lines.
+std::size_t behind(const std::string& text, int lines) {
+  std::size_t at = 0;
+  for (int i = 0; i < lines; ++i) at = text.find('\n', at) + 1;
+  return at;
+}
+
+}  // namespace
+
+TEST_CASE("sweep: killed at any time again and again, it ends with the bytes of one that was left alone") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  std::mt19937 random(5);  // fixed: NOLINT(cert-msc32-c,cert-msc51-cpp)
+  for (const Words& how : {Words{"--ensemble"}, Words{"--no-error-estimate", "--jobs", "2"}}) {
+    CAPTURE(how.front());
+    const Words words = with({"sweep", "oscillator.toml", "--grid", "m=1,-1,2", "--sample", "k=1:9", "--samples", "3000", "--out"}, {});
+    const ChildResult alone = expect(3, folder, with(with(words, {"whole.csv"}), how));
+    int killed = 0, ended = -1;
+    for (int i = 0; i < 20 && ended < 0; ++i) {
+      Child child(command(folder, with(with(words, {"killed.csv"}), how)));
+      std::this_thread::sleep_for(std::chrono::duration<double>(std::uniform_real_distribution<>(0, 0.6 * alone.seconds)(random)));
+      child.signal(SIGKILL);
+      const ChildResult result = child.finish();
+      if (result.status == 128 + SIGKILL) ++killed;
+      else ended = result.status;
+    }
+    CHECK(killed > 0);
+    if (ended < 0) ended = eomgen::test::eomgen(folder, with(with(words, {"killed.csv"}), how)).status;
+    CHECK(ended == 3);  // masses below 0 are refused
+    CHECK(folder.read("killed.csv") == folder.read("whole.csv"));
+    CHECK(folder.names() == Words{"killed.csv", "oscillator.toml", "whole.csv"});
+  }
+}
+
+TEST_CASE("sweep: rows that a full disk cut in the middle of the table, and runs that are none of it, are made again") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
+  expect(0, folder, words);
+  const std::string whole = folder.read("all.csv");
+  folder.write("all.csv", "something else");
+  std::string damaged = whole;
+  damaged.erase(behind(whole, 4) - 20, 19);  // the end of the second row
+  folder.write("all.csv.partial", damaged + "9,9,done,1,6,74,0,0,0,0,\n77,9,done,1,6,74,0,0,0,0,\n");
+  CHECK(document(folder, words)["resumed"] == 8);
+  CHECK(folder.read("all.csv") == whole);
+  // So is one row of a table that is whole otherwise.
+  folder.write("all.csv", damaged);
+  CHECK(document(folder, words)["resumed"] == 8);
+  CHECK(folder.read("all.csv") == whole);
+}
+
+TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they lie") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=-1:1:4001", "--ensemble", "--t-end", "0.01"}, 3);
+  CHECK(found["done"] == 2000);
+  CHECK(found["failed"] == 2001);
+}
+
+TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of the model") {
+#if !defined(__SANITIZE_ADDRESS__)
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const auto peak = [&](const char* samples, const Words& how) {
+    const Words words = with({"sweep", "oscillator.toml", "--sample", "k=1:9", "--t-end", "0.01", "--statistics", "--samples", samples}, how);
+    expect(0, folder, with(words, {"--out", "first.csv"}));  // compiles
+    return expect(0, folder, with(words, {"--out", "second.csv"})).peak_kilobytes;
+  };
+  // 24 bytes of a row, 8 of a run that is open, 9 of one side by side, 64 of its values while statistics are made; the row itself has 120.
+  for (const Words& how : {Words{"--ensemble", "--jobs", "1"}, Words{"--no-error-estimate", "--jobs", "1", "--solver", "rk4", "--step", "0.01"}}) {
+    CAPTURE(how.front());
+    CHECK(peak("61000", how) - peak("1000", how) < 60 * 160);
+  }
+#endif
+}
+
+TEST_CASE("merge: a table that ends in the middle of a line lacks that run; one shard is a sweep as well") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Words sweep{"sweep", "oscillator.toml", "--grid", "k=1:9:7", "--no-error-estimate"};
+  for (const char* i : {"1", "2"}) expect(0, folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/2"}));
+  const std::string second = folder.read("2.csv");
+  folder.write("2.csv", second.substr(0, second.size() - 5));
+  const Words merge{"merge", "1.csv", "2.csv", "--out", "all.csv"};
+  const std::string told = expect(2, folder, merge).err;
+  CHECK(contains(told, "run 5 is missing, and 1 of 7 in all"));
+  folder.write("2.csv", second.substr(0, second.size() - 5) + "\n");
+  CHECK(contains(expect(2, folder, merge).err, "a line that is no run of that shard"));
+  folder.write("2.csv", second + second.substr(behind(second, 3)));
+  CHECK(contains(expect(2, folder, merge).err, "2 lines are of runs that another line has"));
+  folder.write("2.csv", "");
+  CHECK(contains(expect(2, folder, merge).err, "is not the table of a shard"));
+  expect(0, folder, with(sweep, {"--out", "whole.csv"}));
+  expect(0, folder, with(sweep, {"--out", "1of1.csv", "--shard", "1/1"}));
+  expect(0, folder, {"merge", "1of1.csv", "--out", "all.csv"});
+  CHECK(folder.read("all.csv") == folder.read("whole.csv"));
+  CHECK(expect(0, folder, {"merge", "1of1.csv", "--out", "-"}).out == folder.read("whole.csv"));
+  CHECK(contains(expect(4, folder, {"merge", "1of1.csv", "--out", "/dev/full"}).err, "No space left"));
+}
