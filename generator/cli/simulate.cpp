@@ -125,6 +125,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
   }
   run.contacts = contact_outputs(derived);
   run.ranges = ranges_of(derived, scene, code);
+  run.narrow = run::NarrowForces(derived.candidates.front(), scene.parameters);
   run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return holds_beyond_range(derived, scene, code, coordinate, t, x);
   };

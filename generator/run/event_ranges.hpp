@@ -4,12 +4,10 @@
 // it nowhere does.
 #pragma once
 
-#include <eom/run_types.hpp>
 #include <optional>
 #include <utility>
 
-#include "run/range_code.hpp"
-#include "system/equation_system.hpp"
+#include "run/step_boxes.hpp"
 
 namespace eomgen::run {
 
@@ -20,22 +18,13 @@ class EventRanges {
   EventRanges(const system::EquationSystem& system, const std::vector<std::optional<symbolic::Ref>>& functions, const std::vector<double>& parameters);
 
   bool any() const { return any_; }
-  /// Between which places of the step (from 0 to 1) function i first leaves its side; u: the inputs at a time.
-  using Inputs = std::function<const double*(double t)>;
-  std::optional<std::pair<double, double>> first(const eom::StepView& step, std::size_t i, int side, double from, double to, const Inputs& inputs) const;
+  /// Between which places of the step (from 0 to 1) function i first leaves its side.
+  std::optional<std::pair<double, double>> first(const eom::StepView& step, std::size_t i, int side, double from, double to, const StepBoxes::Inputs& inputs) const;
 
  private:
-  struct Place {
-    double s;
-    std::vector<double> variables;
-  };
-  void at(const eom::StepView& step, const Inputs& inputs, Place& place) const;
-
-  std::size_t states_ = 0, inputs_ = 0;
+  StepBoxes boxes_;
   bool any_ = false;
   std::vector<std::optional<RangeCode>> codes_;
-  mutable std::vector<double> x_;
-  mutable std::vector<Sloped> box_;
 };
 
 }  // namespace eomgen::run

@@ -315,6 +315,15 @@ void Integration::tell_friction(eom::Result& end) {
                            end.t, compiled().contacts[worst].name, none ? "no solution" : "several solutions");
 }
 
+/// Of a step of the method: infinity, unless a force that is narrow in the state lies in it unseen.
+double Integration::longest_step(const eom::StepView& step) {
+  if (charts_.second() != 0) return std::numeric_limits<double>::infinity();
+  const double longest = request_.narrow.longest(step, {[this](double t) { return inputs(t); }, [this](double t, const double* x, double* dx) { return rhs(t, x, dx); },
+                                                        request_.scene.rtol, request_.scene.atol, method_named(solver_).series});
+  if (fixed_step_ > 0 && !finer_ && !passed_over_ && longest < step.t1 - step.t0) passed_over_ = step.t0;
+  return longest;
+}
+
 /// Why a run ended, where the outcome alone does not say it.
 void Integration::explain(eom::Result& end) {
   if (end.outcome == eom::Outcome::step_too_small && kink_at_ == end.t) {
@@ -349,6 +358,8 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   eom::Options piece = options;
   piece.choice = &choice;
   piece.step_bounds = request_.scene.clock.bounds;
+  passed_over_.reset();
+  if (request_.narrow.any()) piece.admit = [this](const eom::StepView& step) { return longest_step(step); };
   // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
   piece.quadratures = request_.watch_power && compiled().contacts.empty() ? 1 : 0;
   eom::Result total;

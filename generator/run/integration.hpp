@@ -44,6 +44,9 @@ class Integration {
   /// Largest |psi|, |f . qdot + b| of a state; 0 without active constraints.
   double constraint_defect(double t, const double* x) { return rows_.defect(t, x); }
 
+  /// Where fixed steps first went over a force that is narrow in the state.
+  std::optional<double> passed_over() const { return passed_over_; }
+
   eom::Choice choice;  // of the solver auto, and its changes in the run
   std::vector<std::size_t> kink_crossings;  // of the run, per kink
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
@@ -91,6 +94,7 @@ class Integration {
   std::size_t first_jump() const { return first_contact() + eom::contact_values * compiled().contacts.size(); }
   std::size_t first_contact() const { return request_.events.size() + request_.code.kinks.size(); }
   const Code& compiled() const { return charts_.code(); }  // knows all charts that the run is or was in
+  double longest_step(const eom::StepView& step);
   void accept(const eom::StepView& step);
   eom::AtEvent at_event(const eom::EventPoint& point, const OnEvent& event);
   int project(double t, double* x);
@@ -108,6 +112,7 @@ class Integration {
   std::vector<double> g_, g_size_;  // event functions; largest |g| seen of each kink
   std::vector<std::pair<double, double>> projected_;  // time, work of projections since the last accepted step
   bool stopped_ = false, exchange_due_ = false;
+  std::optional<double> passed_over_;
   double fixed_step_ = 0;       // of the run
   bool finer_ = false, steps_due_ = false;  // steps that are chosen in place of fixed ones, where slip in two directions is slow; to be changed
   eom::Choice finer_choice_;

@@ -79,7 +79,7 @@ eom::Result from_rounded_start(const RunRequest& request, const std::string& sol
   RunRequest moved{.code = request.code, .scene = scene, .state_names = request.state_names, .conserved = request.conserved, .events = request.events,
                    .watch_power = request.watch_power, .estimate = false, .row = {}, .progress = {}, .interrupt = request.interrupt,
                    .integrals = request.integrals, .contacts = request.contacts, .magnitudes = request.magnitudes, .charts = request.charts,
-                   .in_charts = request.in_charts, .ranges = request.ranges, .constraint_names = request.constraint_names, .max_steps = request.max_steps};
+                   .in_charts = request.in_charts, .ranges = request.ranges, .narrow = request.narrow, .constraint_names = request.constraint_names, .max_steps = request.max_steps};
   Integration integration(moved, solver);
   eom::Result end = integration.run(options, {});
   if (end.outcome == eom::Outcome::done || end.outcome == eom::Outcome::stopped_by_event) end.x = integration.own_state(end);

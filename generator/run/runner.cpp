@@ -357,6 +357,10 @@ RunResult integrate_scene(const RunRequest& request) {
   }
   result.state = integration.own_state(end);
   tell_parameters(request.scene, result);
+  if (integration.passed_over()) {
+    result.estimate_note = fmt::format("a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate says nothing; give a shorter --step, or leave it out",
+                                       *integration.passed_over());
+  }
   const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
   if (request.estimate && ended && moves) {
     eom::Result own = end;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "run/event_ranges.hpp"
+#include "run/narrow_forces.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::run {
@@ -150,6 +151,7 @@ struct RunRequest {
   std::vector<ExchangedChart> charts = {};   // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those asked for before
   EventRanges ranges = {};  // of event functions
+  NarrowForces narrow = {};
   /// Whether the equations hold where a coordinate has left its range; none: they do not.
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints

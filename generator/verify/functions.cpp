@@ -29,6 +29,15 @@ At with_digits(const At& at, const Precision& precision) {
   return result;
 }
 
+/// In sums of more digits a float of fewer takes them away. What is as faint as exp(-1e11) has no fraction, and digits enough.
+Real exactly(const Real& value) {
+  constexpr std::intptr_t faint = 1 << 20;
+  constexpr int plenty = 1500;  // digits, more than any sum here has
+  if (cln::zerop(value)) return 0;
+  const std::intptr_t exponent = cln::float_exponent(cln::cl_float(value, cln::float_format(20)));
+  return std::abs(exponent) < faint ? Real(cln::rational(value)) : Real(cln::cl_float(value, cln::float_format(plenty)));
+}
+
 /// A direction without zeros, the same everywhere.
 Real component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
 
@@ -283,7 +292,7 @@ class Functions {
     if (!rhs) return;
     const std::optional<Slope> slopes = slope("momenta", [&](At& at, const Real& step) {
       at.t = at.t + step;
-      for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] = at.x[i] + step * cln::rational((*rhs)[0][i]);
+      for (std::size_t i = 0; i < at.x.size(); ++i) at.x[i] = at.x[i] + step * exactly((*rhs)[0][i]);
     });
     const std::vector<Real> lost = noise("momenta");
     if (!slopes || lost.empty()) return;

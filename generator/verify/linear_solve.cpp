@@ -14,15 +14,20 @@
 #include <optional>
 
 namespace eomgen::verify {
+
+Real power_of_two_near(const Real& x, int sign) {
+  constexpr long exact = 1 << 16;  // beyond, a power of two as a fraction has too many digits
+  // Of a long float: beyond the range of binary64 its infinity would have an exponent of its own.
+  const long exponent = cln::float_exponent(cln::cl_float(x, cln::float_format(20)));
+  const long wanted = sign > 0 ? exponent : 1 - exponent;
+  if (std::abs(wanted) < exact) return cln::expt(Real(2), cln::cl_I(wanted));
+  return cln::scale_float(cln::cl_float(cln::cl_I(1), cln::cl_float(x)), cln::cl_I(wanted));
+}
+
 namespace {
 
-/// A power of two near 1/|x|: scaling by it rounds nothing.
-Real inverse_magnitude(const Real& x) {
-  if (cln::zerop(x)) return 1;
-  // Of a long float: beyond the range of binary64 the power of its infinity would have 2^31 digits.
-  const cln::cl_F size = cln::cl_float(x, cln::float_format(20));
-  return cln::expt(Real(2), cln::cl_I(1 - cln::float_exponent(size)));
-}
+/// Scaling by it rounds nothing.
+Real inverse_magnitude(const Real& x) { return cln::zerop(x) ? Real(1) : power_of_two_near(x, -1); }
 
 /// Complete pivoting of a matrix that is scaled by powers of two; the same for CLN reals and for binary64.
 template <class Number>

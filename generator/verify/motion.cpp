@@ -26,7 +26,7 @@ Motion motion_at(const Judge& judge, const State& at) {
   // Inertia is what an acceleration adds; beside large forces a small one would drown. A power of two rounds nothing.
   Real forces = 1;
   for (const Residual& row : rest) forces = cln::max(forces, row.scale);
-  const Real acceleration = cln::expt(Real(2), cln::cl_I(cln::float_exponent(cln::cl_float(forces, cln::float_format(20)))));
+  const Real acceleration = power_of_two_near(forces, 1);
   for (std::size_t j = 0; j < n; ++j) {
     s.qddot[j] = acceleration;
     const std::vector<Residual> column = judge.dalembert(s, no_forces);

@@ -88,7 +88,21 @@ class Run {
     if (error > 1) return reject(t_next - t_, error);
     const int end_code = complete(t_next, moved);
     if (end_code != 0) return retry(end_code);
+    if (options_.admit && !admitted(t_next)) return true;
     return accept(t_next, error, moved);
+  }
+
+  StepView view(double t_next) {
+    return {t_, t_next, {stepper_.x0(), stepper_.size()}, {stepper_.x1(), stepper_.size()}, &stepper_, &Method::interpolate};
+  }
+
+  /// Options::admit; the smallest step is always taken.
+  bool admitted(double t_next) {
+    const double h = std::abs(t_next - t_), longest = options_.admit(view(t_next));
+    if (!adaptive() || !(longest < h) || h <= smallest_step(t_)) return true;
+    ++rejected_;
+    h_ = std::max(longest, smallest_step(t_));
+    return false;
   }
 
   bool end_known() const {
@@ -148,9 +162,7 @@ class Run {
   }
 
   bool accept(double t_next, double error, bool moved) {
-    const StepView view{t_, t_next, {stepper_.x0(), stepper_.size()}, {stepper_.x1(), stepper_.size()}, &stepper_,
-                        &Method::interpolate};
-    const bool go_on = observer_(view);
+    const bool go_on = observer_(view(t_next));
     if (adaptive()) h_ = std::min(stepper_.after_accepted(std::abs(t_next - t_), error), longest_step());
     t_ = t_next;
     stepper_.accept(moved);

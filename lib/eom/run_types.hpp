@@ -38,12 +38,26 @@ struct StepBound {
   double t, step;
 };
 
+/// One accepted step with its dense output; valid only during the call that shows it.
+struct StepView {
+  double t0, t1;
+  std::span<const double> x0, x1;
+  const void* interpolant = nullptr;                                       // the stepper, seen by evaluate only
+  void (*evaluate)(const void* interpolant, double t, double* x) = nullptr;
+
+  /// The state at t between t0 and t1 (x: as long as x0), by the method's dense output.
+  void interpolate(double t, std::span<double> x) const { evaluate(interpolant, t, x.data()); }
+};
+
 struct Options {
   double rtol = 1e-9;       // error allowed per step and component: atol + rtol |x|
   double atol = 1e-12;
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
   std::span<const StepBound> step_bounds = {};  // ascending in t, of chosen steps that go forward in time: what is known to happen there is not stepped over
+  /// Of a step whose error is within the tolerances: the longest that may be taken in its place, infinity where it may be taken. For what lies between the places
+  /// at which a method sees the equations. Of fixed steps it is asked, and not heeded.
+  std::function<double(const StepView&)> admit = {};
   double fixed_step = 0;    // > 0: steps of this size without error control, whatever the method; rk4 needs it
   std::size_t event_parts = 1;  // so many equal steps to a breaking event that ends a step, instead of one
   int series_order = 0;     // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step
@@ -85,17 +99,6 @@ struct Result {
   std::vector<double> x;            // the state at t, the last accepted one
   Statistics statistics;
   std::string detail;               // one sentence when the outcome is not done, else empty
-};
-
-/// One accepted step with its dense output; valid only during the observer's call.
-struct StepView {
-  double t0, t1;
-  std::span<const double> x0, x1;
-  const void* interpolant = nullptr;                                       // the stepper, seen by evaluate only
-  void (*evaluate)(const void* interpolant, double t, double* x) = nullptr;
-
-  /// The state at t between t0 and t1 (x: as long as x0), by the method's dense output.
-  void interpolate(double t, std::span<double> x) const { evaluate(interpolant, t, x.data()); }
 };
 
 /// What the registry tells of a method. The dense output's error within one step is O(h^(dense_order + 1)).

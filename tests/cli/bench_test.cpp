@@ -61,7 +61,7 @@ TEST_CASE("bench: other libraries reach the same motion on the same right-hand s
            {"Odeint", {"Odeint dopri5", "Odeint rkf78", "Odeint bulirsch_stoer"}},
            {"GSL", {"GSL rk8pd", "GSL msbdf"}},
            {"SUNDIALS", {"CVODE BDF", "CVODE Adams", "ARKODE ERK 8", "ARKODE DIRK 5", "IDA"}}}) {
-    const bool is_missing = std::any_of(found["left_out"].begin(), found["left_out"].end(), [&](const Json& left) { return left["solver"] == library; });
+    const bool is_missing = std::any_of(found["left_out"].begin(), found["left_out"].end(), [&name = library](const Json& left) { return left["solver"] == name; });
     for (const std::string& name : names) {
       CAPTURE(name);
       double least = 1, evaluations = 0;

@@ -65,7 +65,8 @@ void same_everywhere(const std::string& model, const Words& words, std::size_t f
   CHECK(all.front().size() == files + 1);
   for (const Files& one : all) {
     for (const auto& [name, text] : one) {
-      CAPTURE(name);
+      const auto& shown = name;
+      CAPTURE(shown);
       CHECK((text == all.front().at(name)));  // in brackets: doctest would print both
     }
   }

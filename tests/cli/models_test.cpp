@@ -48,7 +48,8 @@ TEST_CASE("hostile file names are mangled, never obeyed") {
       {"my model-1", "my_model_1"}, {"1abc", "model_1abc"}, {"int", "int_"}, {"a;$(touch pwned)`touch pwned`", "a___touch_pwned__touch_pwned_"},
       {"two\nlines", "two_lines"}, {"q\"uote'", "q_uote_"}, {"bad\xff", "bad_"}, {"back\\", "back_"}, {"tri??", "tri__"}, {"%s%n", "model__s_n"}};
   for (const auto& [id, name] : names) {
-    CAPTURE(name);
+    const auto& shown = name;
+    CAPTURE(shown);
     folder.write(id + ".toml", diverging_text());
     document(folder, {"check", "./" + id + ".toml"});
     const Json emitted = document(folder, {"emit", "./" + id + ".toml", "-o", "out", "--with", "jac"});

@@ -80,7 +80,8 @@ TEST_CASE("needs: a function that is asked for adds its symbol and leaves the ri
                                         {{"--with", "mass"}, "mass"},
                                         {{"--with", "constraints"}, "constraints"},
                                         {{"--output", "energy"}, "outputs"}}) {
-    CAPTURE(function);
+    const auto& shown = function;
+    CAPTURE(shown);
     const Emitted more = emitted("P7_moving_sphere", words);
     CHECK(more.functions == with(bare.functions, {function}));
     CHECK(more.function("rhs") == bare.function("rhs"));

@@ -156,7 +156,8 @@ void check(const Json& found, const Case& c, const Json& wanted) {
   if (c.slider.empty()) return;
   CHECK(wide["ran"] == true);
   for (const auto& [name, value] : wide["end"].items()) {
-    CAPTURE(name);
+    const auto& shown = name;
+    CAPTURE(shown);
     const double expected = wanted[name].get<double>();
     CHECK(std::fabs(value.get<double>() - expected) <= as_run_does * (1 + std::fabs(expected)));
   }

@@ -111,7 +111,8 @@ TEST_CASE("--approach: I and II are the same motion") {
     CHECK(one["approach"] == "I");
     CHECK(two["approach"] == "II");
     for (const auto& [name, value] : one["final"].items()) {
-      CAPTURE(name);
+      const auto& shown = name;
+      CAPTURE(shown);
       CHECK(std::abs(value.get<double>() - two["final"][name].get<double>()) < 1e-6);
     }
   }

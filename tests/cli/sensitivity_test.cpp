@@ -89,7 +89,8 @@ t = [0, 1]
     CAPTURE(solver);
     const Json found = document(folder, {"run", "model.toml", "--approach", "I", "--form", "multipliers", "--solver", solver, "--rtol", "1e-11", "--atol", "1e-12", "--sensitivity", "L,g"})["sensitivities"]["values"];
     for (const auto& [parameter, value] : {std::pair<const char*, double>{"L", 2}, {"g", 9.81}}) {
-      CAPTURE(parameter);
+      const auto& shown = parameter;
+      CAPTURE(shown);
       for (const char* state : {"x", "y_dot"})
         CHECK(std::abs(found[parameter][state].get<double>() - by_runs(folder, "model.toml", parameter, value, state)) < of_order_four);
     }

@@ -47,7 +47,8 @@ TEST_CASE("verify: compiled code may be off by what rounding does to large angle
                                           {"F = 1\nw = 0.1", "generalized = { x = \"F*exp(-((t - 5)/w)^2)\" }"},
                                           {"k = 100\nd = 1e8", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"},
                                           {"k = 1e10\nd = 3", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"}}) {
-    CAPTURE(force);
+    const auto& shown = force;
+    CAPTURE(shown);
     folder.write("sound.toml", particle(parameters, force));
     CHECK(document(folder, {"verify", "sound.toml", "--points", "6"})["verdict"] == "pass");
   }
@@ -57,6 +58,9 @@ TEST_CASE("verify: a force that is narrow and far away in numbers acts all the s
   const Folder folder;
   folder.write("pulse.toml", particle("", "generalized = { x = \"exp(-((t - 5)/0.01)^2)\" }"));
   CHECK(document(folder, {"verify", "pulse.toml", "--points", "4"})["verdict"] == "pass");
+  // exp(-1e11) is a number of 5e10 digits before its first.
+  folder.write("barrier.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"5*exp(-((x - 3)/1e-5)^2)\"\n");
+  CHECK(document(folder, {"verify", "barrier.toml", "--points", "4"})["verdict"] == "pass");
   // x goes on as it is, and y without inertia follows: by the null space x_ddot is cos(y) y_ddot - sin(y) y_dot^2 = 0.
   folder.write("follows.toml", R"toml(format = 1
 [coordinates]

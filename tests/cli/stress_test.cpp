@@ -11,7 +11,8 @@ using namespace eomgen::test;
 TEST_CASE("stress: no shipped model of these loses its way without a word") {
   const Folder folder;
   for (const char* model : {"elastic_pendulum", "P2_planar_pendulum", "cart_pendulum", "R1_free_body_euler_parameters"}) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     const Json found = document(folder, {"stress", model, "--quick", "--steps", "5000", "--seconds", "1e6", "--t-end", "1"});
     CHECK(found["verdict"] == "pass");
     CHECK(found["silent"] == 0);
@@ -71,7 +72,8 @@ TEST_CASE("run: the estimate of variational solvers knows what rates lose near t
 TEST_CASE("stress: slip that is slow or short is not lost by fixed steps, nor by what they are held against") {
   const Folder folder;
   for (const auto& [model, solver] : {std::pair{"P5_rough_sphere", "rk4"}, {"P6_rough_circle", "midpoint"}, {"R16_disk_on_disk", "rodas"}}) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     const Json found = document(folder, {"stress", model, "--solver", solver, "--steps", "2000", "--seconds", "1e6"});
     CHECK(found["silent"] == 0);
     CHECK(found["rows"].size() > 40);

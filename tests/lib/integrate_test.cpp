@@ -207,6 +207,43 @@ TEST_CASE("options: max_step and initial_step are kept to") {
   CHECK(longest <= 0.125 * (1 + 0.02));  // the last step may be stretched by 1 %
 }
 
+TEST_CASE("options: admit is asked of every step that would be taken, with its dense output, and heeded where steps are chosen") {
+  for (const eom::MethodInfo& info : problems::methods()) {
+    CAPTURE(info.name);
+    const auto rhs = [](double, const double* x, double* dx) {
+      dx[0] = x[1];
+      dx[1] = -x[0];
+      return 0;
+    };
+    eom::Options options;
+    if (!info.adaptive) options.fixed_step = 0.1;
+    std::size_t asked = 0, refused = 0;
+    double off = 0;
+    options.admit = [&](const eom::StepView& step) {
+      ++asked;
+      double x[2];
+      step.interpolate((step.t0 + step.t1) / 2, x);
+      off = std::max(off, std::abs(x[0] - std::cos((step.t0 + step.t1) / 2)));
+      if (step.t1 - step.t0 < 0.02 * (1 + 1e-12)) return std::numeric_limits<double>::infinity();
+      ++refused;
+      return 0.02;
+    };
+    std::size_t seen = 0;
+    double longest = 0;
+    const auto observer = [&](const eom::StepView& step) {
+      ++seen;
+      longest = std::max(longest, step.t1 - step.t0);
+      return true;
+    };
+    const eom::Result result = eom::integrate(info.name, rhs, 0, problems::State{1, 0}, 1, options, observer);
+    CHECK(result.outcome == eom::Outcome::done);
+    CHECK(off < 1e-3);  // midpoint: h^2/12 of the phase
+    CHECK(refused > 0);
+    CHECK(asked == (info.adaptive ? seen + refused : seen));
+    CHECK((longest < 0.0201) == info.adaptive);
+  }
+}
+
 TEST_CASE("dense output: where an added stage fails it falls back to the cubic of the step, and says how often") {
   for (const double bad : {2.0, std::numeric_limits<double>::infinity()}) {
     // x = t^3, which the cubic has exactly; t = 0.1 is met by an added stage of the step from 0 to 1 alone

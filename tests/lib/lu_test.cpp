@@ -52,7 +52,7 @@ TEST_CASE("complex numbers: products and quotients, without overflow on the way"
 }
 
 TEST_CASE("lu: the residual of complex systems that cannot do without pivots is one of rounding") {
-  for (const std::size_t n : {1, 2, 3, 7, 20})
+  for (const std::size_t n : std::initializer_list<std::size_t>{1, 2, 3, 7, 20})
     for (unsigned seed = 1; seed <= 5; ++seed) {
       CAPTURE(n);
       CHECK(residual(n, seed) < tolerances::rounding);

@@ -76,7 +76,7 @@ TEST_CASE("P4: at random states the derived accelerations are those of Newton's 
     const double x[4] = {R, theta, R_dot, theta_dot};
     double expected[4];
     cone.rates(t, x, expected);
-    for (int k = 2; k < 4; ++k) CHECK(derived.dx[k] == doctest::Approx(expected[k]).epsilon(rounding).scale(100));
+    for (std::size_t k = 2; k < 4; ++k) CHECK(derived.dx[k] == doctest::Approx(expected[k]).epsilon(rounding).scale(100));
     CHECK(derived.output("reaction.cone") == doctest::Approx(R * cone.normal(t, x)).epsilon(rounding).scale(100));
   }
 }

@@ -73,7 +73,7 @@ TEST_CASE("S3: pulled, each mass sticks and slides by itself: equations by hand 
   Hand hand(rates, 0, {0, 0, 0, 0});
   for (const run::RunEvent& event : events) {
     hand.to(event.t);
-    const int j = event.name == "line1" ? 0 : 1;
+    const std::size_t j = event.name == "line1" ? 0 : 1;
     const double pull = j == 0 ? line.on1(event.t, hand.x.data()) : line.on2(event.t, hand.x.data());
     const double limit = line.mu_s * (j == 0 ? line.m1 : line.m2) * line.g;
     CAPTURE(event.t);

@@ -55,7 +55,8 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
     };
     const test::Finished one = run(cli::ApproachChoice::one), two = run(cli::ApproachChoice::two);
     for (const auto& [key, value] : one.simulation.result.final) {
-      INFO(name, " ", key);
+      const auto& shown = key;
+      INFO(name, " ", shown);
       CHECK(std::abs(value - two.final(key)) < tolerance * (1 + std::abs(value)));
     }
   }
@@ -139,7 +140,8 @@ TEST_CASE("S5: a constraint on the velocities of both masses holds, by either ap
     CHECK(std::abs(y("P1.velocity3") + across / 4 - c * std::sin(w * one.rows.t[i])) < 1e-11);  // rows lie between steps
   }
   for (const auto& [key, value] : one.simulation.result.final) {
-    INFO(key);
+    const auto& shown = key;
+    INFO(shown);
     CHECK(std::abs(value - two.final(key)) < tolerance * (1 + std::abs(value)));
   }
   CHECK(one.simulation.result.power_balance < 1e-9);

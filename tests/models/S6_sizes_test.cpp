@@ -75,7 +75,8 @@ TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree wit
 
 TEST_CASE("S6: chains of unlike links keep their energy") {
   for (const auto& [n, relative] : {std::pair{3, true}, std::pair{4, false}, std::pair{12, false}}) {
-    CAPTURE(n);
+    const auto& shown = n;
+    CAPTURE(shown);
     CHECK(run_chain(n, relative).drift("energy") < 1e-10);
   }
 }

@@ -59,7 +59,8 @@ TEST_CASE("bilinear_oscillator: with the branch held, no step is refused for the
   for (const auto& [name, forces] : {std::pair{"with_abs", "-(k1 + k2)/2*x - (k1 - k2)/2*abs(x)"},
                                      std::pair{"with_if", "if(x > 0, -k1*x, -k2*x)"},
                                      std::pair{"with_sign", "-x*((k1 + k2)/2 + (k1 - k2)/2*sign(x))"}}) {
-    CAPTURE(name);
+    const auto& shown = name;
+    CAPTURE(shown);
     const test::Finished run = test::run_model(variant(name, forces), [](auto& request) { tight(request); });
     REQUIRE(run.simulation.result.kinks.size() == 1);
     CHECK(run.simulation.result.kinks[0].count == 20);

@@ -36,7 +36,8 @@ double difference(const test::Finished& a, const test::Finished& b) {
 TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the equations") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
                             "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     const test::Finished reference = motion(model, "dop853", 1.5);
     for (const char* solver : {"radau5", "rodas"}) {
       CAPTURE(std::string(solver));
@@ -96,7 +97,8 @@ TEST_CASE("solvers: variational ones converge to dop853 with their order: free, 
       request.overrides.t_end = 1;
     });
     for (const char* solver : {"variational2", "variational4", "variational6"}) {
-      CAPTURE(std::string(model));
+      const std::string of_model = model;
+      CAPTURE(of_model);
       CAPTURE(std::string(solver));
       const int order = run::method_named(solver).order;
       const auto error = [&](double step) {
@@ -133,7 +135,8 @@ TEST_CASE("solvers: variational ones keep energy within bounds, and tell why the
   const std::pair<const char*, const char*> refused[] = {
       {"knife_edge", "constraint on velocities"}, {"bouncing_ball", "contacts"}, {"bilinear_oscillator", "kinks"}};
   for (const auto& [model, why] : refused) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     try {
       test::run_model(model, [&](cli::SimulationRequest& request) {
         request.overrides.solver = "variational2";
@@ -170,7 +173,8 @@ TEST_CASE("solvers: long runs of variational ones: angles that have gone far do 
 TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, kinks, friction, impacts and rolling") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
                             "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian", "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     const test::Finished reference = motion(model, "dop853", 1.5), other = motion(model, "taylor", 1.5);
     const run::RunResult& result = other.simulation.result;
     CHECK(result.outcome == reference.simulation.result.outcome);
@@ -197,7 +201,8 @@ TEST_CASE("solvers: taylor takes inputs that jump, refuses those that are expres
 TEST_CASE("solvers: ggl ends where dop853 with projection does, constraints at rounding and nothing projected; it tells why it refuses a model") {
   // among them a loop of bodies, constraints on velocities, and one that moves
   for (const char* model : {"S5_double_pendulum_cartesian", "iftomm_pendulum", "four_bar_spatial_pins", "knife_edge", "P7_moving_sphere_pfaffian", "car_axis"}) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     const test::Finished reference = motion(model, "dop853", 1);
     run::Overrides overrides;
     overrides.solver = "ggl";
@@ -211,13 +216,15 @@ TEST_CASE("solvers: ggl ends where dop853 with projection does, constraints at r
     CHECK(found.projection_velocity == 0);
     CHECK(found.constraint_drift < 1e-13);
     for (const auto& [name, value] : found.final) {
-      CAPTURE(name);
+      const auto& shown = name;
+      CAPTURE(shown);
       if (name.ends_with("_dot")) CHECK(std::abs(value - reference.final(name)) < 1e-7);
     }
   }
   const std::pair<const char*, const char*> refused[] = {{"S5_double_pendulum", "no constraints with multipliers"}, {"bouncing_ball", "contacts"}};
   for (const auto& [model, why] : refused) {
-    CAPTURE(std::string(model));
+    const std::string of_model = model;
+    CAPTURE(of_model);
     try {
       motion(model, "ggl", 1);
       FAIL("it is to be refused");
@@ -232,7 +239,8 @@ TEST_CASE("solvers: fixed implicit steps where components stay at rounding level
   for (const auto& [model, t_end] : {std::pair{"n_four_bar_2", 0.5}, std::pair{"iftomm_pendulum", 2.0}}) {
     const test::Finished reference = motion(model, "dop853", t_end);
     for (const char* solver : {"midpoint", "radau5", "radau", "ggl"}) {
-      CAPTURE(std::string(model));
+      const std::string of_model = model;
+      CAPTURE(of_model);
       CAPTURE(std::string(solver));
       run::Overrides overrides;
       overrides.solver = solver;
@@ -241,7 +249,8 @@ TEST_CASE("solvers: fixed implicit steps where components stay at rounding level
       const run::RunResult found = cli::run_again(reference.simulation, overrides, false);
       CHECK(found.outcome == eom::Outcome::done);
       for (const auto& [name, value] : found.final) {
-        CAPTURE(name);
+        const auto& shown = name;
+        CAPTURE(shown);
         if (name.ends_with("_dot")) CHECK(std::abs(value - reference.final(name)) < (std::string(solver) == "midpoint" ? 1e-3 : 1e-8));
       }
     }

@@ -90,7 +90,7 @@ system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
 TEST_CASE("taylor: the recurrences of mechanical systems, the solve included") {
   for (const auto& system : {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
     CAPTURE(system.free.size());
-    for (const std::uint64_t point : {1, 4}) follows_the_motion(system, point);
+    for (const std::uint64_t point : std::initializer_list<std::uint64_t>{1, 4}) follows_the_motion(system, point);
   }
 }
 

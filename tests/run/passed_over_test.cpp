@@ -99,3 +99,31 @@ TEST_CASE("passed over: a bump that is narrower than a step is hit") {
   CHECK(count(finished.simulation.result, "contact", "floor") == 1);
   CHECK(std::abs(finished.final("x_dot")) < 1.99);
 }
+
+TEST_CASE("passed over: barriers that are narrow in the state and have no tails throw back, with every solver that chooses its steps") {
+  struct Case {
+    const char* potential;
+    double x, x_dot;  // at t = 10, of a particle that comes from 0 with speed 1 and meets it at 3
+  };
+  // A bump of any width throws back at 3 but for its own width; a step of 0.3 beyond 1/2 J is passed, and slows it down.
+  for (const Case& c : {Case{"5*exp(-((x - 3)/1e-5)^2)", -4, -1}, Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1}, Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
+    CAPTURE(std::string(c.potential));
+    const test::Finished finished =
+        run_text("narrow", "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"" + std::string(c.potential) + "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",
+                 [](auto& request) { request.every_solver = true; });
+    for (const eom::MethodInfo& method : eom::methods()) {
+      if (method.constrained || method.variational || !method.adaptive) continue;
+      CAPTURE(std::string(method.name));
+      run::Overrides overrides;
+      overrides.solver = method.name;
+      const run::RunResult result = cli::run_again(finished.simulation, overrides);
+      CHECK(result.outcome == eom::Outcome::done);
+      CHECK(std::abs(test::value_of(result.final, "x") - c.x) < 2e-3);
+      CHECK(std::abs(test::value_of(result.final, "x_dot") - c.x_dot) < 1e-6);
+    }
+    run::Overrides fixed;
+    fixed.solver = "rk4";
+    fixed.step = 0.29;  // none ends at 3
+    CHECK(cli::run_again(finished.simulation, fixed).estimate_note.find("narrow in the state") != std::string::npos);
+  }
+}

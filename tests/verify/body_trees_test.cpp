@@ -157,7 +157,8 @@ void check_both_routes(const std::string& text) {
 TEST_CASE("body trees: pins, ball joints, sliders and particles on a cart that is shaken") { check_both_routes(mixed); }
 TEST_CASE("body trees: ball joints with springs in angles of both kinds") {
   for (const auto& [first, second] : std::map<std::string, std::string>{{"321", "123"}, {"313", "121"}, {"232", "213"}}) {
-    CAPTURE(first);
+    const auto& shown = first;
+    CAPTURE(shown);
     check_both_routes(ball_joints(first, second));
   }
 }

@@ -82,7 +82,8 @@ TEST_CASE("integrals: every other one is a state, alone or inside of another, an
                                                      {"integral(integral(exp(-s)))", 2}, {"integral(t) + integral(tanh(f))", 1},
                                                      {"integral(log(a*t + b))", 1},    {"integral(1/(t^2 + b))", 1},     {"integral(abs(t - 1)*sign(t - 1))", 1},    {"integral(sqrt(t)*exp(-t))", 1}};
   for (const auto& [integral, states] : all) {
-    CAPTURE(integral);
+    const auto& shown = integral;
+    CAPTURE(shown);
     for (const bool active : {false, true}) {
       const Checked found = check(integral, active);
       CHECK(found.pass);

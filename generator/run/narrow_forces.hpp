@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces that are narrow in the state: a barrier exp(-(x/w)^2) far below a step lies between the places at which the step sees the equations, and its tails
+// are below any tolerance. In: the functions of a system without tails, a step with its dense output, the right-hand side. Out: a shorter step, where bounds of
+// such a function leave room for values that no sample has, and the path of the step does not satisfy the equations at one.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "run/step_boxes.hpp"
+
+namespace eomgen::run {
+
+class NarrowForces {
+ public:
+  /// What a run asks with.
+  struct Setting {
+    StepBoxes::Inputs inputs;
+    std::function<int(double t, const double* x, double* dx)> derivative;
+    double rtol = 0, atol = 0;
+    bool series = false;  // the method sees the equations at the start of its steps only
+  };
+
+  NarrowForces() = default;
+  NarrowForces(const system::EquationSystem& system, const std::vector<double>& parameters);
+
+  bool any() const { return !codes_.empty(); }
+  /// The longest step that may be taken in its place; infinity where it may be taken as it is.
+  double longest(const eom::StepView& step, const Setting& setting) const;
+
+ private:
+  std::optional<double> hidden(const RangeCode& code, const eom::StepView& step, const Setting& setting) const;
+  bool unsatisfied(const eom::StepView& step, const Setting& setting, double s, double width) const;
+
+  std::size_t n_ = 0;
+  StepBoxes boxes_;
+  std::vector<RangeCode> codes_;
+  mutable std::vector<double> x_, before_, after_, dx_;
+};
+
+}  // namespace eomgen::run
