@@ -9,6 +9,7 @@
 #include <cmath>
 #include <eom/modes/chart_state.hpp>
 
+#include "cli/kept_certificates.hpp"
 #include "cli/locate.hpp"
 #include "derive/routes.hpp"
 #include "print/notation.hpp"
@@ -17,6 +18,7 @@
 #include "emit/self_test.hpp"
 #include "program/abi_values.hpp"
 #include "program/constrained_solve.hpp"
+#include "program/fingerprint.hpp"
 #include "program/interpret.hpp"
 #include "program/kinks.hpp"
 #include "reading/reading.hpp"
@@ -266,9 +268,32 @@ void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjec
   }
 }
 
+namespace {
+
+/// Of all that a certificate depends on. Empty: nothing is kept of it.
+std::string key_of(const Derived& derived, const program::Program& program, const Verification& options) {
+  const std::string identity = program_identity();
+  if (!options.keep || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
+  std::string key = fmt::format("{}\n{}\n{} {} {} {}\n", identity, derived.model.content_hash, options.digits, options.points, options.seed, options.reductions);
+  for (const auto& [parameter, value] : options.fixed) key += fmt::format("{} = {:.17g}\n", parameter, cln::double_approx(value));
+  for (const double input : options.default_inputs) key += fmt::format("{:.17g}\n", input);
+  return key + program::fingerprint(program);
+}
+
+}  // namespace
+
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
   const work::Stage stage("holding the derivations against one another");
   Stopwatch watch;
+  const std::string key = key_of(derived, program, options);
+  if (!key.empty()) {
+    if (std::optional<verify::Certificate> kept = kept_certificate(key)) {
+      kept->options = {options.digits, options.points, options.seed, options.fixed};
+      derived.seconds.verify += watch.lap();
+      derived.kept_certificate = true;
+      return std::move(*kept);
+    }
+  }
   verify::Subjects subjects;
   subjects.systems = verify::all_routes(derived.mechanics, &subjects.left_out);
   add_reading_forms(derived.mechanics, subjects);
@@ -290,6 +315,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
       verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed});
   derived.seconds.verify += watch.lap();
   if (certificate.interrupted && !options.partial) throw work::Interrupted{};
+  if (!key.empty()) keep_certificate(key, certificate);
   return certificate;
 }
 

@@ -36,6 +36,7 @@ struct Derived {
   std::vector<system::EquationSystem> candidates;  // routes that apply, in the approaches asked for
   std::vector<derive::Conserved> conserved;
   Timings seconds;
+  bool kept_certificate = false;  // of an earlier command, for the same model and program
 };
 
 /// Reads, builds, derives. On the heap, since Mechanics points to its Model.
@@ -60,6 +61,7 @@ struct Verification {
   bool reductions = false;  // Routh's too, which no code is made of
   std::vector<double> default_inputs = {};  // of the emitted code, which mass and constraints see; none: any will do
   bool partial = false;     // what an interruption leaves will do
+  bool keep = true;         // false: it is compared anew, whatever was kept
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 

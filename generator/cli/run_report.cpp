@@ -200,8 +200,8 @@ std::string RunReport::text() const {
   if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   if (const auto open = undetermined(simulation); !open.empty()) out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
-  out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
-                                     seconds.read + seconds.derive, seconds.optimise, seconds.verify, compiled.seconds,
+  out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
+                                     seconds.read + seconds.derive, seconds.optimise, seconds.verify, derived.kept_certificate ? " (kept)" : "", compiled.seconds,
                                      compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
                                      charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   for (const WrittenFile& file : files) {

@@ -102,6 +102,7 @@ int execute(const Options& options, const Common& common) {
   Verification verification{options.digits, static_cast<std::size_t>(options.points), common.seed, nullptr};
   verification.reductions = true;
   verification.partial = true;
+  verification.keep = false;
   std::optional<CompiledCode> code;
   verify::CompiledForm compiled;
   if (!options.no_compile) {

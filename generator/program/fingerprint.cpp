@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "program/fingerprint.hpp"
+
+#include <cln/rational_io.h>
+#include <fmt/format.h>
+
+#include <iterator>
+#include <sstream>
+
+namespace eomgen::program {
+namespace {
+
+class Writer {
+ public:
+  std::string text;
+
+  void program(const Program& p) {
+    list(p.free);
+    list(p.integrals);
+    words(p.route, system::name(p.approach), system::name(p.form));
+    for (const auto* names : {&p.reactions, &p.outputs, &p.events, &p.kinks}) {
+      words(names->size());
+      for (const std::string& name : *names) words(name);
+    }
+    words(p.active_constraints, p.in_charts);
+    for (const bool holonomic : p.holonomic) words(holonomic);
+    for (const ContactInfo& c : p.contacts) words(c.name, c.dimensions, c.surface, c.unilateral, c.sticks, c.rolls);
+    for (const ChartInfo& c : p.charts) {
+      words(c.of, c.own, c.second, c.regular, c.guarded, c.second_at_sine);
+      list(c.angles);
+      function(c.to);
+      function(c.back);
+    }
+    for (const Function& f : p.functions) function(f);
+    if (p.taylor) {
+      words(p.taylor->zeros, p.taylor->products);
+      function(p.taylor->start);
+      function(p.taylor->next);
+    }
+    for (const Program& other : p.second) program(other);
+  }
+
+ private:
+  // Lengths first: no two lists of words are one text.
+  void word(const std::string& value) { fmt::format_to(std::back_inserter(text), "{}:{} ", value.size(), value); }
+  void word(const char* value) { word(std::string(value)); }
+  template <class Number>
+  void word(Number value) {
+    fmt::format_to(std::back_inserter(text), "{} ", value);
+  }
+  template <class... Values>
+  void words(const Values&... values) {
+    (word(values), ...);
+    text += '\n';
+  }
+  void list(const std::vector<std::uint32_t>& values) {
+    words(values.size());
+    for (const std::uint32_t value : values) word(value);
+  }
+  void operand(const Operand& o) { fmt::format_to(std::back_inserter(text), "{}{},{} ", o.negated ? "-" : "", static_cast<int>(o.slot), o.index); }
+
+  void function(const Function& f) {
+    words(f.name, f.results.size(), f.constants.size(), f.code.size(), f.pivots.size());
+    for (const auto& [name, entries] : f.results) {
+      words(name, entries.size());
+      for (const Operand& o : entries) operand(o);
+    }
+    list(f.places);
+    for (const symbolic::Rational& constant : f.constants) {
+      std::ostringstream out;
+      out << constant;
+      words(out.str());
+    }
+    for (const Instruction& i : f.code) {
+      fmt::format_to(std::back_inserter(text), "{} {} {} ", static_cast<int>(i.op), i.exponent, i.operands.size());
+      for (const Operand& o : i.operands) operand(o);
+    }
+    for (const PivotTest& p : f.pivots) {
+      operand(p.pivot);
+      operand(p.scale);
+    }
+  }
+};
+
+}  // namespace
+
+std::string fingerprint(const Program& program) {
+  Writer writer;
+  writer.program(program);
+  return std::move(writer.text);
+}
+
+}  // namespace eomgen::program

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A positive certificate is kept by what it depends on, and by nothing less.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+std::vector<std::filesystem::path> kept(const Folder& folder) {
+  std::vector<std::filesystem::path> result;
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "cache")) {
+    if (entry.path().filename().string().starts_with("certificate-")) result.push_back(entry.path());
+  }
+  return result;
+}
+
+ChildResult with_cache(const Folder& folder, const Words& words) {
+  ChildCommand call = command(folder, words);
+  call.environment["EOMGEN_CACHE_DIR"] = folder / "cache";
+  return Child(call).finish();
+}
+
+/// As the first command would have found it, had the difference been another.
+void change(const std::filesystem::path& path) {
+  std::ifstream in(path);
+  Json document = Json::parse(in);
+  document["comparisons"][0][0] = "another route";
+  document["comparisons"][0][3] = 1.25e-50;
+  std::ofstream(path) << document.dump();
+}
+
+}  // namespace
+
+TEST_CASE("kept certificates: the next command takes what an earlier one found, for the same model, program and options only") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
+  const Words emit{"emit", "p.toml", "-o", "out"};
+  const ChildResult first = with_cache(folder, emit);
+  REQUIRE(first.status == 0);
+  REQUIRE(kept(folder).size() == 1);
+  CHECK(with_cache(folder, emit).out == first.out);
+  CHECK(kept(folder).size() == 1);
+  change(kept(folder).front());
+  CHECK(contains(with_cache(folder, emit).out, "worst 1.2e-50 (another route"));
+  // Another seed, another function, another byte of the model, other code: each is compared anew.
+  for (const Words& other : {Words{"emit", "p.toml", "-o", "out", "--seed", "2"}, Words{"emit", "p.toml", "-o", "out", "--with", "jac"}, Words{"emit", "p.toml", "-o", "out", "--fix", "g"},
+                             Words{"emit", "p.toml", "-o", "out", "--form", "nullspace"}}) {
+    const std::size_t before = kept(folder).size();
+    const ChildResult result = with_cache(folder, other);
+    CHECK(result.status == 0);
+    CHECK_FALSE(contains(result.out, "another route"));
+    CHECK(kept(folder).size() == before + 1);
+  }
+  folder.write("p.toml", folder.read("p.toml") + "# the same\n");
+  CHECK_FALSE(contains(with_cache(folder, emit).out, "another route"));
+}
+
+TEST_CASE("kept certificates: verify compares anew, and what is damaged is made again") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
+  REQUIRE(with_cache(folder, {"run", "p.toml"}).status == 0);
+  REQUIRE(kept(folder).size() == 1);
+  CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
+  change(kept(folder).front());
+  CHECK_FALSE(contains(with_cache(folder, {"verify", "p.toml", "--points", "5"}).out, "another route"));
+  for (const char* damaged : {"", "{", "[]", "{\"key\": 1}", "{\"key\": \"x\", \"points\": -1, \"rejected\": {}, \"comparisons\": [[1]], \"left_out\": []}"}) {
+    std::ofstream(kept(folder).front()) << damaged;
+    const ChildResult result = with_cache(folder, {"run", "p.toml"});
+    CHECK(result.status == 0);
+    CHECK_FALSE(contains(result.out, "(kept)"));
+  }
+  CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
+}
