@@ -35,7 +35,7 @@ constexpr std::string_view macros[] = {
     "NDEBUG", "EDOM", "ERANGE", "EILSEQ", "EINTR", "EIO", "ENOMEM", "EINVAL", "EPERM", "EAGAIN", "EBUSY", "EXDEV",
     "BIG_ENDIAN", "LITTLE_ENDIAN", "BYTE_ORDER", "PDP_ENDIAN", "PAGE_SIZE", "PATH_MAX", "NAME_MAX", "PIPE_BUF", "CLOCKS_PER_SEC",
     "MB_CUR_MAX", "math_errhandling", "unix", "linux", "i386", "vax", "sun", "mips", "sparc", "near", "far", "interface", "small",
-    "assert", "offsetof", "isnan", "isinf", "signbit", "min", "max"};
+    "assert", "offsetof", "isnan", "isinf", "signbit", "min", "max", "EOM_DEVICE", "EOM_GPU"};
 
 // Prefixes under which headers define macros: M_PI, FP_NAN, DBL_MAX, INT32_MAX, FE_INVALID, ...
 constexpr std::string_view macro_prefixes[] = {"M_",   "FP_",   "DBL_", "FLT_",  "LDBL_", "INT", "UINT", "FE_",
@@ -56,7 +56,7 @@ constexpr std::string_view runtime[] = {
     "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Result", "Rhs",
     "Run", "Statistics", "StepView", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "chart_bits",
     "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "contact_allows", "contact_bits",
-    "contact_digit", "contact_leaf", "contact_modes", "contact_states", "contact_values", "detail", "divergence_bound",
+    "contact_digit", "contact_leaf", "contact_modes", "contact_states", "contact_values", "detail", "device", "divergence_bound",
     "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "first_chart_bit", "implicit", "integrate",
     "integrate_ensemble", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
     "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "slips_on", "smallest_step_in_ulps", "svg",

@@ -4,6 +4,7 @@
 #include "emit/batch/batch.hpp"
 #include "emit/c/c.hpp"
 #include "emit/cpp/cpp.hpp"
+#include "emit/cuda/cuda.hpp"
 #include "emit/javascript/javascript.hpp"
 #include "emit/python/python.hpp"
 #include "error.hpp"
@@ -15,6 +16,7 @@ constexpr TargetEntry registry[] = {
     {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
     {"c", "C11 sources with the C ABI", emit_c},
     {"batch", "C11 sources, and the same functions for any number of states at once", emit_batch},
+    {"cuda", "CUDA and HIP, or C++20 as the host form: the functions for threads of a device, and ensembles on it", emit_cuda},
     {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python},
     {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript},
 };

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/cuda/cuda.hpp"
+
+#include "emit/cpp/templates.hpp"
+#include "emit/metadata.hpp"
+#include "emit/names.hpp"
+#include "emit/parts.hpp"
+#include "error.hpp"
+#include "skeletons/cuda_model_cuh.hpp"
+#include "skeletons/cuda_model_ensemble_cu.hpp"
+#include "skeletons/cuda_model_ensemble_h.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+const std::string mark = "EOM_DEVICE inline ";
+
+// Compilers for accelerators make one call of the sine and the cosine of an angle.
+const std::string sincos = R"(
+template <class Real>
+EOM_DEVICE inline void eom_sincos(const Real& a, const Real& b, Real* sine, Real* cosine) {
+  using std::cos; using std::sin;
+  sine[0] = sin(a);
+  sine[1] = sin(b);
+  cosine[0] = cos(a);
+  cosine[1] = cos(b);
+}
+)";
+
+}  // namespace
+
+std::vector<EmittedFile> emit_cuda(const program::Program& program, const EmissionContext& context) {
+  require_consistent(program, context);
+  if (!program.charts.empty()) throw Error("emit", {}, "the target cuda does not know charts yet", "use the target c or cpp, or leave --with charts out");
+  if (program.taylor) throw Error("emit", {}, "the target cuda has no series", "leave taylor out of --with, or use the target c or cpp");
+  if (!program.contacts.empty()) {
+    throw Error("emit", {}, "the target cuda integrates without events, and contacts have modes that begin and end with them", "use the target c or cpp with eom::integrate_contacts, or take the contacts out");
+  }
+  const Dialect dialect = template_dialect();
+  const std::string name = mangled_id(context.id);
+  const ModelNames names = model_names(program, context);
+  const auto [functions, packs] = template_functions(program, names, context, dialect, mark);
+  const std::string about = banner(program, context, "// ", "// ", "");
+  const std::vector<std::pair<std::string, std::string>> values = {{"banner", about}, {"name", name}, {"enums", index_names(names, program.prepared_count(), {})},
+                                                                   {"kernels", packs ? sincos : ""}, {"defaults", defaults_body(program, context, dialect)}};
+  const std::vector<std::pair<std::string, std::string>> of_header = {{"banner", banner(program, context, "/* ", " * ", " */")}, {"name", name}};
+  return {{name + ".cuh", rendered(skeleton::cuda_model_cuh, values, functions)},
+          {name + "_ensemble.cu", rendered(skeleton::cuda_model_ensemble_cu, values, {})},
+          {name + "_ensemble.h", rendered(skeleton::cuda_model_ensemble_h, of_header, {})}};
+}
+
+}  // namespace eomgen::emit

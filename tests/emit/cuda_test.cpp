@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Target cuda: its host form is compiled and compared with the target c and with eom::integrate (cuda_harness.cpp); nvcc compiles it where it is installed.
+#include <doctest/doctest.h>
+
+#include "emit/examples.hpp"
+#include "error.hpp"
+
+using namespace eomgen;
+using namespace test_systems;
+
+namespace {
+
+/// Names of the files of the target.
+std::vector<std::string> write(const Example& e, const Folder& folder) {
+  std::vector<std::string> names;
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "c"));
+  const auto files = emit::emit(e.program, e.context, "cuda");
+  for (const emit::EmittedFile& file : files) names.push_back(file.name);
+  emit::write_files(folder.path, files);
+  return names;
+}
+
+std::string wrong(const Example& e) {
+  const Folder folder;
+  write(e, folder);
+  const std::string name = emit::mangled_id(e.context.id), path = folder.path + "/" + name;
+  const std::string of_c = complaints({EOMGEN_TEST_CC, "-std=c11", "-O1", "-ffp-contract=off", "-c", "-o", path + ".o"}, {path + ".c"});
+  if (!of_c.empty()) return of_c;
+  const std::string said = complaints({EOMGEN_TEST_CXX, "-std=c++20", "-O0", "-ffp-contract=off", "-o", folder.path + "/use", "-DNAME=" + name, "-I" + folder.path, "-I" EOMGEN_TEST_LIB},
+                                      {"-x", "c++", path + "_ensemble.cu", EOMGEN_TEST_CUDA_HARNESS, "-x", "none", path + ".o", "-lm"});
+  if (!said.empty()) return said;
+  const emit::Finished finished = emit::run_process({folder.path + "/use"});
+  return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
+}
+
+}  // namespace
+
+TEST_CASE("cuda: the host form gives what C gives, and members end with the bits of eom::integrate, of either order") {
+  for (const Example& e : examples()) {  // coordinates that the constraints bind, inputs, equations without inertia
+    if (e.context.id == "pendulum" || e.context.id == "spherical") continue;
+    INFO(e.context.id);
+    CHECK(wrong(e) == "");
+  }
+}
+
+TEST_CASE("cuda: hostile names") {
+  CHECK(wrong(example("device", double_pendulum(), {"Model", "members"}, {"EOM_DEVICE", "EOM_GPU", "threadIdx", "rhs", "eom_sincos"})) == "");
+}
+
+TEST_CASE("cuda: nvcc compiles it without a word, where it is installed") {
+  const char* const nvcc = std::filesystem::exists("/usr/local/cuda/bin/nvcc") ? "/usr/local/cuda/bin/nvcc" : "nvcc";
+  if (!emit::run_process({nvcc, "--version"}).started) {
+    MESSAGE("nvcc is not installed: nothing was compiled for a device");
+    return;
+  }
+  const Folder folder;
+  const Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "L1", "L2", "g"});
+  CHECK(write(e, folder) == std::vector<std::string>{"two.cuh", "two_ensemble.cu", "two_ensemble.h"});
+  const emit::Finished finished = emit::run_process({nvcc, "-std=c++20", "-O1", "-I" EOMGEN_TEST_LIB, "-ptx", folder.path + "/two_ensemble.cu", "-o", folder.path + "/two.ptx"});
+  CHECK(finished.output == "");
+  CHECK(finished.status == 0);
+}
+
+TEST_CASE("cuda: what it cannot do is refused") {
+  const auto said = [](const program::Program& program, const emit::EmissionContext& context) -> std::string {
+    try {
+      emit::emit(program, context, "cuda");
+    } catch (const Error& error) {
+      return error.message();
+    }
+    return "";
+  };
+  Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "L1", "L2", "g"});
+  CHECK(said(e.program, e.context) == "");
+  program::Program changed = e.program;
+  changed.contacts.emplace_back();
+  CHECK(said(changed, e.context).find("contacts") != std::string::npos);
+  changed = e.program;
+  changed.charts.emplace_back();
+  CHECK(said(changed, e.context).find("charts") != std::string::npos);
+  changed = e.program;
+  changed.taylor.emplace();
+  CHECK(said(changed, e.context).find("series") != std::string::npos);
+}
