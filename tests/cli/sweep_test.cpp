@@ -179,6 +179,8 @@ TEST_CASE("sweep: what an ensemble cannot look after is told") {
   refused({"stick_slip_belt", "--grid", "m=1,2"}, "contacts with friction");
   refused({"bouncing_ball", "--grid", "m=1,2"}, "cannot be made side by side");
   refused({"R1_free_body", "--grid", "m=1,2"}, "cannot be made side by side");
+  folder.write("morse.toml", "format = 1\n[parameters]\nD = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"D*(1 - exp(-x))^2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
+  refused({"morse.toml", "--grid", "D=1,2"}, "a force that is narrow");
 }
 
 namespace {

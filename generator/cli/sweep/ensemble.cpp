@@ -210,6 +210,8 @@ void require_plain(const Simulation& first) {
     why = "an integral over time is a state of the model";
   } else if (const std::string name = ranged(first, code); !name.empty()) {
     why = fmt::format("'{}' has a range, which is looked at after every step", name);
+  } else if (run::NarrowForces(first.derived->candidates.front(), first.scene.parameters).any()) {
+    why = "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in every step";
   } else if (!stands_still(first.scene)) {
     why = "inputs or functions of time move, whose jumps and pulses are located";
   }
