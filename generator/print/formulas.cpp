@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "print/notation.hpp"
+#include "print/letters.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::print {
@@ -31,28 +31,6 @@ Formula dotted(const Formula& f) {
   return result;
 }
 Formula multiplier(std::uint32_t k) { return reading::symbol({SymbolKind::multiplier, k, 0}); }
-
-/// Letters of mechanics that the model has not taken for something of its own: a rod of length L leaves the Lagrangian
-/// a script L.
-struct Letters {
-  std::string T = "T", U = "U", L = "L", psi = "psi";
-
-  Letters(const Mechanics& m, bool constrained) {
-    const auto avoid = [&](std::string& letter, const char* otherwise) {
-      const auto taken = [&](const auto& list) {
-        return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return split_name(entry.name).base == letter; });
-      };
-      const model::Model& model = *m.model;
-      if (taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs)) letter = otherwise;
-    };
-    avoid(T, "cal T");
-    avoid(U, "cal U");
-    avoid(L, "cal L");
-    avoid(psi, "Psi");
-    if (!constrained) return;
-    for (std::string* letter : {&T, &U, &L}) *letter += "~";
-  }
-};
 
 // lambda slope: numbers first, then lambda, then the rest
 Formula times_multiplier(std::uint32_t k, const Sum& slope) {
@@ -139,10 +117,8 @@ void add_rotations(const Mechanics& m, const ReadingForm& form, const Formula& T
     const Formula place = reading::number(static_cast<long>(mass.place)), v = dotted(mark("r", {place}));
     terms.push_back(halved({mark("m", {place}), reading::wrap(Form::dot_product, {v, v})}));
   }
+  add_angular_velocities(form, out);
   for (const reading::ReadSpin& spin : form.spins) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      out.push_back({"energies", "angular velocity of " + spin.name, "", "", reading::relation({component(spin, k), arrange(spin.w[k])})});
-    }
     for (Formula& term : rotational_terms(spin, true)) terms.push_back(std::move(term));
   }
   out.push_back({"energies", "kinetic energy", "", "", reading::relation({T, reading::sum(std::move(terms))})});
@@ -180,9 +156,17 @@ Formula explicit_form(const Equation& equation) {
   return reading::relation({arrange(equation.expanded, Layout::terms), right_side(equation)});
 }
 
+void add_angular_velocities(const ReadingForm& form, std::vector<Statement>& out) {
+  for (const reading::ReadSpin& spin : form.spins) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.push_back({"energies", "angular velocity of " + spin.name, "", "", reading::relation({component(spin, k), arrange(spin.w[k])})});
+    }
+  }
+}
+
 void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   const bool two = form.approach == system::Approach::two;
-  const Letters letters(m, two);
+  const Letters letters(*m.model, two);
   if (form.by_parts && !form.spins.empty()) add_rotations(m, form, mark(letters.T), out);
   if (form.by_parts) return;
   const auto add = [&](std::string name, Formula left, const Sum& right) {
@@ -200,7 +184,7 @@ void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<State
 
 void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   if (form.by_parts) return;
-  const Formula L = mark(Letters(m, form.approach == system::Approach::two).L);
+  const Formula L = mark(Letters(*m.model, form.approach == system::Approach::two).L);
   std::vector<Formula> terms = form.spins.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped) : std::vector<Formula>{kinetic_formula(form)};
   if (!form.potential.is_zero()) {
     for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
@@ -209,7 +193,7 @@ void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Sta
 }
 
 void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
-  const Letters letters(m, false);
+  const Letters letters(*m.model, false);
   for (std::uint32_t f = 0; f < m.model->functions.size(); ++f) {
     const model::Function& function = m.model->functions[f];
     const std::optional<Formula> written = reading::as_written(*m.model, function.is);

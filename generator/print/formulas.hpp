@@ -33,6 +33,8 @@ reading::Formula momentum_form(const reading::Equation& equation);
 reading::Formula explicit_form(const reading::Equation& equation);
 
 void add_energies(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+/// Components of the angular velocities, along the axes in which the inertias stand.
+void add_angular_velocities(const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_constraints(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);

@@ -4,7 +4,7 @@
 
 #include "mechanics/imposition.hpp"
 #include "print/formulas.hpp"
-#include "print/notation.hpp"
+#include "print/letters.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -28,8 +28,8 @@ class ContactFormulas {
  public:
   ContactFormulas(const Mechanics& m, const Contact& contact, std::size_t index, std::vector<Statement>& out)
       : m_(m), dag_(*m.dag), contact_(contact), index_(index), imposed_(mechanics::impose(m)), out_(out) {
-    slip_ = free_letter("w", "varpi");
-    normal_ = call(symbolic::Op::abs, mark(free_letter("N", "cal N"), subscript({})));
+    slip_ = free_letter(*m_.model, "w", "varpi");
+    normal_ = call(symbolic::Op::abs, mark(free_letter(*m_.model, "N", "cal N"), subscript({})));
   }
 
   void add() {
@@ -45,7 +45,7 @@ class ContactFormulas {
     show("is apart", {multiplier(k), reading::number(0)});
     show("is apart while", {read(m_.constraints[k].psi), reading::number(0)}, true);
     const auto rate = [&](const char* when) {
-      Formula result = reading::wrap(Form::dot, {mark(free_letter("psi", "Psi"), subscript({}), {mark(when)})});
+      Formula result = reading::wrap(Form::dot, {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
       result.order = 1;
       return result;
     };
@@ -54,13 +54,6 @@ class ContactFormulas {
   }
 
  private:
-  std::string free_letter(const char* letter, const char* otherwise) const {
-    const auto taken = [&](const auto& list) {
-      return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return split_name(entry.name).base == letter; });
-    };
-    const model::Model& model = *m_.model;
-    return taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs) ? otherwise : letter;
-  }
   /// The number of the contact where there are several, then what is given.
   std::vector<Formula> subscript(std::vector<Formula> more) const {
     if (m_.contacts.size() > 1) more.insert(more.begin(), reading::number(static_cast<long>(index_ + 1)));

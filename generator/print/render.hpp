@@ -41,8 +41,4 @@ Item render_expression(const mechanics::Mechanics& mechanics, std::string key, s
 
 Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, const reading::Sum& expression);
 
-/// A document of its own (article, amsmath): parameters, constraints, both approaches side by side, reactions.
-std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one,
-                           const reading::ReadingForm& two);
-
 }  // namespace eomgen::print

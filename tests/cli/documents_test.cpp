@@ -2,6 +2,8 @@
 // Every command's JSON document: the keys that were promised, the shape of docs/schema, and that it holds what is true.
 #include <doctest/doctest.h>
 
+#include <cstdlib>
+
 #include "program.hpp"
 
 using namespace eomgen::test;
@@ -83,6 +85,72 @@ TEST_CASE("derive: a key for each thing shown, in three formats") {
   CHECK(contains(in_format("text"), "lambda = m d_ddot - m d (phi_dot^2 + sin^2(phi) theta_dot^2) + m g cos(phi)"));
   CHECK(contains(in_format("latex"), "\\dot{\\theta}"));
   CHECK(contains(in_format("mathml"), "<math"));
+}
+
+TEST_CASE("derive --document: the derivation as LaTeX, beside what is printed, to the same bytes as emit --target latex") {
+  const Folder folder;
+  CHECK(contains(expect(0, folder, {"derive", "P9_paraboloid", "--document", "paper.tex"}).out, "wrote paper.tex"));
+  const std::string text = folder.read("paper.tex");
+  for (const char* part : {"\\section{System}", "Approach II: constraints that fix a coordinate are built in", "\\section{Constraint forces}", "$\\theta$ is cyclic", "p_{\\theta} = m c^{2} u^{2} \\dot{\\theta}",
+                           "\\section{Routh's reduction}", "\\mathcal{R} = ", "\\textbf{steady motion}: ", "\\emph{stable}: ", "\\section{Where the equations fail}", "\\section{Certificate}", "pass at 5 random states in 50 digits"}) {
+    CAPTURE(part);
+    CHECK(contains(text, part));
+  }
+  expect(0, folder, {"emit", "P9_paraboloid", "--target", "latex", "-o", "out"});
+  CHECK(folder.read("out/P9_paraboloid.tex") == text);
+  CHECK(document(folder, {"derive", "P9_paraboloid", "--document", "paper.tex"})["document"] == "paper.tex");
+  // To standard output, and the equations then to standard error.
+  const ChildResult both = expect(0, folder, {"derive", "P9_paraboloid", "--document", "-"});
+  CHECK(both.out == text);
+  CHECK(contains(both.err, "Approach I\n"));
+}
+
+TEST_CASE("derive --document: wrong places are refused before any work") {
+  const Folder folder;
+  folder.write("m.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }\n"));
+  CHECK(contains(expect(2, folder, {"derive", "m.toml", "--document", "paper.pdf"}).err, "--document"));
+  CHECK(contains(expect(2, folder, {"derive", "m.toml", "--document", "m.toml"}).err, "--document"));
+  CHECK(contains(expect(2, folder, {"derive", "m.toml", "--document", "there_is_no/paper.tex"}).err, "--document"));
+  CHECK(contains(expect(2, folder, {"derive", "m.toml", "--document", "-", "--json"}).err, "--document"));
+  CHECK_FALSE(folder.has("paper.pdf"));
+}
+
+TEST_CASE("the document of hostile texts, of a model whose motion is prescribed, and of one without search says so and compiles") {
+  const Folder folder;
+  folder.write("hostile.toml", R"(format = 1
+title = 'a\input{/etc/passwd}$x$ & 100% #1 _b^c~'
+notes = '\end{document} {{{ }'
+[parameters]
+k = { value = "1 N/m", note = '\write18{id} & % $' }
+[coordinates]
+write18 = "m"
+[[particle]]
+name = "the_end"
+mass = "1 kg"
+position = "write18*E1"
+[[force]]
+name = "csname_x"
+on = "the_end"
+force = "-k*write18*E1"
+)");
+  expect(0, folder, {"derive", "hostile.toml", "--document", "hostile.tex"});
+  const std::string hostile = folder.read("hostile.tex");
+  for (const char* command : {"\\input", "\\write", "\\csname"}) CHECK_FALSE(contains(hostile, command));
+  CHECK(contains(hostile, "\\textbf{equilibrium}: $\\mathrm{write}_{18}$~$= 0$. \\emph{stable}"));
+  expect(0, folder, {"derive", "P10_rocket", "--document", "rocket.tex"});
+  CHECK(contains(folder.read("rocket.tex"), "the constraints prescribe the motion"));
+  expect(0, folder, {"derive", "S6_chain_6", "--document", "chain.tex"});
+  CHECK(contains(folder.read("chain.tex"), "eomgen equilibria makes it"));
+  if (std::system("command -v pdflatex > /dev/null 2>&1") != 0) {
+    MESSAGE("pdflatex is not installed: skipped");
+    return;
+  }
+  for (const char* name : {"hostile", "rocket", "chain"}) {
+    CAPTURE(name);
+    const std::string command = "cd '" + folder.path() + "' && max_print_line=1000 pdflatex -no-shell-escape -interaction=nonstopmode -halt-on-error " + name + ".tex > out.txt 2>&1";
+    CHECK(std::system(command.c_str()) == 0);
+    CHECK_FALSE(contains(folder.read("out.txt"), "Overfull \\hbox"));
+  }
 }
 
 TEST_CASE("derive: what does not apply is an empty list, not a missing key") {

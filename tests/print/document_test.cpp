@@ -7,6 +7,8 @@
 #include <fstream>
 #include <string>
 
+#include "print/article.hpp"
+#include "print/latex_text.hpp"
 #include "print/render.hpp"
 #include "support/folders.hpp"
 
@@ -22,7 +24,7 @@ std::string document(const model::Model& model) {
 
 model::Model hostile() {
   return model::read_model_text(R"(format = 1
-title = 'a\input{/etc/passwd}$x$ & 100% #1 _b^c~ "quoted" \write18{touch here} 日本'
+title = 'wwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwwww a\input{/etc/passwd}$x$ & 100% #1 _b^c~ "quoted" \write18{touch here} 日本'
 notes = '''\end{document} {{{ }'''
 [parameters]
 input = { value = "1 kg", note = '\immediate\write18{id} & % $' }
@@ -68,8 +70,62 @@ TEST_CASE("the document has both approaches side by side and the constraint forc
   const std::string text = document(model::read_model(test::source_folder() + "/models/P7_moving_sphere.toml"));
   CHECK(text.find("Approach I}") != std::string::npos);
   CHECK(text.find("Approach II}") != std::string::npos);
-  CHECK(text.find("\\[\n\\lambda = m \\ddot{d}") != std::string::npos);
+  CHECK(text.find("& \\lambda = m \\ddot{d}") != std::string::npos);
   CHECK(text.find("$9.81$ & $\\mathrm{m/s^{2}}$") != std::string::npos);
+}
+
+namespace {
+
+std::size_t count(const std::string& text, const std::string& part) {
+  std::size_t n = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  return n;
+}
+
+std::string shipped(const std::string& name) { return document(model::read_model(test::source_folder() + "/models/" + name + ".toml")); }
+
+}  // namespace
+
+TEST_CASE("an equation that both approaches give stands once, over both columns") {
+  const std::string text = shipped("P7_moving_sphere");
+  const std::string phi = "\\frac{d}{dt}\\left(m d^{2} \\dot{\\phi}\\right) - m d^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2} - m g d \\sin\\phi = 0";
+  CHECK(count(text, phi) == 1);
+  CHECK(text.find("$\\phi$ & \\multicolumn{2}{p{0.84\\linewidth}}{$\\displaystyle " + phi + "$} & (1)") != std::string::npos);
+  // theta of the rolling disk has another one by Approach II, x3 none.
+  const std::string disk = shipped("R6_rolling_disk");
+  CHECK(count(disk, "$\\theta$ & \\multicolumn") == 0);
+  CHECK(disk.find("$x_{3}$ & $\\displaystyle m \\ddot{x}_{3} + m g = \\lambda_{3}$ & --- & ") != std::string::npos);
+}
+
+TEST_CASE("the document goes from the energies to the equations step by step, as (2.110)") {
+  const std::string text = shipped("P7_moving_sphere");
+  for (const char* step : {"\\frac{\\partial T}{\\partial \\dot{\\phi}} = m R^{2} \\dot{\\phi}", "\\frac{d}{dt}\\left(\\frac{\\partial T}{\\partial \\dot{R}}\\right) = m \\ddot{R}",
+                           "\\frac{\\partial T}{\\partial \\phi} = m R^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2}", "\\frac{\\partial U}{\\partial \\phi} = -m g R \\sin\\phi",
+                           "Q_{\\theta} = D R^{2} \\sin\\phi", "Q_{\\theta} = D d^{2} \\sin\\phi"}) {
+    CAPTURE(step);
+    CHECK(text.find(step) != std::string::npos);
+  }
+}
+
+TEST_CASE("the document says of every constraint what it is, and what decouples") {
+  const std::string sphere = shipped("P7_moving_sphere");
+  CHECK(sphere.find("\\textbf{sphere} is holonomic and rheonomic") != std::string::npos);
+  CHECK(sphere.find("it fixes $R$:") != std::string::npos);
+  CHECK(sphere.find("(3) gives the constraint force") != std::string::npos);
+  CHECK(sphere.find("(1) and (2) have no constraint force in them") != std::string::npos);
+  const std::string disk = shipped("R6_rolling_disk");
+  CHECK(disk.find("\\textbf{contact.1} is nonholonomic: on velocities, and not integrable") != std::string::npos);
+  CHECK(disk.find("\\textbf{contact.3} is holonomic and scleronomic") != std::string::npos);
+  CHECK(disk.find("By Approach II \\textbf{contact.3} takes $x_{3}$ out") != std::string::npos);
+  CHECK(shipped("P8_rough_helix").find("(1) does not decouple") != std::string::npos);
+  CHECK(shipped("G1_spherical").find("What decouples") == std::string::npos);
+}
+
+TEST_CASE("words that are longer than a line may be broken, letter by letter") {
+  CHECK(print::words("short words & more") == "short words \\& more");
+  const std::string broken = print::words(std::string(40, 'x'));
+  CHECK(count(broken, "\\hspace{0pt}") == 39);
+  CHECK(count(print::words("\xc3\xa4" + std::string(30, 'x')), "\xc3\xa4\\hspace{0pt}") == 1);  // a letter of two bytes is one
 }
 
 TEST_CASE("the document compiles with pdflatex, if it is installed") {

@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "print/article.hpp"
 #include "print/render.hpp"
 #include "support/folders.hpp"
 

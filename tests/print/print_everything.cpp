@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <cstdlib>
 
+#include "print/article.hpp"
 #include "print/render.hpp"
 
 int main(int argc, char** argv) {

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "cli/article.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
+#include "cli/named_functions.hpp"
 #include "cli/output.hpp"
 #include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
@@ -21,7 +23,7 @@ namespace {
 using json = nlohmann::ordered_json;
 
 struct Options {
-  std::string model, approach = "auto", format = "text";
+  std::string model, approach = "auto", format = "text", document;
   std::vector<std::string> show{"equations", "constraints", "reactions", "friction"};
 };
 
@@ -101,30 +103,19 @@ std::string heading_of(const print::Item& item) {
   return (item.key == "friction" && of_contact ? "contact" : item.key) + ": " + item.role;
 }
 
-void print_readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format,
-                    const std::vector<work::LeftOut>& left_out) {
-  fmt::print("Approach {}\n", approach);
-  std::string heading;
+std::string readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format,
+                     const std::vector<work::LeftOut>& left_out) {
+  std::string text = fmt::format("Approach {}\n", approach), heading;
   for (const print::Item& item : items) {
     if (!item.left_out.empty()) continue;
     const std::string next = heading_of(item);
-    if (next != heading) fmt::print("\n{}\n", next);
+    if (next != heading) text += fmt::format("\n{}\n", next);
     heading = next;
-    fmt::print("  {}\n", in_format(item, format));
+    text += fmt::format("  {}\n", in_format(item, format));
   }
-  if (!left_out.empty()) fmt::print("\nleft out\n");
-  for (const work::LeftOut& l : left_out) fmt::print("  {}: {}\n", l.what, l.why);
-}
-
-/// The same quantity from the reading form, where functions of time keep their names; nothing if it has no such form.
-std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, const reading::ReadingForm& form, const std::string& name) {
-  if (form.by_parts) return std::nullopt;
-  if (name == "energy" && mechanics::impose_dependent(m).fixed.empty()) return form.kinetic + form.potential;
-  for (const reading::Equation& equation : form.equations) {
-    if (name == "momentum." + m.model->coordinates[equation.coordinate].name) return equation.momentum;
-  }
-  if (name == "jacobi" && form.by_degree) return (*form.by_degree)[0] - (*form.by_degree)[2] + form.potential;
-  return std::nullopt;
+  if (!left_out.empty()) text += "\nleft out\n";
+  for (const work::LeftOut& l : left_out) text += fmt::format("  {}: {}\n", l.what, l.why);
+  return text;
 }
 
 void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
@@ -133,7 +124,7 @@ void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::strin
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
   for (const derive::Conserved& c : derive::conserved_quantities(mechanics, system)) {
-    const auto named = in_named_functions(mechanics, form, c.name);
+    const auto named = in_named_functions(mechanics, form, c);
     print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
                              : print::render_expression(mechanics, "conserved", c.name, c.expression);
     item.role = c.title;
@@ -162,6 +153,7 @@ int execute(const Options& options, const Common& common) {
   require_keys(options.show);
   require_format(options.format);
   const ApproachChoice choice = approach_choice(options.approach);
+  if (!options.document.empty()) require_places({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
   const work::Stage stage("deriving the equations");
   model::Model model = load_model(options.model);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
@@ -169,13 +161,19 @@ int execute(const Options& options, const Common& common) {
   const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
-  bool interrupted = false;
+  bool interrupted = false, written = false;
   std::vector<print::Item> items = print::render(mechanics, form, options.show, &interrupted);
   try {
     if (!interrupted) {
       add_conserved(mechanics, options.show, items);
       add_routh(mechanics, options.show, items);
       add_linear(mechanics, options.show, items);
+      if (!options.document.empty()) {
+        const ArticleText document = article(options.model, common.seed);
+        const work::Kept whole;
+        write_text(options.document, document.text);
+        written = true;
+      }
     }
   } catch (const work::Interrupted&) {
     interrupted = true;
@@ -184,9 +182,13 @@ int execute(const Options& options, const Common& common) {
   std::vector<work::LeftOut> left_out = left_out_of(items, form);
   if (interrupted) left_out.push_back({"what is not shown", "interrupted"});
   if (common.json) {
-    print_document(to_json(items, system::name(approach), options.show, left_out));
+    json result = to_json(items, system::name(approach), options.show, left_out);
+    if (!options.document.empty()) result["document"] = written ? json(options.document) : json(nullptr);
+    print_document(result);
   } else {
-    print_readable(items, system::name(approach), options.format, left_out);
+    const bool taken = is_standard_output(options.document);
+    print_readable(readable(items, system::name(approach), options.format, left_out), taken);
+    if (written && !taken) print_readable(fmt::format("\nwrote {}\n", options.document), taken);
   }
   if (interrupted) tell_interrupted(nullptr);
   return interrupted ? exit_interrupted : 0;
@@ -200,6 +202,7 @@ Execute declare_derive(CLI::App& app) {
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   add_list(app, "--show", options->show, fmt::format("what to show; a list of {}", fmt::join(show_keys(), ", ")));
   app.add_option("--format", options->format, "text, latex or mathml")->capture_default_str();
+  add_place(app, "--document", options->document, "the whole derivation as a LaTeX document, F.tex");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

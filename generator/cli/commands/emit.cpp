@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "cli/article.hpp"
 #include "cli/charts.hpp"
 #include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
@@ -13,8 +14,6 @@
 #include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
 #include "model/names.hpp"
-#include "print/render.hpp"
-#include "reading/reading.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -85,16 +84,12 @@ void require_target(const std::string& target) {
 }
 
 int emit_document(const Options& options, const Common& common) {
-  const auto derived = derive_model(options.model, ApproachChoice::automatic);
   if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty()) {
     tell("warning: a document has no functions: --with, --output and --fix change nothing\n");
   }
-  const reading::ReadingForm one = reading::derive_reading(derived->mechanics, system::Approach::one);
-  const reading::ReadingForm two = reading::derive_reading(derived->mechanics, system::Approach::two);
-  const std::string name = emit::mangled_id(derived->model.id) + ".tex";
+  const ArticleText written = article(options.model, common.seed);
   const work::Kept kept;  // all files or none
-  const std::vector<std::string> files =
-      write_results(options.folder, {{name, print::latex_document(derived->mechanics, one, two)}}, derived->model.file);
+  const std::vector<std::string> files = write_results(options.folder, {{emit::mangled_id(written.id) + ".tex", written.text}}, written.file);
   if (common.json) {
     print_document(json{{"format", 1}, {"files", files}});
   } else {

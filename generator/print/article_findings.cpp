@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What was found beyond the equations: conserved quantities, Routh's reduction, steady motions, singular sets, the certificate.
+#include <array>
+#include <charconv>
+
+#include "print/article_parts.hpp"
+
+namespace eomgen::print {
+
+using reading::Formula;
+using reading::mark;
+
+namespace {
+
+/// 1.5e-07 -> 1.5\cdot 10^{-7}
+std::string number_in_latex(double value) {
+  std::array<char, 32> digits{};
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value, std::chars_format::general, 6).ptr;
+  std::string text(digits.data(), end);
+  const std::size_t e = text.find('e');
+  if (e == std::string::npos) return text;
+  return text.substr(0, e) + "\\cdot 10^{" + std::to_string(std::stoi(text.substr(e + 1))) + "}";
+}
+
+Formula letter_of(const Article& a, const ConservedFinding& c) {
+  if (c.cyclic) return reading::symbol(reading::momentum_symbol(*c.cyclic));
+  const auto ends = [&](const char* axis) { return c.name.ends_with(axis); };
+  const long axis = ends("E1") ? 1 : ends("E2") ? 2 : 3;
+  if (c.name.starts_with("linear_momentum.")) return mark(free_letter(a.model, "G", "cal G"), {reading::number(axis)});
+  if (c.name.starts_with("angular_momentum.")) return mark(free_letter(a.model, "H", "cal H"), {reading::number(axis)});
+  if (c.name == "energy") return mark("cal E");  // E is the letter of the fixed axes
+  return mark(free_letter(a.model, "h", "cal H"));
+}
+
+std::string reason_of(const Article& a, const ConservedFinding& c) {
+  const auto rates = [&](const char* what) {
+    return std::string("its rate is the power of moving constraints, of friction and of forces that are in no potential, less the slope of ") + what + " by the time, and all of this vanishes";
+  };
+  if (c.cyclic) {
+    const std::string q = a.name_of(*c.cyclic);
+    return q + " is cyclic: the Lagrangian of Approach II has " + a.name_of(*c.cyclic, 1) + " but not " + q + ", and along " + q +
+           " neither a force beyond the potential nor a constraint that keeps its multiplier acts";
+  }
+  if (c.name == "energy") return rates("the Lagrangian");
+  if (c.name == "jacobi") {
+    return "the Lagrangian of Approach II is free of the time, and no constraint that keeps its multiplier moves; the energy itself is not conserved, since constraints do work";
+  }
+  if (c.name == "energy.applied") return "all forces have potentials, which are added here to $U$, and the Lagrangian is free of the time";
+  if (c.name.starts_with("linear_momentum.")) return "a displacement of the whole along this axis changes neither energies nor constraints, and no force acts along it";
+  if (c.name.starts_with("angular_momentum.")) return "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts about it";
+  return "the constraint on velocities is the rate of it";
+}
+
+/// Nothing where it is too long to be written out.
+std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
+  try {
+    const reading::Sum sum = c.named ? *c.named : reading::read(a.m, c.expression);
+    Formula value = reading::arrange(sum);
+    const std::string why = a.out.too_long(value);
+    if (why.empty()) return value;
+    a.left_out.push_back({c.title, why});
+    return std::nullopt;
+  } catch (const work::OverBudget& over) {
+    a.left_out.push_back({c.title, over.what()});
+    return std::nullopt;
+  }
+}
+
+std::string eigenvalues_of(const SteadyFinding& s) {
+  std::vector<std::string> parts;
+  for (const std::complex<double>& e : s.eigenvalues) {
+    if (e.imag() == 0) parts.push_back("$" + number_in_latex(e.real()) + "$");
+    else parts.push_back("$" + (e.real() == 0 ? "" : number_in_latex(e.real())) + " \\pm " + number_in_latex(e.imag()) + "\\,\\mathrm{i}$");
+  }
+  if (s.zeros > 0) parts.push_back(s.zeros == 1 ? "one zero" : std::to_string(s.zeros) + " zeros");
+  return enumeration(parts);
+}
+
+void write_steady_motion(Article& a, const SteadyFinding& s) {
+  std::vector<std::string> values;
+  for (const auto& [symbol, value] : s.values) values.push_back(a.out.math(reading::symbol(symbol)) + "~$= " + number_in_latex(value) + "$");
+  std::string text = "\\textbf{" + words(s.kind) + "}: ";
+  for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? ", " : "") + values[i];
+  text += ". ";
+  if (s.family > 0) text += "One of a family of " + std::to_string(s.family) + (s.family == 1 ? " dimension. " : " dimensions. ");
+  text += "\\emph{" + words(s.stability) + "}: " + words(s.reason) + ". Eigenvalues of the linearised equations: " + eigenvalues_of(s) + ".";
+  a.out.paragraph(text);
+}
+
+}  // namespace
+
+void write_conserved(Article& a) {
+  a.out.section("Conserved quantities");
+  const std::vector<ConservedFinding>& all = a.findings->conserved;
+  if (all.empty()) a.out.paragraph("None was found: no coordinate is cyclic, neither the energy nor Jacobi's integral is conserved, nor a momentum along or about a fixed axis.");
+  for (const ConservedFinding& c : all) {
+    std::string title = c.cyclic ? "generalised momentum of " + a.name_of(*c.cyclic) : words(c.title);
+    a.out.paragraph("The " + title + " is conserved: " + reason_of(a, c) + (c.proven ? "." : " (shown by numbers, in 40 digits)."));
+    const std::optional<Formula> value = value_of(a, c);
+    if (!value) continue;
+    const bool integral = c.name.starts_with("integral.");
+    a.out.display({integral ? *value : reading::relation({letter_of(a, c), *value})});
+  }
+}
+
+void write_routh(Article& a) {
+  if (!a.findings->routh) return;
+  const reading::RouthForm& form = *a.findings->routh;
+  std::vector<std::string> names;
+  for (const std::uint32_t c : form.cyclic) names.push_back(a.name_of(c));
+  a.out.section("Routh's reduction");
+  if (form.by_parts) {
+    a.out.paragraph("The reduction by " + enumeration(names) + " is too long to be written out, or the momenta do not give the rates.");
+    return;
+  }
+  std::vector<Formula> rates;
+  for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
+    rates.push_back(reading::relation({reading::symbol({symbolic::SymbolKind::coordinate, form.cyclic[i], 1}), reading::arrange(form.rates[i])}));
+  }
+  a.out.paragraph("The momenta of the cyclic coordinates are constants of the motion, and give the rates");
+  a.out.display(rates);
+  a.out.paragraph("With these the Routhian, the Lagrangian of Approach II less " + std::string(form.cyclic.size() == 1 ? "the product of momentum and rate" : "the products of momenta and rates") + ", is");
+  a.out.display({reading::relation({mark("cal R"), reading::arrange(form.routhian)})});
+  if (form.equations.empty()) return;
+  a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
+  for (const reading::Equation& equation : form.equations) a.out.numbered(a.out.next_number(), explicit_form(equation));
+  if (!form.energy) return;
+  a.out.paragraph("The reduced motion keeps");
+  a.out.display({reading::relation({mark(free_letter(a.model, "h", "cal H")), reading::arrange(*form.energy)})});
+}
+
+void write_steady(Article& a) {
+  a.out.section("Equilibria and steady motions");
+  const Findings& found = *a.findings;
+  if (!found.no_steady.empty()) {
+    a.out.paragraph("None is given here: " + words(found.no_steady) + ".");
+    return;
+  }
+  std::string text = "At the parameters of the default scene";
+  for (std::size_t i = 0; i < found.held.size(); ++i) {
+    text += (i == 0 ? ", with " : ", ") + words(found.held[i].first) + " held at $" + number_in_latex(found.held[i].second) + "$";
+  }
+  a.out.paragraph(text + ", " + (found.steady.empty() ? "a search has found no equilibrium and no steady motion." : "a search has found these, in SI units; it does not prove that there are no others.") +
+                  (found.steady.empty() ? "" : " In a steady motion only coordinates that nothing feels advance."));
+  for (const SteadyFinding& s : found.steady) write_steady_motion(a, s);
+}
+
+void write_singular(Article& a) {
+  std::vector<Statement> all;
+  add_singular(a.m, all);
+  if (all.empty()) return;
+  a.out.section("Where the equations fail");
+  for (const char* role : {"both", "I", "II"}) {
+    std::vector<Formula> shown;
+    for (const Statement& s : all) {
+      if (s.left_out.empty() && s.role == role) shown.push_back(s.formula);
+    }
+    if (shown.empty()) continue;
+    a.out.paragraph(std::string(role) == "both" ? "By both approaches they have no solution, or a force has no value, where" : "By Approach " + std::string(role) + " this is so where");
+    a.out.display(shown);
+  }
+  for (const Statement& s : all) {
+    if (!s.left_out.empty()) a.left_out.push_back({"singular sets: " + s.name, s.left_out});
+  }
+}
+
+void write_certificate(Article& a) {
+  if (a.findings != nullptr) {
+    a.out.section("Certificate");
+    a.out.paragraph("The equations above and the routes " + words(a.findings->judged) + " were compared with d'Alembert's principle, evaluated from the model alone: " + words(a.findings->certificate) + ".");
+  }
+  if (a.left_out.empty()) return;
+  a.out.section("Left out");
+  for (const work::LeftOut& l : a.left_out) a.out.paragraph(words(l.what) + ": " + words(l.why) + ".");
+}
+
+}  // namespace eomgen::print

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The sections of a document, in its order. Each writes to `out`; what takes more than its budget is named in `left_out`.
+#pragma once
+
+#include "print/article.hpp"
+#include "print/formulas.hpp"
+#include "print/latex_text.hpp"
+#include "print/letters.hpp"
+
+namespace eomgen::print {
+
+struct Article {
+  const mechanics::Mechanics& m;
+  const model::Model& model;
+  const reading::ReadingForm &one, &two;
+  const Findings* findings;
+  LatexText& out;
+  std::vector<work::LeftOut> left_out = {};
+
+  /// Whether approach II has other equations than approach I.
+  bool builds_in() const;
+  std::string name_of(std::uint32_t coordinate, std::uint8_t order = 0) const;  // $\theta$
+  /// The formulas of statements; those that are left out are named.
+  std::vector<reading::Formula> formulas(const std::vector<Statement>& statements);
+};
+
+void write_system(Article& article);
+void write_coordinates(Article& article);
+void write_energies(Article& article);
+void write_equations(Article& article);
+void write_constraint_forces(Article& article);
+void write_contacts(Article& article);
+void write_conserved(Article& article);
+void write_routh(Article& article);
+void write_steady(Article& article);
+void write_singular(Article& article);
+void write_certificate(Article& article);
+
+}  // namespace eomgen::print

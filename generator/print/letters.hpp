@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Letters of mechanics that a model has not taken for something of its own: a rod of length L leaves the Lagrangian a script L.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "model/model.hpp"
+#include "print/notation.hpp"
+
+namespace eomgen::print {
+
+inline std::string free_letter(const model::Model& model, const char* letter, const char* otherwise) {
+  const auto taken = [&](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return split_name(entry.name).base == letter; });
+  };
+  return taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs) ? otherwise : letter;
+}
+
+/// As reading::mark takes them; with a tilde where constraints are built in.
+struct Letters {
+  std::string T, U, L, psi;
+
+  Letters(const model::Model& model, bool constrained)
+      : T(free_letter(model, "T", "cal T")), U(free_letter(model, "U", "cal U")), L(free_letter(model, "L", "cal L")), psi(free_letter(model, "psi", "Psi")) {
+    if (!constrained) return;
+    for (std::string* letter : {&T, &U, &L}) *letter += "~";
+  }
+};
+
+}  // namespace eomgen::print

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "reading/partials.hpp"
+
+#include "reading/lagrangian.hpp"
+#include "reading/trig.hpp"
+
+namespace eomgen::reading {
+
+std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const ReadingForm& form) {
+  std::vector<Partials> result;
+  if (form.by_parts) return result;
+  Bridge bridge(m);
+  for (const Equation& equation : form.equations) {
+    Partials p;
+    p.coordinate = equation.coordinate;
+    try {
+      const work::Budget budget(item_budget);
+      const Symbol q = coordinate_symbol(equation.coordinate, 0);
+      p.momentum = bridge.derivative(form.kinetic, coordinate_symbol(equation.coordinate, 1));
+      p.rate = simplify(bridge.total_derivative(p.momentum));
+      p.kinetic = bridge.derivative(form.kinetic, q);
+      p.potential = bridge.derivative(form.potential, q);
+      p.force = form.approach == system::Approach::one ? generalized_force(m, bridge, equation.coordinate) : equation.force;
+    } catch (const work::OverBudget& over) {
+      p = {};
+      p.coordinate = equation.coordinate;
+      p.left_out = over.what();
+    }
+    result.push_back(std::move(p));
+  }
+  return result;
+}
+
+}  // namespace eomgen::reading
