@@ -12,10 +12,13 @@
 
 namespace eomgen::cli {
 
-/// Options that every command has.
+class Team;
+
+/// Options that every command has; and the processes that share its work, if there are any.
 struct Common {
   bool json = false;
   std::uint64_t seed = 1;
+  Team* team = nullptr;
 };
 
 /// What main asks of a command: `declare` adds its options to the parser, `execute` does the work and returns the exit

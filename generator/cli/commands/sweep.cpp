@@ -26,6 +26,7 @@ int execute(const SweepOptions& options, const Common& common) {
   const model::Model model = model::read_model(locate_model(options.model));
   Sweep sweep(options, common, model);
   const bool whole = sweep.run();
+  if (common.team != nullptr && !common.team->leads()) return 0;  // the first one tells
   nlohmann::ordered_json found = document(options, model, sweep);
   if (common.json) {
     if (options.statistics) found["statistics"] = to_json(sweep.statistics());

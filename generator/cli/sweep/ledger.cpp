@@ -174,8 +174,13 @@ void Ledger::remove_others() {
   taken_over_.clear();
 }
 
+void Ledger::require_file() const {
+  if (kept_) return;
+  throw Error("sweep", {}, fmt::format("several processes write one file, and {} is none", model::quote(file_)), "name a file with --out");
+}
+
 void Ledger::finish() {
-  if (kept_ && !out_ && taken_over_.empty()) return;  // all was there
+  if (kept_ && !open()) return;  // all was there
   rows_.sort();
   whole();
   finish_elsewhere();

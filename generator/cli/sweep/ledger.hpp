@@ -34,6 +34,10 @@ class Ledger {
   void set_header(const std::string& header);
   void add(std::size_t run, const std::string& line);
   void finish();
+  /// Throws Error where FILE is no regular file.
+  void require_file() const;
+  /// Rows are in other places than FILE.
+  bool open() const { return out_ || !taken_over_.empty(); }
   /// The rows are in FILE, which somebody else wrote: removes the others.
   void finish_elsewhere();
   /// The rows so far, where no file keeps them for the next time.

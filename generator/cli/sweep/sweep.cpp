@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/sweep/sweep.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,7 +21,7 @@ namespace eomgen::cli {
 namespace {
 
 constexpr const char* refused = "refused";  // in place of an outcome, where a run could not begin
-constexpr std::size_t most_runs = 10'000'000;  // of one call; each takes some 40 bytes of memory
+constexpr std::size_t most_runs = 10'000'000;  // of one process; each takes some 40 bytes of memory
 
 run::Overrides overrides_of(const SweepOptions& options) {
   run::Overrides o;
@@ -70,13 +71,14 @@ std::string field(std::string text) {
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value)) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
 
-Shard shard_of(const SweepOptions& options, const Points& points) {
+Shard shard_of(const SweepOptions& options, const Points& points, std::size_t processes) {
   const Shard shard = options.shard ? parse_shard(*options.shard) : Shard{};
   if (shard.size(points.size()) == 0) {
     throw Error("sweep", {}, fmt::format("shard {}/{} has no runs: there are {} in all", shard.number, shard.count, points.size()), "take fewer shards");
   }
-  if (shard.size(points.size()) > most_runs) {
-    throw Error("sweep", {}, fmt::format("a call makes no more than {} points, and these are {}", most_runs, shard.size(points.size())),
+  const std::size_t most = most_runs * processes;
+  if (shard.size(points.size()) > most) {
+    throw Error("sweep", {}, fmt::format("a call makes no more than {} points, and these are {}", most, shard.size(points.size())),
                 "take fewer, or parts of them by --shard, each in a call of its own");
   }
   return shard;
@@ -106,18 +108,19 @@ std::size_t threads_of(const SweepOptions& options) { return options.jobs > 0 ? 
 }  // namespace
 
 Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Model& model)
-    : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed)), shard_(shard_of(options, points_)),
+    : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed)), shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
       ledger_((require_names(points_, options, model), require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_),
-              key_of_table(options, model, common.seed, shard_, points_), [this](std::size_t run) { return run < points_.size() && shard_.has(run); }),
-      resumed_(ledger_.rows().size()) {
+              key_of_table(options, model, common.seed, shard_, points_), [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
+              common.team == nullptr || common.team->leads() ? Ledger::Part::whole : Ledger::Part::member),
+      resumed_(ledger_.rows().size()), team_(common.team) {
   if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
 }
 
-bool Sweep::run() {
-  std::vector<std::size_t> open = open_runs();
-  if (!open.empty() && prepare(open)) compute(open);
+bool Sweep::run_alone() {
+  make_open_runs();
   ledger_.sort();
+  count();
   if (ledger_.rows().size() < runs()) {
     ledger_.interrupt();
     return false;
@@ -126,28 +129,55 @@ bool Sweep::run() {
   return true;
 }
 
-std::vector<std::size_t> Sweep::open_runs() const {
-  std::vector<std::size_t> open;
-  std::size_t next = 0;  // of the rows that are there
-  for (std::size_t i = 0; i < runs(); ++i) {
-    const std::size_t run = shard_.run(i);
-    if (next < ledger_.rows().size() && ledger_.rows().run(next) == run) ++next;
-    else open.push_back(run);
+void Sweep::make_open_runs() {
+  std::vector<Stretch> open = open_runs();
+  if (open.empty()) return;
+  const std::optional<std::size_t> first = prepare(open);
+  if (!first) return;
+  take_first(*first, open);
+  if (first_->result.outcome != eom::Outcome::interrupted) compute(runs_of(open), threads_of(options_));
+}
+
+std::vector<Stretch> Sweep::open_runs() const {
+  std::vector<Stretch> open;
+  std::size_t next = 0;  // of the runs
+  for (std::size_t i = 0; i <= ledger_.rows().size(); ++i) {
+    const std::size_t there = i < ledger_.rows().size() ? ledger_.rows().run(i) / shard_.count : runs();
+    if (there > next) open.push_back({next, there - next});
+    next = there + 1;
   }
   return open;
 }
 
-Sweep::Counts Sweep::counts() const {
-  Counts counts;
+std::vector<std::size_t> Sweep::runs_of(const std::vector<Stretch>& stretches) const {
+  std::vector<std::size_t> result;
+  for (const Stretch& stretch : stretches) {
+    for (std::size_t i = 0; i < stretch.count; ++i) result.push_back(shard_.run(stretch.first + i));
+  }
+  return result;
+}
+
+void Sweep::count() {
+  counts_ = {};
   const std::size_t fields = points_.names().size() + 1;
   ledger_.rows().each(0, ledger_.rows().size(), [&](std::size_t, std::string_view line) {
     for (std::size_t k = 0; k < fields; ++k) line.remove_prefix(line.find(',') + 1);
-    ++(ended_well(line.substr(0, line.find(','))) ? counts.done : counts.failed);
+    ++(ended_well(line.substr(0, line.find(','))) ? counts_.done : counts_.failed);
   });
-  return counts;
 }
 
 std::vector<ColumnStatistics> Sweep::statistics() const {
+  if (team_ != nullptr) {  // others have rows too, and the table has all
+    if (counts_.done + counts_.failed < runs()) return {};
+    const OpenFile table(::open(ledger_.place().c_str(), O_RDONLY | O_CLOEXEC));
+    return statistics_of_table(ledger_.header(), counts_.done + counts_.failed, [&table](const auto& take) {
+      std::size_t number = 0;
+      each_line(table, [&](std::string_view line, std::uint64_t) {
+        if (++number > 2) take(line);
+        return true;
+      });
+    });
+  }
   const Rows& rows = ledger_.rows();
   return statistics_of_table(ledger_.header(), rows.size(), [&rows](const auto& take) {
     rows.each(0, rows.size(), [&take](std::size_t, std::string_view line) { take(line); });
@@ -183,7 +213,7 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
 }
 
 /// One of the open runs; where none of these can begin, another one, which tells the columns.
-std::size_t Sweep::first_that_begins(const std::vector<std::size_t>& open) {
+std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
   const std::unique_ptr<Derived> derived = derive_model(options_.model, ApproachChoice::automatic);
   const symbolic::Dag was = *derived->mechanics.dag;
   const bool charts = !exchangeable(charts_of(derived->mechanics)).empty();
@@ -201,31 +231,47 @@ std::size_t Sweep::first_that_begins(const std::vector<std::size_t>& open) {
     }
     return false;
   };
-  for (const std::size_t run : open) {
-    if (begins(run)) return run;
+  std::size_t tries = 0;
+  for (const Stretch& stretch : open) {
+    for (std::size_t i = 0; i < stretch.count && tries < most_runs; ++i, ++tries) {
+      if (begins(shard_.run(stretch.first + i))) return shard_.run(stretch.first + i);
+    }
   }
-  const std::size_t tried = std::min(points_.size(), most_runs);
-  for (std::size_t run = 0; run < tried; ++run) {
-    if (!std::binary_search(open.begin(), open.end(), run) && begins(run)) return run;
+  for (std::size_t run = 0; run < points_.size() && tries < most_runs; ++run, ++tries) {
+    if (!is_open(open, run) && begins(run)) return run;
   }
   throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", why), "change the grid or the scene: " + remedy);
 }
 
-bool Sweep::prepare(std::vector<std::size_t>& open) {
-  std::size_t run = open.front();
+std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
+  std::size_t run = shard_.run(open.front().first);
   try {
-    if (!simulate_first(run, true)) return false;
+    if (simulate_first(run, true)) return run;
+    return std::nullopt;
   } catch (const Error& error) {
     if (error.stage() != "scene") throw;
-    run = first_that_begins(open);
-    if (!simulate_first(run, std::binary_search(open.begin(), open.end(), run))) return false;
   }
-  const auto place = std::lower_bound(open.begin(), open.end(), run);
-  if (place == open.end() || *place != run) return true;
-  if (first_->result.outcome == eom::Outcome::interrupted) return false;
+  run = first_that_begins(open);
+  if (simulate_first(run, is_open(open, run))) return run;
+  return std::nullopt;
+}
+
+bool Sweep::is_open(const std::vector<Stretch>& open, std::size_t run) const {
+  if (!shard_.has(run)) return false;
+  const std::size_t place = run / shard_.count;
+  const auto after = std::upper_bound(open.begin(), open.end(), place, [](std::size_t p, const Stretch& stretch) { return p < stretch.first; });
+  return after != open.begin() && place - std::prev(after)->first < std::prev(after)->count;
+}
+
+void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
+  if (!is_open(open, run) || first_->result.outcome == eom::Outcome::interrupted) return;
   ledger_.add(run, row(run, first_->result));
-  open.erase(place);
-  return true;
+  const std::size_t place = run / shard_.count;
+  const auto holds = std::find_if(open.begin(), open.end(), [place](const Stretch& stretch) { return place - stretch.first < stretch.count; });
+  const Stretch behind{place + 1, holds->first + holds->count - place - 1};
+  holds->count = place - holds->first;
+  const auto next = holds->count == 0 ? open.erase(holds) : std::next(holds);
+  if (behind.count > 0) open.insert(next, behind);
 }
 
 std::string Sweep::made(std::size_t run) const {
@@ -238,10 +284,10 @@ std::string Sweep::made(std::size_t run) const {
   }
 }
 
-void Sweep::compute(const std::vector<std::size_t>& runs) {
+void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
   if (options_.ensemble) {
     if (!ensemble_) ensemble_.emplace(*first_);
-    ensemble_->run({runs, threads_of(options_), [this](std::size_t run) { return at(run); },
+    ensemble_->run({runs, threads, [this](std::size_t run) { return at(run); },
                     [this](std::size_t run, const run::RunResult& result) { ledger_.add(run, row(run, result)); },
                     [this](std::size_t run, const std::string& why) { ledger_.add(run, refusal(run, why)); }, &Interrupt::flag()});
     return;
@@ -251,7 +297,18 @@ void Sweep::compute(const std::vector<std::size_t>& runs) {
     graph.tidy();
     return made(run);
   };
-  by_processes(runs, threads_of(options_), line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); }, Interrupt::flag());
+  by_processes(runs, threads, line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); }, Interrupt::flag());
+}
+
+/// In this process alone, which MPI does not want to be forked.
+void Sweep::compute_here(const std::vector<std::size_t>& runs) {
+  TidyGraph graph(*first_);
+  for (const std::size_t run : runs) {
+    graph.tidy();
+    const std::string line = made(run);
+    if (line.empty()) return;
+    ledger_.add(run, line);
+  }
 }
 
 void Sweep::columns(const run::Scene& scene) {

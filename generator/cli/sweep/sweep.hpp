@@ -14,6 +14,7 @@
 #include "cli/sweep/options.hpp"
 #include "cli/sweep/points.hpp"
 #include "cli/sweep/statistics.hpp"
+#include "cli/sweep/team.hpp"
 
 namespace eomgen::cli {
 
@@ -22,9 +23,10 @@ class Sweep {
   /// Throws Error for what makes no sense.
   Sweep(const SweepOptions& options, const Common& common, const model::Model& model);
 
-  /// Makes the runs that are open. Whether all are there now.
-  bool run();
+  /// Makes the runs that are open, with the others of a team. Whether all are there now.
+  bool run() { return team_ != nullptr ? run_by_team() : run_alone(); }
 
+  /// All of them, of this shard.
   std::size_t runs() const { return shard_.size(points_.size()); }
   std::size_t resumed() const { return resumed_; }
   /// Where the rows are.
@@ -32,16 +34,29 @@ class Sweep {
   struct Counts {
     std::size_t done = 0, failed = 0;
   };
-  Counts counts() const;
+  /// After run(); of a team those of the first are of all.
+  const Counts& counts() const { return counts_; }
+  /// Of the rows that are there; of a team of all or none.
   std::vector<ColumnStatistics> statistics() const;
 
  private:
-  std::vector<std::size_t> open_runs() const;
-  /// Code, columns, and the row of one of the open runs, which is not open any more. False where an interruption came first.
-  bool prepare(std::vector<std::size_t>& open);
+  bool run_alone();
+  bool run_by_team();
+  void make_open_runs();
+  void write_by_team();
+  std::vector<Stretch> open_runs() const;
+  /// Code and columns by the first of the open runs that can begin, else by any that can. Gives it, or none where an interruption came first.
+  std::optional<std::size_t> prepare(const std::vector<Stretch>& open);
   bool simulate_first(std::size_t run, bool integrate);
-  std::size_t first_that_begins(const std::vector<std::size_t>& open);
-  void compute(const std::vector<std::size_t>& runs);
+  std::size_t first_that_begins(const std::vector<Stretch>& open);
+  /// The row of the run that prepare() gave, which is not open any more.
+  void take_first(std::size_t run, std::vector<Stretch>& open);
+  bool is_open(const std::vector<Stretch>& open, std::size_t run) const;
+  std::vector<std::size_t> runs_of(const std::vector<Stretch>& stretches) const;
+  void compute(const std::vector<std::size_t>& runs, std::size_t threads);
+  void make_here(const std::vector<Stretch>& stretches, std::size_t threads);
+  void compute_here(const std::vector<std::size_t>& runs);
+  void count();
 
   run::Overrides at(std::size_t run) const;
   void columns(const run::Scene& scene);
@@ -57,6 +72,8 @@ class Sweep {
   std::string file_;
   Ledger ledger_;
   std::size_t resumed_;
+  Counts counts_;
+  Team* team_;
   std::vector<std::string> names_;
   std::string solver_;  // of an ensemble
   std::optional<Interrupt> interrupt_;

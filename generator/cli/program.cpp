@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/program.hpp"
+
+#include <cln/float.h>
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <exception>
+#include <map>
+#include <memory>
+#include <new>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cli/interrupt.hpp"
+#include "cli/locate.hpp"
+#include "cli/output.hpp"
+#include "cli/usage.hpp"
+#include "cli/watch.hpp"
+#include "work.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr int exit_internal = 4;
+
+int report(const Error& error) {
+  tell(error.what());
+  // Messages name a page as the source tree has it.
+  if (std::string_view(error.what()).find("docs/model-format.md") != std::string_view::npos) {
+    tell(fmt::format("  docs/model-format.md is {}\n", documentation("model-format.md")));
+  }
+  return error.exit_code();
+}
+
+int output_lost() {
+  tell("error: standard output could not be written\n  remedy: see to space on that disk, or to the program that reads it\n");
+  return exit_internal;
+}
+
+/// A standard stream that is closed would give its number to the first file that is opened, and messages would go into
+/// results. What is written to standard output then fails, and is told; what is told is lost, and nothing else is.
+void take_closed_streams() {
+  for (const auto& [stream, way] : {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
+    if (fcntl(stream, F_GETFD) >= 0) continue;
+    const int taken = open("/dev/null", way);
+    if (taken >= 0 && taken != stream) {
+      dup2(taken, stream);
+      close(taken);
+    }
+  }
+  std::signal(SIGPIPE, SIG_IGN);  // a reader that is gone is a failure of that place, told like a full disk
+}
+
+}  // namespace
+
+int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands, Team* team) try {
+  take_closed_streams();
+  CLI::App app{"eomgen: equations of motion of mechanical systems, from a text model", name};
+  app.set_version_flag("--version", EOMGEN_VERSION);
+  app.require_subcommand(1);
+  app.formatter(std::make_shared<HelpPage>());
+  Common common;
+  common.team = team;
+  std::map<const CLI::App*, std::function<int(const Common&)>> actions;
+  std::vector<std::string> names;
+  for (const Command& command : commands) {
+    CLI::App* sub = app.add_subcommand(command.name, command.summary);
+    sub->add_flag("--json", common.json, "one JSON document instead of readable output");
+    sub->add_option("--seed", common.seed, "fixes every random choice")
+        ->check(whole_number(0, 999'999'999'999'999))
+        ->capture_default_str();
+    actions[sub] = command.declare(*sub);
+    names.emplace_back(command.name);
+  }
+  std::vector<std::string> words = with_help(typed);
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  require_command(pointers, names);
+  try {
+    app.parse(static_cast<int>(pointers.size()), pointers.data());
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
+    return report(usage_error(error, app));
+  }
+  heed_signals();
+  const Watch watch;
+  const work::Stage stage("reading the model");
+  const int code = actions.at(app.get_subcommands().front())(common);
+  // A full disk or a closed pipe loses results; that is a failure, not a silence.
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return output_lost();
+  return code;
+} catch (const Error& error) {
+  return report(error);
+} catch (const work::Interrupted&) {
+  tell_interrupted(nullptr);
+  return exit_interrupted;
+} catch (const cln::floating_point_exception&) {
+  return report(Error("numbers", Where{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
+                              "use units in which its masses, lengths and times are nearer to 1"));
+} catch (const std::bad_alloc&) {
+  tell("error: out of memory\n  remedy: make the model smaller\n");
+  return exit_internal;
+} catch (const std::exception& error) {
+  if (std::ferror(stdout) != 0) return output_lost();  // what prints throws
+  tell(fmt::format("error: internal: {}\n  remedy: please report this, with the model\n", error.what()));
+  return exit_internal;
+}
+
+}  // namespace eomgen::cli
