@@ -15,6 +15,7 @@
 
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/sweep/npz.hpp"
 #include "cli/sweep/points.hpp"
 #include "cli/sweep/rows.hpp"
 #include "cli/sweep/statistics.hpp"
@@ -75,6 +76,7 @@ class Tables {
   }
 
   void write(const std::string& out) {
+    if (is_npz(out)) return write_npz(out, note_.key, header_, rows_);
     eom::WholeFile file = is_standard_output(out) ? eom::WholeFile::standard_output() : eom::WholeFile(out);
     try {
       constexpr std::size_t enough = 1 << 20;
@@ -144,7 +146,7 @@ class Tables {
 };
 
 int execute(const Options& options, const Common& common) {
-  require_places({{"--out", options.out, ".csv"}}, "", common.json);
+  require_places({{"--out", options.out, is_npz(options.out) ? ".npz" : ".csv"}}, "", common.json);
   Tables tables;
   try {
     for (const std::string& path : options.tables) tables.add(path);
@@ -170,7 +172,7 @@ int execute(const Options& options, const Common& common) {
 Execute declare_merge(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("TABLES", options->tables, "what sweep --shard wrote, every shard of one sweep")->required();
-  add_place(app, "-o,--out", options->out, "the whole table, a CSV file")->required();
+  add_place(app, "-o,--out", options->out, "the whole table: F.csv, or F.npz for arrays of columns")->required();
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -52,6 +52,7 @@ Execute declare_sweep(CLI::App& app) {
   add_list(app, "--sample", options->sample, "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
   app.add_option("--samples", options->samples, "how many, at every point of the grid")->check(whole_number(1, most_points));
   app.add_option("--design", options->design, "of samples: random, latin (hypercube) or sobol; without it random. All follow from --seed");
+  app.add_option("--points", options->points, "a CSV file: a line that names parameters, then lines of their values; each is a point, or goes with every point of the grid");
   app.add_option("--shard", options->shard, "NUMBER/COUNT: only these runs; eomgen merge joins the tables");
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
@@ -61,7 +62,7 @@ Execute declare_sweep(CLI::App& app) {
   app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the runs")->check(finite_number());
-  add_place(app, "-o,--out", options->out, "the table, a CSV file; without it MODEL_sweep.csv in this folder");
+  add_place(app, "-o,--out", options->out, "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")->check(whole_number(1, 1024));
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");

@@ -13,6 +13,7 @@
 #include <system_error>
 
 #include "cli/output.hpp"
+#include "cli/sweep/npz.hpp"
 #include "emit/write_files.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
@@ -157,6 +158,7 @@ void Ledger::add(std::size_t run, const std::string& line) try {
 }
 
 void Ledger::whole() const try {
+  if (is_npz(file_)) return write_npz(file_, mark + key_, header_, rows_);
   eom::WholeFile file = is_standard_output(file_) ? eom::WholeFile::standard_output() : eom::WholeFile(file_);
   try {
     write([&file](std::string_view piece) { file.write(piece); });

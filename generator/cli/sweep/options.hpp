@@ -10,7 +10,7 @@ namespace eomgen::cli {
 
 /// What was asked of a sweep, as it was typed.
 struct SweepOptions {
-  std::string model, scene = "default", out;
+  std::string model, scene = "default", out, points;
   std::vector<std::string> grid, sample, set, outputs;
   std::optional<double> rtol, atol, step, t_end;
   std::optional<std::string> solver, design, shard;

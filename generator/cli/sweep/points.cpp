@@ -31,33 +31,36 @@ std::optional<Shard> shard_of(const std::string& text) {
 
 }  // namespace
 
-Points::Points(const std::vector<std::string>& grid, std::optional<Sampling> samples) : samples_(std::move(samples)) {
-  if (!grid.empty() || !samples_) grid_.emplace(grid);
+Points::Points(const std::vector<std::string>& grid, std::optional<Sampling> samples, std::optional<PointsFile> file)
+    : samples_(std::move(samples)), file_(std::move(file)) {
+  if (samples_ && file_) throw Error("sweep", {}, "--sample and --points both say what changes fastest", "leave one of them out");
+  if (!grid.empty() || (!samples_ && !file_)) grid_.emplace(grid);
   if (grid_) {
     size_ = grid_->size();
     for (const Axis& axis : grid_->axes()) names_.push_back(axis.parameter);
   }
-  if (!samples_) return;
-  for (const std::string& name : samples_->names()) {
+  if (!samples_ && !file_) return;
+  for (const std::string& name : samples_ ? samples_->names() : file_->names()) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
-      throw Error("sweep", {}, fmt::format("{} has a grid and is sampled", model::quote(name)), "leave one of them out");
+      throw Error("sweep", {}, fmt::format("{} has a grid and is {}", model::quote(name), samples_ ? "sampled" : "a column of --points"), "leave one of them out");
     }
     names_.push_back(name);
   }
-  if (samples_->size() > most_points / size_) {
+  const std::size_t each = samples_ ? samples_->size() : file_->size();
+  if (each > most_points / size_) {
     throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", most_points), "take fewer");
   }
-  size_ *= samples_->size();
+  size_ *= each;
 }
 
 std::map<std::string, symbolic::Rational> Points::point(std::size_t index) const {
   std::map<std::string, symbolic::Rational> result;
-  const std::size_t each = samples_ ? samples_->size() : 1;
+  const std::size_t each = samples_ ? samples_->size() : file_ ? file_->size() : 1;
   if (grid_) result = grid_->point(index / each);
-  if (!samples_) return result;
-  const std::vector<std::string> names = samples_->names();
-  const std::vector<symbolic::Rational> values = samples_->point(index % each);
-  for (std::size_t i = 0; i < names.size(); ++i) result[names[i]] = values[i];
+  if (!samples_ && !file_) return result;
+  const std::vector<symbolic::Rational> values = samples_ ? samples_->point(index % each) : file_->point(index % each);
+  const std::size_t first = names_.size() - values.size();
+  for (std::size_t i = 0; i < values.size(); ++i) result[names_[first + i]] = values[i];
   return result;
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runs of a sweep: every point of its grid with every sample; and which of them a shard has.
+// The runs of a sweep: every point of its grid with every sample, or with every line of a file; and which of them a shard has.
 #pragma once
 
 #include <map>
@@ -8,23 +8,25 @@
 #include <vector>
 
 #include "cli/sweep/grid.hpp"
+#include "cli/sweep/points_file.hpp"
 #include "cli/sweep/sampling.hpp"
 
 namespace eomgen::cli {
 
 class Points {
  public:
-  /// Throws Error where nothing is varied, a parameter is in both, or the points are more than most_points.
-  Points(const std::vector<std::string>& grid, std::optional<Sampling> samples);
+  /// Throws Error where nothing is varied, a parameter is varied twice, there are samples and a file, or the points are more than most_points.
+  Points(const std::vector<std::string>& grid, std::optional<Sampling> samples, std::optional<PointsFile> file);
 
   const std::vector<std::string>& names() const { return names_; }
   std::size_t size() const { return size_; }
-  /// Samples change fastest.
+  /// Samples, or the lines of the file, change fastest.
   std::map<std::string, symbolic::Rational> point(std::size_t index) const;
 
  private:
   std::optional<Grid> grid_;
   std::optional<Sampling> samples_;
+  std::optional<PointsFile> file_;
   std::vector<std::string> names_;
   std::size_t size_ = 1;
 };

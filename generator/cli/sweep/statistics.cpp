@@ -54,6 +54,12 @@ ColumnStatistics statistics_of(const std::string& name, std::vector<double>& val
   result.deviation = values.size() > 1 ? std::sqrt(squares.value() / (count - 1)) : 0;
   result.least = values.front();
   result.greatest = values.back();
+  result.histogram.resize(result.least < result.greatest ? histogram_parts : 1);
+  for (const double value : values) {
+    const double place = value / 2 - result.least / 2, width = result.greatest / 2 - result.least / 2;  // halves: no range is infinite
+    const std::size_t part = width > 0 ? static_cast<std::size_t>(place / width * histogram_parts) : 0;
+    ++result.histogram[std::min(part, result.histogram.size() - 1)];
+  }
   for (const double part : quantile_parts) {
     const double place = part * (count - 1);
     const auto below = static_cast<std::size_t>(place);
@@ -95,7 +101,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
 nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const ColumnStatistics& c : columns) {
-    list.push_back({{"column", c.name}, {"count", c.count}, {"mean", c.mean}, {"deviation", c.deviation}, {"min", c.least}, {"max", c.greatest}});
+    list.push_back({{"column", c.name}, {"count", c.count}, {"mean", c.mean}, {"deviation", c.deviation}, {"min", c.least}, {"max", c.greatest}, {"histogram", c.histogram}});
     nlohmann::ordered_json& quantiles = list.back()["quantiles"] = nlohmann::ordered_json::array();
     for (std::size_t i = 0; i < c.quantiles.size(); ++i) quantiles.push_back({{"part", quantile_parts[i]}, {"value", c.quantiles[i]}});
   }

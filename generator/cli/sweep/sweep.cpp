@@ -12,10 +12,12 @@
 #include "cli/decimal.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/sweep/npz.hpp"
 #include "cli/sweep/tidy_graph.hpp"
 #include "cli/sweep/workers.hpp"
 #include "cli/usage.hpp"
 #include "model/content_hash.hpp"
+#include "model/names.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -44,8 +46,15 @@ std::optional<Sampling> samples_of(const SweepOptions& options, std::uint64_t se
   return Sampling(options.sample, options.samples, options.design.value_or("random"), seed);
 }
 
+std::optional<PointsFile> file_of(const SweepOptions& options, std::string& hash) {
+  if (options.points.empty()) return std::nullopt;
+  PointsFile file(options.points);
+  hash = file.content_hash();
+  return file;
+}
+
 /// What makes two sweeps the same: the model's bytes and all that was asked.
-std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed) {
+std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed, const std::string& points_hash) {
   std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
   for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
     text += '\n';
@@ -57,6 +66,7 @@ std::string key_of(const SweepOptions& options, const model::Model& model, std::
     text += fmt::format("\n{} {} {}", options.samples, options.design.value_or("random"), seed);
     for (const std::string& entry : options.sample) text += '\x1f' + entry;
   }
+  if (!points_hash.empty()) text += "\npoints " + points_hash;
   return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
 }
 
@@ -99,8 +109,8 @@ void require_names(const Points& points, const SweepOptions& options, const mode
   }
 }
 
-std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed, const Shard& shard, const Points& points) {
-  return key_of(options, model, seed) + (options.shard ? shard_note(shard, points.size()) : "");
+std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed, const std::string& points_hash, const Shard& shard, const Points& points) {
+  return key_of(options, model, seed, points_hash) + (options.shard ? shard_note(shard, points.size()) : "");
 }
 
 std::size_t threads_of(const SweepOptions& options) { return options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()); }
@@ -108,12 +118,16 @@ std::size_t threads_of(const SweepOptions& options) { return options.jobs > 0 ? 
 }  // namespace
 
 Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Model& model)
-    : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed)), shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
+    : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed), file_of(options, points_hash_)), shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
-      ledger_((require_names(points_, options, model), require_places({{"--out", file_, ".csv"}}, model.file, common.json), file_),
-              key_of_table(options, model, common.seed, shard_, points_), [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
+      ledger_((require_names(points_, options, model), require_places({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
+              key_of_table(options, model, common.seed, points_hash_, shard_, points_), [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
               common.team == nullptr || common.team->leads() ? Ledger::Part::whole : Ledger::Part::member),
       resumed_(ledger_.rows().size()), team_(common.team) {
+  if (is_npz(file_) && (options.shard || team_ != nullptr)) {
+    throw Error("sweep", {}, fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
+                "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
+  }
   if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
 }
 

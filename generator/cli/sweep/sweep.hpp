@@ -67,6 +67,7 @@ class Sweep {
 
   const SweepOptions& options_;
   std::uint64_t seed_;
+  std::string points_hash_;  // of the file that gives them
   Points points_;
   Shard shard_;
   std::string file_;

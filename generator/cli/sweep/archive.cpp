@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/archive.hpp"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <stdexcept>
+#include <system_error>
+
+namespace eomgen::cli {
+namespace {
+
+constexpr std::uint16_t version = 45;            // of what reads 64-bit fields
+constexpr std::uint16_t utf8_names = 0x800;
+constexpr std::uint16_t first_day = 0x21;        // 1 January 1980: the same runs, the same bytes
+constexpr std::uint32_t elsewhere = 0xffffffff;  // in the 64-bit fields
+
+/// Little-endian, whatever the machine.
+template <class T>
+void put(std::string& text, T value) {
+  for (std::size_t i = 0; i < sizeof(T); ++i) text += static_cast<char>(value >> (8 * i) & 0xff);
+}
+
+constexpr std::array<std::uint32_t, 256> remainders = [] {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t r = i;
+    for (int bit = 0; bit < 8; ++bit) r = (r & 1) != 0 ? 0xedb88320 ^ r >> 1 : r >> 1;
+    table[i] = r;
+  }
+  return table;
+}();
+
+}  // namespace
+
+std::uint32_t checksum(std::uint32_t before, std::string_view bytes) {
+  std::uint32_t r = ~before;
+  for (const char c : bytes) r = remainders[(r ^ static_cast<unsigned char>(c)) & 0xff] ^ r >> 8;
+  return ~r;
+}
+
+Archive::Archive(const std::string& path, std::vector<Member> members) : file_(path), members_(std::move(members)) {
+  if (file_.partial().empty()) throw std::invalid_argument("an archive is written at many places, and this is no file");
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    places_.push_back({end_, 0, 0, 0});
+    places_[i].begin = places_[i].next = end_ + local_header(i).size();
+    end_ = places_[i].begin + members_[i].bytes;
+  }
+}
+
+std::string Archive::local_header(std::size_t i) const {
+  std::string text;
+  put<std::uint32_t>(text, 0x04034b50);
+  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day}) put(text, value);
+  put(text, places_[i].checksum);
+  put(text, elsewhere);
+  put(text, elsewhere);
+  put(text, static_cast<std::uint16_t>(members_[i].name.size()));
+  put<std::uint16_t>(text, 20);
+  text += members_[i].name;
+  put<std::uint16_t>(text, 1);
+  put<std::uint16_t>(text, 16);
+  put(text, members_[i].bytes);
+  put(text, members_[i].bytes);
+  return text;
+}
+
+std::string Archive::central_header(std::size_t i) const {
+  std::string text;
+  put<std::uint32_t>(text, 0x02014b50);
+  put<std::uint16_t>(text, 3 << 8 | version);  // attributes are those of Unix
+  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day}) put(text, value);
+  put(text, places_[i].checksum);
+  put(text, elsewhere);
+  put(text, elsewhere);
+  put(text, static_cast<std::uint16_t>(members_[i].name.size()));
+  put<std::uint16_t>(text, 28);
+  for (int unused = 0; unused < 3; ++unused) put<std::uint16_t>(text, 0);
+  put<std::uint32_t>(text, 0100644U << 16);
+  put(text, elsewhere);
+  text += members_[i].name;
+  put<std::uint16_t>(text, 1);
+  put<std::uint16_t>(text, 24);
+  put(text, members_[i].bytes);
+  put(text, members_[i].bytes);
+  put(text, places_[i].header);
+  return text;
+}
+
+void Archive::write_at(std::uint64_t offset, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t n = ::pwrite(file_.descriptor(), bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) throw std::system_error(errno, std::generic_category(), "cannot write " + file_.path().string());
+    bytes.remove_prefix(static_cast<std::size_t>(n));
+    offset += static_cast<std::uint64_t>(n);
+  }
+}
+
+void Archive::write(std::size_t member, std::string_view bytes) {
+  Place& place = places_[member];
+  if (place.next + bytes.size() > place.begin + members_[member].bytes) throw std::logic_error("more bytes than a member of the archive has");
+  write_at(place.next, bytes);
+  place.next += bytes.size();
+  place.checksum = checksum(place.checksum, bytes);
+}
+
+void Archive::finish() {
+  std::string directory;
+  for (std::size_t i = 0; i < members_.size(); ++i) {
+    if (places_[i].next != places_[i].begin + members_[i].bytes) throw std::logic_error("fewer bytes than a member of the archive has");
+    write_at(places_[i].header, local_header(i));
+    directory += central_header(i);
+  }
+  const std::uint64_t size = directory.size(), count = members_.size(), end = end_ + size;
+  put<std::uint32_t>(directory, 0x06064b50);  // the end of the directory, with 64 bits
+  put<std::uint64_t>(directory, 44);
+  put(directory, version);
+  put(directory, version);
+  put<std::uint64_t>(directory, 0);
+  for (const std::uint64_t value : {count, count, size, end_}) put(directory, value);
+  put<std::uint32_t>(directory, 0x07064b50);  // where that is
+  put<std::uint32_t>(directory, 0);
+  put(directory, end);
+  put<std::uint32_t>(directory, 1);
+  put<std::uint32_t>(directory, 0x06054b50);  // the end as it was before there were 64 bits
+  put<std::uint32_t>(directory, 0);
+  const auto few = static_cast<std::uint16_t>(std::min<std::uint64_t>(count, 0xffff));
+  put(directory, few);
+  put(directory, few);
+  put(directory, elsewhere);
+  put(directory, elsewhere);
+  put<std::uint16_t>(directory, 0);
+  write_at(end_, directory);
+  file_.finish();
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/points_file.hpp"
+
+#include <cln/float.h>
+#include <cln/real.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string_view>
+
+#include "cli/decimal.hpp"
+#include "cli/output.hpp"
+#include "error.hpp"
+#include "model/content_hash.hpp"
+#include "model/names.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr std::size_t most_bytes = 1'000'000'000;
+
+[[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("sweep", {}, what, remedy); }
+
+std::string text_of(const std::string& path) {
+  std::error_code none;
+  if (!std::filesystem::is_regular_file(path, none)) fail(fmt::format("--points {}: there is no such file", model::quote(path)), "name a CSV file: a line of parameters, then lines of values");
+  if (std::filesystem::file_size(path, none) > most_bytes) fail(fmt::format("--points {}: the file is larger than 1 GB", model::quote(path)), "make several sweeps of parts of it");
+  std::ifstream file(path, std::ios::binary);
+  std::ostringstream text;
+  text << file.rdbuf();
+  if (!file) fail(fmt::format("--points {}: the file cannot be read", model::quote(path)), "see to your rights there");
+  return text.str();
+}
+
+std::vector<std::string> fields_of(std::string_view line) {
+  std::vector<std::string> fields(1);
+  for (const char c : line) {
+    if (c == ',') fields.emplace_back();
+    else fields.back() += c;
+  }
+  for (std::string& field : fields) {
+    const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
+    field.erase(field.begin(), std::find_if_not(field.begin(), field.end(), blank));
+    field.erase(std::find_if_not(field.rbegin(), field.rend(), blank).base(), field.end());
+  }
+  return fields;
+}
+
+}  // namespace
+
+PointsFile::PointsFile(const std::string& path) {
+  const std::string text = text_of(path);
+  hash_ = model::content_hash(text);
+  std::size_t number = 0;
+  for (std::string_view rest = text; !rest.empty();) {
+    const std::size_t end = rest.find('\n');
+    const std::vector<std::string> fields = fields_of(rest.substr(0, end));
+    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
+    const std::string place = fmt::format("--points {}, line {}", path, ++number);
+    if ((fields.size() == 1 && fields[0].empty()) || fields[0].starts_with('#')) continue;
+    if (names_.empty()) {
+      names_ = fields;
+      for (std::size_t i = 0; i < names_.size(); ++i) {
+        if (names_[i].empty()) fail(place + ": a column has no name", "name a parameter in each");
+        if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), names_[i]) != names_.begin() + static_cast<std::ptrdiff_t>(i)) {
+          fail(fmt::format("{}: {} comes twice", place, model::quote(names_[i])), "name each parameter once");
+        }
+      }
+      continue;
+    }
+    if (fields.size() != names_.size()) {
+      fail(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names_.size()), "give a value for each, with commas between them");
+    }
+    for (const std::string& field : fields) {
+      const double value = cln::double_approx(parse_decimal(field, place));
+      if (!std::isfinite(value)) fail(fmt::format("{}: {} leaves the range of binary64", place, model::quote(field)), "use units in which it is nearer to 1");
+      values_.push_back(value);
+    }
+  }
+  if (names_.empty() || values_.empty()) fail(fmt::format("--points {}: no line has values", model::quote(path)), "write a line of parameters, then lines of values");
+}
+
+std::vector<symbolic::Rational> PointsFile::point(std::size_t index) const {
+  std::vector<symbolic::Rational> result;
+  for (std::size_t k = 0; k < names_.size(); ++k) result.push_back(parse_decimal(shortest(values_[index * names_.size() + k]), names_[k]));
+  return result;
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Sweeps over the lines of a file; histograms of their columns.
+#include <doctest/doctest.h>
+
+#include <numeric>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+const char* const oscillator =
+    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
+    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
+
+/// Without the first line, which tells sweeps apart.
+std::string rows(const std::string& text) { return text.substr(text.find('\n')); }
+
+}  // namespace
+
+TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  folder.write("points.csv", "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line without its end
+  expect(0, folder, {"sweep", "oscillator.toml", "--points", "points.csv", "--out", "points_sweep.csv"});
+  const std::string table = folder.read("points_sweep.csv");
+  CHECK(contains(table, "\nrun,k,m,outcome,"));
+  for (const char* row : {"\n0,1,1,done,", "\n1,2.5,1,done,", "\n2,0.10000000000000001,3,done,"}) CHECK(contains(table, row));
+  // What a grid gives too is the same to the last bit.
+  folder.write("grid.csv", "k\n1\n2\n9.3\n");
+  expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out", "a.csv"});
+  expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1,2,9.3", "--out", "b.csv"});
+  CHECK(rows(folder.read("a.csv")) == rows(folder.read("b.csv")));
+  // Another file is another sweep.
+  folder.write("grid.csv", "k\n1\n2\n9.4\n");
+  CHECK(document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out", "a.csv"})["resumed"] == 0);
+}
+
+TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const auto refused = [&](const std::string& text, const std::string& what, const Words& more = {}) {
+    folder.write("points.csv", text);
+    Words words{"sweep", "oscillator.toml", "--points", "points.csv"};
+    words.insert(words.end(), more.begin(), more.end());
+    CAPTURE(what);
+    CHECK(contains(expect(2, folder, words).err, what));
+  };
+  refused("", "no line has values");
+  refused("k\n", "no line has values");
+  refused("k,m\n1,2\n3\n", "line 3: 1 values, and 2 parameters are named");
+  refused("k,,m\n1,2,3\n", "line 1: a column has no name");
+  refused("k,k\n1,2\n", "comes twice");
+  refused("k\n1\nnan\n", "line 3");
+  refused("k\n\"1\"\n", "line 2");
+  refused("k\n1e399\n", "leaves the range of binary64");
+  refused(std::string("k\n1\0002\n", 6), "line 2");
+  refused("kk\n1\n", "did you mean 'k'?");
+  refused("k\n1\n", "has a grid and is a column of --points", {"--grid", "k=1,2"});
+  refused("k\n1\n", "--sample and --points both", {"--sample", "m=1:2", "--samples", "3"});
+  CHECK(contains(expect(2, folder, {"sweep", "oscillator.toml", "--points", "none.csv"}).err, "there is no such file"));
+  CHECK(contains(expect(2, folder, {"sweep", "oscillator.toml", "--points", "/dev/zero"}).err, "there is no such file"));
+  CHECK(folder.names() == Words{"oscillator.toml", "points.csv"});
+}
+
+TEST_CASE("sweep: histograms count every value once, in equal parts from the least to the greatest") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator);
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "k=0:40:41", "--t-end", "0", "--statistics"});
+  for (const Json& column : found["statistics"]) {
+    const auto counts = column["histogram"].get<std::vector<std::size_t>>();
+    CHECK(std::accumulate(counts.begin(), counts.end(), std::size_t{0}) == column["count"].get<std::size_t>());
+    if (column["column"] == "energy") {  // k/2 = 0, 0.5, .. 20: two in each part, and the greatest in the last
+      REQUIRE(counts.size() == 20);
+      for (std::size_t i = 0; i < 20; ++i) CHECK(counts[i] == (i == 19 ? 3u : 2u));
+    }
+    if (column["column"] == "x") CHECK(counts == std::vector<std::size_t>{41});
+  }
+}
