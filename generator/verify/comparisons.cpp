@@ -50,9 +50,20 @@ double difference(const SystemValues& a, const SystemValues& b) {
   return largest;
 }
 
+/// What is nothing beside a motion, whatever the equation's units: rounding of an equation that holds by itself, whose slopes
+/// cancel to the last digit, has no other size. It is far above rounding in 20 digits and more, and far below any slope that says something.
+Real nothing_beside(const State& state) {
+  Real fastest = 0;
+  for (std::size_t i = 0; i < state.qddot.size(); ++i) {
+    fastest = cln::max(fastest, cln::max(cln::abs(state.qddot[i]), state.qdot[i] * state.qdot[i]));
+  }
+  return fastest / cln::expt(cln::cl_RA(10), cln::cl_I(15));
+}
+
 /// d'Alembert's residuals and psi_ddot = 0 with the accelerations and multipliers of the system.
 double motion_residual(const SystemValues& v) {
   double largest = 0;
+  const Real nothing = nothing_beside(v.state);
   for (const Residual& row : v.rows) largest = std::max(largest, row.relative());
   for (std::size_t k = 0; k < v.constraints.psi_ddot.size(); ++k) {
     if (v.state.apart.contains(k)) continue;
@@ -62,6 +73,7 @@ double motion_residual(const SystemValues& v) {
       along.add(slope * v.state.qddot[i], cln::abs(slope) * cln::max(cln::abs(v.state.qddot[i]), v.scale[i]));
     }
     along.add(v.constraints.psi_ddot[k] - along.value);
+    along.add(Real(0), nothing);
     largest = std::max(largest, along.relative());
   }
   return largest;

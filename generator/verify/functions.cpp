@@ -99,8 +99,9 @@ class Functions {
     return symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits());
   }
 
-  /// Values of the system's expressions, each with the size of what is summed in it: by what its last digits lose, and by what accelerations and
-  /// multipliers of the size of their scales would make of it.
+  /// Values of the system's expressions, each with the size of what is summed in it: by what its last digits lose, and by what accelerations,
+  /// multipliers and friction of the size of their scales would make of it. Friction that holds something is what the other forces leave,
+  /// which may be nothing: it has the scale of these.
   struct Sized {
     std::vector<Real> values, sizes;
   };
@@ -109,6 +110,9 @@ class Functions {
     Lookup large = lookup;
     for (std::size_t i = 0; i < large.state.qddot.size(); ++i) large.state.qddot[i] = cln::abs(large.state.qddot[i]) + v_.scale[i];
     for (std::size_t k = 0; k < large.lambda.size(); ++k) large.lambda[k] = cln::abs(large.lambda[k]) + v_.scale[large.state.qddot.size() + k];
+    Real forces = 0;
+    for (const Residual& row : v_.rows) forces = cln::max(forces, row.scale);
+    for (Real& phi : large.state.phi) phi = cln::abs(phi) + forces;
     const std::vector<Real> precise = symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits() + more);
     const std::vector<Real> largest = evaluate(roots, large);
     Sized result{evaluate(roots, lookup), {}};
