@@ -21,6 +21,8 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr double screening = 1e-5;  // what passes is decided in many digits
+// Of writing J^T J out, which finds zeros where coordinates are orthogonal: products of two terms, and terms of one entry.
+constexpr std::size_t gram_effort = 300'000, gram_terms = 400;
 
 /// The least-squares solution y of J y = d, if it is one: J is rows x n, row-major.
 bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std::size_t n, std::vector<double>& y) {
@@ -192,7 +194,8 @@ class Search {
 
   /// J^T J.
   symbolic::Factorisation factorised() {
-    symbolic::Expander expand(dag_);
+    symbolic::Effort effort{gram_effort};
+    symbolic::Expander expand(dag_, gram_terms, &effort);
     std::vector<Ref> N(n_ * n_, dag_.zero());
     const std::size_t rows = J_.size() / n_;
     for (std::size_t i = 0; i < n_; ++i) {

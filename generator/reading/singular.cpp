@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
+#include "reading/evaluator.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
@@ -22,10 +22,10 @@ using mechanics::Mechanics;
 // Beyond this a determinant is not written out; the charts of the particles are looked at instead.
 constexpr std::size_t largest_determinant = 4;
 
-bool varies(const Atom& atom) {
-  return atom.op == Op::symbol && (atom.symbol.kind == SymbolKind::coordinate || atom.symbol.kind == SymbolKind::function ||
-                                   atom.symbol.kind == SymbolKind::time);
+bool varies(const Symbol& symbol) {
+  return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::function || symbol.kind == SymbolKind::time;
 }
+bool varies(const Atom& atom) { return atom.op == Op::symbol && varies(atom.symbol); }
 bool varies(const Sum& sum) {
   bool result = false;
   for_each_atom(sum, [&](const Atom& atom) { result = result || varies(atom); });
@@ -108,69 +108,37 @@ bool positive_always(const Sum& factor) {
   return constant_part;
 }
 
-using Values = std::map<Symbol, double>;
-
-double value(const Sum& sum, const Values& at);
-
-double value(const Atom& atom, const Values& at) {
-  const auto arg = [&](std::size_t i) { return value(atom.args[i], at); };
-  switch (atom.op) {
-    case Op::symbol: return at.at(atom.symbol);
-    case Op::pi: return std::acos(-1.0);
-    case Op::add: return arg(0);
-    case Op::pow: return std::pow(arg(0), arg(1));
-    case Op::sqrt: return std::sqrt(arg(0));
-    case Op::sin: return std::sin(arg(0));
-    case Op::cos: return std::cos(arg(0));
-    case Op::tan: return std::tan(arg(0));
-    case Op::sinh: return std::sinh(arg(0));
-    case Op::cosh: return std::cosh(arg(0));
-    case Op::tanh: return std::tanh(arg(0));
-    case Op::exp: return std::exp(arg(0));
-    case Op::log: return std::log(arg(0));
-    case Op::abs: return std::abs(arg(0));
-    default: return std::nan("");
-  }
-}
-
-double value(const Sum& sum, const Values& at) {
-  double result = 0;
-  for (const auto& [monomial, coefficient] : sum.terms()) {
-    double term = cln::double_approx(coefficient);
-    for (const Factor& factor : monomial) term *= std::pow(value(*factor.atom, at), cln::double_approx(factor.exponent));
-    result += term;
-  }
-  return result;
-}
-
 /// Whether a search for a zero ends far from one, from many starts: then a factor of a determinant that is never negative has none.
 /// Parameters count as positive, as masses, inertias and lengths are.
 bool stays_away_from_zero(const Sum& factor) {
   constexpr int starts = 40, shrinkings = 40;
   constexpr double near = 1e-5;  // of the largest value met
-  std::set<Symbol> parameters, moving;
-  for_each_atom(factor, [&](const Atom& atom) {
-    if (atom.op == Op::symbol) (varies(atom) ? moving : parameters).insert(atom.symbol);
-  });
+  Evaluator value(factor);
+  std::vector<double> at(value.symbols().size());
+  std::vector<std::size_t> moving;
+  for (const auto& [symbol, place] : value.symbols()) {
+    if (varies(symbol)) moving.push_back(place);
+  }
   if (moving.empty()) return false;
   double largest = 0, least = HUGE_VAL;
   for (int start = 1; start <= starts; ++start) {
     const auto point = static_cast<std::uint64_t>(start);
-    Values at;
-    for (const Symbol& s : parameters) at[s] = 3 * symbolic::sample_double(s, point);
-    for (const Symbol& s : moving) at[s] = 6 * (symbolic::sample_double(s, point) - 0.7);
-    double here = value(factor, at);
+    for (const auto& [symbol, place] : value.symbols()) {
+      const double sample = symbolic::sample_double(symbol, point);
+      at[place] = varies(symbol) ? 6 * (sample - 0.7) : 3 * sample;
+    }
+    double here = value(at);
     if (!std::isfinite(here)) continue;
     const bool negative = here < 0;
     largest = std::max(largest, std::abs(here));
     double step = 1;
     for (int turn = 0; turn < shrinkings;) {
       bool better = false;
-      for (const Symbol& s : moving) {
+      for (const std::size_t s : moving) {
         for (const double by : {step, -step}) {
           const double before = at[s];
           at[s] = before + by;
-          const double there = value(factor, at);
+          const double there = value(at);
           if ((there < 0) != negative) return false;
           largest = std::max(largest, std::isfinite(there) ? std::abs(there) : 0);
           if (std::abs(there) < std::abs(here)) here = there, better = true;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // random_mechanisms PROGRAM FROM TO [N]: every seed's model through the program; a line for each that breaks a promise, and the sum.
 // Every N-th (each, if N is left out) is compiled, run and linearised too.
-// random_mechanisms PROGRAM --found FOLDER: the models that broke a promise once; run, if their name begins with run_.
+// random_mechanisms PROGRAM --found FOLDER: the models that broke a promise once; run, if their name begins with run_; only checked, in a tenth of the time, with check_.
 // random_mechanisms PROGRAM --print SEED | --shrink SEED: the text of one; the smallest text that breaks the same promise.
 #include <algorithm>
 #include <cstdio>
@@ -59,6 +59,8 @@ int try_found(const std::string& program, const std::string& folder, const std::
     const std::string text{std::istreambuf_iterator<char>(in), {}};
     Limits limits;
     limits.moved = file.filename().string().starts_with("run_");
+    limits.only_checked = file.filename().string().starts_with("check_");
+    if (limits.only_checked) limits.seconds = seconds_of_a_check;
     const Trial trial = try_model(program, folder, text, limits);
     if (!trial.refusal.empty()) std::printf("%s: refused: %s\n", file.filename().c_str(), trial.refusal.c_str());
     for (const Finding& finding : trial.findings) std::printf("%s: %s: %s\n", file.filename().c_str(), finding.command.c_str(), finding.what.c_str());

@@ -21,10 +21,14 @@ inline constexpr int processor_seconds = 400, address_megabytes = 0;  // shadow 
 inline constexpr int processor_seconds = 40, address_megabytes = 1500;
 #endif
 
+/// Of `check`, for models on which it once took many times as long.
+inline constexpr int seconds_of_a_check = processor_seconds / 10;
+
 struct Limits {
   int seconds = processor_seconds;    // of the processor, for each command
   int megabytes = address_megabytes;  // of address space; 0: any
   bool moved = true;                  // compiled, run and linearised too
+  bool only_checked = false;
 };
 
 struct Finding {

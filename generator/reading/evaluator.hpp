@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values of a canonical sum in binary64, at many points. In: a Sum. Out: its value; not a number where a function is not defined there.
+#pragma once
+
+#include <cstddef>
+#include <map>
+#include <vector>
+
+#include "reading/sum.hpp"
+
+namespace eomgen::reading {
+
+/// Atoms are evaluated once each, arguments before what is taken of them. The sum has to live as long.
+class Evaluator {
+ public:
+  explicit Evaluator(const Sum& sum) : whole_(flat(sum)) {}
+
+  /// The symbols, with their places in `at`.
+  const std::map<Symbol, std::size_t>& symbols() const { return symbols_; }
+
+  /// `at`: a value for each symbol, in its place. Counts its operations: throws OverBudget.
+  double operator()(const std::vector<double>& at);
+
+ private:
+  struct Power {
+    std::size_t item;
+    int whole;        // the exponent, where it is a small whole number; else 0
+    double exponent;  // else
+  };
+  struct Term {
+    double coefficient;
+    std::vector<Power> powers;
+  };
+  using Flat = std::vector<Term>;
+  struct Item {
+    Op op;
+    std::size_t symbol = 0;
+    std::vector<Flat> args;
+    double value = 0;
+  };
+  struct Before {
+    bool operator()(const Atom* a, const Atom* b) const { return compare(*a, *b) < 0; }
+  };
+
+  Flat flat(const Sum& sum);
+  std::size_t place(const Atom& atom);
+  double value(const Flat& sum) const;
+  double function(const Item& item) const;
+
+  std::map<const Atom*, std::size_t, Before> places_;
+  std::map<Symbol, std::size_t> symbols_;
+  std::vector<Item> items_;
+  std::size_t size_ = 0;  // factors and terms
+  Flat whole_;            // after what it fills
+};
+
+}  // namespace eomgen::reading
