@@ -11,6 +11,7 @@
 
 #include "derive/imposition.hpp"
 #include "run/scene.hpp"
+#include "run/start_unknowns.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::run {
@@ -270,8 +271,35 @@ class StartSolver {
       free = unknowns(order);
       newton(order, free);
     }
+    if (worst(order) > start_tolerance) choose(order, free);
     Eigen::Index k = 0;
     if (worst(order, &k) > start_tolerance) refuse(order, static_cast<std::size_t>(k), free);
+  }
+
+  /// Where the constraints could be met in several ways, as by rolling that says nothing of the spin about the normal: those unknowns follow
+  /// that they feel most, and the others stay 0 (or their guess), which is told.
+  void choose(std::uint8_t order, const std::vector<std::size_t>& free) {
+    VectorXd residual;
+    MatrixXd A;
+    linearise(order, residual, A);
+    if (free.empty() || !A.allFinite()) return;
+    MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
+    std::vector<bool> first;
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
+      first.push_back(may_move({s_.free[free[i]], order}));
+    }
+    std::vector<std::size_t> chosen;
+    std::string open;
+    const std::vector<bool> felt = felt_most(columns, first, rank_tolerance);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      const StartProblem::Key key{s_.free[free[i]], order};
+      if (felt[i]) chosen.push_back(free[i]);
+      else if (columns.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > 0) open += fmt::format("{}{} = {}", open.empty() ? "" : ", ", label(key), value(key));
+    }
+    if (chosen.size() == free.size() || open.empty()) return;
+    newton(order, chosen);
+    if (worst(order) <= start_tolerance) p_.solved.push_back(open + " (chosen: the constraints can be met in several ways)");
   }
 
   // Tried from the guess (or 0), then from points beside it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
@@ -314,7 +342,7 @@ class StartSolver {
       VectorXd move = decomposition.solve(residual);
       if (decomposition.rank() < columns.cols()) {
         if (!partly) return false;
-        if (!keep_fixed(columns, decomposition.rank(), move)) return worst(order) <= rounding;
+        if (!keep_fixed(columns, decomposition.rank(), rank_tolerance, move)) return worst(order) <= rounding;
       }
       double size = 0, scale = 0;
       for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -326,20 +354,6 @@ class StartSolver {
       if (size <= newton_tolerance * scale || worst(order) <= newton_tolerance) return worst(order) <= rounding;
     }
     return worst(order) <= rounding;
-  }
-
-  /// Of unknowns that the constraints do not fix all together only those move that they fix: what no motion of the rest changes.
-  /// False where that is none.
-  static bool keep_fixed(const MatrixXd& columns, Eigen::Index rank, VectorXd& move) {
-    const Eigen::JacobiSVD<MatrixXd> svd(columns, Eigen::ComputeFullV);
-    const MatrixXd open = svd.matrixV().rightCols(columns.cols() - rank);
-    bool any = false;
-    for (Eigen::Index i = 0; i < columns.cols(); ++i) {
-      const bool fixed = open.row(i).norm() < rank_tolerance;
-      if (!fixed) move(i) = 0;
-      any = any || fixed;
-    }
-    return any;
   }
 
   /// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how much it is off then.
