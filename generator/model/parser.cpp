@@ -6,6 +6,7 @@
 
 #include "model/names.hpp"
 #include "model/syntax.hpp"
+#include "model/units.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -49,6 +50,11 @@ private:
     if (token.kind == TokenKind::end) fail(token, "the expression ends too early", "something is missing at its end");
     const bool operand_before = at_ > 0 && (tokens_[at_ - 1].kind != TokenKind::symbol || tokens_[at_ - 1].text == ")");
     if (operand_before && (token.kind != TokenKind::symbol || token.text == "(")) {
+      const bool inside = at_ + 1 < tokens_.size() && (tokens_[at_ + 1].text == ")" || tokens_[at_ + 1].text == ",");
+      if (inside && tokens_[at_ - 1].kind == TokenKind::number && token.kind == TokenKind::name && parse_unit(token.text)) {
+        fail(token, fmt::format("an operator is missing before {}", quote(token.text)),
+             fmt::format("inside of an expression a unit stands in brackets: {}[{}]", tokens_[at_ - 1].text, token.text));
+      }
       fail(token, fmt::format("an operator is missing before {}", quote(token.text)),
            "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 "
            "m/s^2\"");

@@ -151,6 +151,7 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
     if (found.family == "fixed") {
       frame_sources_[index].axis = frame_sources_[frame.parent].axis;
       frame_sources_[index].still = frame_sources_[frame.parent].still;
+      frame_sources_[index].upright = frame_sources_[frame.parent].upright;
     }
   }
 }
@@ -162,7 +163,14 @@ void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation
   const Context context{fmt::format("the axis of the rotation of '{}'", frame.name), frame.parent == 0 ? Facts{0} : on_motion, Shape::vector, std::nullopt,
                         "the axis is fixed in the parent: make it of " + of + "; relative_to = \"B\" names another parent"};
   const Typed axis = resolver_.value(written, context);
-  const Typed along = frame.parent == 0 ? axis : resolver_.in_axes(axis, frame.parent);
+  const auto parallel = [](const std::array<cln::cl_RA, 3>& a, const std::array<cln::cl_RA, 3>& b) {
+    return a[0] * b[1] == a[1] * b[0] && a[0] * b[2] == a[2] * b[0] && a[1] * b[2] == a[2] * b[1];
+  };
+  const FrameSource& parent = frame_sources_[frame.parent];
+  // In a plane E3 is the axis of all bodies.
+  const auto in_space = numbers_of(axis.node);
+  const bool common = parent.upright && parent.axis && parent.axis->numbers && in_space && parallel(*parent.axis->numbers, *in_space);
+  const Typed along = frame.parent == 0 || common ? axis : resolver_.in_axes(axis, frame.parent);
   if (along.node == no_node) {
     source_.fail(written.span, "this axis is not fixed in the parent", "make it of " + of + " with constant components");
   }
@@ -170,13 +178,10 @@ void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation
   direction.numbers = numbers_of(along.node);
   const Typed unit = resolver_.unit_of_vector(along, written.span);
   for (std::uint32_t k = 0; k < 3; ++k) direction.unit[k] = local["r" + std::to_string(k + 1)] = resolver_.component(unit, k, written.span);
-  const auto parallel = [](const std::array<cln::cl_RA, 3>& a, const std::array<cln::cl_RA, 3>& b) {
-    return a[0] * b[1] == a[1] * b[0] && a[0] * b[2] == a[2] * b[0] && a[1] * b[2] == a[2] * b[1];
-  };
-  const FrameSource& parent = frame_sources_[frame.parent];
   const bool same = parent.axis && parent.axis->numbers && direction.numbers && parallel(*parent.axis->numbers, *direction.numbers);
   frame_sources_[index].still = parent.still && local.at("angle").facts == 0;
   if (parent.still || same) frame_sources_[index].axis = direction;
+  frame_sources_[index].upright = frame.parent == 0 || (parent.upright && same);
   const Node& node = model_.arena[along.node];
   if (node.op == Op::fixed_basis) {
     add_stage(index, rotations::about_axis(node.index, "angle"), local, rotation.span);

@@ -92,6 +92,12 @@ Dry Reader::read_dry(const Value& table, const std::string& what) {
   dry.normal = resolver_.value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
                                                std::nullopt, "a normal force is made of parameters, the state and t"}).node;
   dry.law = read_coefficients(table, what, std::nullopt);
+  for (const Force& before : model_.forces) {
+    const Dry* other = std::get_if<Dry>(&before.kind);
+    if (other == nullptr || other->coordinate != dry.coordinate || dry.law.width != no_node || other->law.width != no_node) continue;
+    source_.fail(name.span, fmt::format("{} sticks with '{}' already: how the two share what holds it nothing says", quote(name.text), before.name),
+                 "write one force whose normal force is that of both");
+  }
   return dry;
 }
 

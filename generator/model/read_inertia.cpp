@@ -114,6 +114,7 @@ void Reader::read_scalar_inertia(Body& body, const Value& value) {
   const Frame& frame = model_.frames[body.frame];
   const Typed J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
   const auto& axis = frame_sources_[body.frame].axis;
+  if (!axis && frame_sources_[body.frame].still) return;  // it does not turn: any moment does
   if (!axis) {
     source_.fail(value.span, fmt::format("one moment of inertia does not do: '{}' does not turn about one fixed axis", frame.name), form);
   }

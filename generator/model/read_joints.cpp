@@ -77,11 +77,11 @@ void Reader::read_joint(Joint& joint, const Value& table) {
     for (std::size_t k = 0; k < 3; ++k) local[std::array{"a", "a1", "a2"}[k]] = ends[0].axis[k];
     local["b"] = ends[1].axis[0];
   }
-  if (uses("b2")) local["b2"] = carried(ends[0].axis[2], ends[1].frame, start, table.span);
+  if (uses("b2")) local["b2"] = carried(ends[0].axis[2], ends[1].frame, start, table.span, true);
   for (std::size_t k = 0; k < 3 && uses("f1"); ++k) {
     const Typed axis = resolver_.own_axis(ends[0].frame, k, table.span);
     local[fmt::format("f{}", k + 1)] = axis;
-    local[fmt::format("g{}", k + 1)] = carried(axis, ends[1].frame, start, table.span);
+    local[fmt::format("g{}", k + 1)] = carried(axis, ends[1].frame, start, table.span, true);
   }
   Constraint& constraint = model_.constraints[joint.constraint];
   for (const joints::Equation& equation : kind->equations) {
@@ -136,14 +136,15 @@ AtStart Reader::at_start(std::uint32_t constraint) {
 }
 
 // A direction, fixed in a body so that it is at the start what it is there.
-Typed Reader::carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span) {
+Typed Reader::carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude) {
   const auto known = [&](const Typed& typed) {
     Typed result = typed;
     result.node = start(typed.node);
     result.facts = 0;
     if (result.node == no_node) {
       source_.fail(span, fmt::format("this joint is as placed at the start, and {}", start.obstacle()),
-                   "give that coordinate in 'initial' of [scene.default], or write two entries, one for each body: at = [\"..\", \"..\"], axis = [\"..\", \"..\"]");
+                   attitude ? "give that coordinate in 'initial' of [scene.default]: a slider and a fixed joint keep the attitude of one body against the other as it is there"
+                            : "give that coordinate in 'initial' of [scene.default], or write two entries, one for each body: at = [\"..\", \"..\"], axis = [\"..\", \"..\"]");
     }
     return result;
   };

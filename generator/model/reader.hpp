@@ -100,6 +100,7 @@ private:
     std::uint32_t place = 0;  // of a body
     bool still = false;       // it keeps its attitude; the ground does
     std::optional<FixedDirection> axis = {};  // about which it turns, if that is a fixed one
+    bool upright = false;                     // it turns about that axis alone, from E1, E2, E3 on: the axis has the same components in space
   };
   void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
   void declare_angles(const Value& table);
@@ -198,7 +199,7 @@ private:
   std::array<Typed, 3> triad_about(const Value& axis, const JointEnd& end, const std::string& what);
   void axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span, const std::string& what);
   AtStart at_start(std::uint32_t constraint);
-  Typed carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span);
+  Typed carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude = false);
 
   // read_events.cpp: [[event]], `stop` of a scene
   void declare_events();

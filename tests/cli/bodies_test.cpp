@@ -196,3 +196,28 @@ TEST_CASE("formulas beyond their budget are left out by name, and nothing else f
   CHECK(left_out(verified, "reading form"));
   CHECK(left_out(verified, "articulated"));
 }
+
+TEST_CASE("in a plane E3 is the axis of every body, relative ones too, and a body that does not turn takes any moment of inertia") {
+  const Folder folder;
+  const auto end = [&](const std::string& axis, const std::string& moment) {
+    folder.write("a.toml", "format = 1\n[[body]]\nname = \"cart\"\nmass = 1\ninertia = " + moment +
+                               "\nrotation = { fixed = true }\nposition = { cartesian = [\"s\", \"0\"] }\n"
+                               "[[body]]\nname = \"a\"\nmass = 1\ninertia = 0.2\nrotation = { axis = \"E3\", angle = \"f\" }\nposition = \"cart + 0.5*a.e1\"\n"
+                               "[[body]]\nname = \"b\"\nmass = 1\ninertia = 0.3\nrelative_to = \"a\"\nrotation = { axis = \"" + axis +
+                               "\", angle = \"g\" }\nposition = \"cart + a.e1 + 0.5*b.e1\"\n[[force]]\ngravity = \"-9.81*E2\"\n"
+                               "[scene.default]\nt = [0, 1]\ninitial = { f = 0.3, g = 0.5 }\n");
+    CHECK(document(folder, {"verify", "a.toml", "--points", "2", "--no-compile"})["verdict"] == "pass");
+    return document(folder, {"run", "a.toml"})["final"];
+  };
+  const Json own = end("-a.e3", "{ principal = [1, 1, 1] }"), common = end("-2*E3", "0.1");
+  for (const char* name : {"s", "f", "g"}) CHECK(common[name].get<double>() == doctest::Approx(own[name].get<double>()).epsilon(1e-12));
+  // An axis across the plane turns with the body, and so does that of a body on a tilted frame.
+  std::string text = folder.read("a.toml");
+  text.replace(text.find("-2*E3"), 5, "E1");
+  folder.write("b.toml", text);
+  CHECK(contains(expect(2, folder, {"check", "b.toml"}).err, "this axis is not fixed in the parent"));
+  folder.write("c.toml", "format = 1\n[[frame]]\nname = \"F\"\nrotation = { axis = \"E1\", angle = \"0.3\" }\n"
+                         "[[body]]\nname = \"a\"\nmass = 1\ninertia = 0.2\nrelative_to = \"F\"\nrotation = { axis = \"F.e3\", angle = \"f\" }\nposition = \"a.e1\"\n"
+                         "[[body]]\nname = \"b\"\nmass = 1\ninertia = { sphere = 1 }\nrelative_to = \"a\"\nrotation = { axis = \"E3\", angle = \"g\" }\nposition = \"a.e1 + b.e1\"\n");
+  CHECK(contains(expect(2, folder, {"check", "c.toml"}).err, "this axis is not fixed in the parent"));
+}

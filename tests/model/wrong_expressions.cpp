@@ -10,6 +10,8 @@ std::vector<WrongModel> wrong_expressions() {
        "something is missing at its end"},
       {"an operator too many", pendulum({{"-g*E3", "-g*/E3"}}), "11:15", "'/' does not fit here",
        "check the expression up to this place"},
+      {"a unit inside of an expression without brackets", pendulum({{"-g*E3", "-g*sin(30 deg)*E3"}}), "11:22", "an operator is missing before 'deg'",
+       "inside of an expression a unit stands in brackets: 30[deg]"},
       {"implicit multiplication", pendulum({{"-g*E3", "-2g*E3"}}), "11:13", "a name follows the number '2' at once",
        "there is no implicit multiplication: write 2*g"},
       {"a unit without a blank before it", pendulum({{"\"1 m\"", "\"9.81m/s^2\""}}), "5:6", "a blank is missing between the number '9.81' and its unit",
