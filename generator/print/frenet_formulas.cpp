@@ -64,6 +64,9 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   } catch (const work::OverBudget& over) {
     out.push_back(left_out("frenet", m.masses[0].name, "", over.what()));
     return;
+  } catch (const Error&) {  // two constraints of which each says the same of the directions: found only as the curve is looked at
+    if (asked) throw;
+    return;
   }
   std::vector<Formula> fixed, unit;
   for (int k = 1; k <= 3; ++k) fixed.push_back(mark("E", {reading::number(k)}));
