@@ -21,10 +21,13 @@ struct Place {
   bool free_position = false;         // three (in a plane two) Cartesian coordinates of its own, from the origin
 };
 
+// The models of the seeds before it are what they were when these kinds were added: findings are told by their seeds.
+constexpr std::uint64_t first_with_contacts = 1001;
+
 // Writes one model. Every member adds some lines and keeps account of what later ones may refer to.
 class Builder {
  public:
-  explicit Builder(std::uint64_t seed) : dice_(seed) {}
+  explicit Builder(std::uint64_t seed) : dice_(seed), contacts_(seed >= first_with_contacts) {}
 
   Mechanism build() {
     planar_ = dice_.chance(35);
@@ -39,6 +42,10 @@ class Builder {
     add_forces();
     add_energies();
     add_constraints();
+    if (contacts_) {
+      if (dice_.chance(35)) add_joint_of_all_axes();
+      if (dice_.chance(75)) add_contacts();
+    }
     return finish();
   }
 
@@ -329,6 +336,102 @@ class Builder {
     constraint_lines_ += "[[constraint]]\nname = \"c" + std::to_string(++constraints_) + "\"\n" + line + "\n";
   }
 
+  /// One of the places that fit, if any does; else any.
+  template <class Fits>
+  const Place& one_of(const Fits& fits) {
+    std::vector<std::size_t> which;
+    for (std::size_t i = 0; i < places_.size(); ++i) {
+      if (fits(places_[i])) which.push_back(i);
+    }
+    return places_[which.empty() ? dice_.below(places_.size()) : dice_.pick(which)];
+  }
+
+  // Two bodies with axes at right angles, or held fast to one another as they are placed at the start.
+  void add_joint_of_all_axes() {
+    const bool universal = !planar_ && dice_.chance(70);
+    // The place of the first and one of its angles follow from a universal joint.
+    const auto fits = [&](const Place& p) { return p.body && (!universal || (p.free_position && p.angles.size() == 3 && p.spatial_rotation)); };
+    const Place& a = one_of(fits);
+    const Place& b = places_[dice_.below(places_.size())];
+    if (!fits(a) || (&a != &b && !b.body)) return;
+    const std::string other = &a == &b ? "ground" : b.name, head = "[[joint]]\nname = \"j" + std::to_string(joints_ + 1) + "\"\n";
+    const std::string bodies = "bodies = [\"" + other + "\", \"" + a.name + "\"]\n";
+    std::size_t left = coordinates_.size();
+    for (const Place& p : places_) left -= p.euler_parameters ? 1 : 0;
+    if (left <= (universal ? 4u : planar_ ? 3u : 6u) || result_.constrained) return;
+    if (universal) {
+      const std::string at = &a == &b ? "origin" : point_of(b), from = point_of(a), axis = &a == &b ? "E3" : body_axis(b);
+      joint_lines_ += head + "type = \"universal\"\n" + bodies + "at = [\"" + at + "\", \"" + from + "\"]\naxis = [\"" + axis + "\", \"" + body_axis(a) + "\"]\n";
+      for (const std::string& q : a.own) follows_.insert(q);
+      follows_.insert(a.angles[1]);
+    } else {
+      joint_lines_ += head + "type = \"fixed\"\n" + bodies + "at = \"" + point_of(a) + "\"\n";
+    }
+    ++joints_;
+    result_.constrained = true;
+    feature(universal ? "joint universal" : "joint fixed");
+  }
+
+  std::string coulomb() {
+    if (dice_.chance(15)) {
+      feature("smooth friction");
+      return "friction = { dynamic = \"" + value(10, 60) + "\", law = \"smooth\", width = \"0.01\" }\n";
+    }
+    feature("dry friction");
+    const std::string dynamic = dice_.decimal(10, 60);
+    return "friction = { static = \"" + (dice_.chance(50) ? dynamic : dice_.decimal(61, 90)) + "\", dynamic = \"" + dynamic + "\" }\n";
+  }
+
+  std::string one_sided() {
+    feature("unilateral");
+    return std::string("holds = \"unilateral\"\n") + (dice_.chance(60) ? "restitution = \"" + value(0, 90) + "\"\n" : "");
+  }
+
+  // At most three, as the program takes: a floor below the start of a place, a rough one through it, dry guides, a ball on rough ground.
+  void add_contacts() {
+    const std::string up = planar_ ? "E2" : "E3";
+    const std::size_t count = 1 + dice_.below(3);
+    for (std::size_t k = 0; k < count; ++k) {
+      const std::size_t kind = dice_.below(4);
+      const Place& a = one_of([&](const Place& p) { return p.free_position && (kind != 1 || !p.body) && (kind != 3 || (p.body && p.spatial_rotation)); });
+      const std::string height = a.free_position ? a.own.back() : "";
+      switch (kind) {
+        case 0:  // a floor below the start, of which nothing is known but for coordinates
+          if (height.empty()) contact("floor", "holonomic = \"dot(" + point_of(a) + ", " + up + ") + " + value(200, 400) + "\"\n" + one_sided());
+          if (height.empty() || follows_.contains(height) || result_.constrained) break;
+          contact("floor", "holonomic = \"" + height + " - initial(" + height + ") + " + value(1, 30) + "\"\n" + one_sided());
+          break;
+        case 1:  // a rough one through the start, level or not
+          if (height.empty() || follows_.contains(height) || a.body || result_.constrained) break;
+          contact("rough surface", "holonomic = \"" + height + (dice_.chance(50) ? " - " + value(10, 40) + "*" + a.own[0] : std::string()) + " - " + value(10, 90) + "\"\n" + coulomb() +
+                                       (dice_.chance(30) ? one_sided() : std::string()));
+          follows_.insert(height);
+          break;
+        case 2: {
+          const std::string q = dice_.pick(coordinates_);
+          if (is_euler_parameter(q) || !dry_.insert(q).second) break;
+          feature("dry force");
+          const std::string dynamic = dice_.decimal(10, 60);
+          force("dry = { coordinate = \"" + q + "\", normal = \"" + value(50, 300) + "\", static = \"" + (dice_.chance(50) ? dynamic : dice_.decimal(61, 90)) + "\", dynamic = \"" + dynamic + "\" }");
+          break;
+        }
+        default: {
+          if (planar_ || !a.body || !a.free_position || !a.spatial_rotation || rolling_ || result_.constrained) break;
+          rolling_ = true;
+          const bool apart = dice_.chance(40);
+          const std::string radius = apart ? dice_.decimal(1, 9) : value(20, 60);
+          contact("rough ball", std::string(dice_.chance(70) ? "rolling" : "sliding") + " = { body = \"" + a.name + "\", shape = { sphere = \"" + radius + "\" }, on = \"ground\" }\nfriction = { static = \"0.5\", dynamic = \"" +
+                                    dice_.decimal(10, 50) + "\" }\n" + (apart ? one_sided() : std::string()));
+          if (!apart) follows_.insert(height);
+        }
+      }
+    }
+  }
+  void contact(const std::string& kind, const std::string& lines) {
+    feature(kind);
+    constraint_lines_ += "[[constraint]]\nname = \"c" + std::to_string(++constraints_) + "\"\n" + lines;
+  }
+
   bool is_euler_parameter(const std::string& q) const {
     for (const Place& p : places_) {
       if (p.euler_parameters && std::find(p.angles.begin(), p.angles.end(), q) != p.angles.end()) return true;
@@ -412,9 +515,9 @@ class Builder {
       }
       if (!value.empty()) start_ += (start_.empty() ? "" : ", ") + q + " = " + value;
       // Rates that constraints bind to one another are left to them: the start is at rest but for what is prescribed.
-      if (!rate.empty() && !result_.constrained) start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + rate;
+      if (!rate.empty() && !result_.constrained && constraints_ == 0) start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + rate;
     }
-    if (result_.constrained) spins_.clear();
+    if (result_.constrained || constraints_ > 0) spins_.clear();
     for (const std::string& body : spins_) start_ += (start_.empty() ? "" : ", ") + ("\"" + body + ".omega\" = [" + dice_.decimal(-90, 90) + ", " + dice_.decimal(-90, 90) + ", " + dice_.decimal(-90, 90) + "]");
     t += "initial = { " + start_ + " }\n";
     if (!guess_.empty()) t += "guess = { " + guess_ + " }\n";
@@ -423,11 +526,12 @@ class Builder {
 
   Dice dice_;
   Mechanism result_;
-  bool planar_ = false, equal_ = false, rolling_ = false;
+  bool contacts_ = false, planar_ = false, equal_ = false, rolling_ = false;
   int named_parameters_ = 50, parameters_ = 0, functions_ = 0, inputs_ = 0, constraints_ = 0, joints_ = 0;
   std::vector<Place> places_;
   std::vector<std::string> coordinates_, spins_;
   std::vector<std::pair<std::string, std::string>> starts_;  // of each coordinate: value, rate
+  std::set<std::string> dry_;                                // slide dry
   std::set<std::string> follows_;                            // from a constraint
   std::string parameter_lines_, function_lines_, input_lines_, coordinate_lines_, energy_, place_lines_, force_lines_, constraint_lines_, joint_lines_, start_, guess_;
 };

@@ -27,13 +27,14 @@ const std::vector<std::string>& refusals() {
       "changes no equation of motion",      // a force that does no work: friction at a pivot
       "contains no velocity",               // a knife edge along an arm: its point never moves that way
       "does not depend on any velocity",
+      "the forces are not determined",      // more directions in which friction can hold than the system has
   };
   return texts;
 }
 
 // A run may end early for what is true of the mechanism.
 const std::vector<std::string>& outcomes() {
-  static const std::vector<std::string> names{"chart_left", "singular_mass_matrix", "step_too_small"};
+  static const std::vector<std::string> names{"chart_left", "singular_mass_matrix", "step_too_small", "friction_no_solution", "friction_many_solutions"};
   return names;
 }
 
@@ -61,7 +62,7 @@ class Attempt {
 
   Trial operator()(const std::string& text) {
     std::ofstream(folder_ + "/m.toml", std::ios::binary) << text;
-    if (!command("check", {})) return trial_;
+    if (!command("check", {}) || limits_.only_checked) return trial_;
     command("derive", {"--show", "all"});
     command("verify", {"--no-compile", "--points", "3"});
     if (!limits_.moved) return trial_;
