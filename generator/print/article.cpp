@@ -30,6 +30,7 @@ std::vector<Formula> Article::formulas(const std::vector<Statement>& statements)
 
 namespace {
 
+constexpr const char* joint_letters = "Of a joint, a is its axis in the first body, a1 and a2 are directions across it, b is its axis in the second body; b2, g1, g2 and g3 are fixed in the second body, and at the start what a2 and the axes f1, f2 and f3 of the first body are.";
 constexpr std::size_t longest_position = 12;  // terms
 constexpr std::size_t longest_value = 30;      // printed characters on a line of a table
 
@@ -243,9 +244,22 @@ class Coordinates {
       out_.paragraph(bold(m_.constraints[k].label) + (identity ? " holds identically" : " follows from the other constraints") + ": it has no multiplier.");
     }
     integrals();
+    legend();
   }
 
  private:
+  void legend() {
+    const std::vector<MultiplierMeaning> all = multiplier_meanings(m_);
+    if (all.empty()) return;
+    out_.paragraph("The multipliers are");
+    out_.raw("\\begin{longtable}{@{}lp{0.8\\linewidth}@{}}\n");
+    for (const MultiplierMeaning& meaning : all) {
+      out_.raw(out_.math(reading::symbol({SymbolKind::multiplier, meaning.constraint, 0})) + " & " + words(meaning.text) + " \\\\\n");
+    }
+    out_.raw("\\end{longtable}\n");
+    if (!model_.joints.empty()) out_.paragraph(joint_letters);
+  }
+
   std::string role(std::uint32_t i) const {
     const auto of = [i](const reading::ReadConstraint& c) { return c.fixes && c.fixes->coordinate == i; };
     const auto first = std::find_if(a_.one.constraints.begin(), a_.one.constraints.end(), of);

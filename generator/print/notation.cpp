@@ -6,6 +6,7 @@
 #include <cctype>
 #include <utility>
 
+#include "joints/joint.hpp"
 #include "reading/routh.hpp"
 
 namespace eomgen::print {
@@ -40,6 +41,57 @@ std::string mathml_word(std::string_view word) {
 
 }  // namespace
 
+namespace {
+
+/// One equation of a joint: "F1", "M2", and what it exerts on the second body.
+struct JointDirection {
+  std::uint32_t constraint;
+  const model::Joint* joint;
+  std::string name;       // "F1"
+  std::string direction;  // "force along E1"
+};
+
+std::string direction_of(const std::string& moment) {  // "cross(b, a1)" -> "b x a1"
+  const std::size_t open = moment.find('('), comma = moment.find(", ");
+  return moment.substr(open + 1, comma - open - 1) + " x " + moment.substr(comma + 2, moment.size() - comma - 3);
+}
+
+std::vector<JointDirection> joint_directions(const mechanics::Mechanics& m) {
+  std::vector<JointDirection> result;
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const model::Joint& joint = m.model->joints[i];
+    const joints::Joint* kind = joints::find(joint.type);
+    std::size_t forces = 0, moments = 0;
+    for (std::uint32_t k = 0; k < kind->equations.size(); ++k) {
+      const joints::Equation& e = kind->equations[k];
+      const bool force = !e.force.empty();
+      result.push_back({m.joints[i].first + k, &joint, force ? "F" + std::to_string(++forces) : "M" + std::to_string(++moments),
+                        force ? "force along " + e.force : "moment along " + direction_of(e.moment)});
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& m) {
+  std::vector<MultiplierMeaning> result;
+  const std::vector<JointDirection> of_joints = joint_directions(m);
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    if (!m.holds(k)) continue;
+    const auto found = std::find_if(of_joints.begin(), of_joints.end(), [k](const JointDirection& d) { return d.constraint == k; });
+    if (found == of_joints.end()) {
+      result.push_back({k, "of the constraint '" + m.constraints[k].label + "'"});
+      continue;
+    }
+    const std::uint32_t frame = found->joint->frames[1];
+    const std::string on = frame == 0 ? "the ground" : "'" + m.model->frames[frame].name + "'";
+    result.push_back({k, "of the joint '" + found->joint->name + "' on " + on + ": " + found->direction});
+  }
+  if (m.constraints.size() == 1) result.clear();
+  return result;
+}
+
 std::string_view greek(std::string_view name) {
   const auto found = std::find_if(letters.begin(), letters.end(), [&](const auto& l) { return l.first == name; });
   return found == letters.end() ? std::string_view() : found->second;
@@ -73,9 +125,17 @@ Notation::Notation(const mechanics::Mechanics& mechanics)
   };
   if (taken("lambda")) multiplier_letter_ = "mu";
   if (taken("p")) momentum_letter_ = "Pi";
+  of_joints_.resize(mechanics.constraints.size());
+  for (const JointDirection& d : joint_directions(mechanics)) {
+    Glyph glyph = split_name(multiplier_letter_ + "_" + d.joint->name);
+    glyph.index.push_back(d.name);
+    glyph.name += "_" + d.name;
+    of_joints_[d.constraint] = std::move(glyph);
+  }
 }
 
 Glyph Notation::multiplier(std::uint32_t constraint) const {
+  if (of_joints_[constraint]) return *of_joints_[constraint];
   if (multipliers_ == 1) return split_name(multiplier_letter_);
   return split_name(multiplier_letter_ + "_" + std::to_string(constraint + 1));
 }

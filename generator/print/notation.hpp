@@ -32,11 +32,13 @@ class Notation {
   Glyph operator()(const symbolic::Symbol& symbol) const;
   /// What an integral of the model is of; nothing where that cannot be written as one formula.
   std::optional<reading::Formula> integrand(std::uint32_t integral) const;
-  Glyph multiplier(std::uint32_t constraint) const;  // lambda, or lambda_2 where there are several
+  /// lambda, or lambda_2 where there are several; of the joint "pin" lambda_pin_F1 (a force), lambda_pin_M2 (a moment).
+  Glyph multiplier(std::uint32_t constraint) const;
 
  private:
   const model::Model* model_;
   std::size_t multipliers_;
+  std::vector<std::optional<Glyph>> of_joints_;  // per constraint
   std::string momentum_letter_ = "p";  // p_theta: the constant of a cyclic coordinate; Pi where a model has a p
   std::string multiplier_letter_;  // mu where a model has a lambda of its own
 };
@@ -45,6 +47,14 @@ class Notation {
 std::string latex(const Glyph& glyph);
 /// "<msub><mi>θ</mi><mn>1</mn></msub>".
 std::string mathml(const Glyph& glyph);
+
+/// What a multiplier is the force of, for a legend: "of the constraint 'wire.2'", "force of the joint 'pin' on 'second' along E1".
+struct MultiplierMeaning {
+  std::uint32_t constraint;
+  std::string text;
+};
+/// Of the constraints that hold; none where there is one alone.
+std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& mechanics);
 
 /// The Greek letter of that name in UTF-8; empty if there is none.
 std::string_view greek(std::string_view name);

@@ -153,6 +153,31 @@ force = "-k*write18*E1"
   }
 }
 
+TEST_CASE("derive: headings say what stands below them, and a legend tells which multiplier is which") {
+  const Folder folder;
+  const std::string disk = expect(0, folder, {"derive", "R6_rolling_disk", "--show", "constraints,equations,reactions,singular"}).out;
+  for (const char* heading : {"\nconstraint 'contact.1', binds velocities, not integrable\n", "\nconstraint 'contact.3', its first time derivative\n", "\nequations of motion\n  d/dt(m x1_dot)",
+                              "\nequations of motion, written out\n", "\nconstraint force on 'disk'\n", "\nwhere both approaches fail\n", "\nwhich multiplier is which\n  lambda_1: of the constraint 'contact.1'\n"}) {
+    CAPTURE(heading);
+    CHECK(contains(disk, heading));
+  }
+  const std::string sphere = expect(0, folder, {"derive", "P7_moving_sphere"}).out;
+  CHECK(contains(sphere, "\nfunctions of time\n  d = "));
+  CHECK(contains(sphere, "\nequations that give the constraint forces\n"));
+  CHECK_FALSE(contains(sphere, "which multiplier"));
+  // Bouncing: what belongs to leaving the floor is no friction.
+  const std::string ball = expect(0, folder, {"derive", "bouncing_ball"}).out;
+  CHECK(contains(ball, "\nfriction at 'floor', slides\n"));
+  CHECK(contains(ball, "\ncontact 'floor', impact\n"));
+  const Json pin = document(folder, {"derive", "R15_pin_joint", "--show", "reactions"});
+  REQUIRE(pin["multipliers"].size() == 5);
+  CHECK(pin["multipliers"][4]["name"] == "lambda_pin_M2");
+  CHECK(pin["multipliers"][4]["latex"] == "\\lambda_{\\mathrm{pin},\\mathrm{M2}}");
+  // By approach II the multipliers of what is built in do not stand anywhere.
+  CHECK(document(folder, {"derive", "P8_smooth_helix", "--approach", "II"})["multipliers"].empty());
+  CHECK(document(folder, {"derive", "P8_smooth_helix", "--approach", "I"})["multipliers"].size() == 2);
+}
+
 TEST_CASE("derive: what does not apply is an empty list, not a missing key") {
   const Folder folder;
   for (const char* key : {"basis", "metric", "christoffel", "line_element", "constraints", "conserved", "reactions", "singular"}) {

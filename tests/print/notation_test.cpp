@@ -6,6 +6,10 @@
 #include <algorithm>
 #include <string>
 
+#include "mechanics/mechanics.hpp"
+#include "support/folders.hpp"
+
+using namespace eomgen;
 using namespace eomgen::print;
 
 namespace {
@@ -68,4 +72,43 @@ TEST_CASE("text of users is escaped") {
   CHECK(escape_latex("M\xc3\xbcller \xe6\x97\xa5\xf0\x9f\x98\x80 \x01") == "M\xc3\xbcller ??  ");
   CHECK(escape_html("<script>alert('x & \"y\"')</script>") ==
         "&lt;script&gt;alert(&#39;x &amp; &quot;y&quot;&#39;)&lt;/script&gt;");
+}
+
+TEST_CASE("multipliers of joints are named by the joint and what they exert, which is what the mechanics says") {
+  for (const char* name : {"R15_pin_joint", "four_bar_spatial_pins", "six_bar_spatial"}) {
+    CAPTURE(name);
+    const model::Model model = model::read_model(test::source_folder() + "/models/" + name + ".toml");
+    const mechanics::Mechanics m = mechanics::build_mechanics(model);
+    const print::Notation notation(m);
+    REQUIRE_FALSE(m.joints.empty());
+    for (std::size_t j = 0; j < m.joints.size(); ++j) {
+      const mechanics::JointReaction& reaction = m.joints[j];
+      for (std::uint32_t k = 0; k < reaction.equations(); ++k) {
+        const std::string shown = notation.multiplier(reaction.first + k).name, begin = "lambda_" + model.joints[j].name + "_";
+        CAPTURE(shown);
+        REQUIRE(shown.starts_with(begin));
+        const bool force = shown[begin.size()] == 'F';
+        if (!force) CHECK(shown[begin.size()] == 'M');
+        // A force of the multiplier where it is called one, else a moment alone.
+        bool exerts_force = false;
+        for (std::size_t c = 0; c < 3; ++c) exerts_force = exerts_force || !m.dag->is_zero(reaction.along[c][k]);
+        CHECK(exerts_force == force);
+      }
+    }
+  }
+}
+
+TEST_CASE("a legend tells which multiplier is which, where there are several") {
+  const auto meanings = [](const char* name) {
+    const model::Model model = model::read_model(test::source_folder() + "/models/" + name + ".toml");
+    return print::multiplier_meanings(mechanics::build_mechanics(model));
+  };
+  const std::vector<print::MultiplierMeaning> pin = meanings("R15_pin_joint");
+  REQUIRE(pin.size() == 5);
+  CHECK(pin[0].text == "of the joint 'pin' on 'second': force along E1");
+  CHECK(pin[3].text == "of the joint 'pin' on 'second': moment along b x a1");
+  const std::vector<print::MultiplierMeaning> wire = meanings("P8_rough_helix");
+  REQUIRE(wire.size() == 2);
+  CHECK(wire[1].text == "of the constraint 'wire.2'");
+  CHECK(meanings("P7_moving_sphere").empty());
 }

@@ -15,6 +15,7 @@
 #include "derive/lagrange.hpp"
 #include "model/names.hpp"
 #include "mechanics/dependent.hpp"
+#include "print/notation.hpp"
 #include "print/render.hpp"
 
 namespace eomgen::cli {
@@ -96,15 +97,42 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
   return result;
 }
 
-/// A contact that can be left is no friction.
+/// What stands there.
 std::string heading_of(const print::Item& item) {
+  const auto named = [&](const std::string& what) { return item.name.empty() ? what : fmt::format("{} '{}'", what, item.name); };
+  if (item.key == "equations" || item.key == "explicit") {
+    return (item.role == "motion" ? "equations of motion" : "equations that give the constraint forces") + std::string(item.key == "explicit" ? ", written out" : "");
+  }
+  if (item.key == "constraints") return item.role == "function of time" ? "functions of time" : fmt::format("{}, {}", named("constraint"), item.role);
+  if (item.key == "reactions") return item.role.empty() ? "multipliers" : fmt::format("{} on '{}'", item.role, item.name);
+  if (item.key == "friction") {  // a contact that can be left is no friction
+    const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") || item.role == "impact" || item.role == "normal force";
+    return fmt::format("{}, {}", named(of_contact ? "contact" : "friction at"), item.role);
+  }
+  if (item.key == "singular") return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
+  if (item.key == "conserved") return "conserved, " + item.role;
   if (item.role.empty()) return item.key;
-  const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") || item.role == "impact" || item.role == "normal force";
-  return (item.key == "friction" && of_contact ? "contact" : item.key) + ": " + item.role;
+  return item.key + ": " + item.role;
+}
+
+/// Which multiplier is which, where there are several.
+json legend(const mechanics::Mechanics& m, const reading::ReadingForm& form) {
+  json result = json::array();
+  const print::Notation notation(m);
+  const auto stands = [&](std::uint32_t k) {
+    const auto has = [k](const reading::Equation& e) { return std::any_of(e.multipliers.begin(), e.multipliers.end(), [k](const auto& term) { return term.constraint == k; }); };
+    return form.by_parts || std::any_of(form.equations.begin(), form.equations.end(), has);
+  };
+  for (const print::MultiplierMeaning& meaning : print::multiplier_meanings(m)) {
+    if (!stands(meaning.constraint)) continue;
+    const print::Glyph glyph = notation.multiplier(meaning.constraint);
+    result.push_back({{"name", glyph.name}, {"of", m.constraints[meaning.constraint].label}, {"meaning", meaning.text}, {"latex", print::latex(glyph)}});
+  }
+  return result;
 }
 
 std::string readable(const std::vector<print::Item>& items, const std::string& approach, const std::string& format,
-                     const std::vector<work::LeftOut>& left_out) {
+                     const std::vector<work::LeftOut>& left_out, const json& multipliers) {
   std::string text = fmt::format("Approach {}\n", approach), heading;
   for (const print::Item& item : items) {
     if (!item.left_out.empty()) continue;
@@ -115,6 +143,8 @@ std::string readable(const std::vector<print::Item>& items, const std::string& a
   }
   if (!left_out.empty()) text += "\nleft out\n";
   for (const work::LeftOut& l : left_out) text += fmt::format("  {}: {}\n", l.what, l.why);
+  if (!multipliers.empty()) text += "\nwhich multiplier is which\n";
+  for (const json& entry : multipliers) text += fmt::format("  {}: {}\n", entry["name"].get<std::string>(), entry["meaning"].get<std::string>());
   return text;
 }
 
@@ -181,13 +211,16 @@ int execute(const Options& options, const Common& common) {
   const work::Kept kept;
   std::vector<work::LeftOut> left_out = left_out_of(items, form);
   if (interrupted) left_out.push_back({"what is not shown", "interrupted"});
+  const bool about_forces = std::any_of(options.show.begin(), options.show.end(), [](const auto& key) { return key == "equations" || key == "reactions" || key == "all"; });
+  const json multipliers = about_forces ? legend(mechanics, form) : json::array();
   if (common.json) {
     json result = to_json(items, system::name(approach), options.show, left_out);
+    result["multipliers"] = multipliers;
     if (!options.document.empty()) result["document"] = written ? json(options.document) : json(nullptr);
     print_document(result);
   } else {
     const bool taken = is_standard_output(options.document);
-    print_readable(readable(items, system::name(approach), options.format, left_out), taken);
+    print_readable(readable(items, system::name(approach), options.format, left_out, multipliers), taken);
     if (written && !taken) print_readable(fmt::format("\nwrote {}\n", options.document), taken);
   }
   if (interrupted) tell_interrupted(nullptr);
