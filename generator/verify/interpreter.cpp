@@ -96,7 +96,7 @@ Interpreter& Interpreter::by_leaf(const Node& node) {
       for (auto* group : {&seeded.functions, &seeded.integrals})
         for (std::vector<Jet>& orders : *group) {
           for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
-          orders.pop_back();
+          if (!orders.empty()) orders.pop_back();  // a function whose own formula this is has none yet
         }
       break;
     default: refuse(node, "diff is by a coordinate, a function, a parameter, an input or t");

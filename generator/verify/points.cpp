@@ -68,7 +68,7 @@ void Points::read_scene() {
   t1_ = std::min(t1_, t0_ + longest_span);
   start.t = exact(t0_);  // before functions of time are looked at, which may have no value at other times
   for (const model::Input& input : m.inputs) {
-    start.inputs.push_back(judge_.value(input.fallback, start));
+    start.inputs.push_back(judge_.constant(input.fallback, start.parameters));
     input_defaults_.push_back(cln::double_approx(start.inputs.back()));
   }
   start.q.assign(m.coordinates.size(), exact(0));
@@ -83,6 +83,8 @@ void Points::read_scene() {
           if (values == &scene->initial && value.order == 0) given[value.coordinate] = true;
         } catch (const Singular&) {
           continue;  // a start that needs values which only the constraints give
+        } catch (const std::domain_error&) {
+          continue;  // a time at which a function of it has no rate, as t^1.5 at 0: states are drawn at others
         }
       }
   read_ranges(start);
@@ -105,6 +107,8 @@ void Points::settle(State start, const std::vector<bool>& given) {
     require_inside(start);
   } catch (const std::runtime_error&) {
     return;  // given values may be moved too, or the guess is too far away: the states are looked for from there
+  } catch (const std::domain_error&) {
+    return;  // the start has no value, as t^1.5 has no rate at 0
   }
   for (std::size_t i = 0; i < choices_.size(); ++i) choices_[i].center = cln::double_approx(start.q[i]);
   read_scales();
@@ -118,8 +122,8 @@ void Points::read_ranges(const State& start) {
     c.rate_center = cln::double_approx(start.qdot[i]);
     c.has_lower = m.coordinates[i].lower != model::no_node;
     c.has_upper = m.coordinates[i].upper != model::no_node;
-    if (c.has_lower) c.lower = cln::double_approx(judge_.value(m.coordinates[i].lower, start));
-    if (c.has_upper) c.upper = cln::double_approx(judge_.value(m.coordinates[i].upper, start));
+    if (c.has_lower) c.lower = cln::double_approx(judge_.constant(m.coordinates[i].lower, start.parameters));
+    if (c.has_upper) c.upper = cln::double_approx(judge_.constant(m.coordinates[i].upper, start.parameters));
     choices_.push_back(c);
   }
 }
