@@ -7,7 +7,6 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "emit/shared_library/cache_folder.hpp"
 #include "error.hpp"
@@ -20,9 +19,18 @@ using nlohmann::json;
 
 constexpr std::uintmax_t most_bytes = 4 << 20;
 
-std::filesystem::path place_of(const emit::CacheFolder& folder, const std::string& key) {
-  return folder.path / ("certificate-" + model::content_hash(key) + ".json");
+/// Nothing where there is no folder that can be trusted: what emits code needs none, and what runs code tells of it.
+std::optional<std::filesystem::path> folder_of_certificates() {
+  try {
+    const emit::CacheFolder folder = emit::cache_folder();
+    if (folder.passing) return std::nullopt;
+    return folder.path;
+  } catch (const Error&) {
+    return std::nullopt;
+  }
 }
+
+std::filesystem::path place_of(const std::filesystem::path& folder, const std::string& key) { return folder / ("certificate-" + model::content_hash(key) + ".json"); }
 
 json to_json(const verify::Certificate& c) {
   json comparisons = json::array(), left_out = json::array();
@@ -52,8 +60,10 @@ std::string program_identity() {
 }
 
 std::optional<verify::Certificate> kept_certificate(const std::string& key) {
+  const std::optional<std::filesystem::path> folder = folder_of_certificates();
+  if (!folder) return std::nullopt;
   try {
-    const std::filesystem::path path = place_of(emit::cache_folder(), key);
+    const std::filesystem::path path = place_of(*folder, key);
     if (!emit::is_own_file(path) || std::filesystem::file_size(path) > most_bytes) return std::nullopt;
     std::ifstream in(path);
     const json document = json::parse(in);
@@ -69,16 +79,17 @@ std::optional<verify::Certificate> kept_certificate(const std::string& key) {
 
 void keep_certificate(const std::string& key, const verify::Certificate& certificate) {
   if (!certificate.pass || certificate.interrupted) return;
-  const emit::CacheFolder folder = emit::cache_folder();
+  const std::optional<std::filesystem::path> folder = folder_of_certificates();
+  if (!folder) return;
   try {
     json document = to_json(certificate);
     document["key"] = model::content_hash("certificate of " + key);
-    const emit::Workplace workplace(folder.path, emit::workplace_name);
+    const emit::Workplace workplace(*folder, emit::workplace_name);
     const std::filesystem::path written = workplace.path() / "certificate";
     std::ofstream out(written);
     out << document.dump() << '\n';
     out.close();
-    if (out) std::filesystem::rename(written, place_of(folder, key));
+    if (out) std::filesystem::rename(written, place_of(*folder, key));
   } catch (const std::system_error&) {
     return;  // a full disk: the next command compares anew
   }

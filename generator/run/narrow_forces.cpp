@@ -93,6 +93,7 @@ std::optional<double> NarrowForces::hidden(const RangeCode& code, const eom::Ste
     open.emplace_back(m, b);
     open.emplace_back(a, m);
   }
+  if (!open.empty() && !unsure_) unsure_ = step.t0;
   return std::nullopt;
 }
 

@@ -7,6 +7,7 @@
 #include <functional>
 #include <limits>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "run/step_boxes.hpp"
@@ -29,6 +30,8 @@ class NarrowForces {
   bool any() const { return !codes_.empty(); }
   /// The longest step that may be taken in its place; infinity where it may be taken as it is.
   double longest(const eom::StepView& step, const Setting& setting) const;
+  /// The first step for which the bounds were too wide to tell; since the last call.
+  std::optional<double> unsure() const { return std::exchange(unsure_, std::nullopt); }
 
  private:
   std::optional<double> hidden(const RangeCode& code, const eom::StepView& step, const Setting& setting) const;
@@ -37,6 +40,7 @@ class NarrowForces {
   std::size_t n_ = 0;
   StepBoxes boxes_;
   std::vector<RangeCode> codes_;
+  mutable std::optional<double> unsure_;
   mutable std::vector<double> x_, before_, after_, dx_;
 };
 

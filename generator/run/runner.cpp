@@ -361,6 +361,9 @@ RunResult integrate_scene(const RunRequest& request) {
     result.estimate_note = fmt::format("a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate says nothing; give a shorter --step, or leave it out",
                                        *integration.passed_over());
   }
+  if (const std::optional<double> from = request.narrow.unsure()) {
+    result.reason += fmt::format("; whether a force that is narrow in the state lies in a step could not be told from t = {:.6g} on (--max-step makes steps shorter)", *from);
+  }
   const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
   if (request.estimate && ended && moves) {
     eom::Result own = end;

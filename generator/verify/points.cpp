@@ -81,10 +81,8 @@ void Points::read_scene() {
         try {
           target[value.coordinate] = judge_.value(value.value, start);
           if (values == &scene->initial && value.order == 0) given[value.coordinate] = true;
-        } catch (const Singular&) {
-          continue;  // a start that needs values which only the constraints give
         } catch (const std::domain_error&) {
-          continue;  // a time at which a function of it has no rate, as t^1.5 at 0: states are drawn at others
+          continue;  // a start that needs values which only the constraints give, or a time at which a function has no rate, as t^1.5 at 0
         }
       }
   read_ranges(start);

@@ -76,3 +76,19 @@ TEST_CASE("kept certificates: verify compares anew, and what is damaged is made 
   }
   CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
 }
+
+TEST_CASE("kept certificates: what needs no folder does without one") {
+  const Folder folder;
+  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
+  std::filesystem::create_directory(folder / "open");
+  std::filesystem::permissions(folder / "open", std::filesystem::perms::all);
+  for (const std::string& cache : {std::string("/proc/no-such-folder"), folder / "open"}) {
+    CAPTURE(cache);
+    ChildCommand call = command(folder, {"emit", "p.toml", "-o", "out"});
+    call.environment["EOMGEN_CACHE_DIR"] = cache;
+    const ChildResult result = Child(call).finish();
+    CHECK(result.status == 0);
+    CHECK(contains(result.out, "certificate pass"));
+  }
+  CHECK(std::filesystem::is_empty(folder / "open"));
+}

@@ -114,7 +114,7 @@ class Member {
     const Real left = detail::size_of(t_end_ - t_);
     const Real t_next = Real(1.01) * h_ >= left ? t_end_ : t_ + direction_ * (2 * h_ > left ? Real(0.5) * left : h_);
     const Real h = t_next - t_;
-    int code = stages(h, t_next, std::make_index_sequence<T::stages>{}, counts);
+    int code = stages(h, std::make_index_sequence<T::stages>{}, counts);
     Real error = 0;
     if (code == 0) {
       advance(h);
@@ -134,7 +134,7 @@ class Member {
   }
 
   template <std::size_t... Row>
-  EOM_DEVICE int stages(Real h, Real, std::index_sequence<Row...>, Counts& counts) {
+  EOM_DEVICE int stages(Real h, std::index_sequence<Row...>, Counts& counts) {
     int code = 0;
     ((code == 0 && Row > 0 ? code = column<Row>(h, counts) : 0), ...);
     return code;
