@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Time of a right-hand side per state: one state at a time and in batches, emitted and written by hand, in turn, in one process.
+// Time of a right-hand side per state: one state at a time and in batches, emitted and written by hand, in turn, in one
+// process.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -25,13 +26,17 @@ using eomgen::bench::Handwritten;
 using eomgen::bench::HandwrittenBatch;
 
 constexpr int repeats = 41;
-constexpr std::size_t count = 64, stride = 72;  // no power of two: rows that are one apart would share a place in the cache
-constexpr double agreement = 1e-10;             // relative, of two ways to round a linear solve of condition below 1e3
+constexpr std::size_t count = 64,
+                      stride = 72;   // no power of two: rows that are one apart would share a place in the cache
+constexpr double agreement = 1e-10;  // relative, of two ways to round a linear solve of condition below 1e3
 
 using Prepare = int (*)(const double* p, double* w);
-using Prepared = int (*)(double t, const double* x, const double* p, const double* w, const double* u, int mode, double* dx);
-using Batch = int (*)(std::size_t, std::size_t, const double*, const double*, const double*, const double*, const int*, int, double*, int*);
-using PreparedBatch = int (*)(std::size_t, std::size_t, const double*, const double*, const double*, const double*, const double*, const int*, int, double*, int*);
+using Prepared = int (*)(double t, const double* x, const double* p, const double* w, const double* u, int mode,
+                         double* dx);
+using Batch = int (*)(std::size_t, std::size_t, const double*, const double*, const double*, const double*, const int*,
+                      int, double*, int*);
+using PreparedBatch = int (*)(std::size_t, std::size_t, const double*, const double*, const double*, const double*,
+                              const double*, const int*, int, double*, int*);
 
 struct Case {
   std::string name;
@@ -43,7 +48,7 @@ struct Case {
   Prepare prepare;
   Prepared rhs_prepared;
   PreparedBatch batch_prepared;
-  const Handwritten* by_hand;             // null: nobody wrote it
+  const Handwritten* by_hand;  // null: nobody wrote it
   const HandwrittenBatch* batch_by_hand;
 };
 
@@ -76,7 +81,8 @@ std::string processor() {
 
 void measure(const Case& c) {
   const std::size_t n = c.states;
-  std::vector<double> start(n), p(256), w(c.prepared + 1), one(n * count), one_dx(n * count), x(n * stride), dx(n * stride), hand_dx(n * stride);
+  std::vector<double> start(n), p(256), w(c.prepared + 1), one(n * count), one_dx(n * count), x(n * stride),
+      dx(n * stride), hand_dx(n * stride);
   std::vector<int> codes(count);
   const double t = 0;
   c.defaults(start.data(), p.data());
@@ -97,8 +103,10 @@ void measure(const Case& c) {
     }
   };
   const auto batch = [&] {
-    const int code = c.prepared > 0 ? c.batch_prepared(count, stride, &t, x.data(), p.data(), w.data(), nullptr, nullptr, 0, dx.data(), codes.data())
-                                    : c.batch(count, stride, &t, x.data(), p.data(), nullptr, nullptr, 0, dx.data(), codes.data());
+    const int code = c.prepared > 0
+                         ? c.batch_prepared(count, stride, &t, x.data(), p.data(), w.data(), nullptr, nullptr, 0,
+                                            dx.data(), codes.data())
+                         : c.batch(count, stride, &t, x.data(), p.data(), nullptr, nullptr, 0, dx.data(), codes.data());
     require(code == 0, "a state of the batch has no right-hand side");
   };
   emitted();
@@ -106,13 +114,16 @@ void measure(const Case& c) {
   std::vector<double> emitted_times, batch_times, ratios;
   std::vector<std::vector<double>> hand_times(eomgen::bench::variants), hand_batch_times(eomgen::bench::batch_variants);
   const auto agree = [&](const double* a, std::size_t step, const double* b, std::size_t other_step, const char* what) {
-    for (std::size_t i = 0; i < n; ++i) require(std::abs(a[i * step] - b[i * other_step]) <= agreement * (1 + std::abs(b[i * other_step])), c.name + ": " + what + " differs");
+    for (std::size_t i = 0; i < n; ++i)
+      require(std::abs(a[i * step] - b[i * other_step]) <= agreement * (1 + std::abs(b[i * other_step])),
+              c.name + ": " + what + " differs");
   };
   for (std::size_t s = 0; s < count; ++s) agree(dx.data() + s, stride, one_dx.data() + s * n, 1, "the batch");
   if (c.by_hand != nullptr) {
     for (int v = 0; v < eomgen::bench::batch_variants; ++v) {
       c.batch_by_hand[v].rhs(count, stride, x.data(), p.data(), hand_dx.data());
-      for (std::size_t s = 0; s < count; ++s) agree(hand_dx.data() + s, stride, one_dx.data() + s * n, 1, "the batch by hand");
+      for (std::size_t s = 0; s < count; ++s)
+        agree(hand_dx.data() + s, stride, one_dx.data() + s * n, 1, "the batch by hand");
     }
   }
   const std::size_t calls = 1 + 20000 / (n * n);
@@ -123,12 +134,13 @@ void measure(const Case& c) {
     if (c.by_hand == nullptr) continue;
     for (int v = 0; v < eomgen::bench::variants; ++v) {
       hand_times[static_cast<std::size_t>(v)].push_back(nanoseconds_per_state(calls, [&] {
-        for (std::size_t s = 0; s < count; ++s) c.by_hand[v].rhs(t, one.data() + s * n, p.data(), nullptr, 0, one_dx.data() + s * n);
+        for (std::size_t s = 0; s < count; ++s)
+          c.by_hand[v].rhs(t, one.data() + s * n, p.data(), nullptr, 0, one_dx.data() + s * n);
       }));
     }
     for (int v = 0; v < eomgen::bench::batch_variants; ++v) {
-      hand_batch_times[static_cast<std::size_t>(v)].push_back(
-          nanoseconds_per_state(calls, [&] { c.batch_by_hand[v].rhs(count, stride, x.data(), p.data(), hand_dx.data()); }));
+      hand_batch_times[static_cast<std::size_t>(v)].push_back(nanoseconds_per_state(
+          calls, [&] { c.batch_by_hand[v].rhs(count, stride, x.data(), p.data(), hand_dx.data()); }));
     }
   }
   const auto best = [&](const std::vector<std::vector<double>>& all) {
@@ -137,21 +149,34 @@ void measure(const Case& c) {
     for (const auto& times : all) least = std::min(least, median(times));
     return fmt::format("{:.1f}", least);
   };
-  fmt::print("| {} | {} | {:.1f} | {} | {:.1f} | {:.2f} |\n", c.name, best(hand_times), median(emitted_times), best(hand_batch_times), median(batch_times), median(ratios));
+  fmt::print("| {} | {} | {:.1f} | {} | {:.1f} | {:.2f} |\n", c.name, best(hand_times), median(emitted_times),
+             best(hand_batch_times), median(batch_times), median(ratios));
 }
 
 }  // namespace
 
-#define CHAIN(n) \
-  {#n, chain_##n##_states, chain_##n##_defaults, chain_##n##_rhs, chain_##n##_rhs_batch, 0, nullptr, nullptr, nullptr, eomgen::bench::handwritten<n>(), eomgen::bench::handwritten_batch<n>()}
+#define CHAIN(n)                                                                                               \
+  {                                                                                                            \
+#n, chain_##n##_states, chain_##n##_defaults, chain_##n##_rhs, chain_##n##_rhs_batch, 0, nullptr, nullptr, \
+        nullptr, eomgen::bench::handwritten < n>(), eomgen::bench::handwritten_batch < n>()                    \
+  }
 
 int main() {
-  const Case cases[] = {{"2", chain_2_states, chain_2_defaults, chain_2_rhs, chain_2_rhs_batch, chain_2_prepared_size, chain_2_prepare, chain_2_rhs_prepared,
-                         chain_2_rhs_prepared_batch, eomgen::bench::handwritten<2>(), eomgen::bench::handwritten_batch<2>()},
-                        CHAIN(6), CHAIN(10), CHAIN(20), CHAIN(30),
-                        {"arm of 7 joints", arm_7_states, arm_7_defaults, arm_7_rhs, arm_7_rhs_batch, arm_7_prepared_size, arm_7_prepare, arm_7_rhs_prepared,
-                         arm_7_rhs_prepared_batch, nullptr, nullptr}};
-  fmt::print("{}; g++ {}; {}; {} lanes; medians of {} repeats in turn, ns per state\n\n", processor(), __VERSION__, EOM_BENCH_FLAGS, chain_2_batch_width(), repeats);
-  fmt::print("| chain of n | best by hand, one state | emitted, one state | by hand, {} at once | emitted, batch | batch / one state |\n|---|---|---|---|---|---|\n", chain_2_batch_width());
+  const Case cases[] = {
+      {"2", chain_2_states, chain_2_defaults, chain_2_rhs, chain_2_rhs_batch, chain_2_prepared_size, chain_2_prepare,
+       chain_2_rhs_prepared, chain_2_rhs_prepared_batch, eomgen::bench::handwritten<2>(),
+       eomgen::bench::handwritten_batch<2>()},
+      CHAIN(6),
+      CHAIN(10),
+      CHAIN(20),
+      CHAIN(30),
+      {"arm of 7 joints", arm_7_states, arm_7_defaults, arm_7_rhs, arm_7_rhs_batch, arm_7_prepared_size, arm_7_prepare,
+       arm_7_rhs_prepared, arm_7_rhs_prepared_batch, nullptr, nullptr}};
+  fmt::print("{}; g++ {}; {}; {} lanes; medians of {} repeats in turn, ns per state\n\n", processor(), __VERSION__,
+             EOM_BENCH_FLAGS, chain_2_batch_width(), repeats);
+  fmt::print(
+      "| chain of n | best by hand, one state | emitted, one state | by hand, {} at once | emitted, batch | batch / "
+      "one state |\n|---|---|---|---|---|---|\n",
+      chain_2_batch_width());
   for (const Case& c : cases) measure(c);
 }

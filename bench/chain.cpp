@@ -36,7 +36,8 @@ struct Case {
 
 constexpr int states = 64;
 
-// A different state with every call, so that nothing can be hoisted out of the loop, and none waits for the last result.
+// A different state with every call, so that nothing can be hoisted out of the loop, and none waits for the last
+// result.
 double nanoseconds(int n, int calls, Rhs rhs) {
   const auto size = 2 * static_cast<std::size_t>(n);
   std::vector<double> x(size * states), dx(size * states);

@@ -1,6 +1,7 @@
-// Twelve digits of a double pendulum: this project's solvers beside Odeint's and GSL's, on the same emitted right-hand side, in turn in
-// one process. Unit masses and lengths, g = 9.81, absolute angles 0.5 and -0.3 from rest, t = 10 (scene released of S5_double_pendulum).
-// Each contender's tolerance is the loosest of a ladder with a true error of 1e-12 or less in every component of the end.
+// Twelve digits of a double pendulum: this project's solvers beside Odeint's and GSL's, on the same emitted right-hand
+// side, in turn in one process. Unit masses and lengths, g = 9.81, absolute angles 0.5 and -0.3 from rest, t = 10
+// (scene released of S5_double_pendulum). Each contender's tolerance is the loosest of a ladder with a true error of
+// 1e-12 or less in every component of the end.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -63,7 +64,8 @@ void odeint_rhs(const State& x, State& dx, double t) { right_hand_side(t, x.data
 template <class Stepper>
 State odeint(double tolerance) {
   State x = start;
-  boost::numeric::odeint::integrate_adaptive(boost::numeric::odeint::make_controlled<Stepper>(tolerance, tolerance), odeint_rhs, x, 0.0, end_time, 1e-2);
+  boost::numeric::odeint::integrate_adaptive(boost::numeric::odeint::make_controlled<Stepper>(tolerance, tolerance),
+                                             odeint_rhs, x, 0.0, end_time, 1e-2);
   return x;
 }
 
@@ -76,7 +78,9 @@ State extrapolated(double tolerance) {
 #endif
 
 #ifdef EOM_BENCH_GSL
-int gsl_rhs(double t, const double* x, double* dx, void*) { return right_hand_side(t, x, dx) == 0 ? GSL_SUCCESS : GSL_FAILURE; }
+int gsl_rhs(double t, const double* x, double* dx, void*) {
+  return right_hand_side(t, x, dx) == 0 ? GSL_SUCCESS : GSL_FAILURE;
+}
 
 State rk8pd(double tolerance) {
   State x = start;
@@ -148,7 +152,8 @@ int main() {
   fmt::print("{:<24} {:>10} {:>11} {:>12} {:>10}\n", "solver", "tolerance", "true error", "evaluations", "us");
   for (Contender& c : contenders) {
     std::nth_element(c.seconds.begin(), c.seconds.begin() + repeats / 2, c.seconds.end());
-    fmt::print("{:<24} {:>10.1e} {:>11.1e} {:>12} {:>10.1f}\n", c.name, c.tolerance, c.reached, c.cost, 1e6 * c.seconds[repeats / 2]);
+    fmt::print("{:<24} {:>10.1e} {:>11.1e} {:>12} {:>10.1f}\n", c.name, c.tolerance, c.reached, c.cost,
+               1e6 * c.seconds[repeats / 2]);
   }
   return 0;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many double pendulums over 10 s: one after the other by integrate(), and as an ensemble, in one process and on one core each.
+// Many double pendulums over 10 s: one after the other by integrate(), and as an ensemble, in one process and on one
+// core each.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -57,7 +58,9 @@ void measure(const char* method, std::size_t members, int repeats, std::size_t l
       for (std::size_t i = 0; i < members; ++i) {
         std::vector<double> x(states), p(parameters);
         start_of(i, x.data(), p.data());
-        const auto rhs = [&p](double t, const double* state, double* dx) { return S5_double_pendulum_rhs(t, state, p.data(), nullptr, 0, dx); };
+        const auto rhs = [&p](double t, const double* state, double* dx) {
+          return S5_double_pendulum_rhs(t, state, p.data(), nullptr, 0, dx);
+        };
         const eom::Result result = eom::integrate(method, rhs, 0, x, t_end, options);
         if (result.outcome != eom::Outcome::done) std::exit(1);
         std::copy(result.x.begin(), result.x.end(), alone.begin() + static_cast<std::ptrdiff_t>(i * states));
@@ -75,22 +78,27 @@ void measure(const char* method, std::size_t members, int repeats, std::size_t l
         if (end.outcome != eom::Outcome::done) std::exit(1);
         std::copy(end.x.begin(), end.x.end(), together.begin() + static_cast<std::ptrdiff_t>(end.member * states));
       };
-      eom::integrate_ensemble(method, eom::CompiledBatch{S5_double_pendulum_rhs_batch}, members, states, parameters, options, start, done);
+      eom::integrate_ensemble(method, eom::CompiledBatch{S5_double_pendulum_rhs_batch}, members, states, parameters,
+                              options, start, done);
     }));
     ratios.push_back(alone_times.back() / ensemble_times.back());
   }
   double difference = 0;
   for (std::size_t i = 0; i < alone.size(); ++i) difference = std::max(difference, std::abs(alone[i] - together[i]));
   const double per = 1e6 / static_cast<double>(members);
-  fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.1e} |\n", method, lanes, per * median(alone_times), per * median(ensemble_times), median(ratios), difference);
+  fmt::print("| {} | {} | {:.1f} | {:.1f} | {:.2f} | {:.1e} |\n", method, lanes, per * median(alone_times),
+             per * median(ensemble_times), median(ratios), difference);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   const std::size_t members = argc > 1 ? std::stoul(argv[1]) : 2000;
-  fmt::print("{}; g++ {}; {}; {} double pendulums, t = {}, rtol = atol = {:g}, one core\n\n", processor(), __VERSION__, EOM_BENCH_FLAGS, members, t_end, tolerance);
-  fmt::print("| method | lanes | one after the other, us per run | ensemble, us per run | times as fast | largest difference |\n|---|---|---|---|---|---|\n");
+  fmt::print("{}; g++ {}; {}; {} double pendulums, t = {}, rtol = atol = {:g}, one core\n\n", processor(), __VERSION__,
+             EOM_BENCH_FLAGS, members, t_end, tolerance);
+  fmt::print(
+      "| method | lanes | one after the other, us per run | ensemble, us per run | times as fast | largest difference "
+      "|\n|---|---|---|---|---|---|\n");
   for (const char* method : {"dop853", "tsit5", "dopri5"}) {
     for (const std::size_t lanes : {16, 32, 64}) measure(method, members, 9, lanes);
   }

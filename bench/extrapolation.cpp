@@ -59,7 +59,8 @@ Attempt step(const Rhs& rhs, const State& x, Quad t, Quad H, int columns, const 
     for (int k = 1; k <= j; ++k) {
       const Quad ratio = static_cast<Quad>(j + 1) / static_cast<Quad>(j + 1 - k), factor = 1 / (ratio * ratio - 1);
       State next = row.back();
-      for (std::size_t i = 0; i < x.size(); ++i) next[i] += (next[i] - last[static_cast<std::size_t>(k - 1)][i]) * factor;
+      for (std::size_t i = 0; i < x.size(); ++i)
+        next[i] += (next[i] - last[static_cast<std::size_t>(k - 1)][i]) * factor;
       row.push_back(std::move(next));
     }
   }
@@ -81,7 +82,8 @@ State integrate(const Rhs& rhs, State x, Quad t1, int columns, Quad tolerance) {
   const auto note_sizes = [&] {
     Quad largest = 0;
     for (const Quad value : x) largest = fmaxq(largest, fabsq(value));
-    for (std::size_t i = 0; i < x.size(); ++i) scale[i] = fmaxq(fmaxq(scale[i], fabsq(x[i])), 1e-2Q * largest);  // not of what passes 0
+    for (std::size_t i = 0; i < x.size(); ++i)
+      scale[i] = fmaxq(fmaxq(scale[i], fabsq(x[i])), 1e-2Q * largest);  // not of what passes 0
   };
   for (Quad& s : scale) s = 0;
   note_sizes();
@@ -91,7 +93,9 @@ State integrate(const Rhs& rhs, State x, Quad t1, int columns, Quad tolerance) {
     const Quad length = last ? t1 - t : H;
     const Attempt tried = step(rhs, x, t, length, columns, scale);
     const bool bad = !(tried.error <= tolerance) || isnanq(tried.error);
-    const Quad wanted = isnanq(tried.error) || isinfq(tried.error) ? 1e-3Q : 0.9Q * powq(tolerance / fmaxq(tried.error, 1e-60Q), 1.0Q / (2 * columns - 1));
+    const Quad wanted = isnanq(tried.error) || isinfq(tried.error)
+                            ? 1e-3Q
+                            : 0.9Q * powq(tolerance / fmaxq(tried.error, 1e-60Q), 1.0Q / (2 * columns - 1));
     H = length * fminq(fmaxq(wanted, 0.1Q), 2);
     if (bad) continue;
     t = last ? t1 : t + length;

@@ -31,7 +31,8 @@ void chain(std::size_t count, std::size_t stride, const double* from, const doub
   for (std::size_t first = 0; first < count; first += lanes) {
     wide_lanes x[2 * N], dx[2 * N], s[N], c[N], size;
 #pragma GCC unroll 64
-    for (int i = 0; i < 2 * N; ++i) x[i] = *reinterpret_cast<const wide_memory*>(from + static_cast<std::size_t>(i) * stride + first);
+    for (int i = 0; i < 2 * N; ++i)
+      x[i] = *reinterpret_cast<const wide_memory*>(from + static_cast<std::size_t>(i) * stride + first);
 #pragma GCC unroll 32
     for (int i = 0; i < N; ++i) {
       const wide_lanes angle = of_differences && i > 0 ? x[i] - x[i - 1] : x[i];
@@ -49,7 +50,9 @@ void chain(std::size_t count, std::size_t stride, const double* from, const doub
       from_tensions<N, wide_lanes>(x, gL, s[0], c[0], ds, dc, dx);
     }
 #pragma GCC unroll 64
-    for (int i = 0; i < 2 * N; ++i) *reinterpret_cast<wide_memory*>(to + static_cast<std::size_t>(i) * stride + first) = static_cast<wide_memory>(dx[i]);
+    for (int i = 0; i < 2 * N; ++i)
+      *reinterpret_cast<wide_memory*>(to + static_cast<std::size_t>(i) * stride + first) =
+          static_cast<wide_memory>(dx[i]);
   }
 }
 

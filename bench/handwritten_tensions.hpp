@@ -12,7 +12,8 @@ template <int N, class Real>
 
 /// s0, c0: of the first angle; s, c: of th_i - th_i-1 for i >= 1.
 template <int N, class Real>
-[[gnu::always_inline]] inline void from_tensions(const Real* x, Real gL, Real s0, Real c0, const Real* s, const Real* c, Real* dx) {
+[[gnu::always_inline]] inline void from_tensions(const Real* x, Real gL, Real s0, Real c0, const Real* s, const Real* c,
+                                                 Real* dx) {
   Real w2[N], k[N], f[N];  // k_i = f_i + b_i k_i-1 from the last rod to the first
 #pragma GCC unroll 32
   for (int i = 0; i < N; ++i) w2[i] = x[N + i] * x[N + i];

@@ -12,7 +12,8 @@ namespace {
 
 Quad at(const Values& values, const std::string& name) { return values.at(name); }
 
-/// The solution of A x = b, n rows, A by rows; b is overwritten. Gaussian elimination with the largest pivot of each column.
+/// The solution of A x = b, n rows, A by rows; b is overwritten. Gaussian elimination with the largest pivot of each
+/// column.
 void solve(std::vector<Quad>& A, std::vector<Quad>& b) {
   const std::size_t n = b.size();
   for (std::size_t k = 0; k < n; ++k) {
@@ -53,11 +54,17 @@ struct Named {
   }
 };
 
-// --- Kepler: by Kepler's equation, from the perihelion -----------------------------------------------------------------
-Problem kepler(const std::string& scene, const std::string& eccentricity, const std::string& t1, const std::string& literature) {
-  Problem problem{"kepler_eccentric", scene, literature, {{"GM", "1"}, {"a", "1"}, {"e", eccentricity}}, {}, {}, {}, {}, t1, {}};
+// --- Kepler: by Kepler's equation, from the perihelion
+// -----------------------------------------------------------------
+Problem kepler(const std::string& scene, const std::string& eccentricity, const std::string& t1,
+               const std::string& literature) {
+  Problem problem{
+      "kepler_eccentric", scene, literature, {{"GM", "1"}, {"a", "1"}, {"e", eccentricity}}, {}, {}, {}, {}, t1, {}};
   if (t1 == "20")
-    problem.values = {{"x", "-1.295266250987574"}, {"y", "0.4003938963792321"}, {"x_dot", "-0.6775390924707566"}, {"y_dot", "-0.1270838154278686"}};
+    problem.values = {{"x", "-1.295266250987574"},
+                      {"y", "0.4003938963792321"},
+                      {"x_dot", "-0.6775390924707566"},
+                      {"y_dot", "-0.1270838154278686"}};
   problem.start = [](const Values& p) {
     const Quad e = at(p, "e");
     return Values{{"x", 1 - e}, {"y", 0}, {"x_dot", 0}, {"y_dot", sqrtq((1 + e) / (1 - e))}};
@@ -76,12 +83,16 @@ Problem kepler(const std::string& scene, const std::string& eccentricity, const 
       E = next;
     }
     const Quad rate = n / (1 - e * cosq(E)), minor = a * sqrtq(1 - e * e);
-    return Values{{"x", a * (cosq(E) - e)}, {"y", minor * sinq(E)}, {"x_dot", -a * sinq(E) * rate}, {"y_dot", minor * cosq(E) * rate}};
+    return Values{{"x", a * (cosq(E) - e)},
+                  {"y", minor * sinq(E)},
+                  {"x_dot", -a * sinq(E) * rate},
+                  {"y_dot", minor * cosq(E) * rate}};
   };
   return problem;
 }
 
-// --- Heavy top: Euler's equations about the fixed point, in body axes, and the attitude as a quaternion -----------------
+// --- Heavy top: Euler's equations about the fixed point, in body axes, and the attitude as a quaternion
+// -----------------
 void top_rhs(const Values& p, Quad, const State& x, State& dx) {
   const Quad w1 = x[4], w2 = x[5], w3 = x[6], X = at(p, "X"), mgX = at(p, "m") * at(p, "g") * X;
   const Quad A = at(p, "J1") + at(p, "m") * X * X, B = at(p, "J2");
@@ -96,13 +107,23 @@ void top_rhs(const Values& p, Quad, const State& x, State& dx) {
   dx[6] = ((A - B) * w1 * w2 + mgX * up1) / A;
 }
 Problem heavy_top() {
-  Problem problem{"heavy_top", "default", "nothing; no digits are published",
-                  {{"m", "15"}, {"g", "9.81"}, {"X", "1"}, {"J1", "0.234375"}, {"J2", "0.46875"}}, {}, {}, top_rhs, {}, "2", {}};
+  Problem problem{"heavy_top",
+                  "default",
+                  "nothing; no digits are published",
+                  {{"m", "15"}, {"g", "9.81"}, {"X", "1"}, {"J1", "0.234375"}, {"J2", "0.46875"}},
+                  {},
+                  {},
+                  top_rhs,
+                  {},
+                  "2",
+                  {}};
   problem.start = [](const Values&) {
-    return Values{{"e0", 1}, {"e1", 0}, {"e2", 0}, {"e3", 0}, {"e0_dot", 0}, {"e1_dot", 0}, {"e2_dot", 75}, {"e3_dot", number("-2.30769")}};
+    return Values{{"e0", 1},     {"e1", 0},     {"e2", 0},      {"e3", 0},
+                  {"e0_dot", 0}, {"e1_dot", 0}, {"e2_dot", 75}, {"e3_dot", number("-2.30769")}};
   };
   problem.begin = [](const Values&, const Values& s) {  // e = (1, 0, 0, 0)
-    return State{at(s, "e0"), at(s, "e1"), at(s, "e2"), at(s, "e3"), 2 * at(s, "e1_dot"), 2 * at(s, "e2_dot"), 2 * at(s, "e3_dot")};
+    return State{at(s, "e0"),         at(s, "e1"),         at(s, "e2"),        at(s, "e3"),
+                 2 * at(s, "e1_dot"), 2 * at(s, "e2_dot"), 2 * at(s, "e3_dot")};
   };
   problem.end = [](const Values& p, const State& x) {
     State dx(7);
@@ -117,14 +138,16 @@ Problem heavy_top() {
   return problem;
 }
 
-// --- Andrews' mechanism: mass matrix, forces and constraints of the test set --------------------------------------------
+// --- Andrews' mechanism: mass matrix, forces and constraints of the test set
+// --------------------------------------------
 const Named andrews_names{{"beta", "theta", "gamma", "phi", "delta", "Omega", "epsilon"}};
 
 void andrews_rhs(const Values& v, Quad, const State& x, State& dx) {
   const auto p = [&v](const char* name) { return at(v, name); };
   const Quad be = x[0], th = x[1], ga = x[2], ph = x[3], de = x[4], om = x[5], ep = x[6];
   const Quad bep = x[7], thp = x[8], gap = x[9], php = x[10], dep = x[11], omp = x[12], epp = x[13];
-  const Quad rr = p("rr"), d = p("d"), da = p("da"), ss = p("ss"), e = p("e"), ea = p("ea"), zt = p("zt"), zf = p("zf"), fa = p("fa"), u = p("u");
+  const Quad rr = p("rr"), d = p("d"), da = p("da"), ss = p("ss"), e = p("e"), ea = p("ea"), zt = p("zt"), zf = p("zf"),
+             fa = p("fa"), u = p("u");
   const Quad m2 = p("m2"), m4 = p("m4"), m6 = p("m6"), e4 = e - ea, f6 = zf - fa;
   constexpr std::size_t n = 13;
   std::vector<Quad> A(n * n, 0), b(n, 0);
@@ -135,11 +158,16 @@ void andrews_rhs(const Values& v, Quad, const State& x, State& dx) {
   set(2, 2, p("m3") * (p("sa") * p("sa") + p("sb") * p("sb")) + p("I3"));
   set(3, 3, m4 * e4 * e4 + p("I4"));
   set(3, 4, m4 * (e4 * e4 + zt * e4 * sinq(ph)) + p("I4"));
-  set(4, 4, m4 * (zt * zt + 2 * zt * e4 * sinq(ph) + e4 * e4) + p("m5") * (p("ta") * p("ta") + p("tb") * p("tb")) + p("I4") + p("I5"));
+  set(4, 4,
+      m4 * (zt * zt + 2 * zt * e4 * sinq(ph) + e4 * e4) + p("m5") * (p("ta") * p("ta") + p("tb") * p("tb")) + p("I4") +
+          p("I5"));
   set(5, 5, m6 * f6 * f6 + p("I6"));
   set(5, 6, m6 * (f6 * f6 - u * f6 * sinq(om)) + p("I6"));
-  set(6, 6, m6 * (f6 * f6 - 2 * u * f6 * sinq(om) + u * u) + p("m7") * (p("ua") * p("ua") + p("ub") * p("ub")) + p("I6") + p("I7"));
-  const Quad X = p("sd") * cosq(ga) + p("sc") * sinq(ga) + p("xb") - p("xc"), Y = p("sd") * sinq(ga) - p("sc") * cosq(ga) + p("yb") - p("yc");
+  set(6, 6,
+      m6 * (f6 * f6 - 2 * u * f6 * sinq(om) + u * u) + p("m7") * (p("ua") * p("ua") + p("ub") * p("ub")) + p("I6") +
+          p("I7"));
+  const Quad X = p("sd") * cosq(ga) + p("sc") * sinq(ga) + p("xb") - p("xc"),
+             Y = p("sd") * sinq(ga) - p("sc") * cosq(ga) + p("yb") - p("yc");
   const Quad length = sqrtq(X * X + Y * Y), pull = -p("c0") * (length - p("l0")) / length;
   b[0] = p("mom") - m2 * da * rr * thp * (thp + 2 * bep) * sinq(th);
   b[1] = m2 * da * rr * bep * bep * sinq(th);
@@ -174,22 +202,42 @@ void andrews_rhs(const Values& v, Quad, const State& x, State& dx) {
   }
 }
 Problem andrews() {
-  Problem problem{"andrews_squeezer", "default", "Test Set for IVP Solvers, problem andrews",
-    {{"m1", "0.04325"}, {"m2", "0.00365"}, {"m3", "0.02373"}, {"m4", "0.00706"}, {"m5", "0.07050"}, {"m6", "0.00706"}, {"m7", "0.05498"},
-     {"xb", "-0.03635"}, {"yb", "0.03273"}, {"xc", "0.014"}, {"yc", "0.072"}, {"c0", "4530"}, {"I1", "2.194e-6"}, {"I2", "4.410e-7"},
-     {"I3", "5.255e-6"}, {"I4", "5.667e-7"}, {"I5", "1.169e-5"}, {"I6", "5.667e-7"}, {"I7", "1.912e-5"}, {"d", "28e-3"}, {"da", "115e-4"},
-     {"e", "2e-2"}, {"ea", "1421e-5"}, {"rr", "7e-3"}, {"ra", "92e-5"}, {"l0", "7785e-5"}, {"ss", "35e-3"}, {"sa", "1874e-5"},
-     {"sb", "1043e-5"}, {"sc", "18e-3"}, {"sd", "2e-2"}, {"ta", "2308e-5"}, {"tb", "916e-5"}, {"u", "4e-2"}, {"ua", "1228e-5"},
-     {"ub", "449e-5"}, {"zf", "2e-2"}, {"zt", "4e-2"}, {"fa", "1421e-5"}, {"mom", "33e-3"}},
-    {}, {}, andrews_rhs, {}, "0.03",
-    {{"beta", "15.81077119629904"}, {"theta", "-15.75637105984298"}, {"gamma", "0.04082224013073101"}, {"phi", "-0.5347301163226948"},
-     {"delta", "0.5244099658805304"}, {"Omega", "0.5347301163226948"}, {"epsilon", "1.048080741042263"}, {"beta_dot", "1139.920302151208"},
-     {"theta_dot", "-1424.379294994111"}, {"gamma_dot", "11.03291221937134"}, {"phi_dot", "19.29337464421385"}, {"delta_dot", "0.5735699284790808"},
-     {"Omega_dot", "-19.29337464421385"}, {"epsilon_dot", "0.3231791658026955"}}};
+  Problem problem{"andrews_squeezer",
+                  "default",
+                  "Test Set for IVP Solvers, problem andrews",
+                  {{"m1", "0.04325"},  {"m2", "0.00365"},  {"m3", "0.02373"},  {"m4", "0.00706"},  {"m5", "0.07050"},
+                   {"m6", "0.00706"},  {"m7", "0.05498"},  {"xb", "-0.03635"}, {"yb", "0.03273"},  {"xc", "0.014"},
+                   {"yc", "0.072"},    {"c0", "4530"},     {"I1", "2.194e-6"}, {"I2", "4.410e-7"}, {"I3", "5.255e-6"},
+                   {"I4", "5.667e-7"}, {"I5", "1.169e-5"}, {"I6", "5.667e-7"}, {"I7", "1.912e-5"}, {"d", "28e-3"},
+                   {"da", "115e-4"},   {"e", "2e-2"},      {"ea", "1421e-5"},  {"rr", "7e-3"},     {"ra", "92e-5"},
+                   {"l0", "7785e-5"},  {"ss", "35e-3"},    {"sa", "1874e-5"},  {"sb", "1043e-5"},  {"sc", "18e-3"},
+                   {"sd", "2e-2"},     {"ta", "2308e-5"},  {"tb", "916e-5"},   {"u", "4e-2"},      {"ua", "1228e-5"},
+                   {"ub", "449e-5"},   {"zf", "2e-2"},     {"zt", "4e-2"},     {"fa", "1421e-5"},  {"mom", "33e-3"}},
+                  {},
+                  {},
+                  andrews_rhs,
+                  {},
+                  "0.03",
+                  {{"beta", "15.81077119629904"},
+                   {"theta", "-15.75637105984298"},
+                   {"gamma", "0.04082224013073101"},
+                   {"phi", "-0.5347301163226948"},
+                   {"delta", "0.5244099658805304"},
+                   {"Omega", "0.5347301163226948"},
+                   {"epsilon", "1.048080741042263"},
+                   {"beta_dot", "1139.920302151208"},
+                   {"theta_dot", "-1424.379294994111"},
+                   {"gamma_dot", "11.03291221937134"},
+                   {"phi_dot", "19.29337464421385"},
+                   {"delta_dot", "0.5735699284790808"},
+                   {"Omega_dot", "-19.29337464421385"},
+                   {"epsilon_dot", "0.3231791658026955"}}};
   problem.start = [](const Values&) {
     State x(14, 0);
-    const std::array<const char*, 7> q{"-0.0617138900142764496358948458001", "0", "0.455279819163070380255912382449", "0.222668390165885884674473185609",
-                                       "0.487364979543842550225598953530", "-0.222668390165885884674473185609", "1.23054744454982119249735015568"};
+    const std::array<const char*, 7> q{"-0.0617138900142764496358948458001", "0",
+                                       "0.455279819163070380255912382449",   "0.222668390165885884674473185609",
+                                       "0.487364979543842550225598953530",   "-0.222668390165885884674473185609",
+                                       "1.23054744454982119249735015568"};
     for (std::size_t i = 0; i < 7; ++i) x[i] = number(q[i]);
     return andrews_names.values(x);
   };
@@ -198,19 +246,24 @@ Problem andrews() {
   return problem;
 }
 
-// --- Car axis: the test set's equations with the constraints differentiated twice ---------------------------------------
+// --- Car axis: the test set's equations with the constraints differentiated twice
+// ---------------------------------------
 const Named car_names{{"xl", "yl", "xr", "yr"}};
 
 void car_rhs(const Values& p, Quad t, const State& x, State& dx) {
-  const Quad L = at(p, "L"), L0 = at(p, "L0"), r = at(p, "r"), w = at(p, "w"), stiffness = at(p, "k"), mass = at(p, "M") / 2;
+  const Quad L = at(p, "L"), L0 = at(p, "L0"), r = at(p, "r"), w = at(p, "w"), stiffness = at(p, "k"),
+             mass = at(p, "M") / 2;
   const Quad yb = r * sinq(w * t), yb1 = r * w * cosq(w * t), yb2 = -w * w * yb;
   const Quad xb = sqrtq(L * L - yb * yb), xb1 = -yb * yb1 / xb, xb2 = -(xb1 * xb1 + yb1 * yb1 + yb * yb2) / xb;
   const Quad xl = x[0], yl = x[1], xr = x[2], yr = x[3], a = xl - xr, c = yl - yr, a1 = x[4] - x[6], c1 = x[5] - x[7];
   const Quad left = sqrtq(xl * xl + yl * yl), right = sqrtq((xr - xb) * (xr - xb) + (yr - yb) * (yr - yb));
   std::vector<Quad> A(36, 0);
-  std::vector<Quad> b{stiffness * (L0 - left) * xl / left, stiffness * (L0 - left) * yl / left - mass * at(p, "g"),
-                      stiffness * (L0 - right) * (xr - xb) / right, stiffness * (L0 - right) * (yr - yb) / right - mass * at(p, "g"),
-                      -(xb2 * xl + yb2 * yl + 2 * (xb1 * x[4] + yb1 * x[5])), -2 * (a1 * a1 + c1 * c1)};
+  std::vector<Quad> b{stiffness * (L0 - left) * xl / left,
+                      stiffness * (L0 - left) * yl / left - mass * at(p, "g"),
+                      stiffness * (L0 - right) * (xr - xb) / right,
+                      stiffness * (L0 - right) * (yr - yb) / right - mass * at(p, "g"),
+                      -(xb2 * xl + yb2 * yl + 2 * (xb1 * x[4] + yb1 * x[5])),
+                      -2 * (a1 * a1 + c1 * c1)};
   for (std::size_t i = 0; i < 4; ++i) A[i * 6 + i] = mass;
   const std::array<std::array<Quad, 4>, 2> G{{{xb, yb, 0, 0}, {2 * a, 2 * c, -2 * a, -2 * c}}};
   for (std::size_t k = 0; k < 2; ++k) {
@@ -223,23 +276,46 @@ void car_rhs(const Values& p, Quad t, const State& x, State& dx) {
   }
 }
 Problem car_axis() {
-  Problem problem{"car_axis", "default", "Test Set for IVP Solvers, problem caraxis",
-    {{"M", "10"}, {"L", "1"}, {"L0", "0.5"}, {"k", "1e4"}, {"r", "0.1"}, {"w", "10"}, {"g", "1"}}, {}, {}, car_rhs, {}, "3",
-    {{"xl", "0.04934557842755629"}, {"yl", "0.4969894602303324"}, {"xr", "1.041742524885400"}, {"yr", "0.3739110272652214"},
-     {"xl_dot", "-0.07705836840321485"}, {"yl_dot", "0.007446866596327776"}, {"xr_dot", "0.01755681574942899"}, {"yr_dot", "0.7703410437794031"}}};
+  Problem problem{"car_axis",
+                  "default",
+                  "Test Set for IVP Solvers, problem caraxis",
+                  {{"M", "10"}, {"L", "1"}, {"L0", "0.5"}, {"k", "1e4"}, {"r", "0.1"}, {"w", "10"}, {"g", "1"}},
+                  {},
+                  {},
+                  car_rhs,
+                  {},
+                  "3",
+                  {{"xl", "0.04934557842755629"},
+                   {"yl", "0.4969894602303324"},
+                   {"xr", "1.041742524885400"},
+                   {"yr", "0.3739110272652214"},
+                   {"xl_dot", "-0.07705836840321485"},
+                   {"yl_dot", "0.007446866596327776"},
+                   {"xr_dot", "0.01755681574942899"},
+                   {"yr_dot", "0.7703410437794031"}}};
   problem.start = [](const Values&) { return car_names.values({0, 0.5, 1, 0.5, -0.5, 0, -0.5, 0}); };
   problem.begin = [](const Values&, const Values& s) { return car_names.state(s); };
   problem.end = [](const Values&, const State& x) { return car_names.values(x); };
   return problem;
 }
 
-// --- Elastic pendulum: Cartesian, by Newton; x is along gravity ---------------------------------------------------------
+// --- Elastic pendulum: Cartesian, by Newton; x is along gravity
+// ---------------------------------------------------------
 Problem elastic(const std::string& scene, const std::string& k) {
-  Problem problem{"elastic_pendulum_smooth", scene, "nothing; no digits are published",
-                  {{"m", "1"}, {"g", "9.81"}, {"L", "1"}, {"k", k}}, {}, {}, {}, {}, "2", {}};
+  Problem problem{"elastic_pendulum_smooth",
+                  scene,
+                  "nothing; no digits are published",
+                  {{"m", "1"}, {"g", "9.81"}, {"L", "1"}, {"k", k}},
+                  {},
+                  {},
+                  {},
+                  {},
+                  "2",
+                  {}};
   problem.start = [](const Values& p) {
     const Quad g = at(p, "g"), c = 1 / at(p, "k"), C = cosq(1), S2 = sinq(1) * sinq(1);
-    const Quad s = c * g * C - 3 * c * c * g * g * S2 - 9 * c * c * c * g * g * g * S2 * C - 27 * c * c * c * c * g * g * g * g * S2 * (2 - C * C) -
+    const Quad s = c * g * C - 3 * c * c * g * g * S2 - 9 * c * c * c * g * g * g * S2 * C -
+                   27 * c * c * c * c * g * g * g * g * S2 * (2 - C * C) -
                    81 * c * c * c * c * c * g * g * g * g * g * S2 * C * (16 - 15 * C * C);
     return Values{{"s", s}, {"theta", 1}, {"s_dot", 0}, {"theta_dot", 0}};
   };
@@ -253,28 +329,56 @@ Problem elastic(const std::string& scene, const std::string& k) {
   };
   problem.end = [](const Values& p, const State& x) {
     const Quad r = sqrtq(x[0] * x[0] + x[1] * x[1]);
-    return Values{{"s", r - at(p, "L")}, {"theta", atan2q(x[1], x[0])}, {"s_dot", (x[0] * x[2] + x[1] * x[3]) / r},
+    return Values{{"s", r - at(p, "L")},
+                  {"theta", atan2q(x[1], x[0])},
+                  {"s_dot", (x[0] * x[2] + x[1] * x[3]) / r},
                   {"theta_dot", (x[0] * x[3] - x[1] * x[2]) / (r * r)}};
   };
   return problem;
 }
 
-// --- The pendulum and the N-four-bar mechanism: one angle each ----------------------------------------------------------
+// --- The pendulum and the N-four-bar mechanism: one angle each
+// ----------------------------------------------------------
 Problem pendulum() {
-  Problem problem{"iftomm_pendulum", "default", "nothing; the closed form is in the test", {{"g", "9.81"}, {"L", "1"}}, {}, {}, {}, {}, "10", {}};
+  Problem problem{"iftomm_pendulum",
+                  "default",
+                  "nothing; the closed form is in the test",
+                  {{"g", "9.81"}, {"L", "1"}},
+                  {},
+                  {},
+                  {},
+                  {},
+                  "10",
+                  {}};
   problem.start = [](const Values&) { return Values{{"x", -1}, {"y", 0}, {"x_dot", 0}, {"y_dot", 0}}; };
-  problem.begin = [](const Values&, const Values& s) { return State{atan2q(at(s, "x"), -at(s, "y")), 0}; };  // from rest
-  problem.rhs = [](const Values& p, Quad, const State& x, State& dx) { dx = {x[1], -at(p, "g") / at(p, "L") * sinq(x[0])}; };
+  problem.begin = [](const Values&, const Values& s) {
+    return State{atan2q(at(s, "x"), -at(s, "y")), 0};
+  };  // from rest
+  problem.rhs = [](const Values& p, Quad, const State& x, State& dx) {
+    dx = {x[1], -at(p, "g") / at(p, "L") * sinq(x[0])};
+  };
   problem.end = [](const Values& p, const State& x) {
     const Quad L = at(p, "L");
-    return Values{{"x", L * sinq(x[0])}, {"y", -L * cosq(x[0])}, {"x_dot", L * x[1] * cosq(x[0])}, {"y_dot", L * x[1] * sinq(x[0])}};
+    return Values{{"x", L * sinq(x[0])},
+                  {"y", -L * cosq(x[0])},
+                  {"x_dot", L * x[1] * cosq(x[0])},
+                  {"y_dot", L * x[1] * sinq(x[0])}};
   };
   return problem;
 }
 
 /// All cranks turn alike, and couplers keep level: (N/3 + 1/3 + N) L a'' = (N/2 + 1/2 + N) g sin(a).
 Problem four_bars(int windows, const std::string& t1, bool beyond) {
-  Problem problem{"n_four_bar_" + std::to_string(windows), "default", "nothing", {{"g", "9.81"}, {"L", "1"}}, {}, {}, {}, {}, t1, {}};
+  Problem problem{"n_four_bar_" + std::to_string(windows),
+                  "default",
+                  "nothing",
+                  {{"g", "9.81"}, {"L", "1"}},
+                  {},
+                  {},
+                  {},
+                  {},
+                  t1,
+                  {}};
   problem.start_is_binary64 = true;
   problem.by_hand_alone = beyond;
   const auto all = [windows](Quad a, Quad a1) {
@@ -299,9 +403,21 @@ Problem four_bars(int windows, const std::string& t1, bool beyond) {
 
 const std::vector<Problem>& problems() {
   static const std::vector<Problem> list{
-      kepler("default", "0.9", "2 pi", "the start, after one period"), kepler("e99", "0.99", "2 pi", "the start, after one period"),
-      kepler("detest_d5", "0.9", "20", "Kepler's equation; published in DETEST, problem D5"), heavy_top(), andrews(), car_axis(), pendulum(), four_bars(2, "1", false), four_bars(2, "10", true), four_bars(40, "10", true),
-      elastic("k4", "1e4"), elastic("k6", "1e6"), elastic("k8", "1e8"), elastic("default", "1e10"), elastic("k12", "1e12")};
+      kepler("default", "0.9", "2 pi", "the start, after one period"),
+      kepler("e99", "0.99", "2 pi", "the start, after one period"),
+      kepler("detest_d5", "0.9", "20", "Kepler's equation; published in DETEST, problem D5"),
+      heavy_top(),
+      andrews(),
+      car_axis(),
+      pendulum(),
+      four_bars(2, "1", false),
+      four_bars(2, "10", true),
+      four_bars(40, "10", true),
+      elastic("k4", "1e4"),
+      elastic("k6", "1e6"),
+      elastic("k8", "1e8"),
+      elastic("default", "1e10"),
+      elastic("k12", "1e12")};
   return list;
 }
 

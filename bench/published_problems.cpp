@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The published problems to many digits, by two formulations: the reference route on the shipped model, and equations written by
-// hand in quadruple precision; and against the digits of the literature. Prints the tables of docs/benchmark-problems.md.
+// The published problems to many digits, by two formulations: the reference route on the shipped model, and equations
+// written by hand in quadruple precision; and against the digits of the literature. Prints the tables of
+// docs/benchmark-problems.md.
 //   bench_published_problems [MODEL [SCENE]]
 #include <cln/dfloat.h>
 #include <cln/float_io.h>
@@ -26,7 +27,7 @@ using published::Problem;
 using published::Quad;
 using published::Values;
 
-constexpr int looks = 100;                       // at the size of each component along the run
+constexpr int looks = 100;                      // at the size of each component along the run
 constexpr int columns = 9, other_columns = 11;  // of the two extrapolations, whose agreement is what is claimed
 
 Quad quad(const cln::cl_F& x) {
@@ -75,11 +76,12 @@ void by_hand_alone(const Problem& problem) {
   Values exact;
   for (const auto& [name, value] : problem.parameters) exact[name] = published::number(value);
   const ByHand truth = by_hand(problem, exact, problem.start(exact), published::number(problem.t1));
-  fmt::print("\n### {}, scene {}, to t = {}\n\nCompared with: {}. By hand only.\n\n| | at t = {} |\n|---|---|\n", problem.model, problem.scene, problem.t1,
-             problem.literature, problem.t1);
+  fmt::print("\n### {}, scene {}, to t = {}\n\nCompared with: {}. By hand only.\n\n| | at t = {} |\n|---|---|\n",
+             problem.model, problem.scene, problem.t1, problem.literature, problem.t1);
   std::set<Quad> seen{0};  // all bars move alike
   for (const auto& [name, value] : truth.other) {
-    if (seen.insert(value).second) fmt::print("| {} | {} |\n", name, published::text(value, std::min(30, digits(truth.end.at(name), value))));
+    if (seen.insert(value).second)
+      fmt::print("| {} | {} |\n", name, published::text(value, std::min(30, digits(truth.end.at(name), value))));
   }
 }
 
@@ -89,8 +91,12 @@ void compare(const Problem& problem) {
   run::RunRequest request = cli::run_request(*simulation.derived, simulation.scene, code, false);
   request.watch_power = false;
   const run::Scene& scene = simulation.scene;
-  reference::Problem posed{simulation.program.functions.front(), run::Integration(request, "dop853").initial_state(), scene.parameters,
-                           scene.t0, {{scene.t1, {}}}, {}};
+  reference::Problem posed{simulation.program.functions.front(),
+                           run::Integration(request, "dop853").initial_state(),
+                           scene.parameters,
+                           scene.t0,
+                           {{scene.t1, {}}},
+                           {}};
   for (int k = 1; k < looks; ++k) posed.times.push_back(scene.t0 + (scene.t1 - scene.t0) * k / looks);
   posed.times.push_back(scene.t1);
   Values rounded, exact, start;
@@ -111,13 +117,17 @@ void compare(const Problem& problem) {
   for (std::size_t i = 0; i < posed.x.size(); ++i) {
     const std::string& name = request.state_names[i];
     both = std::min(both, digits(quad(reference.end[i]), same.other.at(name), sizes[i]));
-    hand = std::min({hand, digits(truth.end.at(name), truth.other.at(name), sizes[i]), digits(same.end.at(name), same.other.at(name), sizes[i])});
+    hand = std::min({hand, digits(truth.end.at(name), truth.other.at(name), sizes[i]),
+                     digits(same.end.at(name), same.other.at(name), sizes[i])});
   }
   const bool literature = !problem.values.empty();
-  fmt::print("\n### {}, scene {}\n\nCompared with: {}. Digits: {} of the reference route, {} of the equations by hand, {} in which these two agree on "
-             "the same binary64 numbers.\n\n", problem.model, problem.scene, problem.literature, reference.digits_at_end, hand, both);
-  fmt::print("| | at t = {} | binary64 moves it by |{}\n|---|---|---|{}\n", problem.t1, literature ? " published | correct digits |" : "",
-             literature ? "---|---|" : "");
+  fmt::print(
+      "\n### {}, scene {}\n\nCompared with: {}. Digits: {} of the reference route, {} of the equations by hand, {} in "
+      "which these two agree on "
+      "the same binary64 numbers.\n\n",
+      problem.model, problem.scene, problem.literature, reference.digits_at_end, hand, both);
+  fmt::print("| | at t = {} | binary64 moves it by |{}\n|---|---|---|{}\n", problem.t1,
+             literature ? " published | correct digits |" : "", literature ? "---|---|" : "");
   for (std::size_t i = 0; i < posed.x.size(); ++i) {
     const std::string& name = request.state_names[i];
     const Quad value = truth.other.at(name);
@@ -128,8 +138,10 @@ void compare(const Problem& problem) {
       agreed = std::to_string(digits(published::number(decimal), value));
     }
     const bool vanishes = fabsq(value) < 1e-25Q * sizes[i];
-    fmt::print("| {} | {} | {:.0e} |{}\n", name, vanishes ? "0" : published::text(value, std::clamp(digits(truth.end.at(name), value, sizes[i]), 1, 30)),
-               static_cast<double>(fabsq(quad(reference.end[i]) - value)), literature ? fmt::format(" {} | {} |", printed, agreed) : "");
+    fmt::print("| {} | {} | {:.0e} |{}\n", name,
+               vanishes ? "0" : published::text(value, std::clamp(digits(truth.end.at(name), value, sizes[i]), 1, 30)),
+               static_cast<double>(fabsq(quad(reference.end[i]) - value)),
+               literature ? fmt::format(" {} | {} |", printed, agreed) : "");
   }
   std::fflush(stdout);
 }
@@ -140,8 +152,10 @@ int main(int argc, char** argv) try {
   for (const Problem& problem : published::problems()) {
     if (argc > 1 && problem.model != argv[1]) continue;
     if (argc > 2 && problem.scene != argv[2]) continue;
-    if (problem.by_hand_alone) by_hand_alone(problem);
-    else compare(problem);
+    if (problem.by_hand_alone)
+      by_hand_alone(problem);
+    else
+      compare(problem);
   }
   return 0;
 } catch (const std::exception& error) {

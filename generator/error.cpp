@@ -26,7 +26,8 @@ std::string source_excerpt(const Where& where) {
   if (line.size() > window && caret > window / 2) begin = std::min(caret - window / 2, line.size() - window);
   line = line.substr(begin, window);
   caret -= std::min(caret, begin);
-  const std::size_t length = std::clamp<std::size_t>(where.length, 1, std::max<std::size_t>(1, window - std::min(caret, window - 1)));
+  const std::size_t length =
+      std::clamp<std::size_t>(where.length, 1, std::max<std::size_t>(1, window - std::min(caret, window - 1)));
   const std::string number = std::to_string(where.line);
   return fmt::format("  {} | {}\n  {} | {}^{}\n", number, line, std::string(number.size(), ' '),
                      std::string(caret, ' '), std::string(length - 1, '~'));

@@ -30,7 +30,9 @@ Kept::Kept() noexcept {
 }
 Kept::~Kept() { --keeping; }
 
-bool abandoned() noexcept { return stop.load(std::memory_order_relaxed) && keeping.load(std::memory_order_relaxed) == 0; }
+bool abandoned() noexcept {
+  return stop.load(std::memory_order_relaxed) && keeping.load(std::memory_order_relaxed) == 0;
+}
 
 void check() {
   if (abandoned()) throw Interrupted{};

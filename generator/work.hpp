@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What long calculations owe to those who wait for them: they end when they are asked to, have budgets counted in operations, and
-// say what they do. The request and the name of what is under way are one for the process, as the signal and the terminal are; budgets
-// belong to the thread that calculates. Hot loops call `spend`, which is a subtraction.
+// What long calculations owe to those who wait for them: they end when they are asked to, have budgets counted in
+// operations, and say what they do. The request and the name of what is under way are one for the process, as the
+// signal and the terminal are; budgets belong to the thread that calculates. Hot loops call `spend`, which is a
+// subtraction.
 #pragma once
 
 #include <cstddef>
@@ -28,7 +29,8 @@ struct OverBudget : std::length_error {
 /// Safe in a signal handler.
 void request_stop() noexcept;
 
-/// While one exists, a request to stop is seen to by whoever made it: `spend` does not throw for it, and no progress is shown.
+/// While one exists, a request to stop is seen to by whoever made it: `spend` does not throw for it, and no progress is
+/// shown.
 class Kept {
  public:
   Kept() noexcept;
@@ -70,7 +72,8 @@ class Stage {
 /// The innermost; nullptr where none is under way.
 const char* stage() noexcept;
 
-/// A line on a terminal that the next one replaces; the end of the outermost stage clears it. Nothing is shown outside of stages, nor while anything is kept.
+/// A line on a terminal that the next one replaces; the end of the outermost stage clears it. Nothing is shown outside
+/// of stages, nor while anything is kept.
 void show_line(const char* text);
 void clear_line() noexcept;
 

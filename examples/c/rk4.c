@@ -1,4 +1,5 @@
-/* The cart and its pendulum with the classical method of Runge and Kutta: plain C, nothing but the generated function. */
+/* The cart and its pendulum with the classical method of Runge and Kutta: plain C, nothing but the generated function.
+ */
 #include <stdio.h>
 
 #include "cart_pendulum.h"
@@ -6,13 +7,11 @@
 enum { N = cart_pendulum_states };
 
 /* x + factor y */
-static void add(const double* x, double factor, const double* y, double* result)
-{
+static void add(const double* x, double factor, const double* y, double* result) {
   for (int i = 0; i < N; ++i) result[i] = x[i] + factor * y[i];
 }
 
-static int rk4_step(double t, double h, double* x, const double* p)
-{
+static int rk4_step(double t, double h, double* x, const double* p) {
   double k1[N], k2[N], k3[N], k4[N], y[N];
   if (cart_pendulum_rhs(t, x, p, NULL, 0, k1) != 0) return 1;
   add(x, h / 2, k1, y);
@@ -25,8 +24,7 @@ static int rk4_step(double t, double h, double* x, const double* p)
   return 0;
 }
 
-int main(void)
-{
+int main(void) {
   const int steps = 10000;
   const double h = 10.0 / steps;
   double x[N], p[cart_pendulum_parameters];

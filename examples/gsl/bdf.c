@@ -7,13 +7,11 @@
 
 enum { N = cart_pendulum_states };
 
-static int rhs(double t, const double x[], double dx[], void* p)
-{
+static int rhs(double t, const double x[], double dx[], void* p) {
   return cart_pendulum_rhs(t, x, p, NULL, 0, dx) == 0 ? GSL_SUCCESS : GSL_EBADFUNC;
 }
 
-static int jacobian(double t, const double x[], double* dfdx, double dfdt[], void* p)
-{
+static int jacobian(double t, const double x[], double* dfdx, double dfdt[], void* p) {
   double by_columns[N * N];
   if (cart_pendulum_jac(t, x, p, NULL, 0, by_columns, dfdt) != 0) return GSL_EBADFUNC;
   for (int i = 0; i < N; ++i) {
@@ -22,8 +20,7 @@ static int jacobian(double t, const double x[], double* dfdx, double dfdt[], voi
   return GSL_SUCCESS;
 }
 
-int main(void)
-{
+int main(void) {
   double x[N], p[cart_pendulum_parameters], t = 0;
   cart_pendulum_defaults(x, p);
   gsl_odeiv2_system system = {rhs, jacobian, N, p};

@@ -15,8 +15,7 @@ enum {
   size = 2 * n + 2 * m
 };
 
-static int residual(realtype t, N_Vector unknowns, N_Vector rates, N_Vector result, void* p)
-{
+static int residual(realtype t, N_Vector unknowns, N_Vector rates, N_Vector result, void* p) {
   const double* const y = N_VGetArrayPointer(unknowns); /* its first 2 n entries are the state (q, v) */
   const double* const dy = N_VGetArrayPointer(rates);
   const double* const mu = y + 2 * n;
@@ -44,8 +43,7 @@ static int residual(realtype t, N_Vector unknowns, N_Vector rates, N_Vector resu
 
 /* A consistent start: the generated functions know the accelerations and the multipliers. The multipliers get a coarse
  * absolute tolerance: no error control is asked for them, but IDA scales its difference quotients by it. */
-static int start(double* y, double* dy, double* is_differential, double* tolerance, double* p)
-{
+static int start(double* y, double* dy, double* is_differential, double* tolerance, double* p) {
   for (int i = 0; i < size; ++i) {
     y[i] = dy[i] = 0;
     is_differential[i] = i < 2 * n;
@@ -56,14 +54,14 @@ static int start(double* y, double* dy, double* is_differential, double* toleran
   return S5_double_pendulum_cartesian_reactions(0, y, p, NULL, 0, y + 2 * n + m);
 }
 
-int main(void)
-{
+int main(void) {
   double p[S5_double_pendulum_cartesian_parameters];
   SUNContext context;
   if (SUNContext_Create(NULL, &context) != 0) return 1;
   N_Vector y = N_VNew_Serial(size, context), dy = N_VClone(y), is_differential = N_VClone(y), tolerance = N_VClone(y);
   double* const values = N_VGetArrayPointer(y);
-  if (start(values, N_VGetArrayPointer(dy), N_VGetArrayPointer(is_differential), N_VGetArrayPointer(tolerance), p) != 0) {
+  if (start(values, N_VGetArrayPointer(dy), N_VGetArrayPointer(is_differential), N_VGetArrayPointer(tolerance), p) !=
+      0) {
     return 1;
   }
 
@@ -71,9 +69,10 @@ int main(void)
   SUNMatrix J = SUNDenseMatrix(size, size, context);
   SUNLinearSolver solver = SUNLinSol_Dense(y, J, context);
   realtype t = 0;
-  const int failed = IDAInit(ida, residual, 0, y, dy) != IDA_SUCCESS || IDASVtolerances(ida, 1e-9, tolerance) != IDA_SUCCESS ||
-                     IDASetUserData(ida, p) != IDA_SUCCESS || IDASetMaxNumSteps(ida, 100000) != IDA_SUCCESS ||
-                     IDASetId(ida, is_differential) != IDA_SUCCESS || IDASetSuppressAlg(ida, SUNTRUE) != IDA_SUCCESS ||
+  const int failed = IDAInit(ida, residual, 0, y, dy) != IDA_SUCCESS ||
+                     IDASVtolerances(ida, 1e-9, tolerance) != IDA_SUCCESS || IDASetUserData(ida, p) != IDA_SUCCESS ||
+                     IDASetMaxNumSteps(ida, 100000) != IDA_SUCCESS || IDASetId(ida, is_differential) != IDA_SUCCESS ||
+                     IDASetSuppressAlg(ida, SUNTRUE) != IDA_SUCCESS ||
                      IDASetLinearSolver(ida, solver, J) != IDA_SUCCESS || IDASetStopTime(ida, 10) != IDA_SUCCESS ||
                      IDASolve(ida, 10, &t, y, dy, IDA_NORMAL) < 0;
   if (!failed) {

@@ -17,7 +17,8 @@ int main() {
   p[model::Parameter::c] = 0.1;  // parameters by name; this is the default
 
   const auto rhs = [&p](const State& state, State& rate, double t) {
-    if (model::rhs<double>(t, state.data(), p.data(), nullptr, 0, rate.data()) != 0) throw std::runtime_error("the mass matrix is singular");
+    if (model::rhs<double>(t, state.data(), p.data(), nullptr, 0, rate.data()) != 0)
+      throw std::runtime_error("the mass matrix is singular");
   };
   const auto stepper = odeint::make_controlled<odeint::runge_kutta_dopri5<State>>(1e-11, 1e-11);
   odeint::integrate_adaptive(stepper, rhs, x, 0.0, 10.0, 1e-3);

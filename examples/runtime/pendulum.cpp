@@ -15,8 +15,8 @@ int main() {
   // The right-hand side of the state (x, y, x', y'): 0 is fine, other codes are those of the C ABI.
   const auto rhs = [](double, const double* s, double* ds) {
     const double r2 = s[0] * s[0] + s[1] * s[1];
-    if (r2 == 0) return 1;                                               // singular mass matrix
-    const double lambda = (g * s[1] - s[2] * s[2] - s[3] * s[3]) / r2;   // keeps x x' + y y' = 0
+    if (r2 == 0) return 1;                                              // singular mass matrix
+    const double lambda = (g * s[1] - s[2] * s[2] - s[3] * s[3]) / r2;  // keeps x x' + y y' = 0
     ds[0] = s[2];
     ds[1] = s[3];
     ds[2] = lambda * s[0];

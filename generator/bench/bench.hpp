@@ -13,28 +13,29 @@ namespace eomgen::bench {
 
 struct Row {
   std::string solver;
-  double rtol = 0, step = 0;         // one of them is 0
-  double error = 0;                  // of the end state: the largest over the components, relative to the largest value of each
-  double error_along = 0;            // the same at all times of the reference
-  std::vector<double> errors;        // per state at the end, absolute
-  double seconds = 0;                // median
+  double rtol = 0, step = 0;  // one of them is 0
+  double error = 0;        // of the end state: the largest over the components, relative to the largest value of each
+  double error_along = 0;  // the same at all times of the reference
+  std::vector<double> errors;  // per state at the end, absolute
+  double seconds = 0;          // median
   std::size_t repeats = 0, steps = 0, rejected = 0, rhs_evaluations = 0;
-  std::string outcome;               // "interrupted": beyond the limit of time
+  std::string outcome;  // "interrupted": beyond the limit of time
 };
 
-/// What is not the program's own: a name, and an integration to the end for a tolerance; steps may be 0 where it does not tell.
+/// What is not the program's own: a name, and an integration to the end for a tolerance; steps may be 0 where it does
+/// not tell.
 struct Other {
   std::string name;
   std::function<Row(double rtol, double atol)> run;
 };
 
 struct Request {
-  const run::RunRequest& run;        // without rows, work and estimate
+  const run::RunRequest& run;  // without rows, work and estimate
   const reference::Solution& reference;
   const std::vector<double>& times;  // of the reference
   std::vector<std::string> solvers;  // of eom::methods()
   std::vector<Other> others = {};
-  double seconds_limit = 10;         // of one run
+  double seconds_limit = 10;  // of one run
   std::function<void(const std::string&)> progress = {};
 };
 

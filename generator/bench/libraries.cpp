@@ -10,12 +10,11 @@
 #include "bench/repeat.hpp"
 #include "emit/shared_library/build.hpp"
 #include "error.hpp"
-
 #include "skeletons/gsl_c.hpp"
 #include "skeletons/odeint_cpp.hpp"
 #include "skeletons/sundials_c.hpp"
-#include "skeletons/task_h.hpp"
 #include "skeletons/task.h"
+#include "skeletons/task_h.hpp"
 
 namespace eomgen::bench {
 namespace {
@@ -60,7 +59,8 @@ struct Calls {
     if (self.is_over()) return 1;
     const run::Code& code = self.request.code;
     const double* p = self.request.scene.parameters.data();
-    return code.rhs_prepared != nullptr ? code.rhs_prepared(t, x, p, self.prepared.data(), nullptr, 0, dx) : code.rhs(t, x, p, nullptr, 0, dx);
+    return code.rhs_prepared != nullptr ? code.rhs_prepared(t, x, p, self.prepared.data(), nullptr, 0, dx)
+                                        : code.rhs(t, x, p, nullptr, 0, dx);
   }
   static int jacobian(double t, const double* x, double* dfdx, double* dfdt, void* data) {
     Calls& self = *static_cast<Calls*>(data);
@@ -77,7 +77,9 @@ class Loaded {
   ~Loaded() { ::dlclose(handle_); }
   Loaded(const Loaded&) = delete;
   Loaded& operator=(const Loaded&) = delete;
-  eomgen_solver solver(const char* function) const { return reinterpret_cast<eomgen_solver>(::dlsym(handle_, function)); }
+  eomgen_solver solver(const char* function) const {
+    return reinterpret_cast<eomgen_solver>(::dlsym(handle_, function));
+  }
 
  private:
   void* handle_;
@@ -95,8 +97,15 @@ struct Runner {
     row.solver = name;
     row.rtol = rtol;
     const run::Scene& scene = calls->request.scene;
-    const eomgen_task task{static_cast<int>(start.size()), scene.t0, scene.t1, rtol, atol, start.data(), Calls::rhs,
-                           calls->request.code.jac != nullptr ? Calls::jacobian : nullptr, calls.get()};
+    const eomgen_task task{static_cast<int>(start.size()),
+                           scene.t0,
+                           scene.t1,
+                           rtol,
+                           atol,
+                           start.data(),
+                           Calls::rhs,
+                           calls->request.code.jac != nullptr ? Calls::jacobian : nullptr,
+                           calls.get()};
     std::vector<double> x(start.size());
     long steps = 0;
     const auto once = [&] {
@@ -125,10 +134,12 @@ struct Runner {
 /// From what the compiler said.
 std::string why_not(const Library& library, const std::string& said) {
   for (const char* missing : {"No such file", "file not found", "cannot find -l", "there is no"}) {
-    if (said.find(missing) != std::string::npos) return std::string("it is not installed (sudo apt-get install ") + library.package + ")";
+    if (said.find(missing) != std::string::npos)
+      return std::string("it is not installed (sudo apt-get install ") + library.package + ")";
   }
   const std::size_t at = said.find("error:");
-  return "what calls it cannot be compiled: " + (at == std::string::npos ? said : said.substr(at, said.find('\n', at) - at));
+  return "what calls it cannot be compiled: " +
+         (at == std::string::npos ? said : said.substr(at, said.find('\n', at) - at));
 }
 
 std::string does_not_fit(const run::RunRequest& request) {
@@ -141,13 +152,31 @@ std::string does_not_fit(const run::RunRequest& request) {
 
 const std::vector<Library>& libraries() {
   static const std::vector<Library> list = {
-      {"Odeint", "odeint.cpp", adapter::odeint_cpp, "libboost-dev", {},
-       {{"Odeint dopri5", "eomgen_odeint_dopri5"}, {"Odeint rkf78", "eomgen_odeint_rkf78"}, {"Odeint bulirsch_stoer", "eomgen_odeint_bulirsch_stoer"}}},
-      {"GSL", "gsl.c", adapter::gsl_c, "libgsl-dev", {"-lgsl", "-lgslcblas", "-lm"}, {{"GSL rk8pd", "eomgen_gsl_rk8pd"}, {"GSL msbdf", "eomgen_gsl_msbdf"}}},
-      {"SUNDIALS", "sundials.c", adapter::sundials_c, "libsundials-dev",
-       {"-lsundials_arkode", "-lsundials_cvode", "-lsundials_ida", "-lsundials_nvecserial", "-lsundials_sunmatrixdense", "-lsundials_sunlinsoldense", "-lm"},
-       {{"CVODE BDF", "eomgen_cvode_bdf"}, {"CVODE Adams", "eomgen_cvode_adams"}, {"ARKODE ERK 8", "eomgen_arkode_erk8"},
-        {"ARKODE DIRK 5", "eomgen_arkode_dirk5"}, {"IDA", "eomgen_ida"}}},
+      {"Odeint",
+       "odeint.cpp",
+       adapter::odeint_cpp,
+       "libboost-dev",
+       {},
+       {{"Odeint dopri5", "eomgen_odeint_dopri5"},
+        {"Odeint rkf78", "eomgen_odeint_rkf78"},
+        {"Odeint bulirsch_stoer", "eomgen_odeint_bulirsch_stoer"}}},
+      {"GSL",
+       "gsl.c",
+       adapter::gsl_c,
+       "libgsl-dev",
+       {"-lgsl", "-lgslcblas", "-lm"},
+       {{"GSL rk8pd", "eomgen_gsl_rk8pd"}, {"GSL msbdf", "eomgen_gsl_msbdf"}}},
+      {"SUNDIALS",
+       "sundials.c",
+       adapter::sundials_c,
+       "libsundials-dev",
+       {"-lsundials_arkode", "-lsundials_cvode", "-lsundials_ida", "-lsundials_nvecserial", "-lsundials_sunmatrixdense",
+        "-lsundials_sunlinsoldense", "-lm"},
+       {{"CVODE BDF", "eomgen_cvode_bdf"},
+        {"CVODE Adams", "eomgen_cvode_adams"},
+        {"ARKODE ERK 8", "eomgen_arkode_erk8"},
+        {"ARKODE DIRK 5", "eomgen_arkode_dirk5"},
+        {"IDA", "eomgen_ida"}}},
   };
   return list;
 }
@@ -156,7 +185,8 @@ LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<
   LibrariesFound found;
   const std::string why = does_not_fit(request);
   auto calls = std::make_shared<Calls>(Calls{request, std::vector<double>(request.code.prepared), seconds});
-  if (request.code.prepare != nullptr && why.empty()) request.code.prepare(request.scene.parameters.data(), calls->prepared.data());
+  if (request.code.prepare != nullptr && why.empty())
+    request.code.prepare(request.scene.parameters.data(), calls->prepared.data());
   for (const Library& library : libraries()) {
     if (!why.empty()) {
       found.left_out.emplace_back(library.name, why);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Solvers of other libraries on the same right-hand side, where they are installed: small C functions of templates/bench, compiled
-// when they are asked for.
+// Solvers of other libraries on the same right-hand side, where they are installed: small C functions of
+// templates/bench, compiled when they are asked for.
 #pragma once
 
 #include <memory>
@@ -31,7 +31,8 @@ struct LibrariesFound {
   std::vector<std::pair<std::string, std::string>> left_out;  // name, why
 };
 
-/// The solvers that fit the scene. `request` is to outlive what is returned; a run that takes more than `seconds` is stopped.
+/// The solvers that fit the scene. `request` is to outlive what is returned; a run that takes more than `seconds` is
+/// stopped.
 LibrariesFound find_libraries(const run::RunRequest& request, const std::vector<double>& start, double seconds);
 
 }  // namespace eomgen::bench

@@ -13,8 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr int tightest = 13;              // rtol from 1e-3 to 1e-13
-constexpr int step_sizes = 9;             // of solvers with fixed steps, halved from one to the next
+constexpr int tightest = 13;   // rtol from 1e-3 to 1e-13
+constexpr int step_sizes = 9;  // of solvers with fixed steps, halved from one to the next
 
 double seconds_since(Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); }
 
@@ -92,7 +92,8 @@ class Measurement {
 
   double worst(const std::vector<double>& x, const std::vector<double>& exact) const {
     double largest = 0;
-    for (std::size_t i = 0; i < scales_.size(); ++i) largest = std::max(largest, std::abs(x[i] - exact[i]) / scales_[i]);
+    for (std::size_t i = 0; i < scales_.size(); ++i)
+      largest = std::max(largest, std::abs(x[i] - exact[i]) / scales_[i]);
     return largest;
   }
 
@@ -136,8 +137,9 @@ std::vector<Row> measure(const Request& request) {
     const bool adaptive = run::method_named(solver).adaptive;
     for (int k = 0; k < (adaptive ? tightest - 2 : step_sizes); ++k) {
       if (interrupted()) return rows;
-      rows.push_back(adaptive ? measurement.row(solver, std::pow(10.0, -3 - k), 0)
-                              : measurement.row(solver, scene.rtol > 0 ? scene.rtol : 1e-9, std::ldexp(first_step, -k)));
+      rows.push_back(adaptive
+                         ? measurement.row(solver, std::pow(10.0, -3 - k), 0)
+                         : measurement.row(solver, scene.rtol > 0 ? scene.rtol : 1e-9, std::ldexp(first_step, -k)));
       if (rows.back().outcome == "interrupted") break;  // what is tighter takes longer
     }
   }

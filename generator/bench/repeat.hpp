@@ -19,7 +19,9 @@ Median median_time(Work&& work) {
   using Clock = std::chrono::steady_clock;
   constexpr std::size_t most = 31, fewest = 3;
   constexpr double longest = 0.15;
-  const auto since = [](Clock::time_point start) { return std::chrono::duration<double>(Clock::now() - start).count(); };
+  const auto since = [](Clock::time_point start) {
+    return std::chrono::duration<double>(Clock::now() - start).count();
+  };
   std::vector<double> values;
   const Clock::time_point start = Clock::now();
   while (values.size() < fewest || (values.size() < most && since(start) < longest)) {

@@ -15,39 +15,48 @@ namespace {
 
 /// Where stability alone makes explicit solvers take many more steps than the motion asks for; or "".
 std::string stiffness(const std::vector<Row>& rows) {
-  constexpr std::size_t many = 20;  // times as many; a motion that has to be resolved costs all of them alike
+  constexpr std::size_t many = 20;            // times as many; a motion that has to be resolved costs all of them alike
   const Row* fewest[2] = {nullptr, nullptr};  // explicit, implicit; of those that are right to a percent
   for (const Row& row : rows) {
     for (const eom::MethodInfo& method : eom::methods()) {
-      if (row.solver != method.name || !method.adaptive || row.outcome != "done" || !(row.error_along <= 0.01)) continue;
+      if (row.solver != method.name || !method.adaptive || row.outcome != "done" || !(row.error_along <= 0.01))
+        continue;
       const Row*& least = fewest[method.implicit ? 1 : 0];
       if (least == nullptr || row.steps < least->steps) least = &row;
     }
   }
   if (fewest[0] == nullptr || fewest[1] == nullptr || fewest[0]->steps < many * fewest[1]->steps) return "";
-  return fmt::format(" The motion is stiff: explicit solvers are unfit, stability asks of them for {} steps and more ({}), where {} takes {}.",
-                     fewest[0]->steps, fewest[0]->solver, fewest[1]->solver, fewest[1]->steps);
+  return fmt::format(
+      " The motion is stiff: explicit solvers are unfit, stability asks of them for {} steps and more ({}), where {} "
+      "takes {}.",
+      fewest[0]->steps, fewest[0]->solver, fewest[1]->solver, fewest[1]->steps);
 }
 
 }  // namespace
 
 std::string advice(const std::vector<Row>& rows) {
-  constexpr double worth_naming = 1.1;  // `auto` is one of the others most of the time, and its times are theirs within the noise of clocks
-  const auto seconds = [](const Row& row) { return row.seconds * (row.solver == eom::Automatic::name ? worth_naming : 1); };
+  constexpr double worth_naming =
+      1.1;  // `auto` is one of the others most of the time, and its times are theirs within the noise of clocks
+  const auto seconds = [](const Row& row) {
+    return row.seconds * (row.solver == eom::Automatic::name ? worth_naming : 1);
+  };
   std::string text;
   for (const int digits : {3, 6, 9, 12}) {
     const double wanted = std::pow(10.0, -digits);
     const Row* best = nullptr;
     for (const Row& row : rows) {
-      if (row.outcome == "done" && row.error_along <= wanted && (best == nullptr || seconds(row) < seconds(*best))) best = &row;
+      if (row.outcome == "done" && row.error_along <= wanted && (best == nullptr || seconds(row) < seconds(*best)))
+        best = &row;
     }
     const std::string what = fmt::format("1e-{}", digits);
     if (best == nullptr) {
       text += fmt::format("{} no solver reaches {}", text.empty() ? "" : ";", what);
       break;
     }
-    const std::string how = best->step > 0 ? fmt::format("step {:.2g}", best->step) : fmt::format("rtol {:.0e}", best->rtol);
-    text += fmt::format("{} {} for {} ({}, {:.3g} ms)", text.empty() ? "" : ",", best->solver, what, how, 1e3 * best->seconds);
+    const std::string how =
+        best->step > 0 ? fmt::format("step {:.2g}", best->step) : fmt::format("rtol {:.0e}", best->rtol);
+    text += fmt::format("{} {} for {} ({}, {:.3g} ms)", text.empty() ? "" : ",", best->solver, what, how,
+                        1e3 * best->seconds);
   }
   return "For true errors along the whole run take" + text + "." + stiffness(rows);
 }

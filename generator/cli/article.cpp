@@ -31,29 +31,35 @@ std::vector<print::ForceFinding> forces_of(Mechanics& m) {
   return result;
 }
 
-std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const ReadingForm& two, const std::vector<derive::Conserved>& conserved) {
+std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const ReadingForm& two,
+                                                  const std::vector<derive::Conserved>& conserved) {
   std::vector<print::ConservedFinding> result;
   for (const derive::Conserved& c : conserved) {
-    result.push_back({c.name, c.title, c.expression, in_named_functions(m, two, c), c.cyclic, c.certainty == derive::Certainty::proven});
+    result.push_back({c.name, c.title, c.expression, in_named_functions(m, two, c), c.cyclic,
+                      c.certainty == derive::Certainty::proven});
   }
   return result;
 }
 
-void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::uint64_t seed, print::Findings& findings) {
+void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::uint64_t seed,
+           print::Findings& findings) {
   const work::Stage stage("holding the derivations against one another");
   verify::Subjects subjects;
   subjects.systems = verify::all_routes(m, &subjects.left_out);
   for (const ReadingForm* form : {&one, &two}) {
-    if (!form->by_parts) subjects.reading.push_back({fmt::format("reading form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
+    if (!form->by_parts)
+      subjects.reading.push_back(
+          {fmt::format("reading form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
   }
   if (findings.routh) subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(*findings.routh, m)});
   const verify::Certificate certificate = verify::certify(m, subjects, {50, emission_points, seed, {}});
   if (certificate.interrupted) throw work::Interrupted{};
   require_pass(certificate, *m.model);
   // Without the measured differences, whose last digits depend on the word size of the machine: equal bytes everywhere.
-  findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(), certificate.points, certificate.options.digits,
-                                     certificate.comparisons.size());
-  for (const std::string& name : certificate.agreeing()) findings.judged += (findings.judged.empty() ? "" : ", ") + name;
+  findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(),
+                                     certificate.points, certificate.options.digits, certificate.comparisons.size());
+  for (const std::string& name : certificate.agreeing())
+    findings.judged += (findings.judged.empty() ? "" : ", ") + name;
 }
 
 print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion) {
@@ -64,7 +70,9 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
     const bool rate = i >= free.size();
     const double value = shown(motion.l.z[i]);
     if (rate && value == 0) continue;  // of an equilibrium all
-    result.values.emplace_back(symbolic::Symbol{symbolic::SymbolKind::coordinate, free[i % free.size()], static_cast<std::uint8_t>(rate)}, value);
+    result.values.emplace_back(
+        symbolic::Symbol{symbolic::SymbolKind::coordinate, free[i % free.size()], static_cast<std::uint8_t>(rate)},
+        value);
   }
   for (const linear::Eigenvalue& e : motion.l.spectrum.values) {
     if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;
@@ -72,12 +80,15 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
   }
   result.zeros = motion.l.spectrum.zeros;
   result.family = motion.family;
-  result.stability = motion.verdict.stability == linear::Stability::stable ? "stable" : motion.verdict.stability == linear::Stability::unstable ? "unstable" : "stability unknown";
+  result.stability = motion.verdict.stability == linear::Stability::stable     ? "stable"
+                     : motion.verdict.stability == linear::Stability::unstable ? "unstable"
+                                                                               : "stability unknown";
   result.reason = motion.verdict.reason;
   return result;
 }
 
-void look_for_steady_motions(const std::string& model, const Mechanics& m, const ReadingForm& two, std::uint64_t seed, print::Findings& findings) {
+void look_for_steady_motions(const std::string& model, const Mechanics& m, const ReadingForm& two, std::uint64_t seed,
+                             print::Findings& findings) {
   if (m.freedom() <= 0) {
     findings.no_steady = "the constraints prescribe the motion";
     return;
@@ -107,7 +118,8 @@ ArticleText article(const std::string& name, std::uint64_t seed) {
   const work::Stage stage("deriving the equations");
   const model::Model model = load_model(name);
   Mechanics m = mechanics::build_mechanics(model);
-  const ReadingForm one = reading::derive_reading(m, system::Approach::one), two = reading::derive_reading(m, system::Approach::two);
+  const ReadingForm one = reading::derive_reading(m, system::Approach::one),
+                    two = reading::derive_reading(m, system::Approach::two);
   print::Findings findings;
   findings.forces = forces_of(m);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);

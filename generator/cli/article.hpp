@@ -13,7 +13,8 @@ struct ArticleText {
   std::string text;  // LaTeX
 };
 
-/// `model`: a file or a name. The equations are held against the judge first; throws Error{Fault::check} where they disagree.
+/// `model`: a file or a name. The equations are held against the judge first; throws Error{Fault::check} where they
+/// disagree.
 ArticleText article(const std::string& model, std::uint64_t seed);
 
 }  // namespace eomgen::cli

@@ -30,7 +30,9 @@ bool of_system(const model::Model& model, std::uint32_t coordinate) {
       // Its range has the place of the entry, whose name begins behind the quotation mark.
       const model::Node& node = model.arena[entry];
       const bool itself = node.op == model::Op::coordinate && node.index == coordinate;
-      if (itself && node.span.line == stated.line && node.span.column >= stated.column && node.span.column <= stated.column + 1 && stated.line > 0) return true;
+      if (itself && node.span.line == stated.line && node.span.column >= stated.column &&
+          node.span.column <= stated.column + 1 && stated.line > 0)
+        return true;
     }
   }
   return false;
@@ -41,7 +43,8 @@ Eigen::VectorXd numbers(const std::vector<double>& values, std::size_t from, std
 }
 
 /// Accelerations, kinetic and potential energy; none where they are not determined.
-std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run::Scene& scene, double t, std::span<const double> x) {
+std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run::Scene& scene, double t,
+                                      std::span<const double> x) {
   const std::size_t n = s.free.size(), m = s.active.size();
   std::vector<symbolic::Ref> roots;
   for (const auto* list : {&s.M, &s.f, &s.A, &s.gamma}) roots.insert(roots.end(), list->begin(), list->end());
@@ -74,7 +77,8 @@ std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run
 
 }  // namespace
 
-bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code, std::uint32_t coordinate, double t, std::span<const double> x) {
+bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
+                        std::uint32_t coordinate, double t, std::span<const double> x) {
   if (!code.contacts.empty() || code.integrals > 0 || !of_system(derived.model, coordinate)) return false;
   const auto place = std::find(code.free.begin(), code.free.end(), coordinate);
   if (place == code.free.end()) return false;
@@ -88,7 +92,10 @@ bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const r
     std::vector<double> state(x.begin(), x.end()), dx(x.size()), y(code.output_names.size()), u;
     for (const run::Signal& input : scene.inputs) u.push_back(input(t, t));
     u.resize(std::max<std::size_t>(1, u.size()));
-    const auto output = [&](const char* name) { return y[static_cast<std::size_t>(std::find(code.output_names.begin(), code.output_names.end(), name) - code.output_names.begin())]; };
+    const auto output = [&](const char* name) {
+      return y[static_cast<std::size_t>(std::find(code.output_names.begin(), code.output_names.end(), name) -
+                                        code.output_names.begin())];
+    };
     const double size = std::max(1.0, std::abs(scene.q[coordinate]));
     for (const double part : {0.3, 0.0, -1e-3, -0.2, -0.7}) {
       state[static_cast<std::size_t>(place - code.free.begin())] = scene.lower[coordinate] + part * size;

@@ -18,7 +18,8 @@ std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& m) {
   for (model::SwitchedChart& chart : charts) {
     if (!chart.refusal.empty()) continue;
     if (!m.integrals.empty()) {
-      chart.refusal = fmt::format("what '{}' keeps is written in the coordinates of the start", m.integrals.front().label);
+      chart.refusal =
+          fmt::format("what '{}' keeps is written in the coordinates of the start", m.integrals.front().label);
     } else if (++count > eom::max_charts) {
       chart.refusal = fmt::format("only {} charts can be exchanged, and others come first", eom::max_charts);
     }
@@ -28,12 +29,13 @@ std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& m) {
 
 std::vector<model::SwitchedChart> exchangeable(const std::vector<model::SwitchedChart>& charts) {
   std::vector<model::SwitchedChart> result;
-  std::copy_if(charts.begin(), charts.end(), std::back_inserter(result), [](const auto& chart) { return chart.refusal.empty(); });
+  std::copy_if(charts.begin(), charts.end(), std::back_inserter(result),
+               [](const auto& chart) { return chart.refusal.empty(); });
   return result;
 }
 
-void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts, unsigned mask,
-                       const ChartRequest& request) {
+void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts,
+                       unsigned mask, const ChartRequest& request) {
   if (program.charts.empty()) {
     symbolic::Dag dag;
     std::vector<system::ChartChange> changes;
@@ -58,14 +60,20 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
   wanted.outputs.clear();
   for (const std::uint32_t i : places) wanted.outputs.push_back(program.outputs[i]);
   program::Program second = make_program(*derived, wanted);
-  const verify::Certificate certificate = certify(*derived, second, {50, emission_points, request.seed, nullptr, wanted.fix});
+  const verify::Certificate certificate =
+      certify(*derived, second, {50, emission_points, request.seed, nullptr, wanted.fix});
   require_pass(certificate, derived->model);
-  for (double Timings::*part : {&Timings::derive, &Timings::optimise, &Timings::verify}) own.seconds.*part += derived->seconds.*part;
+  for (double Timings::*part : {&Timings::derive, &Timings::optimise, &Timings::verify})
+    own.seconds.*part += derived->seconds.*part;
   program::add_second(program, std::move(second), mask, places);
 }
 
 ChartLibrary::ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request)
-    : own_(own), program_(std::move(program)), context_(std::move(context)), request_(std::move(request)), charts_(exchangeable(charts_of(own.mechanics))) {}
+    : own_(own),
+      program_(std::move(program)),
+      context_(std::move(context)),
+      request_(std::move(request)),
+      charts_(exchangeable(charts_of(own.mechanics))) {}
 
 const run::Code& ChartLibrary::in(unsigned mask) {
   if (std::find(known_.begin(), known_.end(), mask) != known_.end()) return compiled_.back()->functions;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Second charts of a model's rotations and positions: which can be exchanged, and the program that knows several. In: what was derived
-// in the own charts. Out: second charts derived, verified and put beside it.
+// Second charts of a model's rotations and positions: which can be exchanged, and the program that knows several. In:
+// what was derived in the own charts. Out: second charts derived, verified and put beside it.
 #pragma once
 
 #include <memory>
@@ -26,9 +26,10 @@ struct ChartRequest {
   std::uint64_t seed = 1;
 };
 
-/// Puts the second charts of `mask` beside `program`: derived, verified (Error{Fault::check} where that is negative), optimised.
-void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts, unsigned mask,
-                       const ChartRequest& request);
+/// Puts the second charts of `mask` beside `program`: derived, verified (Error{Fault::check} where that is negative),
+/// optimised.
+void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts,
+                       unsigned mask, const ChartRequest& request);
 
 /// What a run asks for when it comes near where a chart fails: code with all charts that it has asked for so far.
 class ChartLibrary {

@@ -34,7 +34,8 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
     for (const program::Function& function : second.functions) {
       if (function.name != "outputs") continue;
       for (std::uint32_t i = 0; i < outputs_.size(); ++i) {
-        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end()) own_outputs_.back().outputs.push_back(i);
+        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end())
+          own_outputs_.back().outputs.push_back(i);
       }
     }
   }
@@ -49,8 +50,9 @@ std::vector<double> rounded(const std::vector<verify::Real>& values) {
 }
 
 /// A compiled function by name, with room for its arrays; nothing where it reports a code.
-std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function, const verify::At& at,
-                                                       const std::vector<std::size_t>& sizes, std::size_t prepared) {
+std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function,
+                                                       const verify::At& at, const std::vector<std::size_t>& sizes,
+                                                       std::size_t prepared) {
   const double t = cln::double_approx(at.t);
   const std::vector<double> x = rounded(at.x), p = rounded(at.p), u = rounded(at.u);
   std::vector<std::vector<double>> y;
@@ -90,7 +92,8 @@ verify::CompiledForm CompiledCode::form() const {
   };
   const std::size_t size = 2 * free_.size() + integrals_;
   form.rhs = [model, size, prepared = prepared_](double t, const std::vector<double>& x, const std::vector<double>& p,
-                                                 const std::vector<double>& u, int mode) -> std::optional<std::vector<double>> {
+                                                 const std::vector<double>& u,
+                                                 int mode) -> std::optional<std::vector<double>> {
     std::vector<double> dx(size), w(prepared);
     // What `run` integrates; the self test has compared it with `rhs`.
     const int code = prepared == 0 ? model->rhs(t, x.data(), p.data(), u.data(), mode, dx.data())
@@ -105,7 +108,8 @@ verify::CompiledForm CompiledCode::form() const {
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  run::Code code{model.rhs, model.prepare, model.rhs_prepared, prepared_, model.outputs, model.events, model.jac, model.mass, model.constraints, outputs_, free_, integrals_, active_, holonomic_};
+  run::Code code{model.rhs,  model.prepare,     model.rhs_prepared, prepared_, model.outputs, model.events, model.jac,
+                 model.mass, model.constraints, outputs_,           free_,     integrals_,    active_,      holonomic_};
   code.taylor = model.taylor;
   code.jac_p = model.jac_p;
   code.momenta = model.momenta;
@@ -131,22 +135,24 @@ CompiledCode compile(const program::Program& program, const emit::EmissionContex
   const Interrupt heeded;  // by what waits for the compiler, which leaves nothing behind
   emit::Compiled compiled = emit::compile_and_load(source, header, name, &Interrupt::flag());
   if (!compiled.note.empty() && !again) {
-    tell(format_warning({{}, compiled.note + "; what is compiled now is kept in a private one, for this run alone",
+    tell(format_warning({{},
+                         compiled.note + "; what is compiled now is kept in a private one, for this run alone",
                          "chmod 700 a folder of your own, or name one in EOMGEN_CACHE_DIR"}));
   }
   return {std::move(compiled), program};
 }
 
 std::vector<double> default_inputs(Derived& derived) {
-  const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
+  const run::Scene scene =
+      run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
   std::vector<double> result;
   for (const run::Signal& input : scene.inputs) result.push_back(input(scene.t0, scene.t0));
   return result;
 }
 
 CompiledCode compile_for_check(Derived& derived, const program::Program& program) {
-  const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
-                                              derived.model.scene("default"), {});
+  const run::Scene scene =
+      run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
   verify::Certificate pending;
   return compile(program, emission_context(derived, program, scene, pending));
 }

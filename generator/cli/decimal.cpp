@@ -28,7 +28,8 @@ symbolic::Rational parse_decimal(const std::string& text, const std::string& sho
   std::string digits;
   long exponent = 0;
   bool point = false;
-  for (; at < text.size() && (std::isdigit(static_cast<unsigned char>(text[at])) || (text[at] == '.' && !point)); ++at) {
+  for (; at < text.size() && (std::isdigit(static_cast<unsigned char>(text[at])) || (text[at] == '.' && !point));
+       ++at) {
     if (text[at] == '.') {
       point = true;
       continue;
@@ -41,7 +42,9 @@ symbolic::Rational parse_decimal(const std::string& text, const std::string& sho
     const std::string power = text.substr(at + 1);
     char* end = nullptr;
     const bool sign = !power.empty() && (power[0] == '-' || power[0] == '+');
-    if (power.size() < (sign ? 2u : 1u) || power.size() > 5 || !std::isdigit(static_cast<unsigned char>(power[sign ? 1 : 0]))) fail();
+    if (power.size() < (sign ? 2u : 1u) || power.size() > 5 ||
+        !std::isdigit(static_cast<unsigned char>(power[sign ? 1 : 0])))
+      fail();
     const long written = std::strtol(power.c_str(), &end, 10);
     if (*end != '\0' || std::labs(written) > exponent_limit) fail();
     exponent += written;
@@ -53,12 +56,14 @@ symbolic::Rational parse_decimal(const std::string& text, const std::string& sho
   return negative ? -value : value;
 }
 
-std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command, const std::vector<std::string>& assignments) {
+std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command,
+                                                            const std::vector<std::string>& assignments) {
   std::map<std::string, symbolic::Rational> result;
   for (const std::string& assignment : assignments) {
     const std::size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw Error(command, {}, fmt::format("{} sets nothing", model::quote(assignment)), "write --set NAME=VALUE, such as --set m=2.5");
+      throw Error(command, {}, fmt::format("{} sets nothing", model::quote(assignment)),
+                  "write --set NAME=VALUE, such as --set m=2.5");
     }
     result[assignment.substr(0, equals)] = parse_decimal(assignment.substr(equals + 1), assignment);
   }
@@ -68,7 +73,8 @@ std::map<std::string, symbolic::Rational> parse_assignments(const std::string& c
 std::string decimal_text(const symbolic::Rational& value) {
   const double nearest = cln::double_approx(value);
   const std::string text = fmt::format("{}", nearest);
-  const bool exact = text.size() < 40 && text.find_first_of("in") == std::string::npos && parse_decimal(text, text) == value;
+  const bool exact =
+      text.size() < 40 && text.find_first_of("in") == std::string::npos && parse_decimal(text, text) == value;
   if (exact) return text;
   std::ostringstream fraction;
   fraction << value;

@@ -14,7 +14,8 @@ namespace eomgen::cli {
 symbolic::Rational parse_decimal(const std::string& text, const std::string& shown);
 
 /// --set NAME=VALUE, of two for one name the last. Throws Error{stage `command`} for what sets nothing.
-std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command, const std::vector<std::string>& assignments);
+std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command,
+                                                            const std::vector<std::string>& assignments);
 
 /// "9.81" for 981/100; the fraction where no decimal of at most 17 digits is it.
 std::string decimal_text(const symbolic::Rational& value);

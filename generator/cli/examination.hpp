@@ -8,8 +8,8 @@
 
 namespace eomgen::cli {
 
-/// The document of docs/schema/check.schema.json. Where it is interrupted, it throws work::Interrupted, or tells so in `interrupted` and
-/// gives what it has found by then.
+/// The document of docs/schema/check.schema.json. Where it is interrupted, it throws work::Interrupted, or tells so in
+/// `interrupted` and gives what it has found by then.
 nlohmann::ordered_json examine(const model::Model& model, bool* interrupted = nullptr);
 
 }  // namespace eomgen::cli

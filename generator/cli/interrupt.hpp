@@ -7,10 +7,12 @@
 
 namespace eomgen::cli {
 
-/// From now on Ctrl-C (and a polite kill) is a request to stop (work.hpp) in place of the end of the program; a second one ends it.
+/// From now on Ctrl-C (and a polite kill) is a request to stop (work.hpp) in place of the end of the program; a second
+/// one ends it.
 void heed_signals();
 
-/// While one exists, the command sees to the request itself, and keeps what it has; before that, it is left where it is.
+/// While one exists, the command sees to the request itself, and keeps what it has; before that, it is left where it
+/// is.
 class Interrupt {
  public:
   static const std::atomic<bool>& flag();

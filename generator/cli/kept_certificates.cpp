@@ -30,11 +30,15 @@ std::optional<std::filesystem::path> folder_of_certificates() {
   }
 }
 
-std::filesystem::path place_of(const std::filesystem::path& folder, const std::string& key) { return folder / ("certificate-" + model::content_hash(key) + ".json"); }
+std::filesystem::path place_of(const std::filesystem::path& folder, const std::string& key) {
+  return folder / ("certificate-" + model::content_hash(key) + ".json");
+}
 
 json to_json(const verify::Certificate& c) {
   json comparisons = json::array(), left_out = json::array();
-  for (const verify::Comparison& row : c.comparisons) comparisons.push_back({row.a, row.b, row.shares_code, row.max_relative_difference, row.tolerance, row.digits_agreed});
+  for (const verify::Comparison& row : c.comparisons)
+    comparisons.push_back(
+        {row.a, row.b, row.shares_code, row.max_relative_difference, row.tolerance, row.digits_agreed});
   for (const work::LeftOut& l : c.left_out) left_out.push_back({l.what, l.why, l.over_budget});
   return {{"points", c.points}, {"rejected", c.rejected}, {"comparisons", comparisons}, {"left_out", left_out}};
 }
@@ -44,9 +48,11 @@ verify::Certificate from_json(const json& document) {
   c.points = document.at("points").get<std::size_t>();
   c.rejected = document.at("rejected").get<std::map<std::string, std::size_t>>();
   for (const json& row : document.at("comparisons")) {
-    c.comparisons.push_back({row.at(0).get<std::string>(), row.at(1).get<std::string>(), row.at(2).get<bool>(), row.at(3).get<double>(), row.at(4).get<double>(), row.at(5).get<int>(), true});
+    c.comparisons.push_back({row.at(0).get<std::string>(), row.at(1).get<std::string>(), row.at(2).get<bool>(),
+                             row.at(3).get<double>(), row.at(4).get<double>(), row.at(5).get<int>(), true});
   }
-  for (const json& l : document.at("left_out")) c.left_out.push_back({l.at(0).get<std::string>(), l.at(1).get<std::string>(), l.at(2).get<bool>()});
+  for (const json& l : document.at("left_out"))
+    c.left_out.push_back({l.at(0).get<std::string>(), l.at(1).get<std::string>(), l.at(2).get<bool>()});
   c.pass = !c.comparisons.empty();
   return c;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Certificates that were positive, by all that they depend on: the next command for the same model does not pay for them again. They lie in the folder of
-// compiled code, which is this user's alone. `verify` compares anew each time.
+// Certificates that were positive, by all that they depend on: the next command for the same model does not pay for
+// them again. They lie in the folder of compiled code, which is this user's alone. `verify` compares anew each time.
 #pragma once
 
 #include <optional>

@@ -46,12 +46,16 @@ std::vector<std::string> models_in(const std::vector<fs::path>& folders) {
 std::string nearest_file(const fs::path& path) {
   std::vector<std::string> names;
   std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path.has_parent_path() ? path.parent_path() : fs::path("."), none)) {
-    if (entry.path().extension() == ".toml" && entry.is_regular_file(none)) names.push_back(entry.path().filename().string());
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(path.has_parent_path() ? path.parent_path() : fs::path("."), none)) {
+    if (entry.path().extension() == ".toml" && entry.is_regular_file(none))
+      names.push_back(entry.path().filename().string());
   }
   std::sort(names.begin(), names.end());
   const std::string typed = path.filename().string();
-  const auto found = [&](const std::string& name) { return name.empty() ? std::optional<std::string>() : model::nearest(name, names); };
+  const auto found = [&](const std::string& name) {
+    return name.empty() ? std::optional<std::string>() : model::nearest(name, names);
+  };
   auto meant = found(typed);
   if (!meant && !path.has_extension()) meant = found(typed + ".toml");
   return meant ? (path.parent_path() / *meant).string() : "";
@@ -98,7 +102,8 @@ std::string documentation(const std::string& page) {
   std::error_code none;
   const fs::path program = fs::read_symlink("/proc/self/exe", none);
   for (fs::path folder = program.parent_path(); folder != folder.parent_path(); folder = folder.parent_path()) {
-    if (const fs::path installed = folder / "share" / "doc" / "eomgen" / page; fs::is_regular_file(installed, none)) return installed.string();
+    if (const fs::path installed = folder / "share" / "doc" / "eomgen" / page; fs::is_regular_file(installed, none))
+      return installed.string();
     if (const fs::path source = folder / "docs" / page; fs::is_regular_file(source, none)) return source.string();
   }
   return "docs/" + page;

@@ -18,8 +18,8 @@ void tell_warnings(const model::Model& model);
 /// Reads it and tells its warnings.
 model::Model load_model(const std::string& name);
 
-/// Where a page of the documentation is: beside the installed program, in the source tree that the program was built in, or else its
-/// name in that tree.
+/// Where a page of the documentation is: beside the installed program, in the source tree that the program was built
+/// in, or else its name in that tree.
 std::string documentation(const std::string& page);
 
 }  // namespace eomgen::cli

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/program.hpp"
 
-int main(int argc, char** argv) { return eomgen::cli::run_program({argv, static_cast<std::size_t>(argc)}, "eomgen", eomgen::cli::commands(), nullptr); }
+int main(int argc, char** argv) {
+  return eomgen::cli::run_program({argv, static_cast<std::size_t>(argc)}, "eomgen", eomgen::cli::commands(), nullptr);
+}

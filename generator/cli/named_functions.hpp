@@ -8,7 +8,9 @@
 
 namespace eomgen::cli {
 
-/// A conserved quantity from the reading form of Approach II, where functions of time keep their names; nothing if it has no such form.
-std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, const derive::Conserved& conserved);
+/// A conserved quantity from the reading form of Approach II, where functions of time keep their names; nothing if it
+/// has no such form.
+std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                                               const derive::Conserved& conserved);
 
 }  // namespace eomgen::cli

@@ -23,12 +23,13 @@ namespace fs = std::filesystem;
 
 /// Endings that say what a file holds; others (.out, .2026, none) say nothing.
 constexpr std::array telling_endings{
-    ".csv", ".tsv", ".svg", ".png", ".jpg", ".jpeg", ".gif", ".bmp", ".pdf",  ".ps",  ".eps",   ".html", ".htm", ".xml", ".json",
-    ".toml", ".yaml", ".md", ".tex", ".c",   ".h",    ".cpp", ".hpp", ".py",  ".m",    ".mat", ".npy",   ".npz",  ".h5",  ".hdf5",
-    ".xls", ".xlsx", ".ods", ".zip", ".gz",  ".doc",  ".docx", ".webp", ".mp4"};
+    ".csv", ".tsv",  ".svg",  ".png",  ".jpg", ".jpeg", ".gif", ".bmp", ".pdf", ".ps",  ".eps",  ".html", ".htm",
+    ".xml", ".json", ".toml", ".yaml", ".md",  ".tex",  ".c",   ".h",   ".cpp", ".hpp", ".py",   ".m",    ".mat",
+    ".npy", ".npz",  ".h5",   ".hdf5", ".xls", ".xlsx", ".ods", ".zip", ".gz",  ".doc", ".docx", ".webp", ".mp4"};
 
 std::string lowered(std::string text) {
-  std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(text.begin(), text.end(), text.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return text;
 }
 
@@ -45,7 +46,9 @@ Identity identity(const std::string& path) {
   return {true, found.st_dev, found.st_ino, found.st_mode};
 }
 
-bool same_file(const Identity& a, const Identity& b) { return a.there && b.there && a.device == b.device && a.inode == b.inode; }
+bool same_file(const Identity& a, const Identity& b) {
+  return a.there && b.there && a.device == b.device && a.inode == b.inode;
+}
 
 bool is_device(const Identity& place) { return place.there && S_ISCHR(place.mode); }
 
@@ -67,7 +70,8 @@ void require_ending(const Place& place) {
   if (ending == place.ending || (place.ending == ".html" && ending == ".htm")) return;
   if (std::find(telling_endings.begin(), telling_endings.end(), ending) == telling_endings.end()) return;
   const std::string stem = fs::path(place.path).replace_extension(place.ending).string();
-  refuse(place, fmt::format("this option writes {}, and the name says {}", place.ending.substr(1), ending.substr(1)), "name it " + stem);
+  refuse(place, fmt::format("this option writes {}, and the name says {}", place.ending.substr(1), ending.substr(1)),
+         "name it " + stem);
 }
 
 void require_writable(const Place& place, const std::string& model_file) {
@@ -88,14 +92,19 @@ void require_writable(const Place& place, const std::string& model_file) {
   if (!model_file.empty() && same_file(target, identity(model_file))) {
     refuse(place, "this is the model's own file, which the results would replace", "choose another name");
   }
-  if (target.there && ::access(path.c_str(), W_OK) != 0) refuse(place, "this file may not be written to", "choose another name, or chmod u+w it");
+  if (target.there && ::access(path.c_str(), W_OK) != 0)
+    refuse(place, "this file may not be written to", "choose another name, or chmod u+w it");
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : fs::path(".");
   const std::string name = fs::path(path).filename().string();
   constexpr std::size_t longest_name = 255;  // of Linux's file systems
-  if (name.size() > longest_name) refuse(place, fmt::format("the name has {} bytes, and a file's has at most {}", name.size(), longest_name), "choose a shorter one");
+  if (name.size() > longest_name)
+    refuse(place, fmt::format("the name has {} bytes, and a file's has at most {}", name.size(), longest_name),
+           "choose a shorter one");
   std::error_code ignored;  // what cannot be looked at cannot be written either, and access says so
-  if (!fs::is_directory(folder, ignored)) refuse(place, "there is no folder " + folder.string(), "make the folder first");
-  if (::access(folder.c_str(), W_OK | X_OK) != 0) refuse(place, "the folder " + folder.string() + " may not be written to", "choose another folder");
+  if (!fs::is_directory(folder, ignored))
+    refuse(place, "there is no folder " + folder.string(), "make the folder first");
+  if (::access(folder.c_str(), W_OK | X_OK) != 0)
+    refuse(place, "the folder " + folder.string() + " may not be written to", "choose another folder");
 }
 
 template <typename Write>
@@ -103,7 +112,8 @@ auto writing(Write write) {
   try {
     return write();
   } catch (const std::system_error& error) {  // the writer is part of the runtime, which knows no Error
-    throw Error("cli", {}, error.what(), "see to space on that disk and to your rights there", emit::fault_of_writing(error.code()));
+    throw Error("cli", {}, error.what(), "see to space on that disk and to your rights there",
+                emit::fault_of_writing(error.code()));
   }
 }
 
@@ -138,8 +148,8 @@ bool is_standard_output(const std::string& path) {
   if (path == "-") return true;
   struct stat standard {};
   const Identity place = identity(path);
-  return place.there && ::fstat(STDOUT_FILENO, &standard) == 0 && standard.st_dev == place.device && standard.st_ino == place.inode &&
-         path != "/dev/null";
+  return place.there && ::fstat(STDOUT_FILENO, &standard) == 0 && standard.st_dev == place.device &&
+         standard.st_ino == place.inode && path != "/dev/null";
 }
 
 void require_places(const std::vector<Place>& places, const std::string& model_file, bool json) {
@@ -147,11 +157,13 @@ void require_places(const std::vector<Place>& places, const std::string& model_f
     const Place& place = places[i];
     if (place.path.empty()) refuse(place, "names no file", "name one, or - for standard output");
     const bool standard = is_standard_output(place.path);
-    if (standard && json) refuse(place, "standard output has the JSON document already", "name a file, or leave --json out");
+    if (standard && json)
+      refuse(place, "standard output has the JSON document already", "name a file, or leave --json out");
     for (std::size_t j = 0; j < i; ++j) {
       const Place& other = places[j];
       const Identity here = identity(place.path);
-      const bool same = (standard && is_standard_output(other.path)) || (!is_device(here) && same_file(here, identity(other.path))) ||
+      const bool same = (standard && is_standard_output(other.path)) ||
+                        (!is_device(here) && same_file(here, identity(other.path))) ||
                         (!here.there && final_path(place.path) == final_path(other.path));
       if (same) refuse(place, fmt::format("{} writes to the same place", other.option), "give each a file of its own");
     }
@@ -167,8 +179,11 @@ void require_folder(const std::string& folder) {
   const bool of_a_file = std::find(telling_endings.begin(), telling_endings.end(), ending) != telling_endings.end();
   const Place place{"--out", folder, ""};
   if (folder == "-") refuse(place, "several files do not fit into standard output", "name a folder for them");
-  if (fs::exists(folder, none) && !fs::is_directory(folder, none)) refuse(place, "this is a file, and a folder is asked", "name a folder; the files have their own names");
-  if (of_a_file && !fs::is_directory(folder, none)) refuse(place, fmt::format("a folder is asked, and the name says {}", ending.substr(1)), "name a folder; the files have their own names");
+  if (fs::exists(folder, none) && !fs::is_directory(folder, none))
+    refuse(place, "this is a file, and a folder is asked", "name a folder; the files have their own names");
+  if (of_a_file && !fs::is_directory(folder, none))
+    refuse(place, fmt::format("a folder is asked, and the name says {}", ending.substr(1)),
+           "name a folder; the files have their own names");
 }
 
 std::uint64_t write_text(const std::string& path, const std::string& text) {
@@ -194,11 +209,13 @@ void TableFile::finish(eom::Outcome outcome) {
   writing([&] { writer_.finish(outcome); });
 }
 
-std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files, const std::string& model_file) {
+std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files,
+                                       const std::string& model_file) {
   for (const emit::EmittedFile& file : files) {
     const std::string path = (fs::path(folder) / file.name).string();
     if (same_file(identity(path), identity(model_file))) {
-      throw Error("cli", {}, fmt::format("{} is the model's own file, which the results would replace", path), "choose another folder");
+      throw Error("cli", {}, fmt::format("{} is the model's own file, which the results would replace", path),
+                  "choose another folder");
     }
   }
   return emit::write_files(folder, files);

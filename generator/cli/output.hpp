@@ -16,7 +16,8 @@ namespace eomgen::cli {
 /// Of a result: 0 has no sign.
 inline double unsigned_zero(double value) { return value == 0 ? 0 : value; }
 
-/// To standard output. Bytes that are no UTF-8 (of a path, say) are replaced, numbers that are not finite are null, -0 is 0.
+/// To standard output. Bytes that are no UTF-8 (of a path, say) are replaced, numbers that are not finite are null, -0
+/// is 0.
 void print_document(nlohmann::ordered_json document);
 
 /// To standard error; where that is closed or full the words are lost, and nothing else is.
@@ -53,8 +54,10 @@ class TableFile {
   eom::CsvWriter writer_;
 };
 
-/// Files into a folder that an option named, each whole or none; none of them is the model's own file. Gives their paths.
-std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files, const std::string& model_file);
+/// Files into a folder that an option named, each whole or none; none of them is the model's own file. Gives their
+/// paths.
+std::vector<std::string> write_results(const std::string& folder, const std::vector<emit::EmittedFile>& files,
+                                       const std::string& model_file);
 
 /// Readable results: to standard output, or to standard error where a file has taken that.
 void print_readable(std::string_view text, bool output_taken);

@@ -16,17 +16,23 @@ std::string per_second(const std::string& unit) {
 }
 
 void add(std::vector<Panel>& panels, const std::string& title, const std::string& name) {
-  const auto found = std::find_if(panels.begin(), panels.end(), [&](const Panel& panel) { return panel.title == title && panel.over.empty(); });
-  if (found == panels.end()) panels.push_back({title, {name}, {}});
-  else found->names.push_back(name);
+  const auto found = std::find_if(panels.begin(), panels.end(),
+                                  [&](const Panel& panel) { return panel.title == title && panel.over.empty(); });
+  if (found == panels.end())
+    panels.push_back({title, {name}, {}});
+  else
+    found->names.push_back(name);
 }
 
-std::string titled(const std::string& what, const std::string& unit) { return is_plain(unit) ? what : what + " in " + unit; }
+std::string titled(const std::string& what, const std::string& unit) {
+  return is_plain(unit) ? what : what + " in " + unit;
+}
 
 // A single curve has no legend to be told by.
 void name_single_curves(const model::Model& model, std::vector<Panel>& panels) {
   for (Panel& panel : panels) {
-    if (panel.over.empty() && panel.names.size() == 1) panel.title = titled(panel.names[0], unit_of(model, panel.names[0]));
+    if (panel.over.empty() && panel.names.size() == 1)
+      panel.title = titled(panel.names[0], unit_of(model, panel.names[0]));
   }
 }
 
@@ -36,7 +42,10 @@ std::string unit_of(const model::Model& model, const std::string& name) {
   for (const model::Coordinate& c : model.coordinates) {
     if (c.name == name) return c.unit.text;
     if (c.name + "_dot" == name) return per_second(c.unit.text);
-    if (c.name + "_ddot" == name) return is_plain(c.unit.text) ? (c.unit.text.empty() ? "" : "1/s^2") : c.unit.text.find('/') == std::string::npos ? c.unit.text + "/s^2" : "(" + c.unit.text + ")/s^2";
+    if (c.name + "_ddot" == name)
+      return is_plain(c.unit.text)                        ? (c.unit.text.empty() ? "" : "1/s^2")
+             : c.unit.text.find('/') == std::string::npos ? c.unit.text + "/s^2"
+                                                          : "(" + c.unit.text + ")/s^2";
   }
   for (const model::Definition& d : model.definitions) {
     if (d.name == name) return d.unit.text;
@@ -77,7 +86,8 @@ std::vector<Panel> chosen_panels(const model::Model& model, const std::vector<st
     }
     const std::string over = item.substr(0, comma), name = item.substr(comma + 1);
     if (over.empty() || name.empty() || name.find(',') != std::string::npos) {
-      throw Error("run", {}, "--plot-of " + item + " is no phase plane", "write one as x,x_dot: first what is along the horizontal axis");
+      throw Error("run", {}, "--plot-of " + item + " is no phase plane",
+                  "write one as x,x_dot: first what is along the horizontal axis");
     }
     result.push_back({titled(name, unit_of(model, name)), {name}, over});
   }

@@ -13,7 +13,7 @@ namespace eomgen::cli {
 struct Panel {
   std::string title;
   std::vector<std::string> names;
-  std::string over;      // a phase plane: what is along the horizontal axis; else time
+  std::string over;  // a phase plane: what is along the horizontal axis; else time
 };
 
 /// "m/s^2"; empty where the unit is unknown or the quantity a pure number.

@@ -12,10 +12,10 @@
 #include "cli/kept_certificates.hpp"
 #include "cli/locate.hpp"
 #include "derive/routes.hpp"
+#include "emit/self_test.hpp"
 #include "print/notation.hpp"
 #include "print/printer.hpp"
 #include "print/render.hpp"
-#include "emit/self_test.hpp"
 #include "program/abi_values.hpp"
 #include "program/constrained_solve.hpp"
 #include "program/fingerprint.hpp"
@@ -48,10 +48,12 @@ std::vector<system::Approach> approaches(const mechanics::Mechanics& m, Approach
 void require_freedom(const mechanics::Mechanics& m) {
   if (m.freedom() > 0) return;
   const model::Constraint& last = m.model->constraints.back();
-  throw Error("derive", m.model->where(last.span),
-              m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
-                             : "there are as many constraints as coordinates: nothing is left to move, unless constraints repeat one another",
-              "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
+  throw Error(
+      "derive", m.model->where(last.span),
+      m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
+                     : "there are as many constraints as coordinates: nothing is left to move, unless constraints "
+                       "repeat one another",
+      "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
 }
 
 // The candidates in the forms that are wanted.
@@ -70,8 +72,11 @@ void take_forms(Derived& derived, FormChoice choice) {
   if (choice && others.empty()) {
     const bool any = !derived.mechanics.active.empty();
     throw Error("derive", Where{derived.model.file, 0, 0, 1, ""},
-                any ? fmt::format("the constraints of this model can be left, or hang together in blocks that are too large for form '{}'", system::name(*choice))
-                    : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none", system::name(*choice)),
+                any ? fmt::format("the constraints of this model can be left, or hang together in blocks that are too "
+                                  "large for form '{}'",
+                                  system::name(*choice))
+                    : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none",
+                                  system::name(*choice)),
                 any ? "leave --form out, or choose multipliers" : "leave --form out");
   }
   if (choice) derived.candidates.clear();
@@ -79,7 +84,8 @@ void take_forms(Derived& derived, FormChoice choice) {
 }
 
 // The other forms, as they come out of the derivation: all must say the same.
-std::vector<program::Program> other_forms(const Derived& derived, const program::Program& program, const std::map<std::uint32_t, symbolic::Rational>& fixed) {
+std::vector<program::Program> other_forms(const Derived& derived, const program::Program& program,
+                                          const std::map<std::uint32_t, symbolic::Rational>& fixed) {
   std::vector<program::Program> result;
   for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
     if (form == program.form || derived.mechanics.active.empty()) continue;
@@ -101,7 +107,8 @@ program::AbiArguments abi_arguments(const verify::At& at, const std::vector<veri
 }
 
 /// The same with its other functions.
-verify::ProgramForm with_functions(verify::ProgramForm form, const program::Program& program, const std::vector<verify::Real>& default_inputs) {
+verify::ProgramForm with_functions(verify::ProgramForm form, const program::Program& program,
+                                   const std::vector<verify::Real>& default_inputs) {
   form.functions = program::abi_function_names(program);
   form.route = program.route;
   form.approach = program.approach;
@@ -113,28 +120,32 @@ verify::ProgramForm with_functions(verify::ProgramForm form, const program::Prog
   return form;
 }
 
-verify::ProgramForm program_form(const program::Program& program, int digits, const std::vector<verify::Real>& default_inputs) {
+verify::ProgramForm program_form(const program::Program& program, int digits,
+                                 const std::vector<verify::Real>& default_inputs) {
   const program::Function& rhs = program.functions.front();
-  verify::ProgramForm form{"optimised program", [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x,
-                                              const std::vector<verify::Real>& p, const std::vector<verify::Real>& u,
-                                              int mode) {
-            const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, digits);
-            for (std::size_t i = 1; i < values.results.size(); ++i) {
-              for (const cln::cl_R& code : values.results[i]) {
-                if (program::is_code(rhs.results[i].first) && cln::minusp(code)) return std::vector<verify::Real>{};
-              }
-            }
-            return values.results.front();
-          }};
+  verify::ProgramForm form{
+      "optimised program",
+      [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x, const std::vector<verify::Real>& p,
+                     const std::vector<verify::Real>& u, int mode) {
+        const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, digits);
+        for (std::size_t i = 1; i < values.results.size(); ++i) {
+          for (const cln::cl_R& code : values.results[i]) {
+            if (program::is_code(rhs.results[i].first) && cln::minusp(code)) return std::vector<verify::Real>{};
+          }
+        }
+        return values.results.front();
+      }};
   form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
     return program::abi_bounds(program, function, abi_arguments(at, default_inputs));
   };
   return form;
 }
 
-/// The k-th state for the self test: the start, then states beside it with other parameters and inputs, no two of which are equal, so that a
-/// vanishing term cannot hide, nor one that is taken for another. Nearer to the start where there is no value.
-std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context, int k, int mode, std::size_t index) {
+/// The k-th state for the self test: the start, then states beside it with other parameters and inputs, no two of which
+/// are equal, so that a vanishing term cannot hide, nor one that is taken for another. Nearer to the start where there
+/// is no value.
+std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context,
+                                            int k, int mode, std::size_t index) {
   for (const double share : {1.0, 0.125, 0x1p-6, 0x1p-10}) {
     emit::TestVector at;
     at.t = context.start_time + 0.125 * k * share;
@@ -151,7 +162,8 @@ std::optional<emit::TestVector> test_vector(const program::Program& program, con
       const double more = step * static_cast<double>(rank) / (8 * static_cast<double>(count) + 8);
       at.p.push_back(value == 0 ? more : value * (1 + more));
     }
-    for (std::size_t i = 0; i < context.inputs.size(); ++i) at.u.push_back(context.inputs[i].value + step * (0.25 + 0.0625 * static_cast<double>(i)));
+    for (std::size_t i = 0; i < context.inputs.size(); ++i)
+      at.u.push_back(context.inputs[i].value + step * (0.25 + 0.0625 * static_cast<double>(i)));
     if (auto vector = emit::test_vector(program, context, std::move(at), index)) return vector;
     if (k == 0) break;
   }
@@ -165,7 +177,8 @@ bool far_from_failing(const program::Program& program, int in_charts, const std:
   for (std::size_t j = 0; j < program.charts.size(); ++j) {
     const program::ChartInfo& chart = program.charts[j];
     const double angle = x[chart.guarded];
-    if ((eom::charts_of(in_charts) >> j & 1) != 0) result = result && std::abs(chart.second_at_sine ? std::sin(angle) : std::cos(angle)) > far;
+    if ((eom::charts_of(in_charts) >> j & 1) != 0)
+      result = result && std::abs(chart.second_at_sine ? std::sin(angle) : std::cos(angle)) > far;
   }
   return result;
 }
@@ -214,7 +227,8 @@ FormChoice form_choice(const std::string& text) {
     if (text == system::name(form)) return form;
   }
   const bool later = text == "routh";
-  throw Error("cli", {}, later ? fmt::format("form '{}' is not supported yet", text) : fmt::format("there is no form '{}'", text),
+  throw Error("cli", {},
+              later ? fmt::format("form '{}' is not supported yet", text) : fmt::format("there is no form '{}'", text),
               "choose auto, multipliers, nullspace or chaplygin");
 }
 
@@ -236,7 +250,8 @@ std::unique_ptr<Derived> derive_model(model::Model model, ApproachChoice approac
   require_freedom(derived->mechanics);
   for (const system::Approach a : approaches(derived->mechanics, approach)) {
     for (const derive::RouteEntry& route : derive::routes()) {
-      if (auto route_system = derive::derive_where_worth(route, derived->mechanics, a).system) derived->candidates.push_back(std::move(*route_system));
+      if (auto route_system = derive::derive_where_worth(route, derived->mechanics, a).system)
+        derived->candidates.push_back(std::move(*route_system));
     }
   }
   derived->conserved = derive::conserved_quantities(derived->mechanics, derived->candidates);
@@ -263,8 +278,10 @@ void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjec
     const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
     std::string name = fmt::format("reading form {}", system::name(approach));
     // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
-    if (form.by_parts) subjects.left_out.push_back({std::move(name), form.why_by_parts});
-    else subjects.reading.push_back({std::move(name), reading::residuals_on_dag(form, mechanics)});
+    if (form.by_parts)
+      subjects.left_out.push_back({std::move(name), form.why_by_parts});
+    else
+      subjects.reading.push_back({std::move(name), reading::residuals_on_dag(form, mechanics)});
   }
 }
 
@@ -274,8 +291,10 @@ namespace {
 std::string key_of(const Derived& derived, const program::Program& program, const Verification& options) {
   const std::string identity = program_identity();
   if (!options.keep || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
-  std::string key = fmt::format("{}\n{}\n{} {} {} {}\n", identity, derived.model.content_hash, options.digits, options.points, options.seed, options.reductions);
-  for (const auto& [parameter, value] : options.fixed) key += fmt::format("{} = {:.17g}\n", parameter, cln::double_approx(value));
+  std::string key = fmt::format("{}\n{}\n{} {} {} {}\n", identity, derived.model.content_hash, options.digits,
+                                options.points, options.seed, options.reductions);
+  for (const auto& [parameter, value] : options.fixed)
+    key += fmt::format("{} = {:.17g}\n", parameter, cln::double_approx(value));
   for (const double input : options.default_inputs) key += fmt::format("{:.17g}\n", input);
   return key + program::fingerprint(program);
 }
@@ -298,11 +317,14 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   subjects.systems = verify::all_routes(derived.mechanics, &subjects.left_out);
   add_reading_forms(derived.mechanics, subjects);
   if (options.reductions) {
-    const reading::RouthForm routh = reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
-    subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
+    const reading::RouthForm routh =
+        reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
+    subjects.reading.push_back(
+        {"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
   }
   std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
-  for (std::size_t i = 0; i < options.default_inputs.size(); ++i) inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
+  for (std::size_t i = 0; i < options.default_inputs.size(); ++i)
+    inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
   const int digits = options.digits + verify::digits_of_range(derived.mechanics);
   subjects.programs.push_back(with_functions(program_form(program, digits, inputs), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
@@ -323,13 +345,17 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
   if (certificate.pass) return;
   std::string failures, agreeing;
   for (const verify::Comparison& c : certificate.comparisons) {
-    if (!c.pass) failures += fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
+    if (!c.pass)
+      failures +=
+          fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
   }
   for (const std::string& name : certificate.agreeing()) agreeing += (agreeing.empty() ? "" : ", ") + name;
   throw Error("verify", Where{model.file, 0, 0, 1, ""},
               fmt::format("the derivations of this model disagree ({}), so nothing is emitted; {}", failures,
-                          agreeing.empty() ? "none agrees with d'Alembert's principle" : "with d'Alembert's principle agree " + agreeing),
-              "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons", Fault::check);
+                          agreeing.empty() ? "none agrees with d'Alembert's principle"
+                                           : "with d'Alembert's principle agree " + agreeing),
+              "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons",
+              Fault::check);
 }
 
 emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
@@ -349,7 +375,8 @@ emit::EmissionContext emission_context(Derived& derived, const program::Program&
     const symbolic::Ref formula = derived.mechanics.parameter_value[i];
     if (derived.mechanics.dag->symbols({formula}).empty()) continue;
     if (const auto written = reading::as_written(model, p.value)) {
-      context.parameters.back().expression = print::print(*written, print::Notation(derived.mechanics), print::Format::language);
+      context.parameters.back().expression =
+          print::print(*written, print::Notation(derived.mechanics), print::Format::language);
     }
   }
   for (std::size_t i = 0; i < model.inputs.size(); ++i) {

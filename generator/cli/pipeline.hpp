@@ -58,10 +58,10 @@ struct Verification {
   std::uint64_t seed = 1;
   const verify::CompiledForm* compiled = nullptr;
   std::map<std::uint32_t, symbolic::Rational> fixed = {};  // as the program was asked for
-  bool reductions = false;  // Routh's too, which no code is made of
+  bool reductions = false;                                 // Routh's too, which no code is made of
   std::vector<double> default_inputs = {};  // of the emitted code, which mass and constraints see; none: any will do
-  bool partial = false;     // what an interruption leaves will do
-  bool keep = true;         // false: it is compared anew, whatever was kept
+  bool partial = false;                     // what an interruption leaves will do
+  bool keep = true;                         // false: it is compared anew, whatever was kept
 };
 verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options);
 
@@ -72,7 +72,8 @@ void require_pass(const verify::Certificate& certificate, const model::Model& mo
 emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
                                        const verify::Certificate& certificate);
 
-/// For the self test: three points in mode 0, of contacts one in every other mode, the first ones, two in second charts.
+/// For the self test: three points in mode 0, of contacts one in every other mode, the first ones, two in second
+/// charts.
 std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context);
 
 /// How many points are checked each time that code is emitted; `verify` checks more.

@@ -39,14 +39,17 @@ int report(const Error& error) {
 }
 
 int output_lost() {
-  tell("error: standard output could not be written\n  remedy: see to space on that disk, or to the program that reads it\n");
+  tell(
+      "error: standard output could not be written\n  remedy: see to space on that disk, or to the program that reads "
+      "it\n");
   return exit_internal;
 }
 
 /// A standard stream that is closed would give its number to the first file that is opened, and messages would go into
 /// results. What is written to standard output then fails, and is told; what is told is lost, and nothing else is.
 void take_closed_streams() {
-  for (const auto& [stream, way] : {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
+  for (const auto& [stream, way] :
+       {std::pair{STDIN_FILENO, O_WRONLY}, {STDOUT_FILENO, O_RDONLY}, {STDERR_FILENO, O_WRONLY}}) {
     if (fcntl(stream, F_GETFD) >= 0) continue;
     const int taken = open("/dev/null", way);
     if (taken >= 0 && taken != stream) {
@@ -102,7 +105,7 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
   return exit_interrupted;
 } catch (const cln::floating_point_exception&) {
   return report(Error("numbers", Where{}, "a value of this model is beyond what binary64 holds (1e308 in size)",
-                              "use units in which its masses, lengths and times are nearer to 1"));
+                      "use units in which its masses, lengths and times are nearer to 1"));
 } catch (const std::bad_alloc&) {
   tell("error: out of memory\n  remedy: make the model smaller\n");
   return exit_internal;

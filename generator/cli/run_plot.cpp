@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/run_plot.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <eom/output/svg_plot.hpp>
-#include <fmt/format.h>
 
 #include "cli/text_plot.hpp"
 #include "error.hpp"
@@ -20,12 +21,14 @@ std::string with_unit(const model::Model& model, const std::string& name) {
 
 }  // namespace
 
-RunPlot::RunPlot(std::vector<Panel> panels, const model::Model& model, const std::vector<std::string>& code) : panels_(std::move(panels)) {
+RunPlot::RunPlot(std::vector<Panel> panels, const model::Model& model, const std::vector<std::string>& code)
+    : panels_(std::move(panels)) {
   const auto keep = [&](const std::string& name) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
     const auto found = std::find(code.begin(), code.end(), name);
     if (found == code.end()) {
-      throw Error("run", {}, fmt::format("'{0}' stands for several outputs, and a curve is of one", name), fmt::format("name one of them, such as {}.1", name));
+      throw Error("run", {}, fmt::format("'{0}' stands for several outputs, and a curve is of one", name),
+                  fmt::format("name one of them, such as {}.1", name));
     }
     names_.push_back(name);
     index_.push_back(static_cast<std::size_t>(found - code.begin()));
@@ -63,7 +66,8 @@ std::string RunPlot::svg(const std::string& title, const run::RunResult& result)
       series.name = panel.names.size() > 1 ? name : "";
       series.x = panel.over.empty() ? t_ : curve(panel.over);
       series.y = curve(name);
-      const auto estimate = std::find_if(result.error_estimate.begin(), result.error_estimate.end(), [&](const auto& e) { return e.first == name; });
+      const auto estimate = std::find_if(result.error_estimate.begin(), result.error_estimate.end(),
+                                         [&](const auto& e) { return e.first == name; });
       if (panel.over.empty() && estimate != result.error_estimate.end()) series.error_at_end = estimate->second;
       plot.series.push_back(std::move(series));
     }
@@ -78,7 +82,9 @@ std::string RunPlot::svg(const std::string& title, const run::RunResult& result)
     body += drawn;
     top += height;
   }
-  return fmt::format("<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n{2}</svg>\n", width, top, body);
+  return fmt::format(
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\">\n{2}</svg>\n",
+      width, top, body);
 }
 
 std::string RunPlot::characters(const std::string& title, const run::RunResult& result, std::size_t columns) const {
@@ -86,7 +92,9 @@ std::string RunPlot::characters(const std::string& title, const run::RunResult& 
   for (std::size_t k = 0; k < panels_.size(); ++k) {
     const Panel& panel = panels_[k];
     TextPlot plot{panel.title, over_[k], {}, {}};
-    for (const std::string& name : panel.names) plot.curves.push_back({panel.names.size() > 1 ? name : "", panel.over.empty() ? &t_ : &curve(panel.over), &curve(name)});
+    for (const std::string& name : panel.names)
+      plot.curves.push_back(
+          {panel.names.size() > 1 ? name : "", panel.over.empty() ? &t_ : &curve(panel.over), &curve(name)});
     if (panel.over.empty()) {
       for (const run::RunEvent& event : result.events) plot.marks.push_back(event.t);
     }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The plot of a run: panels over time or in phase planes, with the events and the estimated errors, as SVG or in characters.
+// The plot of a run: panels over time or in phase planes, with the events and the estimated errors, as SVG or in
+// characters.
 #pragma once
 
 #include <span>

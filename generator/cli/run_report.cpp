@@ -29,7 +29,8 @@ bool is_final(const Simulation& simulation, const std::string& name) {
   }
   if (name.ends_with("_ddot") && simulation.scene.t1 == simulation.scene.t0) return true;
   const auto& wanted = simulation.scene.outputs;
-  return name == "energy" || name.starts_with("reaction.") || std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  return name == "energy" || name.starts_with("reaction.") ||
+         std::find(wanted.begin(), wanted.end(), name) != wanted.end();
 }
 
 /// Components of joints, and forces of constraints, that the motion leaves open, and so are not in `final`.
@@ -38,7 +39,8 @@ std::vector<std::string> undetermined(const Simulation& simulation) {
   std::vector<std::string> names;
   for (const mechanics::Constraint& c : m.constraints) {
     const auto same = [&](const model::Joint& joint) { return joint.name == c.name; };
-    if (!c.determined && std::none_of(m.model->joints.begin(), m.model->joints.end(), same)) names.push_back("reaction." + c.label);
+    if (!c.determined && std::none_of(m.model->joints.begin(), m.model->joints.end(), same))
+      names.push_back("reaction." + c.label);
   }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     for (std::size_t j = 0; j < m.joints[i].determined.size(); ++j) {
@@ -65,8 +67,10 @@ constexpr std::size_t most_changes_told = 6;
 
 std::string implicit_cost(const eom::Statistics& cost) {
   std::string text = fmt::format("df/dx {} times, {} factorisations", cost.jacobians, cost.factorisations);
-  if (cost.newton_iterations > 0) text += fmt::format(", {} iterations, {} attempts given up", cost.newton_iterations, cost.newton_failures);
-  if (cost.difference_evaluations > 0) text += fmt::format(", {} evaluations for differences", cost.difference_evaluations);
+  if (cost.newton_iterations > 0)
+    text += fmt::format(", {} iterations, {} attempts given up", cost.newton_iterations, cost.newton_failures);
+  if (cost.difference_evaluations > 0)
+    text += fmt::format(", {} evaluations for differences", cost.difference_evaluations);
   return text;
 }
 
@@ -80,17 +84,19 @@ std::string watched(const Simulation& simulation) {
     if (!result.estimate_note.empty()) out += line("", result.estimate_note);
   }
   for (const run::Invariant& i : result.invariants) {
-    out += line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, unsigned_zero(i.initial), i.max_relative_drift));
+    out += line("invariant", fmt::format("{} = {:.10g}, relative drift {:.1e}", i.name, unsigned_zero(i.initial),
+                                         i.max_relative_drift));
   }
   out += line("power balance", fmt::format("{:.1e} of the energies exchanged", result.power_balance));
   if (result.contact_work != 0) out += line("impacts", fmt::format("did the work {:.6g}", result.contact_work));
   if (simulation.derived->mechanics.active.empty()) return out;
   const std::vector<bool>& holonomic = simulation.program.holonomic;
   const bool positions = std::find(holonomic.begin(), holonomic.end(), false) == holonomic.end();
-  return out + line("constraints", fmt::format("{} at most {:.1e}; projection moved positions by {:.1e}, rates by {:.1e}, "
-                                               "and did the work {:.1e}",
-                                               positions ? "|psi|" : "residuals", result.constraint_drift, result.projection_position,
-                                               result.projection_velocity, result.projection_work));
+  return out + line("constraints",
+                    fmt::format("{} at most {:.1e}; projection moved positions by {:.1e}, rates by {:.1e}, "
+                                "and did the work {:.1e}",
+                                positions ? "|psi|" : "residuals", result.constraint_drift, result.projection_position,
+                                result.projection_velocity, result.projection_work));
 }
 
 }  // namespace
@@ -112,7 +118,8 @@ nlohmann::ordered_json RunReport::json() const {
     if (e.kind == "impulse") events.back()["work"] = number(e.work);
   }
   Json changes = Json::array();
-  for (const run::SolverChange& c : result.solver_changes) changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", c.reason}});
+  for (const run::SolverChange& c : result.solver_changes)
+    changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", c.reason}});
   for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.of}, {"crossings", k.count}});
   Json document{
       {"format", 1},
@@ -128,15 +135,21 @@ nlohmann::ordered_json RunReport::json() const {
       {"rejected", result.statistics.rejected},
       {"rhs_evaluations", result.statistics.rhs_evaluations},
       {"seconds",
-       {{"derive", seconds.read + seconds.derive}, {"emit", seconds.optimise + seconds.verify + seconds.print},
-        {"compile", compiled.seconds}, {"integrate", result.seconds_integrate}, {"estimate", result.seconds_estimate},
+       {{"derive", seconds.read + seconds.derive},
+        {"emit", seconds.optimise + seconds.verify + seconds.print},
+        {"compile", compiled.seconds},
+        {"integrate", result.seconds_integrate},
+        {"estimate", result.seconds_estimate},
         {"charts", charts ? charts->seconds() : 0.0}}},
       {"compiled", compiled.cached ? "from the cache" : "now"},
       {"final", final},
       {"invariants", invariants},
       {"power_balance", number(result.power_balance)},
       {"constraint_drift", derived.mechanics.active.empty() ? Json(nullptr) : number(result.constraint_drift)},
-      {"projection", {{"position", result.projection_position}, {"velocity", result.projection_velocity}, {"work", result.projection_work}}},
+      {"projection",
+       {{"position", result.projection_position},
+        {"velocity", result.projection_velocity},
+        {"work", result.projection_work}}},
       {"contact_work", result.contact_work},
       {"events", events},
       {"kinks", kinks},
@@ -148,8 +161,10 @@ nlohmann::ordered_json RunReport::json() const {
       {"certificate", certificate.summary()}};
   if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit) {
     const eom::Statistics& cost = result.statistics;
-    document["implicit"] = {{"jacobians", cost.jacobians}, {"difference_evaluations", cost.difference_evaluations},
-                            {"factorisations", cost.factorisations}, {"newton_iterations", cost.newton_iterations},
+    document["implicit"] = {{"jacobians", cost.jacobians},
+                            {"difference_evaluations", cost.difference_evaluations},
+                            {"factorisations", cost.factorisations},
+                            {"newton_iterations", cost.newton_iterations},
                             {"newton_failures", cost.newton_failures}};
   }
   Json written = Json::array();
@@ -173,13 +188,15 @@ std::string RunReport::text() const {
   const Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
   const Timings& seconds = derived.seconds;
-  std::string out = line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
+  std::string out =
+      line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
   for (const std::string& sentence : scene.solved) out += line("start", sentence);
   out += line("certificate", certificate.summary());
-  out += line("right-hand side", fmt::format("{} (route {}, approach {})", to_text(program.functions.front().operations),
-                                             program.route, system::name(program.approach)));
-  const std::string accuracy = scene.step > 0 ? fmt::format("step {}", scene.step)
-                                              : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
+  out +=
+      line("right-hand side", fmt::format("{} (route {}, approach {})", to_text(program.functions.front().operations),
+                                          program.route, system::name(program.approach)));
+  const std::string accuracy =
+      scene.step > 0 ? fmt::format("step {}", scene.step) : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
   out += line("solver", fmt::format("{} ({}), {}", result.solver, result.reason, accuracy));
   out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
                                      result.detail.empty() ? "" : ": ", result.detail));
@@ -192,20 +209,29 @@ std::string RunReport::text() const {
     out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, c.reason));
   }
   for (const run::RunEvent& e : result.events) {
-    out += line("event", fmt::format("{} at t = {}: {}{}", e.kind, e.t, e.name, e.kind == "impulse" ? fmt::format(", work {:.6g}", e.work) : ""));
+    out += line("event", fmt::format("{} at t = {}: {}{}", e.kind, e.t, e.name,
+                                     e.kind == "impulse" ? fmt::format(", work {:.6g}", e.work) : ""));
   }
-  for (const run::KinkCrossings& k : result.kinks) out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
+  for (const run::KinkCrossings& k : result.kinks)
+    out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
-  if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit) out += line("implicit steps", implicit_cost(result.statistics));
+  if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit)
+    out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
-  if (const auto open = undetermined(simulation); !open.empty()) out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
-  out += line("seconds", fmt::format("derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
-                                     seconds.read + seconds.derive, seconds.optimise, seconds.verify, derived.kept_certificate ? " (kept)" : "", compiled.seconds,
-                                     compiled.cached ? " (from the cache)" : "", result.seconds_integrate, result.seconds_estimate,
-                                     charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
+  if (const auto open = undetermined(simulation); !open.empty())
+    out += line("not determined", fmt::format("{}: by the motion", fmt::join(open, ", ")));
+  out +=
+      line("seconds",
+           fmt::format(
+               "derive {:.3f}, optimise {:.3f}, verify {:.3f}{}, compile {:.3f}{}, integrate {:.6f}, estimate {:.6f}{}",
+               seconds.read + seconds.derive, seconds.optimise, seconds.verify,
+               derived.kept_certificate ? " (kept)" : "", compiled.seconds, compiled.cached ? " (from the cache)" : "",
+               result.seconds_integrate, result.seconds_estimate,
+               charts && charts->seconds() > 0 ? fmt::format(", second charts {:.3f}", charts->seconds()) : ""));
   for (const WrittenFile& file : files) {
-    out += line("wrote", fmt::format("{} ({}{})", file.path, file.rows ? fmt::format("{} rows, ", *file.rows) : "", size_text(static_cast<double>(file.bytes))));
+    out += line("wrote", fmt::format("{} ({}{})", file.path, file.rows ? fmt::format("{} rows, ", *file.rows) : "",
+                                     size_text(static_cast<double>(file.bytes))));
   }
   if (sensitivities) out += text_of(*sensitivities, state_names(derived));
   return out;

@@ -21,7 +21,7 @@ struct WrittenFile {
 
 struct RunReport {
   const Simulation& simulation;
-  bool estimate_wanted = true;  // else the document has no error_estimate
+  bool estimate_wanted = true;                           // else the document has no error_estimate
   std::optional<run::Sensitivities> sensitivities = {};  // where they were asked for
   std::vector<WrittenFile> files = {};
 

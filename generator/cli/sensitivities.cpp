@@ -37,7 +37,8 @@ class Directions {
     const model::Model& model = simulation_.derived->model;
     const auto is_named = [&](const model::Parameter& p) { return p.name == name; };
     const auto parameter = std::find_if(model.parameters.begin(), model.parameters.end(), is_named);
-    if (parameter != model.parameters.end()) return by_parameter(static_cast<std::size_t>(parameter - model.parameters.begin()));
+    if (parameter != model.parameters.end())
+      return by_parameter(static_cast<std::size_t>(parameter - model.parameters.begin()));
     const auto state = std::find(state_names.begin(), state_names.end(), name);
     if (state != state_names.end()) return by_start(static_cast<std::size_t>(state - state_names.begin()), name);
     for (const model::Coordinate& c : model.coordinates) {
@@ -50,15 +51,19 @@ class Directions {
   }
 
  private:
-  [[noreturn]] static void refuse(const std::string& what, const std::string& remedy) { throw Error("run", {}, "--sensitivity: " + what, remedy); }
+  [[noreturn]] static void refuse(const std::string& what, const std::string& remedy) {
+    throw Error("run", {}, "--sensitivity: " + what, remedy);
+  }
 
   run::Direction by_start(std::size_t state, const std::string& name) const {
     if (code_.active_constraints > 0)
       refuse("values of the start are bound to one another by constraints, so that one alone cannot change",
              "ask for parameters, and write the start by them");
-    if (state >= 2 * code_.free.size()) refuse(name + " is an integral over time, 0 at the start", "ask for a coordinate");
+    if (state >= 2 * code_.free.size())
+      refuse(name + " is an integral over time, 0 at the start", "ask for a coordinate");
     const double value = values_of(simulation_.scene, code_, states_)[simulation_.scene.parameters.size() + state];
-    run::Direction d{name, value != 0 ? std::abs(value) : 1.0, std::vector<double>(simulation_.scene.parameters.size()), std::vector<double>(states_)};
+    run::Direction d{name, value != 0 ? std::abs(value) : 1.0, std::vector<double>(simulation_.scene.parameters.size()),
+                     std::vector<double>(states_)};
     d.dx[state] = 1;
     return d;
   }
@@ -71,9 +76,11 @@ class Directions {
     std::array<std::vector<double>, halvings> table;
     for (int k = 0; k < halvings; ++k) {
       const cln::cl_RA part = cln::cl_RA(1) / (first_part << k);
-      const std::vector<double> above = changed(parameter.name, value, scale, part), below = changed(parameter.name, value, scale, -part);
+      const std::vector<double> above = changed(parameter.name, value, scale, part),
+                                below = changed(parameter.name, value, scale, -part);
       const double distance = above[index] - below[index];
-      for (std::size_t i = 0; i < above.size(); ++i) table[static_cast<std::size_t>(k)].push_back((above[i] - below[i]) / distance);
+      for (std::size_t i = 0; i < above.size(); ++i)
+        table[static_cast<std::size_t>(k)].push_back((above[i] - below[i]) / distance);
     }
     double factor = 1;
     for (std::size_t level = 1; level < halvings; ++level) {  // Richardson's extrapolation
@@ -92,7 +99,9 @@ class Directions {
     run::Overrides overrides = request_.overrides;
     overrides.parameters[name] = cln::rational(cln::cl_DF(value)) + cln::rational(cln::cl_DF(scale)) * part;
     try {
-      return values_of(run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(request_.scene), overrides), code_, states_);
+      return values_of(run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                          derived.model.scene(request_.scene), overrides),
+                       code_, states_);
     } catch (const Error& error) {
       refuse(fmt::format("the scene does not follow a change of {}: {}", name, error.message()),
              "write the start by " + name + ", or leave values to the constraints");
@@ -109,7 +118,8 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 
 }  // namespace
 
-run::Sensitivities sensitivities(const Simulation& simulation, const SimulationRequest& request, const std::vector<std::string>& names) {
+run::Sensitivities sensitivities(const Simulation& simulation, const SimulationRequest& request,
+                                 const std::vector<std::string>& names) {
   const run::Code code = simulation.code.for_run();
   const run::RunRequest run = [&] {
     run::RunRequest made = run_request(*simulation.derived, simulation.scene, code, false);
@@ -119,8 +129,10 @@ run::Sensitivities sensitivities(const Simulation& simulation, const SimulationR
   }();
   for (const run::KinkCrossings& kink : simulation.result.kinks) {
     if (kink.count > 0)
-      throw Error("run", {}, fmt::format("--sensitivity: the run crosses a kink ({}), where derivatives of the end may jump", kink.of),
-                  "shorten the run (--t-end), or smooth the law");
+      throw Error(
+          "run", {},
+          fmt::format("--sensitivity: the run crosses a kink ({}), where derivatives of the end may jump", kink.of),
+          "shorten the run (--t-end), or smooth the law");
   }
   const Directions directions(simulation, request, run.state_names.size());
   std::vector<run::Direction> wanted;
@@ -129,10 +141,12 @@ run::Sensitivities sensitivities(const Simulation& simulation, const SimulationR
 }
 
 std::string text_of(const run::Sensitivities& found, const std::vector<std::string>& states) {
-  std::string out = fmt::format("\nsensitivities     of the state at t = {}, by {}: {}\n", found.t, found.solver, eom::name(found.outcome));
+  std::string out = fmt::format("\nsensitivities     of the state at t = {}, by {}: {}\n", found.t, found.solver,
+                                eom::name(found.outcome));
   for (const run::Sensitivity& s : found.list) {
     for (std::size_t i = 0; i < states.size(); ++i) {
-      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", states[i], s.of, unsigned_zero(s.value[i]), s.error.empty() ? "" : fmt::format("   +- {:.1e}", s.error[i]));
+      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", states[i], s.of, unsigned_zero(s.value[i]),
+                         s.error.empty() ? "" : fmt::format("   +- {:.1e}", s.error[i]));
     }
   }
   return found.estimate_note.empty() ? out : out + "  " + found.estimate_note + "\n";
@@ -147,8 +161,12 @@ nlohmann::ordered_json json_of(const run::Sensitivities& found, const std::vecto
       if (!s.error.empty()) errors[s.of][states[i]] = number(s.error[i]), estimated = true;
     }
   }
-  return {{"method", found.solver}, {"t", found.t}, {"outcome", eom::name(found.outcome)}, {"values", values},
-          {"error_estimate", estimated ? errors : Json(nullptr)}, {"rhs_evaluations", found.statistics.rhs_evaluations}};
+  return {{"method", found.solver},
+          {"t", found.t},
+          {"outcome", eom::name(found.outcome)},
+          {"values", values},
+          {"error_estimate", estimated ? errors : Json(nullptr)},
+          {"rhs_evaluations", found.statistics.rhs_evaluations}};
 }
 
 }  // namespace eomgen::cli

@@ -52,7 +52,8 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
     if (c.magnitude) add(derive::magnitude_output(c));
   }
   for (const mechanics::Integral& i : derived.mechanics.integrals) {
-    for (const std::uint32_t q : derived.mechanics.free) add(derive::differential_output(i, derived.model.coordinates[q].name));
+    for (const std::uint32_t q : derived.mechanics.free)
+      add(derive::differential_output(i, derived.model.coordinates[q].name));
     add(derive::differential_output(i, "t"));
   }
   for (const system::Output& output : derived.candidates.front().outputs) {
@@ -92,7 +93,8 @@ std::vector<std::string> state_names(const Derived& derived) {
   return names;
 }
 
-/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of contacts.
+/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
+/// contacts.
 static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
   const system::EquationSystem& system = derived.candidates.front();
   std::vector<std::optional<symbolic::Ref>> functions;
@@ -110,7 +112,8 @@ static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scen
 }
 
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
-  run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {}, {}, {}};
+  run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
+                      {},   {}};
   for (const derive::Conserved& c : derived.conserved) {
     run.conserved.push_back(c.name);
     run.magnitudes.push_back(c.magnitude ? derive::magnitude_output(c) : "");
@@ -129,7 +132,8 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
   run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return holds_beyond_range(derived, scene, code, coordinate, t, x);
   };
-  for (const std::uint32_t k : derived.candidates.front().active) run.constraint_names.push_back(derived.mechanics.constraints[k].label);
+  for (const std::uint32_t k : derived.candidates.front().active)
+    run.constraint_names.push_back(derived.mechanics.constraints[k].label);
   for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
     const model::Event& event = derived.model.events[i];
     run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});
@@ -145,7 +149,9 @@ namespace {
 std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Program& program) {
   std::vector<symbolic::Ref> values;
   for (const system::EquationSystem& candidate : derived.candidates) {
-    if (program.kinks.empty() || candidate.route != program.route || candidate.approach != program.approach || candidate.form != program.form) continue;
+    if (program.kinks.empty() || candidate.route != program.route || candidate.approach != program.approach ||
+        candidate.form != program.form)
+      continue;
     system::EquationSystem held = candidate;
     for (const program::Kink& kink : program::hold_kinks(held)) values.push_back(kink.value);
     if (values.size() == program.kinks.size()) return values;
@@ -175,8 +181,10 @@ namespace {
 
 /// Empty where the system has what variational integrators need.
 std::string not_variational(const system::EquationSystem& system) {
-  const bool on_velocities = std::find(system.holonomic.begin(), system.holonomic.end(), false) != system.holonomic.end();
-  return run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system), !system.integrals.empty());
+  const bool on_velocities =
+      std::find(system.holonomic.begin(), system.holonomic.end(), false) != system.holonomic.end();
+  return run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system),
+                              !system.integrals.empty());
 }
 
 /// Told before anything is compiled.
@@ -186,7 +194,8 @@ void require_fit(const system::EquationSystem& system, const std::string& solver
   if (method.variational) why = not_variational(system);
   if (method.constrained) why = run::not_constrained(!system.contacts.empty(), !system.active.empty());
   if (why.empty()) return;
-  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why), run::instead_of(solver));
+  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why),
+              run::instead_of(solver));
 }
 
 }  // namespace
@@ -200,7 +209,8 @@ Simulation simulate(const SimulationRequest& request) {
   run::Overrides overrides = request.overrides, none;
   overrides.exchanges_charts = none.exchanges_charts = possible;
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
-  const std::string solver = run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
+  const std::string solver =
+      run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
   const bool variational = run::method_named(solver).variational;
   const bool exchanges = possible && !scene.jumps && !run::method_named(solver).series && !variational;
   require_fit(system, solver);
@@ -209,10 +219,12 @@ Simulation simulate(const SimulationRequest& request) {
   program::Request wanted;
   wanted.outputs = code_outputs(*derived, scene, watch_power);
   for (const std::string& name : prepared) {
-    if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end()) wanted.outputs.push_back(name);
+    if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end())
+      wanted.outputs.push_back(name);
   }
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
-  if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system)) wanted.with.push_back("events");
+  if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system))
+    wanted.with.push_back("events");
   if (run::method_named(solver).implicit || request.every_solver) wanted.with.push_back("jac");
   if (run::method_named(solver).series || request.every_solver) wanted.with.push_back("taylor");
   const bool momenta = variational || (request.every_solver && not_variational(system).empty());
@@ -231,7 +243,8 @@ Simulation simulate(const SimulationRequest& request) {
   CompiledCode code = compile(program, context);
   std::shared_ptr<ChartLibrary> charts;
   if (exchanges) {
-    charts = std::make_shared<ChartLibrary>(*derived, program, std::move(context), ChartRequest{wanted, request.approach, request.form, request.seed});
+    charts = std::make_shared<ChartLibrary>(*derived, program, std::move(context),
+                                            ChartRequest{wanted, request.approach, request.form, request.seed});
   }
 
   run::Code functions = code.for_run();
@@ -239,7 +252,8 @@ Simulation simulate(const SimulationRequest& request) {
   run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
   allow_charts(run, charts);
   if (request.begin) {
-    run.every = request.rows ? std::max((scene.t1 - scene.t0) / *request.rows, std::numeric_limits<double>::min()) : row_interval(scene);
+    run.every = request.rows ? std::max((scene.t1 - scene.t0) / *request.rows, std::numeric_limits<double>::min())
+                             : row_interval(scene);
     request.begin(*derived, scene, functions.output_names);
   }
   run.row = request.row;
@@ -247,10 +261,13 @@ Simulation simulate(const SimulationRequest& request) {
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
   run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
-  if (possible && !exchanges) result.reason += variational ? "; the model's own coordinates are kept where they fail, since an exchange is not symplectic"
-                                                           : "; its series is that of the model's own coordinates, which are kept where they fail";
+  if (possible && !exchanges)
+    result.reason += variational
+                         ? "; the model's own coordinates are kept where they fail, since an exchange is not symplectic"
+                         : "; its series is that of the model's own coordinates, which are kept where they fail";
   if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
-  return {std::move(derived), std::move(scene), std::move(program), std::move(certificate), std::move(code), std::move(result), std::move(charts)};
+  return {std::move(derived), std::move(scene),  std::move(program), std::move(certificate),
+          std::move(code),    std::move(result), std::move(charts)};
 }
 
 run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {

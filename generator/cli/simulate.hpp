@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From a model's name to a finished run: derive, verify, emit, compile (cached by content), integrate. The command `run`
-// and the tests of the models are made of this.
+// From a model's name to a finished run: derive, verify, emit, compile (cached by content), integrate. The command
+// `run` and the tests of the models are made of this.
 #pragma once
 
 #include <functional>
@@ -21,10 +21,10 @@ struct SimulationRequest {
   ApproachChoice approach = ApproachChoice::automatic;
   FormChoice form = std::nullopt;
   bool estimate = true;
-  bool integrate = true;            // false: everything but the run; `result` stays empty
-  std::vector<std::string> with;    // further functions of the code
-  bool every_solver = false;        // the code has what any solver needs that can integrate the model
-  bool charts = true;  // where angles fail the run may go to second ones
+  bool integrate = true;          // false: everything but the run; `result` stays empty
+  std::vector<std::string> with;  // further functions of the code
+  bool every_solver = false;      // the code has what any solver needs that can integrate the model
+  bool charts = true;             // where angles fail the run may go to second ones
   std::uint64_t seed = 1;
   /// Called once the model is derived: may add outputs to every candidate, and returns those that the code is to have.
   std::function<std::vector<std::string>(Derived&)> prepare;
@@ -62,8 +62,8 @@ std::vector<std::string> state_names(const Derived& derived);
 /// What the runner is asked for with compiled code: no rows.
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate);
 
-/// The same compiled code once more, with other values: for sweeps and for tests over tolerances. Parameters, starts and
-/// outputs that the code was made for; what else `overrides` may change. No rows.
+/// The same compiled code once more, with other values: for sweeps and for tests over tolerances. Parameters, starts
+/// and outputs that the code was made for; what else `overrides` may change. No rows.
 run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);
 
 }  // namespace eomgen::cli

@@ -31,9 +31,11 @@ void require_one_mode(const std::string& command, const Derived& derived) {
   for (const model::Force& f : model.forces) {
     if (f.name == contacts.front().name) where = model.where(f.span);
   }
-  throw Error(command, where,
-              fmt::format("'{}' sticks, slides or lets go, and each has equations of its own: there are no slopes across them", contacts.front().name),
-              "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
+  throw Error(
+      command, where,
+      fmt::format("'{}' sticks, slides or lets go, and each has equations of its own: there are no slopes across them",
+                  contacts.front().name),
+      "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
 }
 
 std::string certified(Derived& derived, std::uint64_t seed) {
@@ -68,8 +70,10 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
   request.interrupt = &Interrupt::flag();
   const Simulation run = simulate(request);
   if (run.result.outcome != eom::Outcome::done) {
-    throw Error(command, {}, fmt::format("the run ends at t = {} with '{}', before t = {}", run.result.t, eom::name(run.result.outcome), t),
-                fmt::format("give --at a time between {} and {}", scene.t0, run.result.t), Fault::numerical);
+    throw Error(
+        command, {},
+        fmt::format("the run ends at t = {} with '{}', before t = {}", run.result.t, eom::name(run.result.outcome), t),
+        fmt::format("give --at a time between {} and {}", scene.t0, run.result.t), Fault::numerical);
   }
   const auto value = [&run](const std::string& name) {
     for (const auto& [key, number] : run.result.final) {
@@ -86,15 +90,19 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
   return reached;
 }
 
-Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, const Reached& state, std::optional<std::uint64_t> moved) {
+Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, const Reached& state,
+                            std::optional<std::uint64_t> moved) {
   Derived& d = *p.derived;
   Setting<Precise> setting;
-  setting.parameters = run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::digits + 20, moved);
+  setting.parameters =
+      run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::digits + 20, moved);
   for (std::size_t i = 0; i < setting.parameters.size(); ++i) {
-    if (d.model.parameters[i].start_of || i == d.model.start_time) setting.parameters[i] = Precise(p.scene.parameters[i]);
+    if (d.model.parameters[i].start_of || i == d.model.start_time)
+      setting.parameters[i] = Precise(p.scene.parameters[i]);
     setting.parameters[i] = linear::number<Precise>(setting.parameters[i]);
   }
-  for (const run::Signal& signal : p.scene.inputs) setting.inputs.push_back(linear::number<Precise>(Precise(signal(p.t, p.t))));
+  for (const run::Signal& signal : p.scene.inputs)
+    setting.inputs.push_back(linear::number<Precise>(Precise(signal(p.t, p.t))));
   for (std::size_t i = 0; i < d.model.integrals.size(); ++i) {
     setting.integrals.push_back(linear::number<Precise>(Precise(state.integrals.empty() ? 0.0 : state.integrals[i])));
   }
@@ -114,7 +122,8 @@ SteadyProblem steady_problem(const std::string& command, const std::string& mode
   p.t = at.value_or(p.scene.t0);
   Reached state{p.scene.q, p.scene.qdot, {}};
   if (p.t < p.scene.t0) {
-    throw Error(command, {}, fmt::format("t = {} lies before the scene's start at t = {}", p.t, p.scene.t0), "give --at a later time, or leave it out for the start");
+    throw Error(command, {}, fmt::format("t = {} lies before the scene's start at t = {}", p.t, p.scene.t0),
+                "give --at a later time, or leave it out for the start");
   }
   if (p.t > p.scene.t0) {
     SimulationRequest request;
@@ -130,11 +139,13 @@ SteadyProblem steady_problem(const std::string& command, const std::string& mode
   }
   p.z.push_back(linear::number<Precise>(Precise(p.t)));
   p.setting = setting_of(p, overrides, state, {});
-  for (int k = 0; k < neighbour_count; ++k) p.neighbours.push_back(setting_of(p, overrides, state, 100 * seed + static_cast<std::uint64_t>(k)));
+  for (int k = 0; k < neighbour_count; ++k)
+    p.neighbours.push_back(setting_of(p, overrides, state, 100 * seed + static_cast<std::uint64_t>(k)));
   try {
     p.setting.leaf = p.flow->leaf(p.z, p.setting);
   } catch (const std::domain_error& error) {
-    throw Error(command, d.model.where(d.model.scene(scene).span), fmt::format("an integral of the constraints has no value at this state: {}", error.what()),
+    throw Error(command, d.model.where(d.model.scene(scene).span),
+                fmt::format("an integral of the constraints has no value at this state: {}", error.what()),
                 "start elsewhere");
   }
   return p;
@@ -189,7 +200,9 @@ nlohmann::ordered_json eigenvalue_json(const linear::Eigenvalue& e) {
 
 std::string eigenvalue_text(const linear::Spectrum& spectrum, std::size_t i) {
   const linear::Eigenvalue& e = spectrum.values[i];
-  const std::string doubt = e.holds() ? "" : e.in_binary64 ? fmt::format("   (good to {:.1g} only)", e.error) : "   (not confirmed by binary64)";
+  const std::string doubt = e.holds()       ? ""
+                            : e.in_binary64 ? fmt::format("   (good to {:.1g} only)", e.error)
+                                            : "   (not confirmed by binary64)";
   if (e.im == 0) return fmt::format("{:.10g}{}", e.re, doubt);
   return fmt::format("{:.10g} {} {:.10g}i{}", e.re, e.im < 0 ? "-" : "+", std::abs(e.im), doubt);
 }

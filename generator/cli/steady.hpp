@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What `linearize` and `equilibria` begin with: a verified model, its vector field, and a state of a scene in many digits.
+// What `linearize` and `equilibria` begin with: a verified model, its vector field, and a state of a scene in many
+// digits.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,7 @@ struct SteadyProblem {
   std::unique_ptr<Derived> derived;
   run::Scene scene;
   std::unique_ptr<linear::Flow> flow;
-  linear::State<linear::Precise> z;                      // the start, or the state at `t`
+  linear::State<linear::Precise> z;  // the start, or the state at `t`
   linear::Setting<linear::Precise> setting;
   std::vector<linear::Setting<linear::Precise>> neighbours;  // the same with other parameters
   double t = 0;
@@ -25,12 +26,13 @@ struct SteadyProblem {
   const system::EquationSystem& system() const { return derived->candidates.front(); }
 };
 
-/// Throws Error{stage `command`} where contacts make the equations depend on a mode, or a derivation fails the judge. `at`: the
-/// state that a run from the scene's start reaches then.
+/// Throws Error{stage `command`} where contacts make the equations depend on a mode, or a derivation fails the judge.
+/// `at`: the state that a run from the scene's start reaches then.
 SteadyProblem steady_problem(const std::string& command, const std::string& model, const std::string& scene,
                              const run::Overrides& overrides, std::optional<double> at, std::uint64_t seed);
 
-/// What has no slope at a state: a force, an energy or a constraint of the model, "'F' has"; else "the equations of motion have".
+/// What has no slope at a state: a force, an energy or a constraint of the model, "'F' has"; else "the equations of
+/// motion have".
 struct Source {
   Where where;
   std::string what;

@@ -20,7 +20,9 @@ using symbolic::SymbolKind;
 
 const char* const command = "equilibria";
 
-bool is_energy(const derive::Conserved& c) { return c.name == "energy" || c.name == "jacobi" || c.name == "energy.applied"; }
+bool is_energy(const derive::Conserved& c) {
+  return c.name == "energy" || c.name == "jacobi" || c.name == "energy.applied";
+}
 bool is_leaf(const derive::Conserved& c) { return c.name.starts_with("integral."); }
 
 /// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
@@ -47,8 +49,8 @@ bool is_kept(const SteadyProblem& p, const Quantity& quantity) {
   return true;
 }
 
-/// What the energies and the momenta of the coordinates may be, beside what is conserved for all parameters: a torque of size 0 keeps a
-/// momentum too.
+/// What the energies and the momenta of the coordinates may be, beside what is conserved for all parameters: a torque
+/// of size 0 keeps a momentum too.
 std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
   const system::EquationSystem& s = p.system();
   const mechanics::Mechanics& m = p.derived->mechanics;
@@ -60,8 +62,10 @@ std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
     momenta.push_back({"momentum." + p.derived->model.coordinates[i].name, momentum});
     jacobi = dag.add(jacobi, dag.mul(momentum, m.qdot[i]));
   }
-  if (energies) result = {{"energy", s.energy}, {"jacobi", jacobi}};
-  else result = momenta;
+  if (energies)
+    result = {{"energy", s.energy}, {"jacobi", jacobi}};
+  else
+    result = momenta;
   for (const derive::Conserved& c : p.derived->conserved) {
     if (is_leaf(c) || is_energy(c) != energies) continue;
     const auto named = [&c](const Quantity& q) { return q.name == c.name; };
@@ -100,7 +104,8 @@ std::optional<std::array<std::size_t, size>> places_of(const SteadyProblem& p, c
 
 void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
   const model::Model& model = p.derived->model;
-  symbolic::Substitution imposed = derive::impose(p.derived->mechanics), written = derive::write_out(p.derived->mechanics);
+  symbolic::Substitution imposed = derive::impose(p.derived->mechanics),
+                         written = derive::write_out(p.derived->mechanics);
   for (std::size_t f = 1; f < model.frames.size(); ++f) {
     const model::Frame& frame = model.frames[f];
     if (frame.rotation == "euler_parameters") {
@@ -155,7 +160,8 @@ Quantity output_named(const SteadyProblem& p, const std::string& name) {
     if (output.name == name) {
       for (const symbolic::Symbol& s : p.derived->mechanics.dag->symbols({output.value})) {
         if (s.kind == SymbolKind::time) refuse_hold(name, "it depends on t");
-        const bool of_state = (s.kind == SymbolKind::coordinate && s.order < 2) || s.kind == SymbolKind::parameter || s.kind == SymbolKind::input;
+        const bool of_state = (s.kind == SymbolKind::coordinate && s.order < 2) || s.kind == SymbolKind::parameter ||
+                              s.kind == SymbolKind::input;
         if (!of_state) refuse_hold(name, "it depends on accelerations or constraint forces");
       }
       return {name, output.value};
@@ -174,14 +180,16 @@ void hold(SteadyMotions& result, const SteadyRequest& request, linear::SearchReq
     search.targets.push_back(value);
     result.held.push_back({quantity.name, linear::to_double(value), why});
   };
-  for (const auto& [name, value] : request.hold) add(output_named(p, name), linear::number<Precise>(Precise(value)), "as asked for");
+  for (const auto& [name, value] : request.hold)
+    add(output_named(p, name), linear::number<Precise>(Precise(value)), "as asked for");
   if (!request.hold.empty()) return;
   const std::vector<Quantity> momenta = chosen(p, false);
   if (momenta.empty()) return;
   const linear::Symmetry symmetry = linear::find_symmetry(*p.flow, place_with_field(p), p.setting, 1);
   for (const Quantity& momentum : momenta) {
     if (!can_be_held(p, symmetry, momentum)) continue;
-    add(momentum, p.flow->tape({momentum.expression}).values<Precise>(p.flow->lookup(p.z, p.setting))[0], "conserved: its value at the start");
+    add(momentum, p.flow->tape({momentum.expression}).values<Precise>(p.flow->lookup(p.z, p.setting))[0],
+        "conserved: its value at the start");
   }
 }
 
@@ -189,7 +197,8 @@ void require_not_ignored(const SteadyMotions& result, const SteadyRequest& reque
   const linear::Symmetry& s = result.search.symmetry;
   for (std::size_t k = 0; k < s.chart.positions; ++k) {
     const std::string& name = result.problem.flow->names()[s.chart.independent[k]];
-    if (!s.retained[k] && request.hold.contains(name)) refuse_hold(name, "nothing feels it, and it advances in a steady motion");
+    if (!s.retained[k] && request.hold.contains(name))
+      refuse_hold(name, "nothing feels it, and it advances in a steady motion");
   }
 }
 
@@ -201,9 +210,11 @@ void require_ends(const SteadyMotions& result) {
   linear::State<Precise> z;
   for (const double x : search.refused_at) z.push_back(linear::number<Precise>(Precise(x)));
   const Source source = without_slope(p, z);
-  throw Error(command, source.where,
-              fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})", search.refused, source.what, search.reason),
-              "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
+  throw Error(
+      command, source.where,
+      fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})",
+                  search.refused, source.what, search.reason),
+      "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
 }
 
 void judge(SteadyMotions& result, const SteadyRequest& request) {
@@ -220,11 +231,13 @@ void judge(SteadyMotions& result, const SteadyRequest& request) {
 }  // namespace
 
 SteadyMotions steady_motions(const SteadyRequest& request) {
-  SteadyMotions result{steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed), {}, {}, {}};
+  SteadyMotions result{
+      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed), {}, {}, {}};
   SteadyProblem& p = result.problem;
   const model::Model& model = p.derived->model;
   try {
-    linear::SearchRequest search{*p.flow, p.z, p.setting, {}, {}, {}, {}, {}, request.starts, request.seed, request.progress};
+    linear::SearchRequest search{*p.flow,        p.z,          p.setting,       {}, {}, {}, {}, {},
+                                 request.starts, request.seed, request.progress};
     for (const std::uint32_t i : p.system().free) search.ranges.push_back({p.scene.lower[i], p.scene.upper[i]});
     name_attitudes(p, search);
     hold(result, request, search);
@@ -246,14 +259,18 @@ SteadyMotions steady_motions(const SteadyRequest& request) {
                   "eomgen linearize gives A(t) along a motion");
     }
     for (const std::size_t i : result.search.held) {
-      const std::string why = result.search.released ? "a family leaves it open; with its value at the start there is none" : "a family leaves it open: its value at the start";
+      const std::string why = result.search.released
+                                  ? "a family leaves it open; with its value at the start there is none"
+                                  : "a family leaves it open: its value at the start";
       result.held.push_back({p.flow->names()[i], linear::to_double(p.z[i]), why});
     }
     const work::Stage stage("judging stability");
     judge(result, request);
   } catch (const std::domain_error& error) {
     const Source source = without_slope(p, p.z);
-    throw Error(command, source.where, fmt::format("{} no slope at the start of this scene: {}", source.what, error.what()), "begin the search at another start");
+    throw Error(command, source.where,
+                fmt::format("{} no slope at the start of this scene: {}", source.what, error.what()),
+                "begin the search at another start");
   }
   return result;
 }

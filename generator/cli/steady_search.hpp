@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The search of equilibria as a command and tests ask for it: what is held, where to look, what is found and how stable it is.
+// The search of equilibria as a command and tests ask for it: what is held, where to look, what is found and how stable
+// it is.
 #pragma once
 
 #include "cli/steady.hpp"
@@ -10,7 +11,8 @@ namespace eomgen::cli {
 struct SteadyRequest {
   std::string model, scene = "default";
   run::Overrides overrides;
-  std::map<std::string, symbolic::Rational> hold;  // outputs and their values; empty: the conserved momenta at the start
+  std::map<std::string, symbolic::Rational>
+      hold;  // outputs and their values; empty: the conserved momenta at the start
   std::size_t starts = 300;
   std::uint64_t seed = 1;
   std::function<void(double fraction)> progress = {};

@@ -22,12 +22,14 @@ void require_size(double t0, double t1, double every, std::size_t columns, bool 
   const double rows = expected_rows(t0, t1, every);
   const double last = std::max(std::abs(t0), std::abs(t1));
   if (t1 > t0 && last + every == last) {
-    throw Error("run", {}, fmt::format("the interval of rows, {}, is lost in the rounding of t = {}", every, last), "take a longer --every");
+    throw Error("run", {}, fmt::format("the interval of rows, {}, is lost in the rounding of t = {}", every, last),
+                "take a longer --every");
   }
   const double bytes = rows * static_cast<double>(columns + 1) * bytes_of_number;
   const std::string size = fmt::format("{:.3g} rows, about {}", rows, size_text(bytes));
   if (!yes && (rows > most_rows || bytes > most_bytes)) {
-    throw Error("run", {}, fmt::format("the interval of rows, {}, asks for {}", every, size), "take a longer --every; with --yes they are written");
+    throw Error("run", {}, fmt::format("the interval of rows, {}, asks for {}", every, size),
+                "take a longer --every; with --yes they are written");
   }
   if (rows > told_rows) tell(fmt::format("note: the interval of rows, {}, asks for {}\n", every, size));
 }

@@ -57,7 +57,8 @@ std::string in_characters(const TextPlot& plot, std::size_t columns) {
   std::string legend;
   for (std::size_t k = 0; k < plot.curves.size(); ++k) {
     const char letter = letters[k % known];
-    if (!plot.curves[k].name.empty()) legend += fmt::format("{}{} {}", legend.empty() ? "" : "   ", letter, plot.curves[k].name);
+    if (!plot.curves[k].name.empty())
+      legend += fmt::format("{}{} {}", legend.empty() ? "" : "   ", letter, plot.curves[k].name);
     see(plot.curves[k], [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
   }
   std::string text = plot.y_label + "\n";
@@ -65,15 +66,19 @@ std::string in_characters(const TextPlot& plot, std::size_t columns) {
   for (std::size_t r = 0; r < rows; ++r) {
     const bool told = r % 5 == 0;
     const double value = y.high - (y.high - y.low) * static_cast<double>(r) / static_cast<double>(rows - 1);
-    std::string line = fmt::format("{:>{}} {}{}", told ? fmt::format("{:.4g}", std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value) : "", margin - 1, told ? '+' : '|', field[r]);
+    std::string line = fmt::format(
+        "{:>{}} {}{}", told ? fmt::format("{:.4g}", std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value) : "",
+        margin - 1, told ? '+' : '|', field[r]);
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
   text += std::string(margin, ' ') + "+" + std::string(wide, '-') + "\n";
   const std::string low = fmt::format("{:.4g}", x.low), high = fmt::format("{:.4g}", x.high);
   std::string below = std::string(margin + 1, ' ') + low;
-  const std::size_t end = margin + 1 + wide - high.size(), middle = margin + 1 + (wide - std::min(wide, plot.x_label.size())) / 2;
-  if (below.size() + 1 < middle && middle + plot.x_label.size() + 1 < end) below += std::string(middle - below.size(), ' ') + plot.x_label;
+  const std::size_t end = margin + 1 + wide - high.size(),
+                    middle = margin + 1 + (wide - std::min(wide, plot.x_label.size())) / 2;
+  if (below.size() + 1 < middle && middle + plot.x_label.size() + 1 < end)
+    below += std::string(middle - below.size(), ' ') + plot.x_label;
   if (below.size() < end) below += std::string(end - below.size(), ' ') + high;
   return text + below + "\n";
 }

@@ -25,12 +25,39 @@ CLI::Validator number(const char* what, Accept accept) {
 }
 
 /// What others call it.
-constexpr std::pair<const char*, const char*> other_words[] = {
-    {"simulate", "run"},   {"sim", "run"},       {"integrate", "run"},   {"solve", "run"},        {"plot", "run"},          {"init", "new"},      {"create", "new"},
-    {"start", "new"},      {"generate", "emit"}, {"codegen", "emit"},    {"compile", "emit"},     {"export", "emit"},       {"latex", "emit"},    {"equations", "derive"},
-    {"eom", "derive"},     {"show", "derive"},   {"print", "derive"},    {"validate", "check"},   {"lint", "check"},        {"info", "check"},    {"test", "verify"},
-    {"prove", "verify"},   {"benchmark", "bench"}, {"scan", "sweep"},    {"grid", "sweep"},       {"eigenvalues", "linearize"}, {"linearise", "linearize"},
-    {"stability", "equilibria"}, {"equilibrium", "equilibria"}, {"html", "report"}, {"models", "list"}, {"ls", "list"}, {"solvers", "list"}};
+constexpr std::pair<const char*, const char*> other_words[] = {{"simulate", "run"},
+                                                               {"sim", "run"},
+                                                               {"integrate", "run"},
+                                                               {"solve", "run"},
+                                                               {"plot", "run"},
+                                                               {"init", "new"},
+                                                               {"create", "new"},
+                                                               {"start", "new"},
+                                                               {"generate", "emit"},
+                                                               {"codegen", "emit"},
+                                                               {"compile", "emit"},
+                                                               {"export", "emit"},
+                                                               {"latex", "emit"},
+                                                               {"equations", "derive"},
+                                                               {"eom", "derive"},
+                                                               {"show", "derive"},
+                                                               {"print", "derive"},
+                                                               {"validate", "check"},
+                                                               {"lint", "check"},
+                                                               {"info", "check"},
+                                                               {"test", "verify"},
+                                                               {"prove", "verify"},
+                                                               {"benchmark", "bench"},
+                                                               {"scan", "sweep"},
+                                                               {"grid", "sweep"},
+                                                               {"eigenvalues", "linearize"},
+                                                               {"linearise", "linearize"},
+                                                               {"stability", "equilibria"},
+                                                               {"equilibrium", "equilibria"},
+                                                               {"html", "report"},
+                                                               {"models", "list"},
+                                                               {"ls", "list"},
+                                                               {"solvers", "list"}};
 
 // The command whose options were being read; the program itself before there is one.
 const CLI::App& where(const CLI::App& app) {
@@ -48,17 +75,22 @@ std::vector<std::string> flags_of(const CLI::App& app) {
 }
 
 Error unexpected(const CLI::App& app) {
-  const std::string help = fmt::format("{} --help lists what there is", app.get_parent() == nullptr ? "eomgen" : "eomgen " + app.get_name());
+  const std::string help =
+      fmt::format("{} --help lists what there is", app.get_parent() == nullptr ? "eomgen" : "eomgen " + app.get_name());
   std::vector<std::string> extra = app.remaining();
-  const auto option = std::find_if(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
+  const auto option =
+      std::find_if(extra.begin(), extra.end(), [](const std::string& word) { return word.starts_with("-"); });
   if (option == extra.end()) {
-    return Error("usage", {}, fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
+    return Error("usage", {},
+                 fmt::format("{} is one word too many", extra.empty() ? "there" : model::quote(extra.back())), help);
   }
   const std::string name = option->substr(0, option->find('='));
   // Letters are near to every other letter: one stands for a longer name that begins with it.
   const bool letter = name.size() == 2;
   std::string hint = letter ? "" : model::did_you_mean(name, flags_of(app));
-  const auto begins = [&](const std::string& flag) { return flag == name || (letter && flag.size() > 2 && flag[2] == name[1]); };
+  const auto begins = [&](const std::string& flag) {
+    return flag == name || (letter && flag.size() > 2 && flag[2] == name[1]);
+  };
   for (const std::string& flag : flags_of(app)) {
     if (hint.empty() && begins(flag)) hint = fmt::format("did you mean '{}'?", flag);
   }
@@ -67,7 +99,8 @@ Error unexpected(const CLI::App& app) {
       if (hint.empty() && begins(flag)) hint = fmt::format("did you mean 'eomgen {}'?", flag);
     }
   }
-  return Error("usage", {}, fmt::format("there is no option {}", model::quote(name)), hint.empty() ? help : hint + " " + help);
+  return Error("usage", {}, fmt::format("there is no option {}", model::quote(name)),
+               hint.empty() ? help : hint + " " + help);
 }
 
 }  // namespace
@@ -84,7 +117,8 @@ CLI::Validator number_not_negative() {
 
 CLI::Validator whole_number(unsigned long long least, unsigned long long most) {
   return {[least, most](std::string& text) {
-            const bool digits = !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
+            const bool digits =
+                !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
             const unsigned long long value = digits ? std::stoull(text) : 0;
             if (digits && value >= least && value <= most) return std::string();
             return fmt::format("{} is not a whole number from {} to {}", model::quote(text), least, most);
@@ -93,7 +127,9 @@ CLI::Validator whole_number(unsigned long long least, unsigned long long most) {
 }
 
 CLI::Option* add_place(CLI::App& app, const std::string& flags, std::string& target, const std::string& help) {
-  const auto named = [](const std::string& path) { return path.empty() ? std::string("'' names no file; - is standard output") : std::string(); };
+  const auto named = [](const std::string& path) {
+    return path.empty() ? std::string("'' names no file; - is standard output") : std::string();
+  };
   return app.add_option(flags, target, help)->check(CLI::Validator(named, ""));
 }
 
@@ -115,7 +151,9 @@ void require_command(std::span<char* const> words, const std::vector<std::string
   std::error_code none;
   if (word.ends_with(".toml") || std::filesystem::is_regular_file(word, none)) {
     throw Error("usage", {}, fmt::format("a command is missing before {}", model::quote(word)),
-                fmt::format("eomgen check {0} says what the model is, eomgen derive {0} shows its equations, eomgen run {0} integrates it", word));
+                fmt::format("eomgen check {0} says what the model is, eomgen derive {0} shows its equations, eomgen "
+                            "run {0} integrates it",
+                            word));
   }
   std::string hint = choice_of(word, commands);
   for (const auto& [other, meant] : other_words) {
@@ -141,7 +179,9 @@ std::string HelpPage::make_help(const CLI::App* app, std::string name, CLI::AppF
       "  eomgen new pendulum                               a commented model to start from: pendulum.toml\n"
       "  eomgen derive pendulum.toml                       its equations of motion\n"
       "  eomgen run pendulum.toml --out pendulum.csv       its motion, as a table\n\n";
-  return examples + page + fmt::format("\nDocumentation: {}; the format of models: {}\n", documentation("commands.md"), documentation("model-format.md"));
+  return examples + page +
+         fmt::format("\nDocumentation: {}; the format of models: {}\n", documentation("commands.md"),
+                     documentation("model-format.md"));
 }
 
 Error usage_error(const CLI::ParseError& error, const CLI::App& app) {

@@ -20,7 +20,8 @@ CLI::Validator whole_number(unsigned long long least, unsigned long long most);
 /// An option that names a file or folder for results: one meaning of it in every command. An empty name is refused.
 CLI::Option* add_place(CLI::App& app, const std::string& flags, std::string& target, const std::string& help);
 
-/// An option that may be repeated and takes one word each time, which `delimiter` may part. CLI11 would let it swallow MODEL.
+/// An option that may be repeated and takes one word each time, which `delimiter` may part. CLI11 would let it swallow
+/// MODEL.
 CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::string>& target, const std::string& help,
                       char delimiter = ',');
 

@@ -28,7 +28,8 @@ void write_error(const char* text) {
 
 void tell_interrupted(const char* stage) {
   char text[160];
-  std::snprintf(text, sizeof text, "interrupted%s%s\n", stage != nullptr ? " while " : "", stage != nullptr ? stage : "");
+  std::snprintf(text, sizeof text, "interrupted%s%s\n", stage != nullptr ? " while " : "",
+                stage != nullptr ? stage : "");
   write_error(text);
 }
 
@@ -58,8 +59,10 @@ void Watch::look() {
   while (!ended_.wait_for(lock, interval, [this] { return end_; })) {
     const Clock::time_point now = Clock::now();
     const char* stage = work::stage();
-    if (!work::abandoned()) asked = {};
-    else if (asked == Clock::time_point{}) asked = now;
+    if (!work::abandoned())
+      asked = {};
+    else if (asked == Clock::time_point{})
+      asked = now;
     else if (now - asked > patience) {
       work::clear_line();
       tell_interrupted(stage);

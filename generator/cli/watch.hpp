@@ -7,8 +7,8 @@
 
 namespace eomgen::cli {
 
-/// Looks at the stages (work.hpp) of a command from a thread of its own: after two seconds a terminal is told which one is under way,
-/// and what does not end soon after Ctrl-C is left with the exit code 3, unless something is kept.
+/// Looks at the stages (work.hpp) of a command from a thread of its own: after two seconds a terminal is told which one
+/// is under way, and what does not end soon after Ctrl-C is left with the exit code 3, unless something is kept.
 class Watch {
  public:
   Watch();

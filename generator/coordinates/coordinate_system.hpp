@@ -24,13 +24,13 @@ struct Constant {
 };
 
 struct CoordinateSystem {
-  std::string_view name;                      // the key in model files
+  std::string_view name;  // the key in model files
   std::string_view title;
   std::array<Slot, 3> slots;
-  std::array<std::string_view, 3> x;          // Cartesian components, eq. (1.16)
+  std::array<std::string_view, 3> x;                 // Cartesian components, eq. (1.16)
   std::array<std::array<std::string_view, 3>, 3> e;  // unit vectors along a_i; empty strings: normalise a_i
-  std::string_view singular;                  // where det(a_ik) = 0, for reading
-  bool planar;                                // two entries allowed, the third is 0
+  std::string_view singular;                         // where det(a_ik) = 0, for reading
+  bool planar;                                       // two entries allowed, the third is 0
   Constant constant;
 };
 

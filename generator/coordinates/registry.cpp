@@ -15,12 +15,7 @@ extern const CoordinateSystem oblique;
 
 namespace {
 constexpr std::array<const CoordinateSystem*, 6> systems{
-    &cartesian,
-    &cylindrical,
-    &spherical,
-    &parabolic,
-    &helical,
-    &oblique,
+    &cartesian, &cylindrical, &spherical, &parabolic, &helical, &oblique,
 };
 }  // namespace
 

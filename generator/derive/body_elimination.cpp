@@ -6,7 +6,8 @@ namespace {
 
 using symbolic::cross;
 
-/// N = I alpha + H a + n, F = H^T alpha + M a + f: moment about the origin and force that a link and all beyond it need.
+/// N = I alpha + H a + n, F = H^T alpha + M a + f: moment about the origin and force that a link and all beyond it
+/// need.
 struct Articulated {
   Mat3 I, H, M;
   Vec3 n, f;
@@ -22,7 +23,8 @@ struct Eliminated {
 
 class Elimination {
  public:
-  Elimination(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) : dag_(dag), tree_(tree), motion_(motion) {}
+  Elimination(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
+      : dag_(dag), tree_(tree), motion_(motion) {}
 
   system::Solution operator()() {
     const std::size_t count = tree_.links.size();
@@ -76,7 +78,8 @@ class Elimination {
       const Freedom& freedom = link.freedoms[j];
       const Ref Q = link.absolute ? moment[j] : tree_.Q[freedom.index];
       const Vec3 &s = freedom.turning, &v = freedom.shifting;
-      Eliminated e{s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
+      Eliminated e{
+          s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
       e.F = symbolic::add(dag_, times(dag_, transposed(body.H), s), times(dag_, body.M, v));
       e.D = dag_.add(dot(dag_, s, e.N), dot(dag_, v, e.F));
       e.r = dag_.sub(Q, dag_.add(dot(dag_, s, body.n), dot(dag_, v, body.f)));
@@ -92,7 +95,8 @@ class Elimination {
     }
   }
 
-  /// Along a freedom that is one of the axes nothing is left: exact zeros in place of differences, and the applied force.
+  /// Along a freedom that is one of the axes nothing is left: exact zeros in place of differences, and the applied
+  /// force.
   void clear(Articulated& body, const Vec3& s, const Vec3& v, Ref Q) {
     if (const std::size_t k = unit(dag_, s); k < 3 && is_zero(dag_, v)) {
       for (std::size_t i = 0; i < 3; ++i) body.I[i][k] = body.I[k][i] = body.H[k][i] = dag_.zero();

@@ -26,15 +26,19 @@ bool only_lengths(const Mechanics& m, const BodyTree& tree) {
          });
 }
 
-/// Kinetic energy does not know the length of Euler parameters, and neither does what acts on the body: the multiplier of the length is 0,
-/// but for forces that are given along the parameters as such. Against these it holds along e: e.Q + lambda e.A = 0.
+/// Kinetic energy does not know the length of Euler parameters, and neither does what acts on the body: the multiplier
+/// of the length is 0, but for forces that are given along the parameters as such. Against these it holds along e: e.Q
+/// + lambda e.A = 0.
 std::vector<Ref> multipliers_of_lengths(const Mechanics& m, const BodyTree& tree, const system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Ref> lambda(m.active.size(), dag.zero());
   for (const BodyLink& link : tree.links) {
     if (!link.absolute || link.parameters.empty()) continue;
-    const auto own = [&](std::uint32_t k) { return m.constraints[k].name == m.model->frames[link.frame].name + "_unit"; };
-    const std::size_t k = static_cast<std::size_t>(std::find_if(m.active.begin(), m.active.end(), own) - m.active.begin());
+    const auto own = [&](std::uint32_t k) {
+      return m.constraints[k].name == m.model->frames[link.frame].name + "_unit";
+    };
+    const std::size_t k =
+        static_cast<std::size_t>(std::find_if(m.active.begin(), m.active.end(), own) - m.active.begin());
     Ref force = dag.zero(), slope = dag.zero();
     for (std::size_t j = 0; j < link.angles.size(); ++j) {
       force = dag.add(force, dag.mul(link.parameters[j], tree.Q[link.angles[j].index]));
@@ -47,7 +51,8 @@ std::vector<Ref> multipliers_of_lengths(const Mechanics& m, const BodyTree& tree
 
 }  // namespace
 
-std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach, const char* route, BodySolve solve) {
+std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach, const char* route,
+                                                          BodySolve solve) {
   if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
   Dag& dag = *m.dag;
   std::optional<BodyTree> tree = body_tree(m, m.free, true);

@@ -6,7 +6,8 @@ namespace {
 
 using symbolic::cross;
 
-/// Three steps about one axis each, the rates of the three coordinates alone, the axis of the middle one another than the others': Euler angles.
+/// Three steps about one axis each, the rates of the three coordinates alone, the axis of the middle one another than
+/// the others': Euler angles.
 struct Angles {
   std::array<std::size_t, 3> axis;
   std::size_t third;  // not that of the first and the middle step
@@ -111,7 +112,8 @@ std::vector<LinkMotion> motion_of(Dag& dag, const BodyTree& tree) {
       motion.w = parent.w;
       for (const Step& step : link.turn.steps) {
         motion.w = times(dag, step.R, motion.w);
-        motion.bias = symbolic::add(dag, times(dag, step.R, motion.bias), symbolic::add(dag, cross(dag, motion.w, step.w), step.w_bias));
+        motion.bias = symbolic::add(dag, times(dag, step.R, motion.bias),
+                                    symbolic::add(dag, cross(dag, motion.w, step.w), step.w_bias));
         motion.w = symbolic::add(dag, motion.w, step.w);
       }
     }
@@ -161,7 +163,8 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
     const Ref first = own[angles->freedom[0]], last = own[angles->freedom[2]];
     moment[angles->axis[1]] = own[angles->freedom[1]];
     moment[angles->axis[2]] = last;
-    const Ref rest = dag.div(dag.sub(first, dag.mul(angles->symmetric() ? angles->c : angles->s, last)), angles->divisor());
+    const Ref rest =
+        dag.div(dag.sub(first, dag.mul(angles->symmetric() ? angles->c : angles->s, last)), angles->divisor());
     moment[angles->symmetric() ? angles->third : angles->axis[0]] = rest;
     return times(dag, link.turn.steps[2].R, moment);
   }
@@ -171,8 +174,8 @@ Vec3 joint_moment(Dag& dag, const BodyLink& link, const std::vector<Ref>& Q) {
   return moment;
 }
 
-std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion, const std::vector<Ref>& u,
-                              std::vector<symbolic::Pivot>& pivots) {
+std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion,
+                              const std::vector<Ref>& u, std::vector<symbolic::Pivot>& pivots) {
   const Vec3 none = symbolic::zero_vector(dag);
   std::vector<Vec3> alpha;
   std::vector<Ref> result = u;
@@ -194,12 +197,14 @@ std::vector<Ref> second_rates(Dag& dag, const BodyTree& tree, const std::vector<
       pivots.push_back({angles->divisor(), dag.one()});
       continue;
     }
-    const Vec3 left = symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.turn.to_own(dag, parent), motion[l].bias));
+    const Vec3 left =
+        symbolic::subtract(dag, alpha.back(), symbolic::add(dag, link.turn.to_own(dag, parent), motion[l].bias));
     if (!link.parameters.empty()) {
       parameter_rates(dag, link, left, result);
       continue;
     }
-    for (std::size_t f = 0; f < 3; ++f) result[link.angles[f].index] = dag.div(dot(dag, normal(dag, link, f), left), volume(dag, link));
+    for (std::size_t f = 0; f < 3; ++f)
+      result[link.angles[f].index] = dag.div(dot(dag, normal(dag, link, f), left), volume(dag, link));
     pivots.push_back({volume(dag, link), dag.zero()});
   }
   return result;

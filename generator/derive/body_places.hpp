@@ -11,7 +11,7 @@
 namespace eomgen::derive {
 
 struct WrittenPlace {
-  std::optional<std::uint32_t> from;        // a place; none: the origin
+  std::optional<std::uint32_t> from;         // a place; none: the origin
   std::map<std::uint32_t, Vec3> components;  // by frame, along its own axes
 };
 

@@ -20,7 +20,8 @@ struct Momentum {
 
 class Recursion {
  public:
-  Recursion(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) : dag_(dag), tree_(tree), motion_(motion) {}
+  Recursion(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
+      : dag_(dag), tree_(tree), motion_(motion) {}
 
   BodyEquations operator()() {
     const std::size_t n = tree_.Q.size();
@@ -44,12 +45,15 @@ class Recursion {
     for (std::size_t l = 0; l < count; ++l) {
       const BodyLink& link = tree_.links[l];
       Vec3 a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity);
-      if (link.parent >= 0) a = symbolic::add(dag_, acceleration_[place(link.parent)], cross(dag_, alpha[place(link.parent)], link.offset));
+      if (link.parent >= 0)
+        a = symbolic::add(dag_, acceleration_[place(link.parent)], cross(dag_, alpha[place(link.parent)], link.offset));
       a = link.turn.to_own(dag_, symbolic::add(dag_, a, motion_[l].lift));
       acceleration_.push_back(a);
       if (link.carried()) alpha[l] = motion_[l].bias;
-      if (link.carried() && link.parent >= 0) alpha[l] = symbolic::add(dag_, link.turn.to_own(dag_, alpha[place(link.parent)]), alpha[l]);
-      const Vec3 turning = symbolic::add(dag_, cross(dag_, alpha[l], link.moment), times(dag_, motion_[l].W, link.moment));
+      if (link.carried() && link.parent >= 0)
+        alpha[l] = symbolic::add(dag_, link.turn.to_own(dag_, alpha[place(link.parent)]), alpha[l]);
+      const Vec3 turning =
+          symbolic::add(dag_, cross(dag_, alpha[l], link.moment), times(dag_, motion_[l].W, link.moment));
       F[l] = symbolic::add(dag_, symbolic::scale(dag_, link.mass, a), turning);
       N[l] = symbolic::add(dag_, cross(dag_, link.moment, a), gyroscopic(dag_, link.inertia, motion_[l].w));
       N[l] = symbolic::add(dag_, N[l], times(dag_, link.inertia, alpha[l]));
@@ -102,7 +106,8 @@ class Recursion {
   void column(std::size_t l, const Freedom& freedom) {
     const Composite& c = composite_[l];
     Momentum p;
-    p.linear = symbolic::add(dag_, cross(dag_, freedom.turning, c.moment), symbolic::scale(dag_, c.mass, freedom.shifting));
+    p.linear =
+        symbolic::add(dag_, cross(dag_, freedom.turning, c.moment), symbolic::scale(dag_, c.mass, freedom.shifting));
     p.angular = symbolic::add(dag_, times(dag_, c.inertia, freedom.turning), cross(dag_, c.moment, freedom.shifting));
     const std::size_t n = tree_.Q.size();
     for (int inner = static_cast<int>(l); inner >= 0; inner = tree_.links[place(inner)].parent) {

@@ -23,7 +23,12 @@ struct Anchor {
 class Builder {
  public:
   Builder(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed)
-      : m_(m), dag_(*m.dag), of_(of), lower_(m), spelled_(m, imposed), bias_(symbolic::total_time(dag_, m.q.size(), 0, true)) {}
+      : m_(m),
+        dag_(*m.dag),
+        of_(of),
+        lower_(m),
+        spelled_(m, imposed),
+        bias_(symbolic::total_time(dag_, m.q.size(), 0, true)) {}
 
   std::optional<BodyTree> build() {
     for (const mechanics::PointMass& mass : m_.masses) {
@@ -62,7 +67,8 @@ class Builder {
     link.moment = symbolic::add(dag_, link.moment, mr);
     if (fixed) add_inertia(link, *body);
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) link.inertia[i][k] = dag_.sub(link.inertia[i][k], dag_.mul(mr[i], at->offset[k]));
+      for (std::size_t k = 0; k < 3; ++k)
+        link.inertia[i][k] = dag_.sub(link.inertia[i][k], dag_.mul(mr[i], at->offset[k]));
       link.inertia[i][i] = dag_.add(link.inertia[i][i], dot(dag_, mr, at->offset));
     }
     return true;
@@ -70,7 +76,8 @@ class Builder {
 
   void add_inertia(BodyLink& link, const model::Body& body) {
     for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) link.inertia[i][k] = dag_.add(link.inertia[i][k], spelled_(lower_.scalar(body.inertia[i][k])));
+      for (std::size_t k = 0; k < 3; ++k)
+        link.inertia[i][k] = dag_.add(link.inertia[i][k], spelled_(lower_.scalar(body.inertia[i][k])));
     }
   }
 
@@ -78,7 +85,8 @@ class Builder {
   bool add_spinning(const Spinning& spinning) {
     Anchor from = spinning.at;
     for (std::uint32_t frame = spinning.body->frame; frame != 0; frame = m_.model->frames[frame].parent) {
-      const auto link = std::find_if(tree_.links.begin(), tree_.links.end(), [&](const BodyLink& l) { return l.frame == frame; });
+      const auto link =
+          std::find_if(tree_.links.begin(), tree_.links.end(), [&](const BodyLink& l) { return l.frame == frame; });
       if (link == tree_.links.end()) continue;
       from = {static_cast<int>(link - tree_.links.begin()), symbolic::zero_vector(dag_)};
       break;
@@ -128,7 +136,8 @@ class Builder {
     std::uint32_t inner = parent;
     while (inner != 0 && inner != frame_of(at.link)) inner = m_.model->frames[inner].parent;
     // Axes of the ground lie between where the frame does not turn against those that the point is fixed in.
-    const std::optional<Anchor> from = inner == frame_of(at.link) ? attached(at, parent) : attached(*attached(at, 0), parent);
+    const std::optional<Anchor> from =
+        inner == frame_of(at.link) ? attached(at, parent) : attached(*attached(at, 0), parent);
     return from ? link_at(*from, frame, true) : from;
   }
 
@@ -219,8 +228,10 @@ class Builder {
       rates.push_back(m_.qdot[i]);
     }
     link.parameters.insert(link.parameters.end(), rates.begin(), rates.end());
-    if (sorted.size() == 4) link.freedoms = sorted;
-    else link.parameters.clear();
+    if (sorted.size() == 4)
+      link.freedoms = sorted;
+    else
+      link.parameters.clear();
   }
 
   bool covers_coordinates() const {
@@ -264,7 +275,8 @@ std::optional<BodyTree> body_tree(Mechanics& m, const std::vector<std::uint32_t>
 
 void use_angular_velocities(Dag& dag, BodyTree& tree) {
   for (BodyLink& link : tree.links) {
-    const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(), [&](const Freedom& f) { return is_zero(dag, f.shifting); });
+    const bool turns = std::all_of(link.freedoms.begin(), link.freedoms.end(),
+                                   [&](const Freedom& f) { return is_zero(dag, f.shifting); });
     link.absolute = turns && (link.freedoms.size() == 3 || (link.freedoms.size() == 4 && !link.parameters.empty()));
     if (!link.absolute) continue;
     link.angles = link.freedoms;

@@ -38,7 +38,8 @@ bool find_joints(Dag& dag, Branches& b, std::vector<std::set<std::size_t>>& move
 bool find_links(Dag& dag, Branches& b, const std::vector<std::set<std::size_t>>& moved) {
   std::vector<std::size_t> order(moved.size());
   std::iota(order.begin(), order.end(), 0u);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t x, std::size_t y) { return moved[x].size() > moved[y].size(); });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t x, std::size_t y) { return moved[x].size() > moved[y].size(); });
   std::vector<const std::set<std::size_t>*> sets;
   b.of.resize(moved.size());
   for (const std::size_t a : order) {
@@ -47,7 +48,8 @@ bool find_links(Dag& dag, Branches& b, const std::vector<std::set<std::size_t>>&
     for (std::size_t l = 0; l < sets.size() && !known; ++l) {
       const bool inside = std::includes(sets[l]->begin(), sets[l]->end(), moved[a].begin(), moved[a].end());
       std::vector<std::size_t> common;
-      std::set_intersection(sets[l]->begin(), sets[l]->end(), moved[a].begin(), moved[a].end(), std::back_inserter(common));
+      std::set_intersection(sets[l]->begin(), sets[l]->end(), moved[a].begin(), moved[a].end(),
+                            std::back_inserter(common));
       if (!inside && !common.empty()) return false;
       known = inside && sets[l]->size() == moved[a].size();
       if (known) b.of[a] = l;
@@ -85,8 +87,10 @@ bool Branches::beyond(std::size_t outer, std::size_t inner) const {
 std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
   Dag& dag = *m.dag;
   std::vector<mechanics::PointMass> masses = m.masses;
-  if (masses.empty()) masses = particles_of_energy(m).value_or(std::vector<mechanics::PointMass>{});
-  else if (!dag.is_zero(m.kinetic_given)) return std::nullopt;
+  if (masses.empty())
+    masses = particles_of_energy(m).value_or(std::vector<mechanics::PointMass>{});
+  else if (!dag.is_zero(m.kinetic_given))
+    return std::nullopt;
   if (masses.empty() || !m.spins.empty()) return std::nullopt;
   Spelled spelled(m, imposed);
   std::vector<Vec3> positions;

@@ -31,18 +31,19 @@ struct Link {
 struct Branches {
   QuasiCoordinates coordinates;
   std::vector<Carried> particles;
-  std::vector<Vec3> J;         // per theta
+  std::vector<Vec3> J;          // per theta
   std::vector<std::size_t> of;  // link of each theta
-  std::vector<Link> links;     // parents first
-  Vec3 gravity;                // acceleration, of uniform gravity
-  std::vector<Ref> f;          // per theta: the forces beside gravity, S^-T (Q - dU/dq)
+  std::vector<Link> links;      // parents first
+  Vec3 gravity;                 // acceleration, of uniform gravity
+  std::vector<Ref> f;           // per theta: the forces beside gravity, S^-T (Q - dU/dq)
 
   /// True where link `outer` is `inner` or hangs on it.
   bool beyond(std::size_t outer, std::size_t inner) const;
 };
 
-/// The tree that the coordinates `of` see; with `imposed`, the eliminated coordinates are functions of time. Nothing where the
-/// particles are no tree, or where kinetic energy was given beside them. Where it was given alone they are those of point_energies.hpp.
+/// The tree that the coordinates `of` see; with `imposed`, the eliminated coordinates are functions of time. Nothing
+/// where the particles are no tree, or where kinetic energy was given beside them. Where it was given alone they are
+/// those of point_energies.hpp.
 std::optional<Branches> branches(Mechanics& mechanics, const std::vector<std::uint32_t>& of, bool imposed);
 
 }  // namespace eomgen::derive

@@ -46,8 +46,12 @@ Matrix step(Dag& dag, std::size_t axis, const Turn& turn) {
   R[k][j] = dag.neg(turn.sine.ref);
   return R;
 }
-Vec3 times(Dag& dag, const Matrix& R, const Vec3& v) { return {symbolic::dot(dag, R[0], v), symbolic::dot(dag, R[1], v), symbolic::dot(dag, R[2], v)}; }
-Matrix transposed(const Matrix& R) { return {Vec3{R[0][0], R[1][0], R[2][0]}, Vec3{R[0][1], R[1][1], R[2][1]}, Vec3{R[0][2], R[1][2], R[2][2]}}; }
+Vec3 times(Dag& dag, const Matrix& R, const Vec3& v) {
+  return {symbolic::dot(dag, R[0], v), symbolic::dot(dag, R[1], v), symbolic::dot(dag, R[2], v)};
+}
+Matrix transposed(const Matrix& R) {
+  return {Vec3{R[0][0], R[1][0], R[2][0]}, Vec3{R[0][1], R[1][1], R[2][1]}, Vec3{R[0][2], R[1][2], R[2][2]}};
+}
 Matrix times(Dag& dag, const Matrix& A, const Matrix& B) {
   const Matrix columns = transposed(B);
   return transposed({times(dag, A, columns[0]), times(dag, A, columns[1]), times(dag, A, columns[2])});
@@ -58,8 +62,8 @@ Vec3 along(Dag& dag, std::size_t axis, Ref size) {
   return v;
 }
 
-/// Sines and cosines of the angles of a set that make the matrix Q, eq. (5.57); that of the middle one that vanishes where the set fails
-/// is taken to be positive.
+/// Sines and cosines of the angles of a set that make the matrix Q, eq. (5.57); that of the middle one that vanishes
+/// where the set fails is taken to be positive.
 std::array<Turn, 3> read_off(Dag& dag, const Axes& axes, const Matrix& Q) {
   const auto [i, j, k] = axes;
   const std::size_t m = 3 - i - j;  // the axis that is neither the first nor the second
@@ -74,7 +78,8 @@ std::array<Turn, 3> read_off(Dag& dag, const Axes& axes, const Matrix& Q) {
   return {Turn{-(sign * q(k, j)) / c, q(k, k) / c}, Turn{sign * q(k, i), c}, Turn{-(sign * q(j, i)) / c, q(i, i) / c}};
 }
 
-std::vector<Ref> change_of_angles(Dag& dag, const std::vector<std::uint32_t>& angles, const Axes& from, const Axes& to) {
+std::vector<Ref> change_of_angles(Dag& dag, const std::vector<std::uint32_t>& angles, const Axes& from,
+                                  const Axes& to) {
   const Angles n = symbols(dag, angles);
   std::array<Matrix, 3> R;
   for (std::size_t s = 0; s < 3; ++s) R[s] = step(dag, from[s], turn_by(dag, n.value[s].ref));
@@ -96,7 +101,8 @@ std::vector<Ref> change_of_angles(Dag& dag, const std::vector<std::uint32_t>& an
 }
 
 /// phi from the axis `from`, theta about it, to the same about the axis `to`.
-std::vector<Ref> change_of_direction(Dag& dag, const std::vector<std::uint32_t>& angles, std::size_t from, std::size_t to) {
+std::vector<Ref> change_of_direction(Dag& dag, const std::vector<std::uint32_t>& angles, std::size_t from,
+                                     std::size_t to) {
   const Angles n = symbols(dag, angles);
   const Turn phi = turn_by(dag, n.value[0].ref), theta = turn_by(dag, n.value[1].ref);
   std::array<Scalar, 3> e, v;  // the direction, and its rate
@@ -118,7 +124,9 @@ std::vector<Ref> change_of_direction(Dag& dag, const std::vector<std::uint32_t>&
 }  // namespace
 
 system::ChartChange chart_change(Dag& dag, const model::Model& model, const model::SwitchedChart& chart) {
-  system::ChartChange change{chart.of, chart.own, chart.second, chart.regular(model), chart.angles, chart.guarded, chart.at_sine, true, true, {}, {}};
+  system::ChartChange change{
+      chart.of, chart.own, chart.second, chart.regular(model), chart.angles, chart.guarded, chart.at_sine, true, true,
+      {},       {}};
   if (chart.kind == model::SwitchedChart::Kind::rotation) {
     Axes second = chart.axes;
     second[2] = chart.second_axis;

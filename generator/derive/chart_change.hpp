@@ -7,8 +7,8 @@
 
 namespace eomgen::derive {
 
-/// The attitude or the direction is written down in the one chart and read off in the other; rates by way of the angular velocity or
-/// the velocity of the direction, which both share.
+/// The attitude or the direction is written down in the one chart and read off in the other; rates by way of the
+/// angular velocity or the velocity of the direction, which both share.
 system::ChartChange chart_change(symbolic::Dag& dag, const model::Model& model, const model::SwitchedChart& chart);
 
 }  // namespace eomgen::derive

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The christoffel route: M_ik(q) qddot_i + [ij,k] qdot_i qdot_j = Q_k with the symbols of the first kind (2.184), (2.177),
-// and with the terms of T1 and T0 and of dM/dt where something moves by prescription.
+// The christoffel route: M_ik(q) qddot_i + [ij,k] qdot_i qdot_j = Q_k with the symbols of the first kind (2.184),
+// (2.177), and with the terms of T1 and T0 and of dM/dt where something moves by prescription.
 #pragma once
 
 #include <optional>

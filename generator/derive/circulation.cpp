@@ -48,7 +48,8 @@ class Paths {
   /// The work around circles in the plane of coordinates i and k: none, some, or a number that does not settle.
   Circulation::Answer around_circles(std::size_t i, std::size_t k) {
     // Circles about the origin, and about a point off it; those that meet a singular point do not settle.
-    static constexpr double circles[][3] = {{0, 0, 0.61}, {0, 0, 2.3}, {0, 0, 11.7}, {0.83, -0.57, 0.71}, {0.83, 0.57, 2.9}};
+    static constexpr double circles[][3] = {
+        {0, 0, 0.61}, {0, 0, 2.3}, {0, 0, 11.7}, {0.83, -0.57, 0.71}, {0.83, 0.57, 2.9}};
     bool settled = false;
     for (const auto& circle : circles) {
       const auto [work, size] = integral(i, k, circle, 256);
@@ -83,7 +84,8 @@ class Paths {
   const std::vector<Ref>& Q_;
 };
 
-// A function without inverse functions of angles is one function of the place: its differences along closed paths are 0.
+// A function without inverse functions of angles is one function of the place: its differences along closed paths are
+// 0.
 bool has_branches(const Dag& dag, Ref U) {
   using symbolic::Op;
   const std::vector<Ref> nodes = dag.reachable({U});
@@ -103,7 +105,9 @@ Circulation circulation(mechanics::Mechanics& m, const std::vector<Ref>& Q, cons
   std::vector<std::size_t> others;
   for (std::size_t i = 0; i < Q.size(); ++i) {
     const std::string& name = m.model->coordinates[i].name;
-    const bool present = !dag.is_zero(Q[i]) || std::any_of(Q.begin(), Q.end(), [&](Ref q) { return symbolic::depends_on(dag, q, coordinate(i)); });
+    const bool present = !dag.is_zero(Q[i]) || std::any_of(Q.begin(), Q.end(), [&](Ref q) {
+      return symbolic::depends_on(dag, q, coordinate(i));
+    });
     if (!present) continue;
     if (!paths.is_turn(i, places)) {
       others.push_back(i);
@@ -120,7 +124,8 @@ Circulation circulation(mechanics::Mechanics& m, const std::vector<Ref>& Q, cons
   }
   if (domain_of(m, Q).empty() || (potential && !has_branches(dag, potential->U))) return result;
   if (others.size() < 2 && result.answer == Circulation::Answer::none) return result;  // a line has no closed paths
-  if (!potential) result.answer = Circulation::Answer::undecided;  // circles can show that there is work, not that there is none
+  if (!potential)
+    result.answer = Circulation::Answer::undecided;  // circles can show that there is work, not that there is none
   for (std::size_t a = 0; a < others.size(); ++a) {
     for (std::size_t b = a + 1; b < others.size(); ++b) {
       const Circulation::Answer answer = paths.around_circles(others[a], others[b]);

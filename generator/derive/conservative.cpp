@@ -14,7 +14,8 @@ using symbolic::SymbolKind;
 
 class Classifier {
  public:
-  Classifier(mechanics::Mechanics& m, std::size_t force) : m_(m), dag_(*m.dag), force_(force), Q_(m.force_components[force]) {}
+  Classifier(mechanics::Mechanics& m, std::size_t force)
+      : m_(m), dag_(*m.dag), force_(force), Q_(m.force_components[force]) {}
 
   ForceClass classify() {
     result_.name = m_.model->forces[force_].name;
@@ -30,7 +31,8 @@ class Classifier {
     } else if (depends_on_place_only() && curl_vanishes()) {
       find();
     }
-    if (result_.conservative == Verdict::yes && depends_on_time(known)) say("it depends on time, so that it changes the energy all the same");
+    if (result_.conservative == Verdict::yes && depends_on_time(known))
+      say("it depends on time, so that it changes the energy all the same");
     return result_;
   }
 

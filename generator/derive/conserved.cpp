@@ -17,7 +17,8 @@ using symbolic::SymbolKind;
 
 namespace {
 
-// Of a proof, where values have said yes already: products of two terms, a tenth of a second; and terms of one expression.
+// Of a proof, where values have said yes already: products of two terms, a tenth of a second; and terms of one
+// expression.
 constexpr std::size_t proof_effort = 300'000, proof_terms = 400;
 
 }  // namespace
@@ -69,11 +70,13 @@ Applied applied_potentials(Mechanics& m) {
 std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Conserved> result;
-  const bool hit = std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
+  const bool hit =
+      std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
   symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
   std::vector<Ref> power{s.power};
   for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
-  if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no) result.push_back({"energy", "total energy T + U", s.energy, c});
+  if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no)
+    result.push_back({"energy", "total energy T + U", s.energy, c});
   // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = impose(m), written = write_out(m);
@@ -108,7 +111,8 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
   if (const Certainty c = energy_conserved || hit ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
     const bool plain = dag.is_zero(V);
     result.push_back({plain ? "jacobi" : "energy.applied",
-                      plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces", jacobi, c});
+                      plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces",
+                      jacobi, c});
     s.outputs.push_back({result.back().name, jacobi});
   }
   for (const mechanics::Integral& integral : m.integrals) {

@@ -21,11 +21,11 @@ const char* name(Certainty certainty);  // "no", "numerical", "proven"
 Certainty vanishing(symbolic::Dag& dag, const std::vector<symbolic::Ref>& expressions);
 
 struct Conserved {
-  std::string name;   // "energy", "momentum.theta", "jacobi", "linear_momentum.E1"; also the name of the output
-  std::string title;  // for reading
+  std::string name;          // "energy", "momentum.theta", "jacobi", "linear_momentum.E1"; also the name of the output
+  std::string title;         // for reading
   symbolic::Ref expression;  // in the symbols of the EquationSystem
   Certainty certainty = Certainty::numerical;
-  std::optional<std::uint32_t> cyclic = {};  // the coordinate whose generalised momentum it is
+  std::optional<std::uint32_t> cyclic = {};     // the coordinate whose generalised momentum it is
   std::optional<symbolic::Ref> magnitude = {};  // size of the terms that it is the sum of, for the drift of a run
 };
 
@@ -36,12 +36,13 @@ inline constexpr const char* differential_prefix = "differential.";
 inline constexpr const char* magnitude_prefix = "magnitude.";
 std::string magnitude_output(const Conserved& conserved);  // for runs, not for tables
 
-/// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of constraints),
-/// and for magnitudes.
+/// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of
+/// constraints), and for magnitudes.
 std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
 
 /// The same of systems of one Mechanics, which all have the same energies and constraints: found once, offered by all.
-std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, std::vector<system::EquationSystem>& systems);
+std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics,
+                                            std::vector<system::EquationSystem>& systems);
 
 std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved);
 

@@ -35,7 +35,8 @@ void add_constraints(Mechanics& m, EquationSystem& s, Finish& finish) {
     s.holonomic.push_back(constraint.holonomic());
     s.psi.push_back(finish(psi));
     for (const std::uint32_t i : s.free) {
-      s.A.push_back(constraint.holonomic() ? finish(symbolic::partial(dag, coordinate(i, 0))(psi)) : finish(constraint.gradient[i]));
+      s.A.push_back(constraint.holonomic() ? finish(symbolic::partial(dag, coordinate(i, 0))(psi))
+                                           : finish(constraint.gradient[i]));
     }
     const Ref rate = constraint.holonomic() ? bias(psi) : finish.imposed(m.velocity_form(constraint));  // A qdot + b
     s.b.push_back(finish(at_rest(m, s)(rate)));
@@ -52,13 +53,15 @@ void add_redundant(Mechanics& m, EquationSystem& s, Finish& finish) {
     const Ref psi = finish.imposed(c.holonomic() ? c.psi : m.velocity_form(c));
     const Ref b = c.holonomic() ? symbolic::explicit_time(*m.dag, m.model->functions.size())(psi) : at_rest(m, s)(psi);
     system::Watched watched{k, finish(psi), {}, finish(b)};
-    for (const std::uint32_t i : s.free) watched.A.push_back(finish(symbolic::partial(*m.dag, coordinate(i, order))(psi)));
+    for (const std::uint32_t i : s.free)
+      watched.A.push_back(finish(symbolic::partial(*m.dag, coordinate(i, order))(psi)));
     s.redundant.push_back(std::move(watched));
   }
 }
 
 // The (b) equations: row c of M qddot - f = sum_k lambda_k dpsi_k/dq_c, from the last coordinate that was fixed to the
-// first; a constraint's gradient has only coordinates that were fixed with it or before it, so this is a back substitution.
+// first; a constraint's gradient has only coordinates that were fixed with it or before it, so this is a back
+// substitution.
 void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   Dag& dag = *m.dag;
   const std::size_t n = m.q.size();
@@ -78,25 +81,31 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   }
 }
 
-/// Multipliers; of joints the force on B and the moment about its point instead. Both as far as the motion determines them.
+/// Multipliers; of joints the force on B and the moment about its point instead. Both as far as the motion determines
+/// them.
 void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
   Dag& dag = *m.dag;
   for (const system::Reaction& reaction : s.reactions) {
-    const auto of = [&](const mechanics::JointReaction& j) { return reaction.constraint >= j.first && reaction.constraint < j.first + j.equations(); };
+    const auto of = [&](const mechanics::JointReaction& j) {
+      return reaction.constraint >= j.first && reaction.constraint < j.first + j.equations();
+    };
     if (!m.constraints[reaction.constraint].determined) continue;
-    if (std::none_of(m.joints.begin(), m.joints.end(), of)) s.outputs.push_back({"reaction." + reaction.label, reaction.value});
+    if (std::none_of(m.joints.begin(), m.joints.end(), of))
+      s.outputs.push_back({"reaction." + reaction.label, reaction.value});
   }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const mechanics::JointReaction& joint = m.joints[i];
     for (std::size_t j = 0; j < joint.along.size(); ++j) {
       if (!joint.determined[j]) continue;
       Ref sum = dag.zero();
-      for (std::size_t k = 0; k < joint.equations(); ++k) sum = dag.add(sum, dag.mul(joint.along[j][k], s.reactions[joint.first + k].value));
+      for (std::size_t k = 0; k < joint.equations(); ++k)
+        sum = dag.add(sum, dag.mul(joint.along[j][k], s.reactions[joint.first + k].value));
       s.outputs.push_back({"reaction." + m.model->joints[i].name + "." + std::to_string(j + 1), sum});
     }
   }
   for (const mechanics::Constraint& c : m.constraints) {
-    if (c.need == mechanics::Need::redundant) s.outputs.push_back({system::watched_prefix + c.label, c.holonomic() ? c.psi : m.velocity_form(c)});
+    if (c.need == mechanics::Need::redundant)
+      s.outputs.push_back({system::watched_prefix + c.label, c.holonomic() ? c.psi : m.velocity_form(c)});
   }
 }
 
@@ -118,7 +127,8 @@ void add_outputs(Mechanics& m, EquationSystem& s) {
     for (std::size_t k = 0; k < 3; ++k) add(name + ".velocity" + std::to_string(k + 1), ddt(position[k]));
   }
   for (std::size_t f = 1; f < m.angular_velocity.size(); ++f) {
-    for (std::size_t k = 0; k < 3; ++k) add(m.model->frames[f].name + ".omega" + std::to_string(k + 1), m.angular_velocity[f][k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      add(m.model->frames[f].name + ".omega" + std::to_string(k + 1), m.angular_velocity[f][k]);
   }
   add_reaction_outputs(m, s);
   for (std::size_t i = 0; i < m.model->definitions.size(); ++i) {
@@ -151,8 +161,10 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
       result.slip_rate.push_back(finish(ddt(w)));
     }
     for (const Vec3& t : contact.directions) result.directions.push_back({finish(t[0]), finish(t[1]), finish(t[2])});
-    if (contact.width) result.width = finish(*contact.width);
-    else if (contact.dimensions() > 0) result.static_coefficient = finish(contact.static_coefficient);
+    if (contact.width)
+      result.width = finish(*contact.width);
+    else if (contact.dimensions() > 0)
+      result.static_coefficient = finish(contact.static_coefficient);
     if (contact.dimensions() > 0) result.dynamic_coefficient = finish(contact.dynamic_coefficient);
     if (contact.unilateral) {
       const auto k = std::find(s.active.begin(), s.active.end(), contact.constraints[0]);
@@ -185,7 +197,8 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
     const auto phi = [&](std::size_t a) {
       return dag.symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(a), 0});
     };
-    if (contact.directions.empty() && contact.dimensions() > 0) s.outputs.push_back({"friction." + contact.name, phi(0)});
+    if (contact.directions.empty() && contact.dimensions() > 0)
+      s.outputs.push_back({"friction." + contact.name, phi(0)});
     for (std::size_t axis = 0; axis < 3 && !contact.directions.empty(); ++axis) {
       Ref sum = dag.zero();
       for (std::size_t a = 0; a < contact.dimensions(); ++a) {
@@ -194,7 +207,9 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
       s.outputs.push_back({"friction." + contact.name + "." + std::to_string(axis + 1), sum});
     }
     if (contact.touch && m.model->constraints[*contact.touch].rolls_by_friction()) {
-      for (std::uint32_t a = 0; a < 2; ++a) s.outputs.push_back({"reaction." + contact.name + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a)});
+      for (std::uint32_t a = 0; a < 2; ++a)
+        s.outputs.push_back(
+            {"reaction." + contact.name + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a)});
     }
     add_slip_outputs(m, contact, s);
     const Ref slides = contact.width ? dag.one() : dag.symbol(system::slides_symbol(j));

@@ -3,7 +3,8 @@
 
 namespace eomgen::derive {
 
-FullEquations euler_lagrange(Mechanics& m, Ref T, Ref U, const std::vector<Ref>& Q, const std::vector<std::uint32_t>& which) {
+FullEquations euler_lagrange(Mechanics& m, Ref T, Ref U, const std::vector<Ref>& Q,
+                             const std::vector<std::uint32_t>& which) {
   using symbolic::SymbolKind;
   Dag& dag = *m.dag;
   symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);

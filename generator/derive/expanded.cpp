@@ -30,7 +30,8 @@ std::optional<system::EquationSystem> expanded(Mechanics& m, system::Approach ap
   const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all_coordinates(m)));
   if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
   symbolic::Substitution imposed = impose(m);
-  // An expansion ends over a common denominator; expanded again, that would be multiplied out into what it does not concern.
+  // An expansion ends over a common denominator; expanded again, that would be multiplied out into what it does not
+  // concern.
   const auto constrained = [&](Ref whole, Ref reduced_whole) {
     return imposed(whole) == whole ? reduced_whole : expander.tidy(imposed(reduced_whole));
   };

@@ -8,8 +8,8 @@
 
 namespace eomgen::derive {
 
-/// The lagrange equations of energies that are expanded first, sin^2 + cos^2 = 1 used; best for small systems. Applies where
-/// the kinetic energy fits into the term budget of the expansion.
+/// The lagrange equations of energies that are expanded first, sin^2 + cos^2 = 1 used; best for small systems. Applies
+/// where the kinetic energy fits into the term budget of the expansion.
 std::optional<system::EquationSystem> expanded(mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

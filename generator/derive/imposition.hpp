@@ -17,7 +17,8 @@ using symbolic::Ref;
 /// The integrals of functions of time for which write_out has no closed form: states of the system.
 inline std::vector<system::IntegralState> integral_states(const Mechanics& mechanics) {
   std::vector<system::IntegralState> states;
-  for (const mechanics::OpenIntegral& open : mechanics::open_integrals(mechanics)) states.push_back({open.integral, open.rate});
+  for (const mechanics::OpenIntegral& open : mechanics::open_integrals(mechanics))
+    states.push_back({open.integral, open.rate});
   return states;
 }
 

@@ -11,8 +11,8 @@ namespace {
 using symbolic::SymbolKind;
 
 /// Euler's equations along the axes of the spin, (dH/dt + carrier x H) . dw/dqdot_i, eqs. (8.41), (9.39).
-void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed, const std::vector<std::uint32_t>& which,
-              symbolic::Derivation& bias, FullEquations& result) {
+void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed,
+              const std::vector<std::uint32_t>& which, symbolic::Derivation& bias, FullEquations& result) {
   Dag& dag = *m.dag;
   mechanics::Spin spin = given;
   for (Vec3* v : {&spin.w, &spin.carrier}) {

@@ -8,8 +8,8 @@
 
 namespace eomgen::derive {
 
-/// Equations from velocity Jacobians: M = sum m J^T J, f = Q - dU/dq - sum J^T (m Jdot qdot + mdot v). Applies where there are
-/// masses at known positions and nothing but them (no [energy] kinetic).
+/// Equations from velocity Jacobians: M = sum m J^T J, f = Q - dU/dq - sum J^T (m Jdot qdot + mdot v). Applies where
+/// there are masses at known positions and nothing but them (no [energy] kinetic).
 std::optional<system::EquationSystem> jacobian(mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

@@ -8,7 +8,8 @@
 
 namespace eomgen::derive {
 
-/// The functions at whose zeros `roots` may jump: a of sign(a), a - b of `if` with a < b. abs, min and max bend, but do not jump.
+/// The functions at whose zeros `roots` may jump: a of sign(a), a - b of `if` with a < b. abs, min and max bend, but do
+/// not jump.
 std::vector<symbolic::Ref> jump_surfaces(symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots);
 
 }  // namespace eomgen::derive

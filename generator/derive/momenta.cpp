@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all masses:
-// with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. Of bodies, dH/dt . (dw/dqdot_i xi_i) is added: the body turns
-// about E_k, or not at all.
+// sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all
+// masses: with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. Of bodies, dH/dt . (dw/dqdot_i xi_i) is
+// added: the body turns about E_k, or not at all.
 #include "derive/momenta.hpp"
 
 #include <cmath>
@@ -10,9 +10,9 @@
 #include "derive/jumps.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/factorisation.hpp"
 #include "symbolic/polynomial.hpp"
 #include "symbolic/sample.hpp"
-#include "symbolic/factorisation.hpp"
 
 namespace eomgen::derive {
 namespace {
@@ -21,7 +21,8 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr double screening = 1e-5;  // what passes is decided in many digits
-// Of writing J^T J out, which finds zeros where coordinates are orthogonal: products of two terms, and terms of one entry.
+// Of writing J^T J out, which finds zeros where coordinates are orthogonal: products of two terms, and terms of one
+// entry.
 constexpr std::size_t gram_effort = 300'000, gram_terms = 400;
 
 /// The least-squares solution y of J y = d, if it is one: J is rows x n, row-major.
@@ -73,7 +74,9 @@ class Search {
  public:
   Search(Mechanics& m, const system::EquationSystem& s) : s_(s), dag_(*m.dag), n_(s.free.size()) {
     symbolic::Substitution imposed = impose(m), written = write_out(m);
-    const auto all = [&](const Vec3& v) { return Vec3{written(imposed(v[0])), written(imposed(v[1])), written(imposed(v[2]))}; };
+    const auto all = [&](const Vec3& v) {
+      return Vec3{written(imposed(v[0])), written(imposed(v[1])), written(imposed(v[2]))};
+    };
     for (const mechanics::PointMass& mass : m.masses) {
       mass_.push_back(written(mass.mass));
       r_.push_back(all(mass.position));
@@ -92,8 +95,8 @@ class Search {
       H_.push_back(times(dag_, spin, w_.back()));
       axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
     }
-    // Displacements that the constraints allow: where coordinates are dependent (Euler parameters) they decide among those
-    // that move everything alike.
+    // Displacements that the constraints allow: where coordinates are dependent (Euler parameters) they decide among
+    // those that move everything alike.
     J_.insert(J_.end(), s.A.begin(), s.A.end());
     const std::vector<Ref> Q = generalized_forces(m);
     for (const std::uint32_t i : s.free) {
@@ -101,7 +104,8 @@ class Search {
       force_.push_back(dag_.sub(written(imposed(Q[i])), slope));
     }
     for (const Ref surface : jump_surfaces(dag_, {s.kinetic, s.potential})) {
-      for (const std::uint32_t i : s.free) across_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(surface));
+      for (const std::uint32_t i : s.free)
+        across_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(surface));
     }
   }
 
@@ -133,7 +137,8 @@ class Search {
       if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
       magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
     }
-    for (std::size_t b = 0; b < H_.size() && angular; ++b) magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
+    for (std::size_t b = 0; b < H_.size() && angular; ++b)
+      magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
     result.expression = expression;
     result.magnitude = magnitude;
     return result;
@@ -153,9 +158,12 @@ class Search {
     std::vector<Ref> d;
     for (const Vec3& r : r_) {
       for (std::size_t c = 0; c < 3; ++c) {
-        if (!angular) d.push_back(c == k ? dag_.one() : dag_.zero());
-        else if (c == k) d.push_back(dag_.zero());
-        else d.push_back(c == (k + 1) % 3 ? dag_.neg(r[(k + 2) % 3]) : r[(k + 1) % 3]);  // E_k x r
+        if (!angular)
+          d.push_back(c == k ? dag_.one() : dag_.zero());
+        else if (c == k)
+          d.push_back(dag_.zero());
+        else
+          d.push_back(c == (k + 1) % 3 ? dag_.neg(r[(k + 2) % 3]) : r[(k + 1) % 3]);  // E_k x r
       }
     }
     return d;
@@ -167,7 +175,8 @@ class Search {
     both.insert(both.end(), d.begin(), d.end());
     both.insert(both.end(), force_.begin(), force_.end());
     for (std::uint64_t point = 1; point <= 4; ++point) {
-      std::vector<double> value = symbolic::evaluate(dag_, both, [=](const Symbol& s) { return symbolic::sample_double(s, point); });
+      std::vector<double> value =
+          symbolic::evaluate(dag_, both, [=](const Symbol& s) { return symbolic::sample_double(s, point); });
       if (!std::all_of(value.begin(), value.end(), [](double x) { return std::isfinite(x); })) continue;
       const auto end = value.begin() + static_cast<std::ptrdiff_t>(J_.size());
       const auto force = end + static_cast<std::ptrdiff_t>(d.size());
@@ -177,7 +186,8 @@ class Search {
     return false;
   }
 
-  // What has to vanish: J xi - d, the work on xi, that of the constraint forces, and of the impulses where energies jump.
+  // What has to vanish: J xi - d, the work on xi, that of the constraint forces, and of the impulses where energies
+  // jump.
   std::vector<Ref> conditions(const std::vector<Ref>& d) {
     std::vector<Ref> y(n_, dag_.zero());
     for (std::size_t i = 0; i < n_; ++i) {
@@ -226,20 +236,24 @@ class Search {
 
 bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression, Dag& work) {
   return std::any_of(known.begin(), known.end(), [&](const Conserved& c) {
-    return mechanics::vanishes(dag, {work.sub(c.expression, expression)}) || mechanics::vanishes(dag, {work.add(c.expression, expression)});
+    return mechanics::vanishes(dag, {work.sub(c.expression, expression)}) ||
+           mechanics::vanishes(dag, {work.add(c.expression, expression)});
   });
 }
 
 }  // namespace
 
-std::vector<Conserved> conserved_momenta(Mechanics& m, const system::EquationSystem& s, const std::vector<Conserved>& known) {
+std::vector<Conserved> conserved_momenta(Mechanics& m, const system::EquationSystem& s,
+                                         const std::vector<Conserved>& known) {
   std::vector<Conserved> all = known, found;
-  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > most_coordinates) return found;
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > most_coordinates)
+    return found;
   Search search(m, s);
   for (const bool angular : {false, true}) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::optional<Conserved> c = search.component(
-          angular, k, [&](Ref expression) { return mechanics::vanishes(*m.dag, {expression}) || repeats(*m.dag, all, expression, *m.dag); });
+      const std::optional<Conserved> c = search.component(angular, k, [&](Ref expression) {
+        return mechanics::vanishes(*m.dag, {expression}) || repeats(*m.dag, all, expression, *m.dag);
+      });
       if (!c) continue;
       found.push_back(*c);
       all.push_back(*c);

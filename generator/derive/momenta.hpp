@@ -8,9 +8,10 @@
 
 namespace eomgen::derive {
 
-/// Such a component is conserved if a displacement of everything along E_k (or a rotation of everything about it) is one
-/// that the coordinates and the constraints allow at fixed t, and no applied force works on it. Constant ones, and those
-/// that are +- another of `known`, are left out. Not looked for beyond `most_coordinates` and where [energy] adds to T.
+/// Such a component is conserved if a displacement of everything along E_k (or a rotation of everything about it) is
+/// one that the coordinates and the constraints allow at fixed t, and no applied force works on it. Constant ones, and
+/// those that are +- another of `known`, are left out. Not looked for beyond `most_coordinates` and where [energy] adds
+/// to T.
 std::vector<Conserved> conserved_momenta(mechanics::Mechanics& mechanics, const system::EquationSystem& system,
                                          const std::vector<Conserved>& known);
 

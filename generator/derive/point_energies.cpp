@@ -36,7 +36,8 @@ struct Placed {
 class Recognition {
  public:
   explicit Recognition(Mechanics& m) : m_(m), dag_(*m.dag) {
-    for (std::uint32_t j = 0; j < m.q.size(); ++j) by_rate_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, j, 1}));
+    for (std::uint32_t j = 0; j < m.q.size(); ++j)
+      by_rate_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, j, 1}));
   }
 
   std::optional<std::vector<PointMass>> run() {
@@ -60,7 +61,8 @@ class Recognition {
  private:
   bool has(Ref r, std::uint8_t least_order) const {
     const std::vector<Symbol> symbols = dag_.symbols({r});
-    return std::any_of(symbols.begin(), symbols.end(), [=](const Symbol& s) { return s.kind == SymbolKind::coordinate && s.order >= least_order; });
+    return std::any_of(symbols.begin(), symbols.end(),
+                       [=](const Symbol& s) { return s.kind == SymbolKind::coordinate && s.order >= least_order; });
   }
 
   /// The squares in `factor` times `energy`; false where there is anything else.
@@ -103,7 +105,9 @@ class Recognition {
       const auto [known, is_new] = integrals_.try_emplace({J, j});
       if (is_new) {
         for (const Symbol& s : dag_.symbols({J}))
-          if (s.kind == SymbolKind::time || s.kind == SymbolKind::function || (s.kind == SymbolKind::coordinate && s.index != j)) return std::nullopt;
+          if (s.kind == SymbolKind::time || s.kind == SymbolKind::function ||
+              (s.kind == SymbolKind::coordinate && s.index != j))
+            return std::nullopt;
         known->second = symbolic::antiderivative(dag_, J, {SymbolKind::coordinate, j, 0});
       }
       if (!known->second) return std::nullopt;
@@ -122,7 +126,8 @@ class Recognition {
       for (std::size_t k = i; k < squares_.size() && group.size() < 3; ++k) {
         const auto alike = [](const auto& a, const auto& b) { return a.first == b.first; };
         const Square &a = squares_[i], &b = squares_[k];
-        if (taken[k] || a.mass != b.mass || !std::equal(a.J.begin(), a.J.end(), b.J.begin(), b.J.end(), alike)) continue;
+        if (taken[k] || a.mass != b.mass || !std::equal(a.J.begin(), a.J.end(), b.J.begin(), b.J.end(), alike))
+          continue;
         taken[k] = true;
         group.push_back(&b);
       }
@@ -180,7 +185,8 @@ class Recognition {
 }  // namespace
 
 std::optional<std::vector<PointMass>> particles_of_energy(Mechanics& m) {
-  if (!m.masses.empty() || !m.spins.empty() || m.dag->is_zero(m.kinetic_given) || m.q.size() < worth_looking) return std::nullopt;
+  if (!m.masses.empty() || !m.spins.empty() || m.dag->is_zero(m.kinetic_given) || m.q.size() < worth_looking)
+    return std::nullopt;
   return Recognition(m).run();
 }
 

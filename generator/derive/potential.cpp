@@ -27,7 +27,8 @@ class Search {
  public:
   Search(mechanics::Mechanics& m, const std::vector<Ref>& Q) : m_(m), dag_(*m.dag), Q_(Q) {
     for (std::size_t i = 0; i < Q.size(); ++i) {
-      if (std::any_of(Q.begin(), Q.end(), [&](Ref q) { return symbolic::depends_on(dag_, q, coordinate(i)); }) || !dag_.is_zero(Q[i])) {
+      if (std::any_of(Q.begin(), Q.end(), [&](Ref q) { return symbolic::depends_on(dag_, q, coordinate(i)); }) ||
+          !dag_.is_zero(Q[i])) {
         active_.push_back(i);
       }
     }
@@ -63,7 +64,8 @@ class Search {
     for (std::size_t step = 0; step < order.size(); ++step) {
       std::optional<Ref> rest = symbolic::tidy(dag_, dag_.neg(dag_.add(Q_[order[step]], slope(U, order[step]))));
       if (mechanics::vanishes(dag_, {*rest})) continue;
-      for (std::size_t before = 0; before < step && rest; ++before) rest = symbolic::without(dag_, *rest, coordinate(order[before]));
+      for (std::size_t before = 0; before < step && rest; ++before)
+        rest = symbolic::without(dag_, *rest, coordinate(order[before]));
       if (rest) rest = symbolic::antiderivative(dag_, *rest, coordinate(order[step]));
       if (!rest) return std::nullopt;
       U = dag_.add(U, *rest);
@@ -80,7 +82,8 @@ class Search {
       moment = dag_.add(moment, dag_.mul(m_.q[i], Q_[i]));
     }
     for (const std::size_t j : active_) scaled = dag_.add(scaled, dag_.mul(m_.q[j], slope(sum, j)));
-    const std::vector<double> value = symbolic::evaluate(dag_, {scaled, sum}, [](const Symbol& s) { return symbolic::sample_double(s, 1); });
+    const std::vector<double> value =
+        symbolic::evaluate(dag_, {scaled, sum}, [](const Symbol& s) { return symbolic::sample_double(s, 1); });
     const double doubled = std::round(2 * value[0] / value[1]);
     if (!std::isfinite(doubled) || std::abs(doubled) > 40 || doubled == -2) return std::nullopt;
     const Ref k_plus_1 = dag_.constant(symbolic::Rational(static_cast<long>(doubled) + 2) / 2);

@@ -15,7 +15,12 @@ using symbolic::SymbolKind;
 class Forces {
  public:
   Forces(Mechanics& m, const system::EquationSystem& s, const std::vector<std::string>& labels)
-      : m_(m), dag_(*m.dag), imposed_(impose(m)), written_(write_out(m)), Q_(m.q.size(), dag_.zero()), power_(dag_.zero()) {
+      : m_(m),
+        dag_(*m.dag),
+        imposed_(impose(m)),
+        written_(write_out(m)),
+        Q_(m.q.size(), dag_.zero()),
+        power_(dag_.zero()) {
     for (const system::Reaction& reaction : s.reactions) {
       if (std::find(labels.begin(), labels.end(), reaction.label) == labels.end()) continue;
       const mechanics::Constraint& constraint = m.constraints[reaction.constraint];
@@ -34,7 +39,8 @@ class Forces {
     for (std::size_t p = 0; p < m_.masses.size(); ++p) {
       const std::optional<Vec3> force = on_particle(p);
       if (!force || mechanics::vanishes(dag_, {(*force)[0], (*force)[1], (*force)[2]})) continue;
-      for (std::size_t k = 0; k < 3; ++k) result.push_back({m_.masses[p].name + ".force" + std::to_string(k + 1), (*force)[k]});
+      for (std::size_t k = 0; k < 3; ++k)
+        result.push_back({m_.masses[p].name + ".force" + std::to_string(k + 1), (*force)[k]});
     }
     result.push_back({"prescribed.power", power_});
     return result;
@@ -101,13 +107,16 @@ class Forces {
 std::vector<std::string> prescribing_constraints(const Mechanics& m) {
   std::vector<std::string> result;
   for (const mechanics::Constraint& constraint : m.constraints) {
-    const auto fixes = [&](const mechanics::FixedCoordinate& f) { return m.constraints[f.constraint].label == constraint.label; };
+    const auto fixes = [&](const mechanics::FixedCoordinate& f) {
+      return m.constraints[f.constraint].label == constraint.label;
+    };
     if (std::any_of(m.fixed.begin(), m.fixed.end(), fixes)) result.push_back(constraint.label);
   }
   return result;
 }
 
-std::vector<std::string> add_prescribed_forces(Mechanics& m, system::EquationSystem& s, const std::vector<std::string>& labels) {
+std::vector<std::string> add_prescribed_forces(Mechanics& m, system::EquationSystem& s,
+                                               const std::vector<std::string>& labels) {
   std::vector<std::string> names;
   for (system::Output& output : Forces(m, s, labels).outputs()) {
     names.push_back(output.name);

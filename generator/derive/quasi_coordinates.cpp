@@ -85,11 +85,13 @@ class Rewriter {
       return true;
     };
     switch (node.op) {
-      case Op::add: case Op::sub:
+      case Op::add:
+      case Op::sub:
         for (std::size_t i = 0; i < n_; ++i) {
           form.row[i] = node.op == Op::add ? args[0]->row[i] + args[1]->row[i] : args[0]->row[i] - args[1]->row[i];
         }
-        form.rest = node.op == Op::add ? dag_.add(args[0]->rest, args[1]->rest) : dag_.sub(args[0]->rest, args[1]->rest);
+        form.rest =
+            node.op == Op::add ? dag_.add(args[0]->rest, args[1]->rest) : dag_.sub(args[0]->rest, args[1]->rest);
         return true;
       case Op::neg: return scaled(*args[0], -1);
       case Op::mul:
@@ -216,7 +218,8 @@ QuasiCoordinates quasi_coordinates(Dag& dag, const std::vector<std::uint32_t>& o
   for (std::size_t a = 0; a < n; ++a) order[a] = a;
   const auto last = [&](std::size_t a) {
     std::size_t i = n;
-    while (i-- > 0 && cln::zerop(rewriter.rows()[a][i])) {}
+    while (i-- > 0 && cln::zerop(rewriter.rows()[a][i])) {
+    }
     return i;
   };
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return last(a) < last(b); });

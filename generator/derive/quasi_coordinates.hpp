@@ -29,8 +29,8 @@ struct QuasiCoordinates {
   symbolic::Derivation bias(Dag& dag) const;
 };
 
-/// Rewrites `positions` in the linear forms of the coordinates `of` that they use, if those are as many as the coordinates and
-/// independent; otherwise S is the identity and nothing changes.
+/// Rewrites `positions` in the linear forms of the coordinates `of` that they use, if those are as many as the
+/// coordinates and independent; otherwise S is the identity and nothing changes.
 QuasiCoordinates quasi_coordinates(Dag& dag, const std::vector<std::uint32_t>& of, std::vector<Vec3>& positions);
 
 }  // namespace eomgen::derive

@@ -9,8 +9,8 @@
 
 namespace eomgen::derive {
 
-/// Particles that form a tree (branches.hpp), derived with the constraints imposed; by Approach I only where there is nothing
-/// to impose.
+/// Particles that form a tree (branches.hpp), derived with the constraints imposed; by Approach I only where there is
+/// nothing to impose.
 std::optional<system::EquationSystem> recursive(mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

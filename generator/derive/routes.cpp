@@ -16,15 +16,22 @@ namespace eomgen::derive {
 namespace {
 
 // The one route that applies to every model.
-std::optional<system::EquationSystem> by_lagrange(mechanics::Mechanics& m, system::Approach approach) { return lagrange(m, approach); }
+std::optional<system::EquationSystem> by_lagrange(mechanics::Mechanics& m, system::Approach approach) {
+  return lagrange(m, approach);
+}
 
 constexpr RouteEntry entries[] = {
     {"lagrange", "T and U differentiated as they stand", "applies to every model", by_lagrange},
-    {"jacobian", "velocity Jacobians, M = sum m J^T J", "applies to models of particles and bodies without energies of their own", jacobian},
-    {"recursive", "a tree of particles or bodies: composite masses, forces from the tips inwards", "applies to trees of particles or of bodies", recursive},
-    {"articulated", "a tree of particles or bodies: link after link, no mass matrix", "applies to trees of particles or of bodies without multipliers and friction", articulated},
-    {"christoffel", "M(q), Christoffel symbols of the first kind, expanded", "applies to small models whose kinetic energy stays short when it is multiplied out", christoffel},
-    {"expanded", "T and U expanded first, sin^2 + cos^2 = 1 used", "applies to small models whose kinetic energy stays short when it is multiplied out", expanded},
+    {"jacobian", "velocity Jacobians, M = sum m J^T J",
+     "applies to models of particles and bodies without energies of their own", jacobian},
+    {"recursive", "a tree of particles or bodies: composite masses, forces from the tips inwards",
+     "applies to trees of particles or of bodies", recursive},
+    {"articulated", "a tree of particles or bodies: link after link, no mass matrix",
+     "applies to trees of particles or of bodies without multipliers and friction", articulated},
+    {"christoffel", "M(q), Christoffel symbols of the first kind, expanded",
+     "applies to small models whose kinetic energy stays short when it is multiplied out", christoffel},
+    {"expanded", "T and U expanded first, sin^2 + cos^2 = 1 used",
+     "applies to small models whose kinetic energy stays short when it is multiplied out", expanded},
 };
 
 }  // namespace

@@ -30,8 +30,8 @@ struct Outcome {
   bool over_budget = false;  // false: the route does not apply, or another one is cheaper by far
 };
 
-/// The route within a budget of operations; left out too where a tree is so large that another route is cheaper by far: full matrices
-/// are left to small systems (docs/theory.md, "Routes").
+/// The route within a budget of operations; left out too where a tree is so large that another route is cheaper by far:
+/// full matrices are left to small systems (docs/theory.md, "Routes").
 Outcome derive_where_worth(const RouteEntry& route, mechanics::Mechanics& mechanics, system::Approach approach);
 
 }  // namespace eomgen::derive

@@ -32,7 +32,8 @@ void gather(const Dag& dag, Ref root, const symbolic::Rational& factor, std::map
     open.pop_back();
     const symbolic::Node& node = dag[r];
     switch (node.op) {
-      case symbolic::Op::add: case symbolic::Op::sub:
+      case symbolic::Op::add:
+      case symbolic::Op::sub:
         open.emplace_back(node.args[0], c);
         open.emplace_back(node.args[1], node.op == symbolic::Op::add ? c : -c);
         break;
@@ -75,8 +76,8 @@ Vec3 unit(Dag& dag, std::size_t axis) {
   return e;
 }
 
-/// Directions normal to all J of a rod and to one another, none along the axis `still`: the rod itself where it is one, else
-/// cross products. Nothing where the J leave a plane that has no plain basis.
+/// Directions normal to all J of a rod and to one another, none along the axis `still`: the rod itself where it is one,
+/// else cross products. Nothing where the J leave a plane that has no plain basis.
 std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const Rod& rod, const Vec3& along,
                                          std::optional<std::size_t> still) {
   const std::size_t left = (still ? 2 : 3) - rod.J.size();
@@ -152,7 +153,8 @@ class Tensions {
     return factors.backward(factors.forward(r));
   }
 
-  /// How tension or free force of rod `source`, along `force`, moves particle k relative to its parent, along `direction`.
+  /// How tension or free force of rod `source`, along `force`, moves particle k relative to its parent, along
+  /// `direction`.
   Ref response(std::size_t k, const Vec3& direction, std::size_t source, const Vec3& force) {
     // force acts on the particle of `source` and, reversed, on its parent.
     const auto weight_at = [&](int particle) {
@@ -234,6 +236,8 @@ std::optional<Rods> rods_of(Dag& dag, const Branches& tree) {
   return result;
 }
 
-system::Solution accelerations(Dag& dag, const Branches& tree, const Rods& rods) { return Tensions(dag, tree, rods).solve(); }
+system::Solution accelerations(Dag& dag, const Branches& tree, const Rods& rods) {
+  return Tensions(dag, tree, rods).solve();
+}
 
 }  // namespace eomgen::derive

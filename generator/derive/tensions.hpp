@@ -24,7 +24,8 @@ struct Rods {
   Ref first_mass;
 };
 
-/// Nothing where a link has no particle or several, a mass that varies or is zero, or leaves directions that are not known.
+/// Nothing where a link has no particle or several, a mass that varies or is zero, or leaves directions that are not
+/// known.
 std::optional<Rods> rods_of(Dag& dag, const Branches& tree);
 
 /// Second rates of theta, as expressions in theta and its rate.

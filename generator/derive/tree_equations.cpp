@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "derive/tree_equations.hpp"
 
-
 namespace eomgen::derive {
 namespace {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What acts on a tree of particles or bodies: uniform gravity as an acceleration that all of it shares, the rest as forces of the
-// coordinates. Shared by the routes over trees.
+// What acts on a tree of particles or bodies: uniform gravity as an acceleration that all of it shares, the rest as
+// forces of the coordinates. Shared by the routes over trees.
 #pragma once
 
 #include <vector>

@@ -39,7 +39,8 @@ Mat3 cross_matrix(Dag& dag, const Vec3& d) {
 std::size_t axis_of(const Dag& dag, const Mat3& R) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const bool about = dag.is_one(R[i][i]) && dag.is_zero(R[i][j]) && dag.is_zero(R[i][k]) && dag.is_zero(R[j][i]) && dag.is_zero(R[k][i]);
+    const bool about = dag.is_one(R[i][i]) && dag.is_zero(R[i][j]) && dag.is_zero(R[i][k]) && dag.is_zero(R[j][i]) &&
+                       dag.is_zero(R[k][i]);
     if (about) return i;
   }
   return 3;
@@ -47,7 +48,8 @@ std::size_t axis_of(const Dag& dag, const Mat3& R) {
 
 namespace {
 
-/// R^T A R with A symmetric and R about axis i, with the double angle in one auxiliary quantity instead of four products each.
+/// R^T A R with A symmetric and R about axis i, with the double angle in one auxiliary quantity instead of four
+/// products each.
 Mat3 about_axis_to_parent(Dag& dag, const Mat3& R, const Mat3& a, std::size_t i) {
   const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
   const Ref c = R[j][j], s = R[j][k];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Components of vectors and matrices along the axes of one link and of the next: rotations applied step by step, which for
-// steps about one axis each costs less than their product does.
+// Components of vectors and matrices along the axes of one link and of the next: rotations applied step by step, which
+// for steps about one axis each costs less than their product does.
 #pragma once
 
 #include <vector>
@@ -19,8 +19,8 @@ Mat3 add(Dag& dag, const Mat3& a, const Mat3& b);
 /// [d x]: v -> d x v.
 Mat3 cross_matrix(Dag& dag, const Vec3& d);
 
-/// From the axes of a parent to own ones: e_k = sum_j R_kj p_j, step by step. Steps that turn about one axis come with the
-/// components of their angular velocity.
+/// From the axes of a parent to own ones: e_k = sum_j R_kj p_j, step by step. Steps that turn about one axis come with
+/// the components of their angular velocity.
 struct Step {
   Mat3 R;
   Vec3 w, w_bias;  // along the axes after the step; its rate at zero second rates

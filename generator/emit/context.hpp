@@ -10,9 +10,9 @@ namespace eomgen::emit {
 
 struct Quantity {
   std::string name;
-  std::string unit;  // "m/s^2", "1"; empty where unknown
-  std::string note;  // of the user's
-  double value = 0;  // parameters and inputs: the default
+  std::string unit;             // "m/s^2", "1"; empty where unknown
+  std::string note;             // of the user's
+  double value = 0;             // parameters and inputs: the default
   std::string expression = {};  // of a parameter that depends on others, in the language of model files
 };
 
@@ -37,10 +37,10 @@ struct EventText {
 };
 
 struct EmissionContext {
-  std::string id;            // of the model; becomes NAME
+  std::string id;  // of the model; becomes NAME
   std::string title;
   std::string content_hash;
-  std::string verdict;       // one line, of verify: "pass: 20 points, 50 digits"
+  std::string verdict;                // one line, of verify: "pass: 20 points, 50 digits"
   std::vector<Quantity> coordinates;  // all of the model, in declared order; those not in Program::free are eliminated
   std::vector<Quantity> parameters;   // all of the model, in declared order: the array p
   std::vector<Quantity> inputs;       // the array u
@@ -49,7 +49,7 @@ struct EmissionContext {
   std::vector<EventText> events;      // all of the model, in declared order
   std::vector<std::string> singular;  // "sin(phi) = 0"
   double start_time = 0;
-  std::vector<double> start;          // x at the start of the default scene
+  std::vector<double> start;  // x at the start of the default scene
   std::vector<TestVector> tests;
 };
 

@@ -88,7 +88,9 @@ std::optional<Expression> Expressions::of_lanes(const Instruction& instruction) 
   const auto& o = instruction.operands;
   const auto value = [&](std::size_t i) { return in_lanes(o[i], true).text; };
   const auto select = [&](std::size_t a, std::size_t b, std::size_t x, std::size_t y) {
-    return Expression{fmt::format("{0}select(({0}mask)({1} < {2}), {3}, {4})", dialect_.lanes, value(a), value(b), value(x), value(y)), Expression::atom};
+    return Expression{fmt::format("{0}select(({0}mask)({1} < {2}), {3}, {4})", dialect_.lanes, value(a), value(b),
+                                  value(x), value(y)),
+                      Expression::atom};
   };
   switch (instruction.op) {
     case Op::abs: return Expression{fmt::format("{}abs({})", dialect_.lanes, value(0)), Expression::atom};
@@ -96,7 +98,9 @@ std::optional<Expression> Expressions::of_lanes(const Instruction& instruction) 
     case Op::min: return select(1, 0, 1, 0);
     case Op::max: return select(0, 1, 1, 0);
     case Op::select: return select(0, 1, 2, 3);
-    case Op::add: case Op::mul: case Op::div: return std::nullopt;
+    case Op::add:
+    case Op::mul:
+    case Op::div: return std::nullopt;
     default: break;
   }
   const std::string name = function_name(instruction.op);
@@ -131,7 +135,8 @@ Expression Expressions::of(const Instruction& instruction) {
 Expression Expressions::call(const std::string& name, const std::vector<Operand>& operands) {
   called_.insert(name);
   std::string arguments;
-  for (const Operand& operand : operands) arguments += fmt::format("{}{}", arguments.empty() ? "" : ", ", signed_value(operand).text);
+  for (const Operand& operand : operands)
+    arguments += fmt::format("{}{}", arguments.empty() ? "" : ", ", signed_value(operand).text);
   return {fmt::format("{}({})", name, arguments), Expression::atom};
 }
 

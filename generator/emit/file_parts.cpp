@@ -16,17 +16,21 @@ using program::Function;
 using program::Program;
 
 const Function* find(const Program& program, const std::string& name) {
-  const auto found = std::find_if(program.functions.begin(), program.functions.end(), [&](const Function& f) { return f.name == name; });
+  const auto found = std::find_if(program.functions.begin(), program.functions.end(),
+                                  [&](const Function& f) { return f.name == name; });
   return found == program.functions.end() ? nullptr : &*found;
 }
 
-std::string chart_name(int in_charts) { return in_charts == 0 ? "own" : fmt::format("chart{}", eom::charts_of(in_charts)); }
+std::string chart_name(int in_charts) {
+  return in_charts == 0 ? "own" : fmt::format("chart{}", eom::charts_of(in_charts));
+}
 
 bool is_without_mode(const std::string& name) { return name == "mass" || name == "constraints"; }
 
 class Parts {
  public:
-  Parts(const Program& program, const std::string& prefix, const std::string& real) : program_(program), prefix_(prefix), real_(real) {}
+  Parts(const Program& program, const std::string& prefix, const std::string& real)
+      : program_(program), prefix_(prefix), real_(real) {}
 
   std::vector<FilePart> run() {
     for (const Function& function : program_.functions) {
@@ -56,16 +60,19 @@ class Parts {
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
       const Function* function = find(*p, name);
       if (function == nullptr) continue;
-      parts_.push_back({chart_name(p->in_charts) + "_" + name, fmt::format("{} in {}.", name, chart_title(program_, p->in_charts)), function, true, "", ""});
+      parts_.push_back({chart_name(p->in_charts) + "_" + name,
+                        fmt::format("{} in {}.", name, chart_title(program_, p->in_charts)), function, true, "", ""});
     }
   }
 
   static std::string names(const std::vector<Argument>& list, const std::string& offset = "") {
     std::string text;
-    for (const Argument& argument : list) text += (text.empty() ? "" : ", ") + argument.name + (argument.slot == program::Slot::prepared ? offset : "");
+    for (const Argument& argument : list)
+      text += (text.empty() ? "" : ", ") + argument.name + (argument.slot == program::Slot::prepared ? offset : "");
     return text;
   }
-  std::string call(const Program& p, const std::string& name, const std::vector<Argument>& list, const std::string& offset = "") const {
+  std::string call(const Program& p, const std::string& name, const std::vector<Argument>& list,
+                   const std::string& offset = "") const {
     return fmt::format("{}{}_{}({})", prefix_, chart_name(p.in_charts), name, names(list, offset));
   }
   static std::vector<std::string> results(const Function& function) {
@@ -85,17 +92,20 @@ class Parts {
     const std::string& name = function.name;
     const std::vector<Argument> list = plain(name, function);
     if (is_without_mode(name)) {
-      add(name, purpose(name) + " In the own charts.", argument_list(list, real_), fmt::format("  return {};\n", call(program_, name, list)));
+      add(name, purpose(name) + " In the own charts.", argument_list(list, real_),
+          fmt::format("  return {};\n", call(program_, name, list)));
       std::vector<Argument> with_mode = list;
       with_mode.insert(with_mode.begin() + 3, {Argument::Kind::mode, program::Slot::side, "mode"});
-      add(name + "_in", purpose(name) + " In the charts of a mode.", argument_list(with_mode, real_), by_mode(name, list));
+      add(name + "_in", purpose(name) + " In the charts of a mode.", argument_list(with_mode, real_),
+          by_mode(name, list));
       return;
     }
     add(name, purpose(name), argument_list(list, real_), by_mode(name, list));
   }
 
   std::string by_mode(const std::string& name, const std::vector<Argument>& list) {
-    std::string body = fmt::format("  switch (mode >> {} & {}) {{\n", eom::first_chart_bit, eom::charts_of(eom::chart_bits));
+    std::string body =
+        fmt::format("  switch (mode >> {} & {}) {{\n", eom::first_chart_bit, eom::charts_of(eom::chart_bits));
     std::size_t offset = 0;
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
       const bool prepared = name == "rhs_prepared";
@@ -117,7 +127,8 @@ class Parts {
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
       const std::size_t entries = p->entries("prepare");
       if (entries == 0) continue;
-      body += fmt::format("  if (code == 0) code = {}{}_prepare(p, w{});\n", prefix_, chart_name(p->in_charts), offset > 0 ? fmt::format(" + {}", offset) : "");
+      body += fmt::format("  if (code == 0) code = {}{}_prepare(p, w{});\n", prefix_, chart_name(p->in_charts),
+                          offset > 0 ? fmt::format(" + {}", offset) : "");
       offset += entries;
     }
     add("prepare", purpose("prepare"), argument_list(plain("prepare", function), real_), body + "  return code;\n");
@@ -125,18 +136,24 @@ class Parts {
 
   /// From one chart to another: one bit of `mode` after the other.
   void exchange() {
-    std::string body = fmt::format("  int code = 0;\n  for (int i = 0; i < {}; ++i) y[i] = x[i];\n", program_.state_count());
+    std::string body =
+        fmt::format("  int code = 0;\n  for (int i = 0; i < {}; ++i) y[i] = x[i];\n", program_.state_count());
     for (std::size_t j = 0; j < program_.charts.size(); ++j) {
       const program::ChartInfo& chart = program_.charts[j];
       for (const Function* function : {&chart.to, &chart.back}) {
         parts_.push_back({fmt::format("{}_{}", function->name, j + 1),
                           fmt::format("{}: from {} to {}.", chart.of, function == &chart.to ? chart.own : chart.second,
-                                      function == &chart.to ? chart.second : chart.own), function, true, "", ""});
+                                      function == &chart.to ? chart.second : chart.own),
+                          function, true, "", ""});
       }
       const std::size_t bit = static_cast<std::size_t>(eom::first_chart_bit) + j;
-      body += fmt::format("  if (code == 0 && ((mode ^ to) >> {0} & 1) != 0) code = (to >> {0} & 1) != 0 ? {1}to_second_{2}(y, y) : {1}to_own_{2}(y, y);\n", bit, prefix_, j + 1);
+      body += fmt::format(
+          "  if (code == 0 && ((mode ^ to) >> {0} & 1) != 0) code = (to >> {0} & 1) != 0 ? {1}to_second_{2}(y, y) : "
+          "{1}to_own_{2}(y, y);\n",
+          bit, prefix_, j + 1);
     }
-    add("chart", "The state x of the charts of `mode` in those of `to`; y may be x.", fmt::format("const {0}* x, int mode, int to, {0}* y", real_), body + "  return code;\n");
+    add("chart", "The state x of the charts of `mode` in those of `to`; y may be x.",
+        fmt::format("const {0}* x, int mode, int to, {0}* y", real_), body + "  return code;\n");
   }
 
   void add(const std::string& name, const std::string& what, const std::string& arguments, const std::string& body) {

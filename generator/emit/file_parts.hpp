@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The functions of one file in order: as they are where a program has one chart; in several charts those of each chart, and the
-// ones that choose among them by `mode` (docs/abi.md, "Charts").
+// The functions of one file in order: as they are where a program has one chart; in several charts those of each chart,
+// and the ones that choose among them by `mode` (docs/abi.md, "Charts").
 #pragma once
 
 #include <string>
@@ -11,10 +11,10 @@
 namespace eomgen::emit {
 
 struct FilePart {
-  std::string name;                                // without NAME: "rhs", "own_rhs", "chart1_rhs"
+  std::string name;  // without NAME: "rhs", "own_rhs", "chart1_rhs"
   std::string purpose;
-  const program::Function* function = nullptr;     // its statements; nullptr: `body` calls others
-  bool internal = false;                           // only others of the file call it
+  const program::Function* function = nullptr;  // its statements; nullptr: `body` calls others
+  bool internal = false;                        // only others of the file call it
   std::string arguments, body;
 };
 

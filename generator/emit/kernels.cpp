@@ -12,7 +12,8 @@ std::string sincos_lanes(const std::string& prefix, const std::string& linkage, 
 }
 
 std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard) {
-  std::vector<std::pair<std::string, std::string>> values = {{"prefix", prefix}, {"inline", linkage}, {"std", standard}};
+  std::vector<std::pair<std::string, std::string>> values = {
+      {"prefix", prefix}, {"inline", linkage}, {"std", standard}};
   values.emplace_back("lanes", sincos_lanes(prefix, linkage, standard));
   return rendered(skeleton::kernels_sincos, values, {});
 }

@@ -6,9 +6,9 @@
 
 namespace eomgen::emit {
 
-/// PREFIXsincos(a, b, sines, cosines) for double, in C, and PREFIXsincos_near, PREFIXis_near (templates/kernels/sincos).
-/// `linkage`: "static inline", "inline"; `standard`: what
-/// functions of the C library are called by, "" or "std::".
+/// PREFIXsincos(a, b, sines, cosines) for double, in C, and PREFIXsincos_near, PREFIXis_near
+/// (templates/kernels/sincos). `linkage`: "static inline", "inline"; `standard`: what functions of the C library are
+/// called by, "" or "std::".
 std::string sincos_kernel(const std::string& prefix, const std::string& linkage, const std::string& standard);
 
 /// PREFIXsincos_lanes alone, for lanes of whatever width PREFIXlanes and PREFIXbits have.

@@ -12,7 +12,8 @@ namespace eomgen::emit {
 
 using program::Slot;
 
-std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot, std::uint32_t i, bool takes_inputs) {
+std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot,
+                       std::uint32_t i, bool takes_inputs) {
   switch (slot) {
     case Slot::state: return fmt::format("{}[{}]", names.x, i);
     case Slot::parameter: return fmt::format("{}[{}]", names.p, i);
@@ -21,7 +22,8 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
       for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
       if (!dialect.typed) digit = fmt::format("({} | 0)", digit);  // whole numbers do not divide as such there
       const std::string one = dialect.constant(1);
-      if (i % 2 == 1) return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
+      if (i % 2 == 1)
+        return fmt::format("{0} % {1} < {2} ? {3} : -{3}", digit, eom::contact_states, eom::contact_states / 2, one);
       return fmt::format("{0} % 3 == 2 ? -{1} : {0} % 3 == 1 ? {1} : {2}", digit, one, dialect.constant(0));
     }
     case Slot::input: {
@@ -39,14 +41,19 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
   throw std::logic_error("this operand is no leaf");
 }
 
-std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot, std::uint32_t i, bool takes_inputs) {
-  const auto entry = [&](int array) { return fmt::format("{}at({}, {}, {})", dialect.lanes, block, array, i); };  // of the arrays t, x, p, w, u
+std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot,
+                          std::uint32_t i, bool takes_inputs) {
+  const auto entry = [&](int array) {
+    return fmt::format("{}at({}, {}, {})", dialect.lanes, block, array, i);
+  };  // of the arrays t, x, p, w, u
   switch (slot) {
     case Slot::time: return entry(0);
     case Slot::state: return entry(1);
     case Slot::parameter: return entry(2);
     case Slot::prepared: return entry(3);
-    case Slot::input: return takes_inputs ? entry(4) : fmt::format("{}all({})", dialect.lanes, dialect.value(context.inputs.at(i).value));
+    case Slot::input:
+      return takes_inputs ? entry(4)
+                          : fmt::format("{}all({})", dialect.lanes, dialect.value(context.inputs.at(i).value));
     case Slot::contact: {
       int power = 1;
       for (std::uint32_t j = 0; j < i / 2; ++j) power *= eom::contact_states;

@@ -4,19 +4,26 @@
 
 namespace eomgen::emit {
 
-ModelNames model_names(const program::Program& program, const EmissionContext& context, std::span<const std::string_view> taken) {
+ModelNames model_names(const program::Program& program, const EmissionContext& context,
+                       std::span<const std::string_view> taken) {
   NameTable table;
   for (const std::string_view word : taken) table.declare(std::string(word));
   ModelNames names;
   for (const std::string& prefix : {mangled_id(context.id), std::string("eom")}) {  // of the kernels
-    for (const char* name : {"_sincos", "_sincos_near", "_sincos_far", "_sincos_lanes", "_is_near", "_lanes", "_bits", "_rhs_from", "_rhs_far", "_rhs_prepared_from",
-                             "_rhs_prepared_far", "_taylor_start", "_taylor_next", "_taylor_sums", "_differs"}) table.declare(prefix + name);
+    for (const char* name : {"_sincos", "_sincos_near", "_sincos_far", "_sincos_lanes", "_is_near", "_lanes", "_bits",
+                             "_rhs_from", "_rhs_far", "_rhs_prepared_from", "_rhs_prepared_far", "_taylor_start",
+                             "_taylor_next", "_taylor_sums", "_differs"})
+      table.declare(prefix + name);
   }
-  for (const char* name : {"block", "state", "call", "kernel", "lanes", "mask", "bits", "memory", "load", "store", "at", "all", "select", "abs", "sign", "any", "place", "side",
-                           "slides", "presses", "sincos", "sincos_lanes", "far", "alone", "apart", "run", "INLINE", "WIDTH", "MOST"}) table.declare(mangled_id(context.id) + "_batch_" + name);
+  for (const char* name :
+       {"block",  "state",        "call",   "kernel", "lanes", "mask", "bits",   "memory", "load",   "store",
+        "at",     "all",          "select", "abs",    "sign",  "any",  "place",  "side",   "slides", "presses",
+        "sincos", "sincos_lanes", "far",    "alone",  "apart", "run",  "INLINE", "WIDTH",  "MOST"})
+    table.declare(mangled_id(context.id) + "_batch_" + name);
   for (const Quantity& coordinate : context.coordinates) names.all_coordinates.push_back(identifier(coordinate.name));
   for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name));
-  for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name + "_dot"));
+  for (const std::uint32_t i : program.free)
+    names.state.push_back(table.declare(context.coordinates.at(i).name + "_dot"));
   for (const std::uint32_t i : program.integrals) names.state.push_back(table.declare(context.integrals.at(i).name));
   for (const std::uint32_t i : program.free) names.acceleration.push_back(context.coordinates.at(i).name + "_ddot");
   for (const program::ContactInfo& contact : program.contacts) {
@@ -31,12 +38,14 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
   names.w = table.declare("w");
   names.u = table.declare("u");
   names.mode = table.declare("mode");
-  for (std::size_t k = 0; k < program.kinks.size(); ++k) names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));
+  for (std::size_t k = 0; k < program.kinks.size(); ++k)
+    names.sides.push_back(table.declare("side_" + std::to_string(k + 1)));
   NameTable outputs, reactions, events;
   for (const std::string& name : program.outputs) names.outputs.push_back(outputs.declare(name));
   for (const std::string& name : program.reactions) names.reactions.push_back(reactions.declare(name));
   for (const std::string& name : program.events) names.events.push_back(events.declare(name));
-  for (std::size_t k = 0; k < program.kinks.size(); ++k) names.events.push_back(events.declare("kink_" + std::to_string(k + 1)));
+  for (std::size_t k = 0; k < program.kinks.size(); ++k)
+    names.events.push_back(events.declare("kink_" + std::to_string(k + 1)));
   for (const program::ContactInfo& contact : program.contacts) {
     if (program.event_count() == 0) break;
     for (const char* what : {"slip_", "above_", "below_", "hold_", "margin_"}) {

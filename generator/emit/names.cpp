@@ -10,6 +10,8 @@
 namespace eomgen::emit {
 namespace {
 
+// Lists of words, in lines.
+// clang-format off
 constexpr std::string_view keywords[] = {
     "alignas", "alignof", "and", "and_eq", "asm", "auto", "bitand", "bitor", "bool", "break", "case", "catch", "char",
     "char8_t", "char16_t", "char32_t", "class", "co_await", "co_return", "co_yield", "compl", "concept", "const",
@@ -93,6 +95,7 @@ constexpr std::string_view javascript[] = {
     "arguments", "async", "await", "debugger", "eval", "exports", "extends", "finally", "function", "globalThis", "implements", "import", "in", "instanceof",
     "let", "location", "module", "null", "of", "package", "require", "self", "super", "top", "undefined", "var", "window", "with", "yield", "document",
     "NaN", "Infinity", "Math", "Object", "Array", "Float64Array", "Number", "JSON", "global", "process"};
+// clang-format on
 
 bool is_one_of(std::string_view name, std::span<const std::string_view> list) {
   return std::find(list.begin(), list.end(), name) != list.end();
@@ -140,7 +143,8 @@ std::string NameTable::declare(const std::string& wanted) {
   std::string name = identifier(wanted);
   if (name.empty() || (name[0] >= '0' && name[0] <= '9')) name = "_" + name;
   // What is reserved for how it begins is not freed by an underscore at its end.
-  const bool of_the_compiler = name.size() > 1 && name[0] == '_' && (name[1] == '_' || (name[1] >= 'A' && name[1] <= 'Z'));
+  const bool of_the_compiler =
+      name.size() > 1 && name[0] == '_' && (name[1] == '_' || (name[1] >= 'A' && name[1] <= 'Z'));
   if (of_the_compiler) name = "n" + name;
   while (is_reserved(name) || !taken_.insert(name).second) name += '_';
   return name;

@@ -13,6 +13,7 @@ namespace eomgen::emit {
 std::vector<std::size_t> parts_of(const program::Function& function);
 
 /// "NAME_part2(t, x, .., work)" for every part, and what returns where one of them does not return 0.
-std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments, const std::string& real);
+std::string calls_of_parts(const std::string& name, const FunctionText& text, const std::string& arguments,
+                           const std::string& real);
 
 }  // namespace eomgen::emit

@@ -6,8 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <eom/modes/chart_state.hpp>
+#include <numbers>
 
 #include "emit/text.hpp"
 #include "program/abi_values.hpp"
@@ -45,7 +45,8 @@ program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& 
 }
 
 /// Rounded once, with what rounding may change; nothing where a number is not finite.
-std::optional<FunctionValues> rounded(const std::string& function, const program::AbiResults& results, const std::vector<std::vector<double>>& bounds) {
+std::optional<FunctionValues> rounded(const std::string& function, const program::AbiResults& results,
+                                      const std::vector<std::vector<double>>& bounds) {
   constexpr double largest_number = 1e290, least_number = 1e-290;
   FunctionValues values{function, 0, {}, {}};
   for (std::size_t r = 0; r < results.size(); ++r) {
@@ -65,7 +66,8 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
   return values;
 }
 
-std::optional<FunctionValues> values_at(const program::Program& program, const std::string& function, const program::AbiArguments& arguments) {
+std::optional<FunctionValues> values_at(const program::Program& program, const std::string& function,
+                                        const program::AbiArguments& arguments) {
   const std::optional<program::AbiResults> results = program::abi_values(program, function, arguments, digits);
   if (!results) return std::nullopt;
   return rounded(function, *results, program::abi_bounds(program, function, arguments));
@@ -102,7 +104,9 @@ void add_charts(const program::Program& program, const program::AbiArguments& ar
       continue;
     }
     // At half a turn rounding decides between pi and -pi, which are the same angle.
-    const auto at_half_a_turn = [](const cln::cl_R& x) { return std::fabs(std::fabs(cln::double_approx(x)) - std::numbers::pi) < 1e-6; };
+    const auto at_half_a_turn = [](const cln::cl_R& x) {
+      return std::fabs(std::fabs(cln::double_approx(x)) - std::numbers::pi) < 1e-6;
+    };
     if (std::any_of(at.x.begin(), at.x.end(), at_half_a_turn)) continue;
     // Formulas of a few sines: what they lose is far below this.
     const std::vector<std::vector<double>> bounds{std::vector<double>(at.x.size(), 1e-14)};
@@ -113,12 +117,19 @@ void add_charts(const program::Program& program, const program::AbiArguments& ar
   }
 }
 
-std::string comment(const Dialect& dialect, const std::string& text) { return dialect.line_comments ? "// " + text : "/* " + text + " */"; }
+std::string comment(const Dialect& dialect, const std::string& text) {
+  return dialect.line_comments ? "// " + text : "/* " + text + " */";
+}
 
 class Body {
  public:
-  Body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect)
-      : program_(program), context_(context), names_(names), dialect_(dialect), at_p_(1 + program.state_count()),
+  Body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,
+       const Dialect& dialect)
+      : program_(program),
+        context_(context),
+        names_(names),
+        dialect_(dialect),
+        at_p_(1 + program.state_count()),
         at_u_(at_p_ + context.parameters.size()) {}
 
   std::string operator()() {
@@ -152,9 +163,13 @@ class Body {
     }
     rows.erase(rows.size() - 2);
     text_ += fmt::format("  {}\n", comment(dialect_, "t, x, p, u of each state"));
-    text_ += fmt::format("  static const double points[{}][{}] = {{\n{}}};\n", context_.tests.size(), at_u_ + context_.inputs.size(), rows);
-    with_modes_ = std::any_of(context_.tests.begin(), context_.tests.end(), [](const TestVector& test) { return test.mode != 0; });
-    if (with_modes_) text_ += wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context_.tests.size(), modes), "      ") + "\n";
+    text_ += fmt::format("  static const double points[{}][{}] = {{\n{}}};\n", context_.tests.size(),
+                         at_u_ + context_.inputs.size(), rows);
+    with_modes_ = std::any_of(context_.tests.begin(), context_.tests.end(),
+                              [](const TestVector& test) { return test.mode != 0; });
+    if (with_modes_)
+      text_ +=
+          wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context_.tests.size(), modes), "      ") + "\n";
     const TestVector& first = context_.tests.front();
     starts_ = first.x == context_.start && first.mode == 0 && first.t == context_.start_time;
     for (std::size_t i = 0; i < first.p.size(); ++i) starts_ = starts_ && first.p[i] == context_.parameters[i].value;
@@ -165,9 +180,13 @@ class Body {
   void defaults() {
     if (!starts_) return;
     const std::size_t n = program_.state_count(), count = context_.parameters.size();
-    text_ += fmt::format("  {{\n    double x[{}], p[{}];\n    int i;\n    {}(x, p);\n", n, std::max<std::size_t>(1, count), names_.called("defaults"));
-    text_ += fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(x[i] == points[0][1 + i])) return 1;\n    }}\n", n);
-    if (count > 0) text_ += fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(p[i] == points[0][{} + i])) return 1;\n    }}\n", count, at_p_);
+    text_ += fmt::format("  {{\n    double x[{}], p[{}];\n    int i;\n    {}(x, p);\n", n,
+                         std::max<std::size_t>(1, count), names_.called("defaults"));
+    text_ +=
+        fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(x[i] == points[0][1 + i])) return 1;\n    }}\n", n);
+    if (count > 0)
+      text_ += fmt::format(
+          "    for (i = 0; i < {}; ++i) {{\n      if (!(p[i] == points[0][{} + i])) return 1;\n    }}\n", count, at_p_);
     text_ += "  }\n";
   }
 
@@ -201,10 +220,12 @@ class Body {
     const std::vector<std::vector<double>>& shape = rows.front().values->values;
     std::size_t width = 0;
     for (const auto& array : shape) width += 1 + array.size();
-    text_ += fmt::format("  {{  {}\n", comment(dialect_, function + ": what rounding explains, then the values, for each array"));
+    text_ += fmt::format("  {{  {}\n",
+                         comment(dialect_, function + ": what rounding explains, then the values, for each array"));
     text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
     const bool empty = std::all_of(shape.begin(), shape.end(), [](const auto& array) { return array.empty(); });
-    if (!empty) text_ += fmt::format("    static const double expected[{}][{}] = {{\n{}}};\n", rows.size(), width, numbers);
+    if (!empty)
+      text_ += fmt::format("    static const double expected[{}][{}] = {{\n{}}};\n", rows.size(), width, numbers);
     text_ += fmt::format("    for (int k = 0; k < {}; ++k) {{\n", rows.size());
     text_ += "      const int state = at[k];\n";
     text_ += fmt::format("      const double* const point = points[state];\n");
@@ -214,11 +235,18 @@ class Body {
       arrays += fmt::format(", y{}", r + 1);
     }
     const std::size_t prepared = program_.prepared_count();
-    if (function == "rhs_prepared") text_ += fmt::format("      double w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", prepared, names_.called("prepare"), at_p_);
-    text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function), arguments(function, to), arrays), "          ") + "\n";
+    if (function == "rhs_prepared")
+      text_ += fmt::format("      double w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", prepared,
+                           names_.called("prepare"), at_p_);
+    text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function),
+                                 arguments(function, to), arrays),
+                     "          ") +
+             "\n";
     std::size_t place = 0;
     for (std::size_t r = 0; r < shape.size(); ++r) {
-      if (!shape[r].empty()) text_ += fmt::format("      if ({}({}, y{}, expected[k] + {})) return state + 1;\n", names_.differs, shape[r].size(), r + 1, place);
+      if (!shape[r].empty())
+        text_ += fmt::format("      if ({}({}, y{}, expected[k] + {})) return state + 1;\n", names_.differs,
+                             shape[r].size(), r + 1, place);
       place += 1 + shape[r].size();
     }
     text_ += "    }\n  }\n";
@@ -233,8 +261,11 @@ class Body {
     if (function == "mass_in" || function == "constraints_in") return fmt::format("{}, {}", of_state, mode);
     // At the first state the inputs are their defaults, as they are where none are given.
     const std::string given = fmt::format("point + {}", at_u_);
-    const std::string u = context_.inputs.empty() ? names_.null : starts_ ? fmt::format("state > 0 ? {} : {}", given, names_.null) : given;
-    const std::string w = function == "rhs_prepared" ? ", w" : "", order = function == "taylor" ? fmt::format(", {}", taylor_order) : "";
+    const std::string u = context_.inputs.empty() ? names_.null
+                          : starts_               ? fmt::format("state > 0 ? {} : {}", given, names_.null)
+                                                  : given;
+    const std::string w = function == "rhs_prepared" ? ", w" : "",
+                      order = function == "taylor" ? fmt::format(", {}", taylor_order) : "";
     return fmt::format("{}{}, {}, {}{}", of_state, w, u, mode, order);
   }
 
@@ -249,7 +280,8 @@ class Body {
 
 }  // namespace
 
-std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at, std::size_t index) {
+std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at,
+                                      std::size_t index) {
   const program::AbiArguments arguments = arguments_of(at, context);
   const bool smooth = (at.mode & ~eom::chart_bits) == 0, own = (at.mode & eom::chart_bits) == 0;
   at.functions.clear();
@@ -270,17 +302,20 @@ std::optional<TestVector> test_vector(const program::Program& program, const Emi
   return at;
 }
 
-std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect) {
+std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,
+                          const Dialect& dialect) {
   if (context.tests.empty()) return fmt::format("  {}\n  return 0;", comment(dialect, "no values were given"));
   return Body(program, context, names, dialect)();
 }
 
 std::string selftest_comparison(const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect) {
   if (context.tests.empty()) return "";
-  return fmt::format("{}\n{} int {}(int count, const double* got, const double* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
-                     "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
-                     comment(dialect, "Whether values are off the expected ones by more than expected[0]."), dialect.line_comments ? "inline" : "static",
-                     names.differs, dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
+  return fmt::format(
+      "{}\n{} int {}(int count, const double* got, const double* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
+      "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
+      comment(dialect, "Whether values are off the expected ones by more than expected[0]."),
+      dialect.line_comments ? "inline" : "static", names.differs, dialect.line_comments ? " " : "\n",
+      dialect.line_comments ? "std::fabs" : "fabs");
 }
 
 }  // namespace eomgen::emit

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The vectors of NAME_selftest, and its body. Every function of the file is held against values of high precision at states and
-// parameters that differ from one another.
+// The vectors of NAME_selftest, and its body. Every function of the file is held against values of high precision at
+// states and parameters that differ from one another.
 #pragma once
 
 #include <functional>
@@ -12,9 +12,11 @@
 
 namespace eomgen::emit {
 
-/// The functions' values at t, x, p, u, mode of `at`, the `index`-th vector; nothing where the right-hand side has none there. Large
-/// functions are held at the first vectors only, so that the size of the self test stays within that of the code.
-std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at, std::size_t index);
+/// The functions' values at t, x, p, u, mode of `at`, the `index`-th vector; nothing where the right-hand side has none
+/// there. Large functions are held at the first vectors only, so that the size of the self test stays within that of
+/// the code.
+std::optional<TestVector> test_vector(const program::Program& program, const EmissionContext& context, TestVector at,
+                                      std::size_t index);
 
 /// Names that differ between C and C++.
 struct SelfTestNames {
@@ -23,7 +25,8 @@ struct SelfTestNames {
   std::string null;
 };
 
-std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect);
+std::string selftest_body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,
+                          const Dialect& dialect);
 
 /// The comparison: whether an array is off its values by more than expected[0]; empty where there are no vectors.
 std::string selftest_comparison(const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect);

@@ -13,7 +13,9 @@ std::vector<Argument> arguments(const std::string& function, const FunctionText&
   using Kind = Argument::Kind;
   std::vector<Argument> list;
   if (function == "taylor_next") {
-    list = {{Kind::number, Slot::time, names.arguments_t}, {Kind::input, Slot::state, names.x}, {Kind::input, Slot::prepared, names.w}};
+    list = {{Kind::number, Slot::time, names.arguments_t},
+            {Kind::input, Slot::state, names.x},
+            {Kind::input, Slot::prepared, names.w}};
     for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
     return list;
   }
@@ -61,7 +63,8 @@ std::string argument_list(const std::vector<Argument>& arguments, const std::str
 
 std::string function_head(const std::string& name, const program::Function& function, const FunctionText& text,
                           const ModelNames& names, const std::string& real) {
-  return wrapped(fmt::format("int {}({})", name, argument_list(arguments(function.name, text, names), real)), std::string(name.size() + 5, ' '));
+  return wrapped(fmt::format("int {}({})", name, argument_list(arguments(function.name, text, names), real)),
+                 std::string(name.size() + 5, ' '));
 }
 
 std::string argument_names(const program::Function& function, const FunctionText& text, const ModelNames& names) {

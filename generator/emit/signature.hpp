@@ -11,7 +11,7 @@ namespace eomgen::emit {
 
 struct Argument {
   enum class Kind : std::uint8_t { number, input, mode, result } kind;  // Real, const Real*, int, Real*
-  program::Slot slot = program::Slot::constant;  // what is read from it; constant: nothing
+  program::Slot slot = program::Slot::constant;                         // what is read from it; constant: nothing
   std::string name;
 };
 

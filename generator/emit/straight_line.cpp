@@ -33,7 +33,11 @@ constexpr int code_too_far = -1;
 class Printer {
  public:
   Printer(const Function& function, const ModelNames& names, const EmissionContext& context, const Dialect& dialect)
-      : function_(function), names_(names), context_(context), dialect_(dialect), expressions_(function, names, dialect) {}
+      : function_(function),
+        names_(names),
+        context_(context),
+        dialect_(dialect),
+        expressions_(function, names, dialect) {}
 
   FunctionText run() {
     const auto& code = function_.code;
@@ -49,8 +53,11 @@ class Printer {
       test_ready(static_cast<std::ptrdiff_t>(i));
     }
     write_results();
-    if (leaves_.size() == 1) text_.body = (in_lanes() ? left_begins(0) : unused_arguments() + using_declarations()) + loads(leaves_[0]) + body_;
-    else close_part(leaves_.size() - 1);
+    if (leaves_.size() == 1)
+      text_.body =
+          (in_lanes() ? left_begins(0) : unused_arguments() + using_declarations()) + loads(leaves_[0]) + body_;
+    else
+      close_part(leaves_.size() - 1);
     if (in_lanes()) text_.library = expressions_.called();
     return std::move(text_);
   }
@@ -60,7 +67,8 @@ class Printer {
     for (const auto* list : {&names_.sides, &names_.contacts, &names_.state, &names_.parameters, &names_.inputs}) {
       for (const std::string& name : *list) table_.declare(name);
     }
-    for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode}) table_.declare(name);
+    for (const std::string& name : {names_.arguments_t, names_.x, names_.p, names_.w, names_.u, names_.mode})
+      table_.declare(name);
     if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
     if (in_lanes()) {
       text_.block = table_.declare("block");
@@ -83,10 +91,13 @@ class Printer {
   void close_part(std::size_t part) {
     const bool last = part + 1 == leaves_.size();
     if (in_lanes()) {  // which lanes are left is handed on in the first entry of the array
-      const std::string hand_on = last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, left_);
-      text_.parts.push_back(fmt::format("  (void){}; (void){};\n", text_.block, text_.work) + left_begins(part) + loads(leaves_[part]) + body_ + hand_on);
+      const std::string hand_on =
+          last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, left_);
+      text_.parts.push_back(fmt::format("  (void){}; (void){};\n", text_.block, text_.work) + left_begins(part) +
+                            loads(leaves_[part]) + body_ + hand_on);
     } else {
-      text_.parts.push_back(all_arguments() + using_declarations() + loads(leaves_[part]) + body_ + (last ? "" : "  return 0;\n"));
+      text_.parts.push_back(all_arguments() + using_declarations() + loads(leaves_[part]) + body_ +
+                            (last ? "" : "  return 0;\n"));
     }
     body_.clear();
     printed_section_.clear();
@@ -118,7 +129,8 @@ class Printer {
     for (const auto& [name, entries] : function_.results) {
       for (const Operand& operand : entries) use(operand, false, leaves_.size() - 1);
     }
-    for (const auto& test : function_.pivots) use(test.pivot, true, part_of(test)), use(test.scale, true, part_of(test));
+    for (const auto& test : function_.pivots)
+      use(test.pivot, true, part_of(test)), use(test.scale, true, part_of(test));
   }
 
   void statement(std::size_t index) {
@@ -151,7 +163,8 @@ class Printer {
     std::vector<std::string> angles;
     for (std::size_t i = first; i < function_.code.size() && function_.code[i].pack == text_.packs; ++i) {
       const Instruction& instruction = function_.code[i];
-      if (instruction.lane == angles.size()) angles.push_back(expressions_.in_lanes(instruction.operands[0], true).text);
+      if (instruction.lane == angles.size())
+        angles.push_back(expressions_.in_lanes(instruction.operands[0], true).text);
     }
     const std::size_t count = angles.size();
     if (count % 2 == 1 && !in_lanes()) angles.push_back(dialect_.constant(0));
@@ -175,17 +188,23 @@ class Printer {
                  const std::string& more) {
     for (std::size_t i = 0; i < angles.size(); i += 2) {
       const std::string place = i == 0 ? "" : fmt::format(" + {}", i);
-      body_ += wrapped(fmt::format("{}{}{}({}, {}, {}{}, {}{}{});", indent, dialect_.kernels, function, angles[i], angles[i + 1],
-                                   sine_, place, cosine_, place, more), indent + "    ") + "\n";
+      body_ += wrapped(fmt::format("{}{}{}({}, {}, {}{}, {}{}{});", indent, dialect_.kernels, function, angles[i],
+                                   angles[i + 1], sine_, place, cosine_, place, more),
+                       indent + "    ") +
+               "\n";
     }
   }
   void sincos_of_lanes(const std::vector<std::string>& angles, const std::string& reach) {
     body_ += fmt::format("  {} {} = {{0}};\n", dialect_.real, reach);
     for (std::size_t i = 0; i < angles.size(); ++i) {
-      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lanes, angles[i], sine_, cosine_, i, reach), "      ") + "\n";
+      body_ += wrapped(fmt::format("  {0}sincos({1}, &{2}[{4}], &{3}[{4}], &{5});", dialect_.lanes, angles[i], sine_,
+                                   cosine_, i, reach),
+                       "      ") +
+               "\n";
     }
     body_ += fmt::format("  if ({0}any({0}far({1}))) {{\n", dialect_.lanes, reach);
-    for (const std::string& angle : angles) body_ += wrapped(fmt::format("    {0} |= {1}far({1}abs({2}));", left_, dialect_.lanes, angle), "        ") + "\n";
+    for (const std::string& angle : angles)
+      body_ += wrapped(fmt::format("    {0} |= {1}far({1}abs({2}));", left_, dialect_.lanes, angle), "        ") + "\n";
     body_ += "  }\n";
   }
   Expression from_pack(const Instruction& instruction) const {
@@ -216,8 +235,8 @@ class Printer {
       const bool exact = test.scale.slot == Slot::constant && function_.constants[test.scale.index] == 0;
       if (in_lanes()) {
         leave(exact ? fmt::format("{} == {}", pivot, dialect_.constant(0))
-                    : fmt::format("{0}abs({1}) <= {2}*{0}abs({3})", dialect_.lanes, pivot, dialect_.value(program::pivot_tolerance),
-                                  expressions_.in_lanes(test.scale).text));
+                    : fmt::format("{0}abs({1}) <= {2}*{0}abs({3})", dialect_.lanes, pivot,
+                                  dialect_.value(program::pivot_tolerance), expressions_.in_lanes(test.scale).text));
       } else if (exact) {
         line(fmt::format("if ({} == {}) return 1;", pivot, dialect_.constant(0)));
       } else {
@@ -241,7 +260,9 @@ class Printer {
       if (optional) body_ += fmt::format("  if ({}) {{\n", text_.results[r]);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::size_t place = r > 0 || function_.places.empty() ? i : function_.places[i];
-        line(fmt::format("{}{}[{}] = {};", optional ? "  " : "", text_.results[r], place, expressions_.signed_value(entries[i]).text) + remark(r, place));
+        line(fmt::format("{}{}[{}] = {};", optional ? "  " : "", text_.results[r], place,
+                         expressions_.signed_value(entries[i]).text) +
+             remark(r, place));
       }
       if (optional) body_ += "  }\n";
     }
@@ -264,11 +285,13 @@ class Printer {
     std::string finite;
     for (const auto& [name, entries] : function_.results) {
       if (!program::is_code(name)) continue;
-      for (const Operand& entry : entries) leave(fmt::format("{} < {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
+      for (const Operand& entry : entries)
+        leave(fmt::format("{} < {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
     }
     for (std::size_t i = 0; is_rhs() && i < function_.results[0].second.size(); ++i) {
       const std::size_t place = function_.places.empty() ? i : function_.places[i];
-      if (place >= names_.acceleration.size()) finite += (finite.empty() ? "" : " + ") + expressions_.in_lanes(function_.results[0].second[i], true).text;
+      if (place >= names_.acceleration.size())
+        finite += (finite.empty() ? "" : " + ") + expressions_.in_lanes(function_.results[0].second[i], true).text;
     }
     if (!finite.empty()) {
       const std::string sum = table_.declare("finite");
@@ -289,20 +312,26 @@ class Printer {
       if (optional) body_ += fmt::format("  if ({}) {{\n", to);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::size_t at = r > 0 || function_.places.empty() ? i : function_.places[i];
-        line(fmt::format("{}{}store({} + {}*{}, {});", optional ? "  " : "", dialect_.lanes, to, at, step, expressions_.in_lanes(entries[i], true).text) + remark(r, at));
+        line(fmt::format("{}{}store({} + {}*{}, {});", optional ? "  " : "", dialect_.lanes, to, at, step,
+                         expressions_.in_lanes(entries[i], true).text) +
+             remark(r, at));
       }
       if (optional) body_ += "  }\n";
     }
     line(fmt::format("return {} != {};", place, text_.block));
   }
-  void leave(const std::string& condition) { line(fmt::format("{} |= ({}mask)({});", left_, dialect_.lanes, condition)); }
+  void leave(const std::string& condition) {
+    line(fmt::format("{} |= ({}mask)({});", left_, dialect_.lanes, condition));
+  }
   std::string left_begins(std::size_t part) const {
-    return part == 0 ? fmt::format("  {}mask {} = {{0}};\n", dialect_.lanes, left_) : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, left_, text_.work);
+    return part == 0 ? fmt::format("  {}mask {} = {{0}};\n", dialect_.lanes, left_)
+                     : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, left_, text_.work);
   }
 
   void end_where_negative(const std::string& code, const std::vector<Operand>& entries) {
     for (const Operand& entry : entries) {
-      line(fmt::format("if ({} < {}) return {};", expressions_.signed_value(entry).text, dialect_.constant(0), code.substr(1)));
+      line(fmt::format("if ({} < {}) return {};", expressions_.signed_value(entry).text, dialect_.constant(0),
+                       code.substr(1)));
     }
   }
 
@@ -317,13 +346,15 @@ class Printer {
   bool in_lanes() const { return !dialect_.lanes.empty(); }
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
   bool is_used(Slot slot) const {
-    return std::any_of(leaves_[0].begin(), leaves_[0].end(), [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
+    return std::any_of(leaves_[0].begin(), leaves_[0].end(),
+                       [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
   }
   /// Of a part, which has all arguments of the function whether it needs them or not.
   std::string all_arguments() const {
     if (!dialect_.typed) return "";
     std::string result = text_.near_first ? fmt::format("  (void){};", guarded_) : "";
-    for (const Argument& argument : arguments(function_.name, text_, names_)) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", argument.name);
+    for (const Argument& argument : arguments(function_.name, text_, names_))
+      result += fmt::format("{}(void){};", result.empty() ? "  " : " ", argument.name);
     return result + fmt::format(" (void){};\n", text_.work);
   }
   /// The ABI gives these two functions no inputs: they see the defaults.
@@ -345,7 +376,8 @@ class Printer {
   std::string using_declarations() const {
     if (!dialect_.using_std) return "";
     std::string result;
-    for (const std::string& name : expressions_.called()) result += fmt::format("{}using std::{};", result.empty() ? "  " : " ", name);
+    for (const std::string& name : expressions_.called())
+      result += fmt::format("{}using std::{};", result.empty() ? "  " : " ", name);
     return result.empty() ? "" : wrapped(result, "  ") + "\n";
   }
 
@@ -361,10 +393,12 @@ class Printer {
       }
       if (!list.empty()) result += wrapped(list + ";", "      ") + "\n";
     };
-    for (const Slot slot : {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
+    for (const Slot slot :
+         {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
       if ((slot == Slot::time || slot == Slot::prepared) && !in_lanes()) continue;
       load(slot, [&](std::uint32_t i) {
-        return in_lanes() ? leaf_of_lanes(dialect_, context_, text_.block, slot, i, takes_inputs()) : leaf_value(dialect_, names_, context_, slot, i, takes_inputs());
+        return in_lanes() ? leaf_of_lanes(dialect_, context_, text_.block, slot, i, takes_inputs())
+                          : leaf_value(dialect_, names_, context_, slot, i, takes_inputs());
       });
     }
     return result;
@@ -381,7 +415,7 @@ class Printer {
   std::vector<std::size_t> part_;  // of each instruction
   std::vector<bool> kept_;         // values that a later part needs
   std::size_t kept_count_ = 0;
-  std::vector<Leaves> leaves_;     // of each part
+  std::vector<Leaves> leaves_;  // of each part
   std::string body_, section_, printed_section_, sine_, cosine_, guarded_, left_;
   std::size_t temporaries_ = 0;
 };

@@ -16,7 +16,8 @@ constexpr TargetEntry registry[] = {
     {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
     {"c", "C11 sources with the C ABI", emit_c},
     {"batch", "C11 sources, and the same functions for any number of states at once", emit_batch},
-    {"cuda", "CUDA and HIP, or C++20 as the host form: the functions for threads of a device, and ensembles on it", emit_cuda},
+    {"cuda", "CUDA and HIP, or C++20 as the host form: the functions for threads of a device, and ensembles on it",
+     emit_cuda},
     {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python},
     {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript},
 };
@@ -25,7 +26,8 @@ constexpr TargetEntry registry[] = {
 
 std::span<const TargetEntry> targets() { return registry; }
 
-std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context, const std::string& target) {
+std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,
+                              const std::string& target) {
   std::string known;
   for (const TargetEntry& entry : registry) {
     if (entry.name == target) return entry.emit(program, context);

@@ -12,7 +12,8 @@ namespace eomgen::emit {
 namespace {
 
 // Doubles two at a time where the compiler has types for that; in either case each sum is added up in the same order.
-constexpr const char* c_sums = R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i; the factors of one order stand together. */
+constexpr const char* c_sums =
+    R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i; the factors of one order stand together. */
 static void {0}taylor_sums(int k, const double* a, const double* b, double* sums)
 {{
 #if defined(__GNUC__)
@@ -44,7 +45,8 @@ static void {0}taylor_sums(int k, const double* a, const double* b, double* sums
 }}
 )";
 
-constexpr const char* template_sums = R"(// sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i; the factors of one order stand together.
+constexpr const char* template_sums =
+    R"(// sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of each product i; the factors of one order stand together.
 template <class Real>
 void taylor_sums(int k, const Real* a, const Real* b, Real* sums) {{
   for (int i = 0; i < {1}; ++i) {{
@@ -107,20 +109,31 @@ TaylorText print_taylor(const program::Program& program, const ModelNames& names
   const bool generic = prefix.empty();
   const std::string& real = dialect.real;
   std::string text = helper(taylor.start, names, context, dialect, prefix, "Values of order 0: z for taylor_next, dx.");
-  text += "\n" + helper(taylor.next, names_of_next(names), context, dialect, prefix,
-                        "From the coefficients x of order k: factors a, b of order k, k + 1 times the coefficients of order k + 1.");
+  text +=
+      "\n" +
+      helper(
+          taylor.next, names_of_next(names), context, dialect, prefix,
+          "From the coefficients x of order k: factors a, b of order k, k + 1 times the coefficients of order k + 1.");
   text += "\n" + (generic ? fmt::format(fmt::runtime(template_sums), prefix, taylor.products)
                           : fmt::format(fmt::runtime(c_sums), prefix, taylor.products, program::taylor_lanes));
   TaylorText result;
   const std::string name = prefix + "taylor";
-  result.head = wrapped(fmt::format("int {1}({0} t, const {0}* x, const {0}* p, const {0}* u, int mode, int order, {0}* coefficients)", real, name),
-                        std::string(name.size() + 5, ' '));
-  const auto converted = [&](const char* k) { return generic ? fmt::format("Real({})", k) : fmt::format("(double)({})", k); };
-  text += fmt::format("\n{}{}\n", generic ? "// Coefficients of the solution's Taylor series.\ntemplate <class Real>\n" : "", result.head);
-  text += fmt::format(fmt::runtime(driver), fmt::arg("real", real), fmt::arg("prefix", prefix), fmt::arg("n", program.state_count()),
-                      fmt::arg("series", taylor.products * program::taylor_order(taylor)), fmt::arg("prepared", taylor.prepared()),
-                      fmt::arg("zeros", taylor.zeros), fmt::arg("products", taylor.products), fmt::arg("zero", dialect.constant(0)),
-                      fmt::arg("one", dialect.constant(1)), fmt::arg("real_of_k", converted("k")), fmt::arg("real_of_next", converted("k + 1")));
+  result.head = wrapped(
+      fmt::format("int {1}({0} t, const {0}* x, const {0}* p, const {0}* u, int mode, int order, {0}* coefficients)",
+                  real, name),
+      std::string(name.size() + 5, ' '));
+  const auto converted = [&](const char* k) {
+    return generic ? fmt::format("Real({})", k) : fmt::format("(double)({})", k);
+  };
+  text += fmt::format("\n{}{}\n",
+                      generic ? "// Coefficients of the solution's Taylor series.\ntemplate <class Real>\n" : "",
+                      result.head);
+  text += fmt::format(
+      fmt::runtime(driver), fmt::arg("real", real), fmt::arg("prefix", prefix), fmt::arg("n", program.state_count()),
+      fmt::arg("series", taylor.products * program::taylor_order(taylor)), fmt::arg("prepared", taylor.prepared()),
+      fmt::arg("zeros", taylor.zeros), fmt::arg("products", taylor.products), fmt::arg("zero", dialect.constant(0)),
+      fmt::arg("one", dialect.constant(1)), fmt::arg("real_of_k", converted("k")),
+      fmt::arg("real_of_next", converted("k + 1")));
   result.definition = text;
   return result;
 }

@@ -44,8 +44,10 @@ std::string string_literal(const std::string& text, const std::string& indent) {
     }
     const auto byte = static_cast<unsigned char>(c);
     std::string piece(1, c);
-    if (c == '"' || c == '\\' || c == '?') piece = std::string("\\") + c;
-    else if (byte < 0x20 || byte >= 0x7f) piece = fmt::format("\\{:03o}", byte);
+    if (c == '"' || c == '\\' || c == '?')
+      piece = std::string("\\") + c;
+    else if (byte < 0x20 || byte >= 0x7f)
+      piece = fmt::format("\\{:03o}", byte);
     result += piece;
     length += piece.size();
   }
@@ -67,7 +69,8 @@ double nearest_double(const symbolic::Rational& value) {
   if (cln::zerop(value)) return 0;
   const symbolic::Rational size = cln::abs(value);
   const cln::cl_I numerator = cln::numerator(size), denominator = cln::denominator(size);
-  const auto bits = static_cast<long>(cln::integer_length(numerator)) - static_cast<long>(cln::integer_length(denominator));
+  const auto bits =
+      static_cast<long>(cln::integer_length(numerator)) - static_cast<long>(cln::integer_length(denominator));
   // 2^(bits-1) < size < 2^(bits+1); the last place of the result is 2^exponent, not below that of the subnormals.
   if (bits > 1100) return cln::minusp(value) ? -HUGE_VAL : HUGE_VAL;
   long exponent = std::max(bits - 53, -1074L);

@@ -24,11 +24,13 @@ std::string suggested_name(const std::string& pattern, const ModelNames& names) 
   return result;
 }
 
-std::string trig_name(const program::Function& function, const program::Instruction& instruction, const Expressions& expressions) {
+std::string trig_name(const program::Function& function, const program::Instruction& instruction,
+                      const Expressions& expressions) {
   const std::string head = instruction.op == Op::sin ? "sin_" : "cos_";
   const Operand& argument = instruction.operands[0];
   if (argument.negated) return "";
-  if (argument.slot != Slot::value) return argument.slot == Slot::constant ? "" : head + expressions.size_of(argument).text;
+  if (argument.slot != Slot::value)
+    return argument.slot == Slot::constant ? "" : head + expressions.size_of(argument).text;
   const Instruction& inner = function.code[argument.index];
   const auto& o = inner.operands;
   if (inner.op != Op::add || o.size() != 2 || o[0].negated) return "";
@@ -38,7 +40,8 @@ std::string trig_name(const program::Function& function, const program::Instruct
   return head + expressions.size_of(o[0]).text + (o[1].negated ? "_minus_" : "_plus_") + expressions.size_of(o[1]).text;
 }
 
-std::string name_of_entry(const program::Function& function, const ModelNames& names, std::size_t result, std::size_t entry) {
+std::string name_of_entry(const program::Function& function, const ModelNames& names, std::size_t result,
+                          std::size_t entry) {
   const std::size_t n = names.acceleration.size(), all = names.state.size();
   if (function.name == "rhs" && entry >= n && entry < 2 * n) return names.acceleration[entry - n];
   if (function.name == "jac" && result == 0 && entry % all == 0) return fmt::format("d/d {}", names.state[entry / all]);

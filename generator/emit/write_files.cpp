@@ -18,8 +18,9 @@ namespace {
 }  // namespace
 
 Fault fault_of_writing(const std::error_code& reason) {
-  for (const std::errc lost : {std::errc::no_space_on_device, std::errc::io_error, std::errc::file_too_large, std::errc::broken_pipe,
-                               std::errc::too_many_files_open, std::errc::too_many_files_open_in_system}) {
+  for (const std::errc lost :
+       {std::errc::no_space_on_device, std::errc::io_error, std::errc::file_too_large, std::errc::broken_pipe,
+        std::errc::too_many_files_open, std::errc::too_many_files_open_in_system}) {
     if (reason == lost) return Fault::tool;
   }
   return reason.value() == EDQUOT ? Fault::tool : Fault::input;

@@ -15,8 +15,8 @@ namespace eomgen::emit {
 /// {stage "emit"} that names the path and the system's reason; files already there are then untouched.
 std::vector<std::string> write_files(const std::string& folder, const std::vector<EmittedFile>& files);
 
-/// Whose fault it is that something cannot be written: a disk or a pipe that fails half-way is a tool that fails, a place
-/// that cannot be written to is wrong input.
+/// Whose fault it is that something cannot be written: a disk or a pipe that fails half-way is a tool that fails, a
+/// place that cannot be written to is wrong input.
 Fault fault_of_writing(const std::error_code& reason);
 
 }  // namespace eomgen::emit

@@ -3,6 +3,8 @@
 
 namespace eomgen::joints {
 
-Joint cylindrical() { return {"cylindrical", "slides along an axis and turns about it", Axes::line, together({on_the_axis(), same_axis()})}; }
+Joint cylindrical() {
+  return {"cylindrical", "slides along an axis and turns about it", Axes::line, together({on_the_axis(), same_axis()})};
+}
 
 }  // namespace eomgen::joints

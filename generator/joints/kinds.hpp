@@ -13,9 +13,9 @@ Joint cylindrical();
 Joint universal();
 Joint fixed();
 
-std::vector<Equation> same_point();    // r_B = r_A, eq. (7.16)
-std::vector<Equation> on_the_axis();   // r_B on the axis through r_A
-std::vector<Equation> same_axis();     // the two that a pin adds, eq. (7.18)
+std::vector<Equation> same_point();   // r_B = r_A, eq. (7.16)
+std::vector<Equation> on_the_axis();  // r_B on the axis through r_A
+std::vector<Equation> same_axis();    // the two that a pin adds, eq. (7.18)
 Equation no_turn_about_the_axis();
 
 /// All equations of several groups, in their order.

@@ -4,7 +4,9 @@
 
 namespace eomgen::joints {
 
-std::vector<Equation> same_point() { return {{"dot(d, E1)", "E1", ""}, {"dot(d, E2)", "E2", ""}, {"dot(d, E3)", "E3", ""}}; }
+std::vector<Equation> same_point() {
+  return {{"dot(d, E1)", "E1", ""}, {"dot(d, E2)", "E2", ""}, {"dot(d, E3)", "E3", ""}};
+}
 
 std::vector<Equation> on_the_axis() { return {{"dot(d, a1)", "a1", ""}, {"dot(d, a2)", "a2", ""}}; }
 

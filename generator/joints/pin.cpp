@@ -3,6 +3,8 @@
 
 namespace eomgen::joints {
 
-Joint pin() { return {"pin", "a point and an axis in common: one rotation", Axes::line, together({same_point(), same_axis()})}; }
+Joint pin() {
+  return {"pin", "a point and an axis in common: one rotation", Axes::line, together({same_point(), same_axis()})};
+}
 
 }  // namespace eomgen::joints

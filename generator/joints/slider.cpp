@@ -3,6 +3,9 @@
 
 namespace eomgen::joints {
 
-Joint slider() { return {"slider", "slides along an axis, without rotation", Axes::line, together({on_the_axis(), same_axis(), {no_turn_about_the_axis()}})}; }
+Joint slider() {
+  return {"slider", "slides along an axis, without rotation", Axes::line,
+          together({on_the_axis(), same_axis(), {no_turn_about_the_axis()}})};
+}
 
 }  // namespace eomgen::joints

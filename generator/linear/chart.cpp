@@ -13,7 +13,7 @@ using Places = std::vector<std::size_t>;
 constexpr std::size_t most_charts = 4000;
 constexpr double good_chart = 0.02;  // smallest pivot of the dependent columns, against 1
 constexpr double well_conditioned = 0.3;
-constexpr double reach = 0.07;       // of the points beside, relative
+constexpr double reach = 0.07;  // of the points beside, relative
 constexpr int sample_points = 3;
 
 Places all_of(std::size_t from, std::size_t to) {
@@ -24,7 +24,8 @@ Places all_of(std::size_t from, std::size_t to) {
 
 Places without(const Places& all, const Places& some) {
   Places result;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(result), [&](std::size_t i) { return std::find(some.begin(), some.end(), i) == some.end(); });
+  std::copy_if(all.begin(), all.end(), std::back_inserter(result),
+               [&](std::size_t i) { return std::find(some.begin(), some.end(), i) == some.end(); });
   return result;
 }
 
@@ -154,7 +155,8 @@ Places constants(const std::vector<Field<Precise>>& fields, const Chart& chart, 
 Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector<Field<Precise>>& fields) {
   const std::size_t n = flow.coordinates(), p = flow.on_positions();
   const std::vector<Candidate> positions = candidates(columns_of(rows_of(here.phi_slope, all_of(0, p)), all_of(0, n)));
-  const std::vector<Candidate> speeds = candidates(columns_of(rows_of(here.phi_slope, all_of(p, here.phi_slope.rows)), all_of(n, 2 * n)));
+  const std::vector<Candidate> speeds =
+      candidates(columns_of(rows_of(here.phi_slope, all_of(p, here.phi_slope.rows)), all_of(n, 2 * n)));
   std::vector<Field<double>> rough;
   for (const Field<Precise>& f : fields) rough.push_back(rounded(f));
   std::optional<std::tuple<std::size_t, std::size_t, double>> best;
@@ -168,8 +170,8 @@ Chart best_chart(const Flow& flow, const Field<Precise>& here, const std::vector
       try {
         const std::vector<bool> retained = retained_in<double>(rough, chart, 1e-9);
         const auto count = static_cast<std::size_t>(std::count(retained.begin(), retained.end(), true));
-        // Among equals those that name the speeds of the coordinates that stay, then the better conditioned (coarsely: rounding decides
-        // nothing), then those whose dependent ones come first in the model.
+        // Among equals those that name the speeds of the coordinates that stay, then the better conditioned (coarsely:
+        // rounding decides nothing), then those whose dependent ones come first in the model.
         const double quality = std::round(20 * std::min({a.quality, b.quality, well_conditioned}));
         const std::tuple<std::size_t, std::size_t, double> score{count, without(a.columns, b.columns).size(), -quality};
         if (best && !(score < *best)) continue;
@@ -227,11 +229,14 @@ std::optional<State<Precise>> projected(const Flow& flow, const State<Precise>& 
   return projected(flow, z, setting, all_of(0, 2 * flow.coordinates()));
 }
 
-std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, const Setting<Precise>& setting, const Places& columns) {
+std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, const Setting<Precise>& setting,
+                                        const Places& columns) {
   constexpr int most_steps = 60, exact = 120;
   for (int step = 0; step < most_steps; ++step) {
     const Field<Precise> field = flow.at(z, setting);
-    const Matrix<Precise> move = Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8), tiny<Precise>(14)).solve(field.phi);
+    const Matrix<Precise> move =
+        Elimination<Precise>(columns_of(field.phi_slope, columns), tiny<Precise>(8), tiny<Precise>(14))
+            .solve(field.phi);
     bool done = true;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       z[columns[i]] = z[columns[i]] - move(i, 0);
@@ -242,7 +247,8 @@ std::optional<State<Precise>> projected(const Flow& flow, State<Precise> z, cons
   return std::nullopt;
 }
 
-std::optional<State<Precise>> beside(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting, std::uint64_t seed) {
+std::optional<State<Precise>> beside(const Flow& flow, const State<Precise>& z, Setting<Precise>& setting,
+                                     std::uint64_t seed) {
   double size = reach;
   for (int attempt = 0; attempt < 8; ++attempt, size /= 2) {
     State<Precise> moved = z;

@@ -74,7 +74,8 @@ Matrix<T> stacked(Matrix<T> A, const Matrix<T>& B) {
 template <class T>
 class Elimination {
  public:
-  /// Pivots up to `cutoff` count as 0; so do rows up to `floor` of the largest row, and columns of scaled rows up to `floor`.
+  /// Pivots up to `cutoff` count as 0; so do rows up to `floor` of the largest row, and columns of scaled rows up to
+  /// `floor`.
   Elimination(Matrix<T> A, const T& cutoff, const T& floor = T(0))
       : a_(std::move(A)), row_(a_.rows), col_(a_.cols), floor_(floor) {
     std::iota(row_.begin(), row_.end(), std::size_t{0});
@@ -96,7 +97,9 @@ class Elimination {
   /// The last pivot that counts, the first being 1 or so; 1 where there is none.
   T smallest_pivot() const { return rank_ == 0 ? T(1) : magnitude(at(rank_ - 1, rank_ - 1)); }
   /// Columns whose pivots count, in the order of their choice.
-  std::vector<std::size_t> pivot_columns() const { return {col_.begin(), col_.begin() + static_cast<std::ptrdiff_t>(rank_)}; }
+  std::vector<std::size_t> pivot_columns() const {
+    return {col_.begin(), col_.begin() + static_cast<std::ptrdiff_t>(rank_)};
+  }
 
   /// A X = B with the rows of the pivots; unknowns without a pivot are 0. Other rows hold if the system has a solution.
   Matrix<T> solve(const Matrix<T>& B) const {

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "linear/newton.hpp"
-
 #include "work.hpp"
 
 namespace eomgen::linear {
@@ -16,7 +15,12 @@ constexpr double same_point = 1e-8;
 class Search {
  public:
   Search(const SearchRequest& request, SearchResult& result)
-      : r_(request), flow_(request.flow), n_(flow_.coordinates()), result_(result), symmetry_(result.symmetry), held_(std::in_place, flow_, request.held) {
+      : r_(request),
+        flow_(request.flow),
+        n_(flow_.coordinates()),
+        result_(result),
+        symmetry_(result.symmetry),
+        held_(std::in_place, flow_, request.held) {
     held_->targets = request.targets;
     find_turns();
     for (const EulerSet& set : r_.euler) regular_.push_back(flow_.tape({set.regular}));
@@ -25,10 +29,12 @@ class Search {
       for (const Precise& x : list) numbers.push_back(to_double(x));
       return numbers;
     };
-    rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals), rounded(r_.setting.leaf)};
+    rough_ = {rounded(r_.setting.parameters), rounded(r_.setting.inputs), rounded(r_.setting.integrals),
+              rounded(r_.setting.leaf)};
   }
 
-  // Once as it is. If families are among what is found, once more with what they leave open held; what stands alone stays.
+  // Once as it is. If families are among what is found, once more with what they leave open held; what stands alone
+  // stays.
   void run() {
     all_starts();
     std::vector<FoundPoint> alone, members;
@@ -45,7 +51,8 @@ class Search {
       result_.released = result_.points.size() == before && !result_.interrupted;
       if (result_.released) result_.points.push_back(members.front());
     }
-    std::sort(result_.points.begin(), result_.points.end(), [this](const FoundPoint& a, const FoundPoint& b) { return this->before(a.z, b.z); });
+    std::sort(result_.points.begin(), result_.points.end(),
+              [this](const FoundPoint& a, const FoundPoint& b) { return this->before(a.z, b.z); });
   }
 
  private:
@@ -65,7 +72,8 @@ class Search {
         return;
       }
       if (r_.progress) r_.progress(static_cast<double>(k) / static_cast<double>(r_.starts));
-      const RoughEnd rough = rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
+      const RoughEnd rough =
+          rough_steady_state(flow_, symmetry_, spread_start(r_, symmetry_, turns_, k), rough_, *held_, targets);
       if (!rough.reason.empty() && result_.refused++ == 0) {
         result_.reason = rough.reason;
         result_.refused_at = rough.z;
@@ -93,14 +101,16 @@ class Search {
   }
 
   std::optional<Steady> steady(const State<Precise>& z) const {
-    return find_steady(flow_, symmetry_, z, r_.setting, [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
-      value = Matrix<Precise>(held_->targets.size(), 1);
-      slope = Matrix<Precise>(held_->targets.size(), at.size());
-      if (held_->targets.empty()) return;
-      const Sloped<Precise> s = held_->at(at, r_.setting);
-      for (std::size_t k = 0; k < held_->targets.size(); ++k) value(k, 0) = s.value[k] - held_->targets[k];
-      slope = s.slope;
-    });
+    return find_steady(flow_, symmetry_, z, r_.setting,
+                       [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
+                         value = Matrix<Precise>(held_->targets.size(), 1);
+                         slope = Matrix<Precise>(held_->targets.size(), at.size());
+                         if (held_->targets.empty()) return;
+                         const Sloped<Precise> s = held_->at(at, r_.setting);
+                         for (std::size_t k = 0; k < held_->targets.size(); ++k)
+                           value(k, 0) = s.value[k] - held_->targets[k];
+                         slope = s.slope;
+                       });
   }
 
   /// What was held from the beginning.
@@ -180,7 +190,8 @@ class Search {
 
   void normalise(State<Precise>& z) const {
     for (const auto& e : r_.parameters) {
-      const auto first = std::find_if(e.begin(), e.end(), [&](std::size_t i) { return magnitude(z[i]) > tiny<Precise>(30); });
+      const auto first =
+          std::find_if(e.begin(), e.end(), [&](std::size_t i) { return magnitude(z[i]) > tiny<Precise>(30); });
       if (first == e.end() || cln::plusp(z[*first])) continue;
       State<Precise> other = z;
       for (const std::size_t i : e) {
@@ -190,7 +201,9 @@ class Search {
       take_if_steady(z, other);
     }
     for (std::size_t k = 0; k < r_.euler.size(); ++k) {
-      const auto sign = [&](const State<Precise>& at) { return regular_[k].values<Precise>(flow_.lookup(at, r_.setting))[0]; };
+      const auto sign = [&](const State<Precise>& at) {
+        return regular_[k].values<Precise>(flow_.lookup(at, r_.setting))[0];
+      };
       if (!cln::minusp(sign(z))) continue;
       const auto& [a, b, c] = r_.euler[k].places;
       const Precise pi = cln::pi(precise_format());
@@ -236,13 +249,15 @@ class Search {
     return Elimination<Precise>(columns_of(J, columns), tiny<Precise>(40), tiny<Precise>(60)).null_space();
   }
 
-  /// Of the open directions those along which steady motions do go on: a multiple root opens directions too, and is alone.
+  /// Of the open directions those along which steady motions do go on: a multiple root opens directions too, and is
+  /// alone.
   Matrix<Precise> family_directions(const State<Precise>& z) const {
     const Matrix<Precise> N = open_directions(z);
     if (N.cols == 0) return N;
     Matrix<Precise> together(N.rows, 1);  // in no special direction
     for (std::size_t i = 0; i < N.rows; ++i) {
-      for (std::size_t k = 0; k < N.cols; ++k) together(i, 0) = together(i, 0) + number<Precise>(Precise(1 + 0.3 * random_number(77, k))) * N(i, k);
+      for (std::size_t k = 0; k < N.cols; ++k)
+        together(i, 0) = together(i, 0) + number<Precise>(Precise(1 + 0.3 * random_number(77, k))) * N(i, k);
     }
     if (goes_on(z, together, 0)) return N;
     std::vector<std::size_t> kept;
@@ -261,7 +276,8 @@ class Search {
     for (std::size_t i = 0; i < N.rows; ++i) beside[i] = beside[i] + step * N(i, k);
     const std::optional<Steady> found = find_steady(flow_, symmetry_, beside, r_.setting, own_);
     if (!found) return false;
-    for (std::size_t i = 0; i < N.rows; ++i) {  // it must not fall back: along a family the way back is as long as the square of the step
+    for (std::size_t i = 0; i < N.rows;
+         ++i) {  // it must not fall back: along a family the way back is as long as the square of the step
       if (magnitude(found->z[i] - beside[i]) > tiny<Precise>(3) / 4 * (Precise(1) + magnitude(z[i]))) return false;
     }
     return true;
@@ -302,7 +318,9 @@ class Search {
   SearchResult& result_;
   const Symmetry& symmetry_;
   std::optional<Held> held_;
-  Extra own_ = [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) { hold_own(at, value, slope); };
+  Extra own_ = [this](const State<Precise>& at, Matrix<Precise>& value, Matrix<Precise>& slope) {
+    hold_own(at, value, slope);
+  };
   Setting<double> rough_;
   std::size_t members_ = 0;
   std::vector<bool> turns_;
@@ -318,7 +336,8 @@ SearchResult find_steady_motions(const SearchRequest& request) {
     start = projected(request.flow, request.start, request.setting);
   } catch (const std::domain_error&) {  // it has no field; the search needs a place that has one
     Setting<Precise> setting = request.setting;
-    for (std::uint64_t seed = 500; !start && seed < 510; ++seed) start = beside(request.flow, request.start, setting, seed);
+    for (std::uint64_t seed = 500; !start && seed < 510; ++seed)
+      start = beside(request.flow, request.start, setting, seed);
     if (!start) throw;
   }
   require_domain(start.has_value(), "the start does not satisfy the constraints");

@@ -13,9 +13,13 @@ namespace {
 template <class T>
 T singular();
 template <>
-double singular<double>() { return 1e-12; }
+double singular<double>() {
+  return 1e-12;
+}
 template <>
-Precise singular<Precise>() { return tiny<Precise>(60); }
+Precise singular<Precise>() {
+  return tiny<Precise>(60);
+}
 
 std::vector<Symbol> state_symbols(const system::EquationSystem& s) {
   std::vector<Symbol> result;
@@ -55,7 +59,8 @@ Flow::Flow(mechanics::Mechanics& m, const system::EquationSystem& s)
     phi_expressions_.push_back(rate);
   }
   const std::vector<Symbol> symbols = dag.symbols(roots);
-  uses_integrals_ = std::any_of(symbols.begin(), symbols.end(), [](const Symbol& x) { return x.kind == SymbolKind::integral; });
+  uses_integrals_ =
+      std::any_of(symbols.begin(), symbols.end(), [](const Symbol& x) { return x.kind == SymbolKind::integral; });
   tape_ = std::make_unique<Tape>(dag, roots, directions_);
   leaf_tape_ = std::make_unique<Tape>(dag, leaf_, directions_);
 }
@@ -77,7 +82,9 @@ std::function<T(const Symbol&)> Flow::lookup(const State<T>& z, const Setting<T>
   };
 }
 
-Tape Flow::tape(std::vector<Ref> expressions) const { return {*system_.dag, std::move(expressions), state_symbols(system_)}; }
+Tape Flow::tape(std::vector<Ref> expressions) const {
+  return {*system_.dag, std::move(expressions), state_symbols(system_)};
+}
 
 template <class T>
 std::vector<T> Flow::leaf(const State<T>& z, const Setting<T>& setting) const {
@@ -94,7 +101,8 @@ Field<T> Flow::at(const State<T>& z, const Setting<T>& setting) const {
 }
 
 // With K = [M, -A^T; A, 0]: K (a, lambda) = (f, -gamma), and along every direction d
-// K (a', lambda') = (f' - M' a + A'^T lambda, -gamma' - A' a). Rows of A that follow from others are left out by the elimination.
+// K (a', lambda') = (f' - M' a + A'^T lambda, -gamma' - A' a). Rows of A that follow from others are left out by the
+// elimination.
 template <class T>
 void Flow::differentiate(const Sloped<T>& s, const State<T>& z, Field<T>& field) const {
   const std::size_t size = n_ + m_, f0 = n_ * n_, A0 = f0 + n_, gamma0 = A0 + m_ * n_;
@@ -164,7 +172,8 @@ void Flow::constrain(const Sloped<T>& s, const State<T>& z, const Setting<T>& se
     for (std::size_t d = 0; d < width; ++d) field.phi_slope(row, d) = s.slope(b0 + k, d);
     for (std::size_t i = 0; i < n_; ++i) {
       field.phi(row, 0) = field.phi(row, 0) + s.value[A0 + k * n_ + i] * z[n_ + i];
-      for (std::size_t d = 0; d < width; ++d) field.phi_slope(row, d) = field.phi_slope(row, d) + s.slope(A0 + k * n_ + i, d) * z[n_ + i];
+      for (std::size_t d = 0; d < width; ++d)
+        field.phi_slope(row, d) = field.phi_slope(row, d) + s.slope(A0 + k * n_ + i, d) * z[n_ + i];
       field.phi_slope(row, n_ + i) = field.phi_slope(row, n_ + i) + s.value[A0 + k * n_ + i];
     }
   }

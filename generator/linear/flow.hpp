@@ -26,11 +26,11 @@ struct Setting {
 
 template <class T>
 struct Field {
-  Matrix<T> X;           // 2n x 1: v, a
-  Matrix<T> slope;       // 2n x (2n + 1), by z
-  Matrix<T> by_inputs;   // 2n x inputs
-  Matrix<T> phi;         // constraints on positions (holonomic, then leaves), then on velocities
-  Matrix<T> phi_slope;   // by z
+  Matrix<T> X;          // 2n x 1: v, a
+  Matrix<T> slope;      // 2n x (2n + 1), by z
+  Matrix<T> by_inputs;  // 2n x inputs
+  Matrix<T> phi;        // constraints on positions (holonomic, then leaves), then on velocities
+  Matrix<T> phi_slope;  // by z
 };
 
 class Flow {
@@ -41,8 +41,8 @@ class Flow {
   std::size_t inputs() const { return inputs_; }
   std::size_t on_positions() const { return holonomic_.size() + leaf_.size(); }
   const std::vector<std::string>& names() const { return names_; }  // of z without t
-  Ref entry(std::size_t place) const { return entries_[place]; }                 // of z, as an expression
-  const std::vector<Symbol>& symbols() const { return symbols_; }                // of z without t
+  Ref entry(std::size_t place) const { return entries_[place]; }    // of z, as an expression
+  const std::vector<Symbol>& symbols() const { return symbols_; }   // of z without t
   bool uses_integrals() const { return uses_integrals_; }
 
   /// Throws std::domain_error where the field has no value or no slope.
@@ -53,8 +53,8 @@ class Flow {
   template <class T>
   std::vector<T> leaf(const State<T>& z, const Setting<T>& setting) const;
 
-  /// Values and slopes of a tape. Where a formula has none but its limits from all sides agree, these: the root in |v| v at rest, a
-  /// distance that goes through 0. Throws std::domain_error where they do not.
+  /// Values and slopes of a tape. Where a formula has none but its limits from all sides agree, these: the root in |v|
+  /// v at rest, a distance that goes through 0. Throws std::domain_error where they do not.
   template <class T>
   Sloped<T> sloped(const Tape& tape, const State<T>& z, const Setting<T>& setting) const;
 
@@ -79,8 +79,8 @@ class Flow {
   std::vector<std::string> names_;
   std::vector<Ref> entries_;
   std::vector<Symbol> symbols_;
-  std::vector<std::size_t> place_;      // of a coordinate of the model in z
-  std::vector<Symbol> directions_;      // z, then inputs
+  std::vector<std::size_t> place_;  // of a coordinate of the model in z
+  std::vector<Symbol> directions_;  // z, then inputs
   bool uses_integrals_ = false;
   std::unique_ptr<Tape> tape_, leaf_tape_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Slopes as limits. Along a ray that leaves z the formula is smooth, however it is written; where the slopes go to the same numbers
-// along every ray, the function has these slopes at z.
+// Slopes as limits. Along a ray that leaves z the formula is smooth, however it is written; where the slopes go to the
+// same numbers along every ray, the function has these slopes at z.
 #include <algorithm>
 
 #include "linear/chart.hpp"
@@ -26,7 +26,8 @@ template <class T>
 T difference(const Sloped<T>& a, const Sloped<T>& b) {
   T largest(0);
   const auto compare = [&largest](const std::vector<T>& x, const std::vector<T>& y) {
-    for (std::size_t i = 0; i < x.size(); ++i) largest = std::max(largest, magnitude(x[i] - y[i]) / (T(1) + magnitude(x[i]) + magnitude(y[i])));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      largest = std::max(largest, magnitude(x[i] - y[i]) / (T(1) + magnitude(x[i]) + magnitude(y[i])));
   };
   compare(a.value, b.value);
   compare(a.slope.a, b.slope.a);
@@ -45,7 +46,8 @@ using Steps = std::vector<std::pair<double, double>>;  // multiples of a step an
 template <class T>
 using At = std::function<Sloped<T>(const State<T>&)>;
 
-/// The mean over all rays, and by how much they differ. `step` is small enough to be on one side of every kink that z is not on.
+/// The mean over all rays, and by how much they differ. `step` is small enough to be on one side of every kink that z
+/// is not on.
 template <class T>
 std::pair<Sloped<T>, T> over_rays(const At<T>& at, const State<T>& z, const T& step, const Steps& steps) {
   std::vector<Sloped<T>> ends;

@@ -30,13 +30,16 @@ Matrix<Precise> reduced_matrix(const Field<Precise>& field, const Chart& chart, 
 }
 
 /// Zeros of the same motion with other parameters; along a motion that is not steady, at another of its states too.
-std::optional<std::size_t> zeros_beside(const Flow& flow, const Linearisation& here, Setting<Precise> setting, std::uint64_t seed) {
+std::optional<std::size_t> zeros_beside(const Flow& flow, const Linearisation& here, Setting<Precise> setting,
+                                        std::uint64_t seed) {
   try {
     setting.leaf = flow.leaf(here.z, setting);
-    const auto z = here.kind == Kind::motion ? beside(flow, here.z, setting, seed) : steady_state(flow, here.symmetry, here.z, setting);
+    const auto z = here.kind == Kind::motion ? beside(flow, here.z, setting, seed)
+                                             : steady_state(flow, here.symmetry, here.z, setting);
     if (!z) return std::nullopt;
     const Field<Precise> field = flow.at(*z, setting);
-    return zero_eigenvalues(reduced_matrix(field, here.symmetry.chart, tangent(field, here.symmetry.chart), here.known), here.known);
+    return zero_eigenvalues(reduced_matrix(field, here.symmetry.chart, tangent(field, here.symmetry.chart), here.known),
+                            here.known);
   } catch (const std::domain_error&) {
     return std::nullopt;  // no such motion with these parameters
   }
@@ -71,7 +74,8 @@ Linearisation linearise(const Flow& flow, const State<Precise>& start, const Set
       result.known = steady->known;
       result.kind = Kind::equilibrium;
       for (std::size_t i = 0; i < flow.coordinates(); ++i) {
-        if (magnitude(result.z[flow.coordinates() + i]) > tiny<Precise>(std::min(60, result.known - 5))) result.kind = Kind::steady;
+        if (magnitude(result.z[flow.coordinates() + i]) > tiny<Precise>(std::min(60, result.known - 5)))
+          result.kind = Kind::steady;
       }
     }
   }

@@ -11,7 +11,7 @@ constexpr int most_steps = 80;
 constexpr double longest_step = 0.7;  // of an entry, against 1 and its size
 constexpr double settled = 1e-11;
 constexpr double rank_tolerance = 1e-9;
-constexpr double least_row = 1e-6;  // of the largest slope
+constexpr double least_row = 1e-6;           // of the largest slope
 constexpr std::size_t plain_attitudes = 81;  // Euler parameters of -1, 0, 1
 
 struct Equations {
@@ -46,8 +46,8 @@ Equations equations(const Flow& flow, const Symmetry& symmetry, const State<doub
   return e;
 }
 
-/// The least step, with entries measured against 1 and their size, rows against their largest slope; where that all but vanishes, beside
-/// other rows, it counts no more: its value would be a rounding made large.
+/// The least step, with entries measured against 1 and their size, rows against their largest slope; where that all but
+/// vanishes, beside other rows, it counts no more: its value would be a rounding made large.
 std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, bool& open) {
   const auto rows = static_cast<Eigen::Index>(e.value.size()), columns = static_cast<Eigen::Index>(z.size() - 1);
   Eigen::MatrixXd J(rows, columns);
@@ -55,7 +55,8 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, 
   for (Eigen::Index j = 0; j < columns; ++j) scale(j) = 1 + std::abs(z[static_cast<std::size_t>(j)]);
   for (Eigen::Index i = 0; i < rows; ++i) {
     r(i) = e.value[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j < columns; ++j) J(i, j) = e.slope[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * scale(j);
+    for (Eigen::Index j = 0; j < columns; ++j)
+      J(i, j) = e.slope[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] * scale(j);
   }
   const double least = least_row * (rows > 0 ? J.cwiseAbs().maxCoeff() : 0);
   for (Eigen::Index i = 0; i < rows; ++i) {
@@ -87,8 +88,8 @@ void set_attitude(const SearchRequest& request, const std::array<std::size_t, 4>
 
 }  // namespace
 
-RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start, const Setting<double>& setting,
-                            const Held& held, const std::vector<double>& targets) {
+RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const State<double>& start,
+                            const Setting<double>& setting, const Held& held, const std::vector<double>& targets) {
   RoughEnd end{start, false, false, {}};
   State<double>& z = end.z;
   try {
@@ -96,7 +97,8 @@ RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const St
       const auto move = step(equations(flow, symmetry, z, start, setting, held, targets), z, end.open);
       if (!move || !move->allFinite()) return end;
       const double size = move->cwiseAbs().maxCoeff(), factor = std::min(1.0, longest_step / size);
-      for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
+      for (std::size_t i = 0; i + 1 < z.size(); ++i)
+        z[i] -= factor * (*move)(static_cast<Eigen::Index>(i)) * (1 + std::abs(z[i]));
       end.found = size < settled;
       if (end.found) return end;
     }
@@ -106,7 +108,8 @@ RoughEnd rough_steady_state(const Flow& flow, const Symmetry& symmetry, const St
   return end;
 }
 
-State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns, std::size_t k) {
+State<double> spread_start(const SearchRequest& request, const Symmetry& symmetry, const std::vector<bool>& turns,
+                           std::size_t k) {
   const std::size_t n = request.flow.coordinates();
   State<double> z;
   for (const Precise& x : request.start) z.push_back(to_double(x));
@@ -128,10 +131,14 @@ State<double> spread_start(const SearchRequest& request, const Symmetry& symmetr
     if (ignored[i] || attitudes_only) continue;
     const Range& range = request.ranges[i];
     const bool below = std::isfinite(range.lower), above = std::isfinite(range.upper);
-    if (below && above) z[i] = range.lower + (range.upper - range.lower) * (0.5 + 0.49 * r);
-    else if (turns[i]) z[i] = pi * r;
-    else if (below) z[i] = range.lower + (z[i] - range.lower) * std::exp(r);
-    else z[i] += (1 + std::abs(z[i])) * 2 * r;
+    if (below && above)
+      z[i] = range.lower + (range.upper - range.lower) * (0.5 + 0.49 * r);
+    else if (turns[i])
+      z[i] = pi * r;
+    else if (below)
+      z[i] = range.lower + (z[i] - range.lower) * std::exp(r);
+    else
+      z[i] += (1 + std::abs(z[i])) * 2 * r;
   }
   for (const auto& e : request.parameters) set_attitude(request, e, k, z);
   return z;

@@ -108,8 +108,10 @@ class Francis {
       const std::size_t begin = block(end);
       if (end - begin <= 2) {
         const std::size_t k = end - 1;
-        if (end - begin == 1) found.push_back(H_(k, k));
-        else add_pair(H_(k - 1, k - 1), H_(k - 1, k), H_(k, k - 1), H_(k, k), found);
+        if (end - begin == 1)
+          found.push_back(H_(k, k));
+        else
+          add_pair(H_(k - 1, k - 1), H_(k - 1, k), H_(k, k - 1), H_(k, k), found);
         end = begin;
         round = 0;
         continue;
@@ -121,8 +123,8 @@ class Francis {
   }
 
  private:
-  /// Where the block that ends there begins; what is next to nothing below the diagonal, beside the whole matrix, becomes 0: the
-  /// digits leave room for roots that are many orders smaller.
+  /// Where the block that ends there begins; what is next to nothing below the diagonal, beside the whole matrix,
+  /// becomes 0: the digits leave room for roots that are many orders smaller.
   std::size_t block(std::size_t end) {
     for (std::size_t k = end - 1; k > 0; --k) {
       if (magnitude(H_(k, k - 1)) > nothing_) continue;
@@ -140,7 +142,8 @@ class Francis {
       sum = Precise(3) / Precise(2) * size;
       product = size * size;
     }
-    const Precise &a = H_(begin, begin), &b = H_(begin, begin + 1), &c = H_(begin + 1, begin), &d = H_(begin + 1, begin + 1);
+    const Precise &a = H_(begin, begin), &b = H_(begin, begin + 1), &c = H_(begin + 1, begin),
+                  &d = H_(begin + 1, begin + 1);
     std::vector<Precise> x{a * (a - sum) + product + b * c, c * (a + d - sum), c * H_(begin + 2, begin + 1)};
     for (std::size_t k = begin; k + 1 < end; ++k) {
       if (k > begin) {
@@ -178,7 +181,8 @@ void normalise(std::vector<cl_N>& x) {
 /// H - value = P L U of a Hessenberg matrix; pivots that vanish become next to nothing.
 class Shifted {
  public:
-  Shifted(const Matrix<Precise>& H, const cl_N& value, const Precise& norm) : n_(H.rows), U_(n_ * n_, cl_N(0)), factor_(n_, cl_N(0)), swapped_(n_, false) {
+  Shifted(const Matrix<Precise>& H, const cl_N& value, const Precise& norm)
+      : n_(H.rows), U_(n_ * n_, cl_N(0)), factor_(n_, cl_N(0)), swapped_(n_, false) {
     for (std::size_t i = 0; i < n_; ++i) {
       for (std::size_t j = i == 0 ? 0 : i - 1; j < n_; ++j) at(i, j) = H(i, j);
       at(i, i) = at(i, i) - value;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The QR algorithm in many digits, for real matrices without symmetry: balanced, brought to Hessenberg form by reflections, double
-// shifts. Backward stable: what comes out are eigenvalues of a matrix that is the given one in all but the last digits.
-// Source: Golub, Van Loan, Matrix Computations, sections 7.4, 7.5, 7.6.1 (inverse iteration).
+// The QR algorithm in many digits, for real matrices without symmetry: balanced, brought to Hessenberg form by
+// reflections, double shifts. Backward stable: what comes out are eigenvalues of a matrix that is the given one in all
+// but the last digits. Source: Golub, Van Loan, Matrix Computations, sections 7.4, 7.5, 7.6.1 (inverse iteration).
 #pragma once
 
 #include <cln/complex.h>
@@ -17,7 +17,8 @@ Matrix<Precise> balanced(Matrix<Precise> A);
 struct Root {
   cln::cl_N value;
   Precise residual;   // |A x - value x| / |x| for the best x
-  Precise condition;  // |y^H x| / (|x| |y|) of the left and right eigenvectors: small where a change of A moves the root far
+  Precise condition;  // |y^H x| / (|x| |y|) of the left and right eigenvectors: small where a change of A moves the
+                      // root far
 };
 
 struct Roots {

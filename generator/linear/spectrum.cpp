@@ -13,10 +13,10 @@ namespace {
 
 // Pivots below these parts of scaled rows are 0: far from rounding, far from anything that a model has.
 constexpr int most_rank_digits = 60, rank_margin = 5;
-constexpr int root_digits = 18;                // parts of a root below these are 0
-constexpr double printed = 1e-12;              // what an eigenvalue is good for
-constexpr double well_told = 1e-6;             // condition from which binary64 tells eigenvalues one by one
-constexpr double rounding_factor = 100;        // of binary64's QR, on n eps |A|
+constexpr int root_digits = 18;          // parts of a root below these are 0
+constexpr double printed = 1e-12;        // what an eigenvalue is good for
+constexpr double well_told = 1e-6;       // condition from which binary64 tells eigenvalues one by one
+constexpr double rounding_factor = 100;  // of binary64's QR, on n eps |A|
 
 Precise least(const Precise& x, const Precise& y) { return x < y ? x : y; }
 double re(const Root& r) { return to_double(cln::realpart(r.value)); }
@@ -38,7 +38,8 @@ Matrix<Precise> without_null_space(const Matrix<Precise>& A, const Elimination<P
   for (std::size_t j = 0; j < A.cols; ++j) {
     if (!std::binary_search(pivots.begin(), pivots.end(), j)) open.push_back(j);
   }
-  const Matrix<Precise> N = e.null_space(), across = Elimination<Precise>(rows_of(N, open), Precise(0)).solve(rows_of(columns_of(A, pivots), open));
+  const Matrix<Precise> N = e.null_space(), across = Elimination<Precise>(rows_of(N, open), Precise(0))
+                                                         .solve(rows_of(columns_of(A, pivots), open));
   Matrix<Precise> rest = columns_of(rows_of(A, pivots), pivots);
   const Matrix<Precise> taken = rows_of(N, pivots) * across;
   for (std::size_t i = 0; i < rest.a.size(); ++i) rest.a[i] = rest.a[i] - taken.a[i];
@@ -47,7 +48,8 @@ Matrix<Precise> without_null_space(const Matrix<Precise>& A, const Elimination<P
 
 /// Zeros, by ranks: what is left has none.
 std::size_t split_zeros(Matrix<Precise>& A, int known) {
-  const int rank_digits = std::min(most_rank_digits, known - rank_margin), floor_digits = std::min(100, known - rank_margin);
+  const int rank_digits = std::min(most_rank_digits, known - rank_margin),
+            floor_digits = std::min(100, known - rank_margin);
   std::size_t zeros = 0;
   while (A.rows > 0) {
     const Precise nothing = tiny<Precise>(known) * largest_row(A);
@@ -62,7 +64,8 @@ std::size_t split_zeros(Matrix<Precise>& A, int known) {
   return zeros;
 }
 
-// What a Jordan block spreads into, and equal roots: as near to one another as their errors. The mean is known far better than each.
+// What a Jordan block spreads into, and equal roots: as near to one another as their errors. The mean is known far
+// better than each.
 void merge(std::vector<Root>& list, std::vector<Precise>& error, const Precise& norm) {
   const std::size_t n = list.size();
   std::vector<std::size_t> leader(n);
@@ -108,17 +111,19 @@ using Complex = std::complex<double>;
 /// What binary64 says of the same matrix, scaled to size 1.
 class Binary64 {
  public:
-  Binary64(const Matrix<Precise>& A, const Precise& norm) : M_(static_cast<Eigen::Index>(A.rows), static_cast<Eigen::Index>(A.cols)), norm_(norm) {
+  Binary64(const Matrix<Precise>& A, const Precise& norm)
+      : M_(static_cast<Eigen::Index>(A.rows), static_cast<Eigen::Index>(A.cols)), norm_(norm) {
     for (Eigen::Index i = 0; i < M_.rows(); ++i) {
-      for (Eigen::Index j = 0; j < M_.cols(); ++j) M_(i, j) = to_double(A(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) / norm);
+      for (Eigen::Index j = 0; j < M_.cols(); ++j)
+        M_(i, j) = to_double(A(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) / norm);
     }
     const Eigen::VectorXcd found = Eigen::EigenSolver<Eigen::MatrixXd>(M_, false).eigenvalues();
     free_.assign(found.data(), found.data() + found.size());
     rounding_ = rounding_factor * static_cast<double>(A.rows) * 2.3e-16;
   }
 
-  /// One of its eigenvalues, which no other root has, is as near as roundings allow; where they allow anything, the matrix is
-  /// singular there within its roundings.
+  /// One of its eigenvalues, which no other root has, is as near as roundings allow; where they allow anything, the
+  /// matrix is singular there within its roundings.
   bool has(const Root& r) {
     const Complex at = {to_double(cln::realpart(r.value) / norm_), to_double(cln::imagpart(r.value) / norm_)};
     const double condition = to_double(r.condition);
@@ -134,7 +139,9 @@ class Binary64 {
       }
       return !(rounding_ * Eigen::PartialPivLU<Eigen::MatrixXd>(shifted).inverse().norm() < 1);
     }
-    const auto nearest = std::min_element(free_.begin(), free_.end(), [&at](const Complex& a, const Complex& b) { return std::abs(a - at) < std::abs(b - at); });
+    const auto nearest = std::min_element(free_.begin(), free_.end(), [&at](const Complex& a, const Complex& b) {
+      return std::abs(a - at) < std::abs(b - at);
+    });
     if (nearest == free_.end() || std::abs(*nearest - at) > rounding_ / condition) return false;
     free_.erase(nearest);
     return true;
@@ -149,7 +156,8 @@ class Binary64 {
 
 Eigenvalue rounded(const Root& r, const Precise& error) {
   Eigenvalue value{re(r), im(r), to_double(error), true};
-  const double size = to_double(size_of(r.value)), nothing = std::max(size * std::pow(10.0, -root_digits), std::min(value.error, size * printed));
+  const double size = to_double(size_of(r.value)),
+               nothing = std::max(size * std::pow(10.0, -root_digits), std::min(value.error, size * printed));
   if (std::abs(value.re) <= nothing) value.re = 0;
   if (std::abs(value.im) <= nothing) value.im = 0;
   return value;

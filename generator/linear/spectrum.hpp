@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Eigenvalues of a matrix in many digits. Zeros are counted by ranks and split off; the others come from the QR algorithm, and each is
-// held by its residual and against binary64 before it is given.
+// Eigenvalues of a matrix in many digits. Zeros are counted by ranks and split off; the others come from the QR
+// algorithm, and each is held by its residual and against binary64 before it is given.
 #pragma once
 
 #include "linear/dense.hpp"

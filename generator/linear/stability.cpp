@@ -32,7 +32,9 @@ bool is_definite(Matrix<Precise> H) {
   std::vector<std::size_t> left(H.rows);
   std::iota(left.begin(), left.end(), std::size_t{0});
   for (std::size_t step = 0; step < H.rows; ++step) {
-    const auto pivot = std::max_element(left.begin(), left.end(), [&](std::size_t a, std::size_t b) { return magnitude(H(a, a)) < magnitude(H(b, b)); });
+    const auto pivot = std::max_element(left.begin(), left.end(), [&](std::size_t a, std::size_t b) {
+      return magnitude(H(a, a)) < magnitude(H(b, b));
+    });
     const std::size_t k = *pivot;
     if (!(magnitude(H(k, k)) > tiny<Precise>(nothing) * scale)) return false;
     if (step > 0 && positive != cln::plusp(H(k, k))) return false;
@@ -48,7 +50,8 @@ bool is_definite(Matrix<Precise> H) {
 
 }  // namespace
 
-StabilityTest::StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::vector<Quantity>& energies, const std::vector<Quantity>& momenta)
+StabilityTest::StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::vector<Quantity>& energies,
+                             const std::vector<Quantity>& momenta)
     : flow_(flow) {
   const auto function = [&](const std::string& name, Ref expression) -> Function {
     std::vector<Ref> gradient{expression};
@@ -71,8 +74,10 @@ StabilityTest::Slopes StabilityTest::slopes(const Function& function, const Line
   return result;
 }
 
-// F = E - sum mu I with dF = 0 on the constraints; along a curve on them d2F = z'^T (F'' - sum kappa phi'') z', where dF = sum kappa dphi.
-bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size_t>& columns, const Function& energy) const {
+// F = E - sum mu I with dF = 0 on the constraints; along a curve on them d2F = z'^T (F'' - sum kappa phi'') z', where
+// dF = sum kappa dphi.
+bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size_t>& columns,
+                             const Function& energy) const {
   const std::size_t size = 2 * flow_.coordinates();
   Matrix<Precise> whole(size, l.symmetry.chart.independent.size());
   for (std::size_t i = 0; i < size; ++i) {
@@ -87,22 +92,28 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
     const Matrix<Precise> all = I.first * whole, kept = I.first * T;
     for (std::size_t k = 0; k < all.cols; ++k) {
       // It may be conserved and yet feel a coordinate that the motion does not: then it is none of the reduced motion.
-      if (std::find(columns.begin(), columns.end(), k) == columns.end() && magnitude(all(0, k)) > tiny<Precise>(nothing) * (Precise(1) + largest(all))) goto next;
+      if (std::find(columns.begin(), columns.end(), k) == columns.end() &&
+          magnitude(all(0, k)) > tiny<Precise>(nothing) * (Precise(1) + largest(all)))
+        goto next;
     }
-    if (const Matrix<Precise> more = stacked(along, kept); Elimination<Precise>(more, tiny<Precise>(nothing), tiny<Precise>(nothing)).rank() == more.rows) {
+    if (const Matrix<Precise> more = stacked(along, kept);
+        Elimination<Precise>(more, tiny<Precise>(nothing), tiny<Precise>(nothing)).rank() == more.rows) {
       along = more;
       taken.push_back(I);
     }
   next:;
   }
   if (!taken.empty()) {
-    const Matrix<Precise> mu = Elimination<Precise>(transposed(along), tiny<Precise>(nothing), tiny<Precise>(nothing)).solve(transposed(F.first * T));
+    const Matrix<Precise> mu = Elimination<Precise>(transposed(along), tiny<Precise>(nothing), tiny<Precise>(nothing))
+                                   .solve(transposed(F.first * T));
     for (std::size_t a = 0; a < taken.size(); ++a) {
       for (std::size_t i = 0; i < F.first.a.size(); ++i) F.first.a[i] = F.first.a[i] - mu(a, 0) * taken[a].first.a[i];
-      for (std::size_t i = 0; i < F.second.a.size(); ++i) F.second.a[i] = F.second.a[i] - mu(a, 0) * taken[a].second.a[i];
+      for (std::size_t i = 0; i < F.second.a.size(); ++i)
+        F.second.a[i] = F.second.a[i] - mu(a, 0) * taken[a].second.a[i];
     }
   }
-  if (largest(F.first * whole) > tiny<Precise>(nothing) * (Precise(1) + largest(F.first))) return false;  // not critical
+  if (largest(F.first * whole) > tiny<Precise>(nothing) * (Precise(1) + largest(F.first)))
+    return false;  // not critical
   if (!constraints_.empty()) {
     std::vector<Slopes> phi;
     Matrix<Precise> normals;
@@ -110,9 +121,12 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
       phi.push_back(slopes(constraint, l));
       normals = stacked(normals, phi.back().first);
     }
-    const Matrix<Precise> kappa = Elimination<Precise>(transposed(normals), tiny<Precise>(nothing), tiny<Precise>(nothing)).solve(transposed(F.first));
+    const Matrix<Precise> kappa =
+        Elimination<Precise>(transposed(normals), tiny<Precise>(nothing), tiny<Precise>(nothing))
+            .solve(transposed(F.first));
     for (std::size_t a = 0; a < phi.size(); ++a) {
-      for (std::size_t i = 0; i < F.second.a.size(); ++i) F.second.a[i] = F.second.a[i] - kappa(a, 0) * phi[a].second.a[i];
+      for (std::size_t i = 0; i < F.second.a.size(); ++i)
+        F.second.a[i] = F.second.a[i] - kappa(a, 0) * phi[a].second.a[i];
     }
   }
   Matrix<Precise> W = T;
@@ -121,19 +135,23 @@ bool StabilityTest::definite(const Linearisation& l, const std::vector<std::size
 }
 
 std::optional<std::size_t> family(const Flow& flow, const Linearisation& steady, const Matrix<Precise>& retained) {
-  const Matrix<Precise> directions = Elimination<Precise>(retained, tiny<Precise>(nothing), tiny<Precise>(nothing)).null_space();
+  const Matrix<Precise> directions =
+      Elimination<Precise>(retained, tiny<Precise>(nothing), tiny<Precise>(nothing)).null_space();
   const std::vector<std::size_t> entries = retained_entries(steady);
   const Matrix<Precise> T = columns_of(steady.tangent, entries) * directions;
   for (std::size_t d = 0; d < directions.cols; ++d) {
     Precise size(0);
-    for (std::size_t i = 0; i + 1 < T.rows; ++i) size = std::max(size, magnitude(T(i, d)) / (Precise(1) + magnitude(steady.z[i])));
+    for (std::size_t i = 0; i + 1 < T.rows; ++i)
+      size = std::max(size, magnitude(T(i, d)) / (Precise(1) + magnitude(steady.z[i])));
     State<Precise> start = steady.z;
     const Precise step = tiny<Precise>(3) / size;
     for (std::size_t i = 0; i + 1 < T.rows; ++i) start[i] = start[i] + step * T(i, d);
     const auto found = steady_state(flow, steady.symmetry, start, steady.setting);
     if (!found) return std::nullopt;
-    for (std::size_t i = 0; i + 1 < T.rows; ++i) {  // it must not fall back: the way back is as long as the square of the step
-      if (magnitude((*found)[i] - start[i]) > step * size / Precise(4) * (Precise(1) + magnitude(steady.z[i]))) return std::nullopt;
+    for (std::size_t i = 0; i + 1 < T.rows;
+         ++i) {  // it must not fall back: the way back is as long as the square of the step
+      if (magnitude((*found)[i] - start[i]) > step * size / Precise(4) * (Precise(1) + magnitude(steady.z[i])))
+        return std::nullopt;
     }
   }
   return directions.cols;
@@ -145,12 +163,15 @@ Verdict StabilityTest::operator()(const Linearisation& l) const {
   const Spectrum s = spectrum(A, l.known);
   const auto rises = [](const Eigenvalue& e) { return e.in_binary64 && e.re > e.error; };
   const auto falls = [](const Eigenvalue& e) { return e.in_binary64 && e.re < -e.error; };
-  if (std::any_of(s.values.begin(), s.values.end(), rises)) return {Stability::unstable, "an eigenvalue has a positive real part"};
+  if (std::any_of(s.values.begin(), s.values.end(), rises))
+    return {Stability::unstable, "an eigenvalue has a positive real part"};
   const auto falling = static_cast<std::size_t>(std::count_if(s.values.begin(), s.values.end(), falls));
   if (falling + s.zeros == s.values.size()) {
     if (s.zeros == 0) return {Stability::stable, "all eigenvalues have negative real parts"};
     const auto along = falling > 0 ? family(flow_, l, A) : std::nullopt;
-    if (along && *along == s.zeros) return {Stability::stable, "a family of steady motions that attracts: all other eigenvalues have negative real parts"};
+    if (along && *along == s.zeros)
+      return {Stability::stable,
+              "a family of steady motions that attracts: all other eigenvalues have negative real parts"};
   }
   for (const Function& energy : energies_) {
     bool decides = false;
@@ -158,9 +179,11 @@ Verdict StabilityTest::operator()(const Linearisation& l) const {
       decides = definite(l, entries, energy);
     } catch (const std::domain_error&) {  // it has no second variation here
     }
-    if (decides) return {Stability::stable, "the second variation of '" + energy.name + "' at fixed momenta is definite"};
+    if (decides)
+      return {Stability::stable, "the second variation of '" + energy.name + "' at fixed momenta is definite"};
   }
-  return {Stability::unknown, "no eigenvalue has a positive real part, and no conserved quantity that is known decides"};
+  return {Stability::unknown,
+          "no eigenvalue has a positive real part, and no conserved quantity that is known decides"};
 }
 
 }  // namespace eomgen::linear

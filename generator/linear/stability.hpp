@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Is a steady motion stable? Unstable by an eigenvalue, attracting by all of them, or stable in Lyapunov's sense because the energy
-// less multiples of momenta has a definite second variation on the constraints at fixed momenta (docs/theory.md, "Steady motions").
+// Is a steady motion stable? Unstable by an eigenvalue, attracting by all of them, or stable in Lyapunov's sense
+// because the energy less multiples of momenta has a definite second variation on the constraints at fixed momenta
+// (docs/theory.md, "Steady motions").
 #pragma once
 
 #include "linear/quantities.hpp"
@@ -17,7 +18,8 @@ struct Verdict {
 class StabilityTest {
  public:
   /// `energies`: conserved, any of which may decide; `momenta`: conserved beside them.
-  StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::vector<Quantity>& energies, const std::vector<Quantity>& momenta);
+  StabilityTest(const Flow& flow, symbolic::Dag& dag, const std::vector<Quantity>& energies,
+                const std::vector<Quantity>& momenta);
 
   /// Of what is retained: coordinates that nothing feels may drift.
   Verdict operator()(const Linearisation& steady) const;

@@ -15,8 +15,8 @@ void add(Equations& e, const Matrix<Precise>& value, const Matrix<Precise>& slop
   e.slope = stacked(std::move(e.slope), slope);
 }
 
-Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z, const State<Precise>& start,
-                           const Setting<Precise>& setting, const Extra& extra) {
+Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
+                           const State<Precise>& start, const Setting<Precise>& setting, const Extra& extra) {
   const Field<Precise> field = flow.at(z, setting);
   Equations e{field.phi, field.phi_slope};
   e.slope.cols = field.phi_slope.cols;
@@ -38,7 +38,8 @@ Equations steady_equations(const Flow& flow, const Symmetry& symmetry, const Sta
 /// Of the terms of an equation, as far as its slopes tell.
 Precise size_of(const Equations& e, std::size_t i, const State<Precise>& z) {
   Precise size(1);
-  for (std::size_t j = 0; j < e.slope.cols; ++j) size = size + magnitude(e.slope(i, j)) * (Precise(1) + magnitude(z[j]));
+  for (std::size_t j = 0; j < e.slope.cols; ++j)
+    size = size + magnitude(e.slope(i, j)) * (Precise(1) + magnitude(z[j]));
   return size;
 }
 
@@ -62,14 +63,16 @@ std::optional<State<Precise>> newton(const Flow& flow, const Symmetry& symmetry,
   for (int step = 0; step < most_steps; ++step) {
     Equations e = steady_equations(flow, symmetry, z, start, setting, extra);
     for (std::size_t i = 0; i < e.slope.rows; ++i) e.slope(i, e.slope.cols - 1) = Precise(0);  // t stays
-    const Matrix<Precise> move = Elimination<Precise>(e.slope, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
+    const Matrix<Precise> move =
+        Elimination<Precise>(e.slope, tiny<Precise>(rank.cutoff), tiny<Precise>(rank.floor)).solve(e.value);
     bool done = true;
     for (std::size_t i = 0; i + 1 < z.size(); ++i) {
       z[i] = z[i] - move(i, 0);
       if (magnitude(move(i, 0)) > Precise(1000) * (Precise(1) + magnitude(start[i]))) return std::nullopt;
       done = done && magnitude(move(i, 0)) <= tiny<Precise>(exact) * (Precise(1) + magnitude(z[i]));
     }
-    if (done) return holds(steady_equations(flow, symmetry, z, start, setting, extra), z) ? std::optional(z) : std::nullopt;
+    if (done)
+      return holds(steady_equations(flow, symmetry, z, start, setting, extra), z) ? std::optional(z) : std::nullopt;
   }
   return std::nullopt;
 }
@@ -100,11 +103,13 @@ Precise inner(const Matrix<Precise>& a, const Matrix<Precise>& b, const State<Pr
 
 Precise largest_move(const Matrix<Precise>& move, const State<Precise>& z) {
   Precise largest(0);
-  for (std::size_t i = 0; i + 1 < z.size(); ++i) largest = std::max(largest, magnitude(move(i, 0)) / (Precise(1) + magnitude(z[i])));
+  for (std::size_t i = 0; i + 1 < z.size(); ++i)
+    largest = std::max(largest, magnitude(move(i, 0)) / (Precise(1) + magnitude(z[i])));
   return largest;
 }
 
-// At a root of multiplicity m Newton's steps shrink by 1 - 1/m each, all alike: once they do, the rest of the way is their sum.
+// At a root of multiplicity m Newton's steps shrink by 1 - 1/m each, all alike: once they do, the rest of the way is
+// their sum.
 std::optional<Steady> multiple_root(const Problem& p) {
   constexpr int most_steps = 400, exact = 130, cutoff = 130, floor = 150;
   State<Precise> z = p.start;
@@ -112,7 +117,8 @@ std::optional<Steady> multiple_root(const Problem& p) {
   Precise ratio_before(0);
   for (int step = 0; step < most_steps; ++step) {
     const Equations e = p.at(z);
-    const Matrix<Precise> move = Elimination<Precise>(e.slope, tiny<Precise>(cutoff), tiny<Precise>(floor)).solve(e.value);
+    const Matrix<Precise> move =
+        Elimination<Precise>(e.slope, tiny<Precise>(cutoff), tiny<Precise>(floor)).solve(e.value);
     const Precise size = largest_move(move, z);
     if (step > 0 && holds(e, z, exact)) {
       const double digits_of_z = -to_double(cln::ln(size + tiny<Precise>(known_digits))) / std::log(10.0) - 2;
@@ -123,7 +129,8 @@ std::optional<Steady> multiple_root(const Problem& p) {
     const Precise last = before ? inner(*before, *before, z) : Precise(0);
     if (cln::plusp(last)) {
       const Precise ratio = inner(move, *before, z) / last;
-      const bool settled = magnitude(ratio - ratio_before) < Precise(1) / 50 && ratio > Precise(1) / 4 && ratio < Precise(97) / 100;
+      const bool settled =
+          magnitude(ratio - ratio_before) < Precise(1) / 50 && ratio > Precise(1) / 4 && ratio < Precise(97) / 100;
       ratio_before = ratio;
       if (settled) factor = Precise(1) / (Precise(1) - ratio);
     }
@@ -134,7 +141,8 @@ std::optional<Steady> multiple_root(const Problem& p) {
   return std::nullopt;
 }
 
-/// By how much of themselves, at least, the numbers of the setting would have to differ for each equation to hold: the largest.
+/// By how much of themselves, at least, the numbers of the setting would have to differ for each equation to hold: the
+/// largest.
 Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
   const Equations e = p.at(z);
   const Precise change = tiny<Precise>(50);
@@ -145,7 +153,8 @@ Precise distance_in_numbers(const Problem& p, const State<Precise>& z) {
       Setting<Precise> other = p.setting;
       (other.*list)[k] = (other.*list)[k] * (Precise(1) + change);
       const Equations there = steady_equations(p.flow, p.symmetry, z, p.start, other, p.extra);
-      for (std::size_t i = 0; i < moved_by.size(); ++i) moved_by[i] = moved_by[i] + magnitude(there.value(i, 0) - e.value(i, 0)) / change;
+      for (std::size_t i = 0; i < moved_by.size(); ++i)
+        moved_by[i] = moved_by[i] + magnitude(there.value(i, 0) - e.value(i, 0)) / change;
     }
   };
   add(&Setting<Precise>::parameters);
@@ -173,7 +182,8 @@ std::optional<Steady> rounded_root(const Problem& p) {
       for (std::size_t j = 0; j < e.slope.cols; ++j) e.slope(i, j) = e.slope(i, j) / size;
     }
     const Matrix<Precise> back = transposed(e.slope);
-    const Matrix<Precise> move = Elimination<Precise>(back * e.slope, tiny<Precise>(10), tiny<Precise>(14)).solve(back * e.value);
+    const Matrix<Precise> move =
+        Elimination<Precise>(back * e.slope, tiny<Precise>(10), tiny<Precise>(14)).solve(back * e.value);
     for (std::size_t i = 0; i + 1 < z.size(); ++i) z[i] = z[i] - move(i, 0);
     const Precise size = largest_move(move, z);
     if (size > Precise(1) / 100) return std::nullopt;
@@ -204,8 +214,8 @@ void snap(const Problem& p, Steady& found) {
 
 }  // namespace
 
-// In a family of steady motions the slopes lose rank there, and all but lose it beside: such pivots count as none. Where that
-// throws an equation away that is needed, the iteration does not end, and smaller pivots count.
+// In a family of steady motions the slopes lose rank there, and all but lose it beside: such pivots count as none.
+// Where that throws an equation away that is needed, the iteration does not end, and smaller pivots count.
 std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
                                            const Setting<Precise>& setting, const Extra& extra) {
   for (const Rank rank : {Rank{5, 11}, Rank{10, 14}, Rank{20, 30}}) {
@@ -218,8 +228,8 @@ std::optional<State<Precise>> steady_state(const Flow& flow, const Symmetry& sym
   return std::nullopt;
 }
 
-std::optional<Steady> find_steady(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z, const Setting<Precise>& setting,
-                                  const Extra& extra) {
+std::optional<Steady> find_steady(const Flow& flow, const Symmetry& symmetry, const State<Precise>& z,
+                                  const Setting<Precise>& setting, const Extra& extra) {
   constexpr int near = 7;     // digits in which the equations hold where such a root is looked for
   constexpr int exact = 140;  // and in which they do at the end of Newton's way to a simple one
   std::optional<Steady> found;

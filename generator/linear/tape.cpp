@@ -66,7 +66,9 @@ Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
     case Op::sign: return {is_zero(gap) ? T(0) : below ? T(-1) : T(1), {}, no_slope};
     case Op::min: return below ? Local<T>{x[0], {T(1), T(0)}, no_slope} : Local<T>{x[1], {T(0), T(1)}, no_slope};
     case Op::max: return below ? Local<T>{x[1], {T(0), T(1)}, no_slope} : Local<T>{x[0], {T(1), T(0)}, no_slope};
-    default: return below ? Local<T>{x[2], {T(0), T(0), T(1), T(0)}, no_slope} : Local<T>{x[3], {T(0), T(0), T(0), T(1)}, no_slope};
+    default:
+      return below ? Local<T>{x[2], {T(0), T(0), T(1), T(0)}, no_slope}
+                   : Local<T>{x[3], {T(0), T(0), T(0), T(1)}, no_slope};
   }
 }
 
@@ -143,8 +145,13 @@ template <class T>
 Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves, int edge) {
   if (symbolic::is_kink(op)) return kinked(op, x, moves[0] || moves[1], edge);
   switch (op) {
-    case Op::add: case Op::sub: case Op::mul: case Op::div: case Op::neg: case Op::power: case Op::pow:
-      return arithmetic(op, payload, x, moves);
+    case Op::add:
+    case Op::sub:
+    case Op::mul:
+    case Op::div:
+    case Op::neg:
+    case Op::power:
+    case Op::pow: return arithmetic(op, payload, x, moves);
     case Op::atan2: {
       const T square = x[0] * x[0] + x[1] * x[1];
       require_domain(square > T(0), "atan2(0, 0)");
@@ -156,7 +163,8 @@ Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std
 
 }  // namespace
 
-Tape::Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> directions) : dag_(dag), directions_(directions.size()) {
+Tape::Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> directions)
+    : dag_(dag), directions_(directions.size()) {
   std::map<Symbol, std::uint32_t> along;
   for (std::uint32_t i = 0; i < directions.size(); ++i) along[directions[i]] = i;
   nodes_ = dag.reachable(roots);
@@ -196,7 +204,10 @@ struct Tape::Run {
 
 template <class T>
 Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, bool slopes) const {
-  Run<T> r{std::vector<T>(steps_.size()), Matrix<T>(slopes ? moving_ : 0, directions_), {}, std::vector<std::uint32_t>(steps_.size(), 0),
+  Run<T> r{std::vector<T>(steps_.size()),
+           Matrix<T>(slopes ? moving_ : 0, directions_),
+           {},
+           std::vector<std::uint32_t>(steps_.size(), 0),
            std::vector<std::uint32_t>(steps_.size(), 0)};
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     const Step& step = steps_[k];

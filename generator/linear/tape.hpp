@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of expressions and their slopes along many directions at once, by differentiation forward through the graph: numbers
-// only, no derivative is written out. Independent of symbolic/calculus, which the emitted Jacobian comes from.
+// Values of expressions and their slopes along many directions at once, by differentiation forward through the graph:
+// numbers only, no derivative is written out. Independent of symbolic/calculus, which the emitted Jacobian comes from.
 #pragma once
 
 #include <functional>
@@ -26,8 +26,8 @@ class Tape {
   /// Directions are symbols: slopes are partial derivatives.
   Tape(const Dag& dag, std::vector<Ref> roots, std::vector<Symbol> directions);
 
-  /// Throws std::domain_error where a root has no value or no slope: outside of a domain, at the root of 0, on the edge of abs. A branch
-  /// of `if` that is not taken needs neither. `edge`: digits within which a kink counts as met.
+  /// Throws std::domain_error where a root has no value or no slope: outside of a domain, at the root of 0, on the edge
+  /// of abs. A branch of `if` that is not taken needs neither. `edge`: digits within which a kink counts as met.
   template <class T>
   Sloped<T> at(const std::function<T(const Symbol&)>& lookup, int edge = 13) const;
   /// Values alone: the root of 0 has one, and so has the edge of abs.

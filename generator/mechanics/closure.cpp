@@ -22,11 +22,11 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr int digits = 50;
-constexpr int steps = 120;               // Newton's steps halve the distance where rows become dependent, until that is `dependent`
-constexpr int closed_digits = 38;        // |psi| of a configuration
-constexpr double longest_step = 0.7;     // of a coordinate, in units of its scale: angles of 40 degrees
-constexpr double stride = 0.25;          // from one configuration of a motion to the next, likewise
-constexpr double other_values = 0.04;    // how far parameters are varied, relative
+constexpr int steps = 120;  // Newton's steps halve the distance where rows become dependent, until that is `dependent`
+constexpr int closed_digits = 38;      // |psi| of a configuration
+constexpr double longest_step = 0.7;   // of a coordinate, in units of its scale: angles of 40 degrees
+constexpr double stride = 0.25;        // from one configuration of a motion to the next, likewise
+constexpr double other_values = 0.04;  // how far parameters are varied, relative
 
 constexpr int plain_steps = 40;               // of Newton's method in binary64
 constexpr double plain_tolerance = 1e-10;     // of psi then
@@ -201,7 +201,9 @@ bool Closure::is_regular() {
       }
     };
     const auto matrix = [&](const std::vector<double>& v, std::size_t from, Eigen::Index rows) {
-      return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(v.data() + from, rows, n).eval();
+      return Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>>(v.data() + from,
+                                                                                                      rows, n)
+          .eval();
     };
     bool closed = count == 0;
     for (int step = 0; step < plain_steps && !closed; ++step) {
@@ -296,8 +298,8 @@ std::optional<Configuration> Closure::beyond(const Configuration& before, const 
   return std::nullopt;
 }
 
-// Newton's method with the least change of the coordinates, on rows that are clearly independent here. What looks dependent has to
-// hold by itself in the end.
+// Newton's method with the least change of the coordinates, on rows that are clearly independent here. What looks
+// dependent has to hold by itself in the end.
 bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
   const std::size_t n = m_.q.size(), count = psi_.size();
   const std::vector<double> scale = scales(m_, at.q);

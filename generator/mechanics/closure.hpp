@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Configurations in which all holonomic constraints hold, in 50 digits, though some of the constraints may repeat others there:
-// where loops of joints close. In: Mechanics with its constraints. Out: values of coordinates, and the rows of the constraints.
+// Configurations in which all holonomic constraints hold, in 50 digits, though some of the constraints may repeat
+// others there: where loops of joints close. In: Mechanics with its constraints. Out: values of coordinates, and the
+// rows of the constraints.
 #pragma once
 
 #include <cln/real.h>
@@ -22,8 +23,8 @@ struct Configuration {
 /// Which rows are asked first.
 enum class Turn { always, first, last };
 
-/// Rows of a matrix that are independent, chosen one after another: the one with the largest part outside the span of those before it
-/// (relative to its length), turn after turn. Ties go to the first.
+/// Rows of a matrix that are independent, chosen one after another: the one with the largest part outside the span of
+/// those before it (relative to its length), turn after turn. Ties go to the first.
 struct Selection {
   std::vector<std::size_t> kept, rest;  // ascending
 };
@@ -33,7 +34,8 @@ class Closure {
  public:
   Closure(Mechanics& mechanics, Lowering& lower);
 
-  /// In binary64, cheaply: whether the constraints hold and are independent at the start of the default scene. False says nothing.
+  /// In binary64, cheaply: whether the constraints hold and are independent at the start of the default scene. False
+  /// says nothing.
   bool is_regular();
   /// At the start of the default scene: what it does not give follows from the constraints.
   std::optional<Configuration> start();
@@ -47,7 +49,8 @@ class Closure {
   std::vector<cln::cl_R> rates(const Configuration& at) const { return values(rates_, at); }
   std::vector<cln::cl_R> values(const std::vector<Ref>& expressions, const Configuration& at) const;
 
-  /// Of the last search that failed: by how much an equation that looks redundant does not hold, and which; 0 if that was not why.
+  /// Of the last search that failed: by how much an equation that looks redundant does not hold, and which; 0 if that
+  /// was not why.
   double gap() const { return gap_; }
   std::uint32_t gap_at() const { return gap_at_; }
 

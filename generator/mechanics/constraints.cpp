@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Constraints: gradients of psi and coefficients of velocities, and the elimination of coordinates that a constraint fixes.
+// Constraints: gradients of psi and coefficients of velocities, and the elimination of coordinates that a constraint
+// fixes.
 #include <algorithm>
 #include <set>
 
@@ -48,8 +49,9 @@ bool solve_for_only_coordinate(const Mechanics& m, Ref psi, FixedCoordinate& res
 void refuse_repeated(const Mechanics& m, const Constraint& constraint, Ref reduced) {
   const bool same = vanishes(*m.dag, {reduced});
   const std::string what = same ? "constraint '" + constraint.label + "' follows from the constraints before it"
-                                : "constraint '" + constraint.label + "' fixes nothing: the coordinates in it are already fixed, "
-                                  "and it does not hold for all times and parameters";
+                                : "constraint '" + constraint.label +
+                                      "' fixes nothing: the coordinates in it are already fixed, "
+                                      "and it does not hold for all times and parameters";
   throw Error("mechanics", m.model->where(model_constraint(m, constraint).span), what,
               same ? "remove it" : "remove it, or the constraint that it contradicts");
 }
@@ -74,20 +76,23 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
   std::vector<Ref> curvature;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
     const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(e);
-    for (std::uint32_t k = 0; k <= i; ++k) curvature.push_back(symbolic::partial(dag, {SymbolKind::coordinate, k, 1})(slope));
+    for (std::uint32_t k = 0; k <= i; ++k)
+      curvature.push_back(symbolic::partial(dag, {SymbolKind::coordinate, k, 1})(slope));
     result.gradient.push_back(slope);
   }
   if (!vanishes(dag, curvature)) {
-    throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
-                "constraint '" + result.label + "' is not linear in the velocities",
-                "write an expression that is linear in them: d'Alembert's principle says what force keeps such a constraint, "
-                "and nothing of one that is not linear");
+    throw Error(
+        "mechanics", m.model->where(m.model->arena[result.written].span),
+        "constraint '" + result.label + "' is not linear in the velocities",
+        "write an expression that is linear in them: d'Alembert's principle says what force keeps such a constraint, "
+        "and nothing of one that is not linear");
   }
   for (Ref& slope : result.gradient) slope = at_rest(slope);  // velocities that cancel may still be written there
   result.rate = at_rest(e);
   if (!vanishes(dag, {dag.sub(e, m.velocity_form(result))})) {
     throw Error("mechanics", m.model->where(m.model->arena[result.written].span),
-                "constraint '" + result.label + "' divides by a velocity", "multiply it out, so that it reads f*x_dot + g*y_dot + h");
+                "constraint '" + result.label + "' divides by a velocity",
+                "multiply it out, so that it reads f*x_dot + g*y_dot + h");
   }
 }
 
@@ -101,9 +106,12 @@ void check_touch(const Mechanics& m, Lowering& lower, const model::Constraint& c
   for (std::size_t k = 0; k < touch.sinking.size(); ++k) {
     if (vanishes(*m.dag, {lower.scalar(touch.sinking[k])})) continue;
     const std::string& body = m.model->frames[k == 0 ? touch.frame : touch.other_frame].name;
-    if (plane) refuse("the point of contact of '" + constraint.name + "' leaves the plane as the body turns", "give in 'at' the point of the body that is nearest to the plane, or the shape");
+    if (plane)
+      refuse("the point of contact of '" + constraint.name + "' leaves the plane as the body turns",
+             "give in 'at' the point of the body that is nearest to the plane, or the shape");
     refuse("the point of contact of '" + constraint.name + "' leaves '" + body + "' along the normal as they move",
-           "give the vectors to where they touch for all positions (of spheres along unit(A - B)), and in 'normal' the direction across both surfaces there");
+           "give the vectors to where they touch for all positions (of spheres along unit(A - B)), and in 'normal' the "
+           "direction across both surfaces there");
   }
   if (plane) return;
   const Vec3 beside = lower.vector(touch.beside);
@@ -123,8 +131,10 @@ void refuse_power(const Mechanics& m, const Constraint& c) {
   }
   if (!is_degenerate(*m.dag, c.psi, of, slopes)) return;
   throw Error("mechanics", m.model->where(m.model->arena[c.written].span),
-              "constraint '" + c.label + "' is a square or a higher power: its gradient vanishes where it holds, so that it has no force",
-              "write what is raised to the power (r - L in place of r^2 - 2*L*r + L^2), or one equation for each coordinate that it fixes");
+              "constraint '" + c.label +
+                  "' is a square or a higher power: its gradient vanishes where it holds, so that it has no force",
+              "write what is raised to the power (r - L in place of r^2 - 2*L*r + L^2), or one equation for each "
+              "coordinate that it fixes");
 }
 
 // Of a vector or of rolling an equation may say nothing, as a distance from the plane that no coordinate changes.
@@ -144,7 +154,8 @@ bool says_nothing(const Mechanics& m, const Constraint& c) {
 void require_something(const Mechanics& m, const model::Constraint& constraint) {
   const auto idle = [&](const Constraint& c) { return c.name != constraint.name || c.need == Need::identity; };
   if (constraint.joint || !std::all_of(m.constraints.begin(), m.constraints.end(), idle)) return;
-  throw Error("mechanics", m.model->where(constraint.span), "constraint '" + constraint.name + "' holds whatever the coordinates are",
+  throw Error("mechanics", m.model->where(constraint.span),
+              "constraint '" + constraint.name + "' holds whatever the coordinates are",
               "remove it, or give its bodies coordinates that it binds");
 }
 
@@ -166,7 +177,8 @@ void add_constraints(Mechanics& m, Lowering& lower) {
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) {
       Constraint result;
       result.name = constraint.name;
-      const std::size_t part = constraint.rolls_by_friction() ? 3 : k + 1;  // the normal comes third, as without friction
+      const std::size_t part =
+          constraint.rolls_by_friction() ? 3 : k + 1;  // the normal comes third, as without friction
       result.label = constraint.reactions() > 1 ? constraint.name + "." + std::to_string(part) : constraint.name;
       result.written = constraint.psi[k];
       result.unilateral = constraint.unilateral;
@@ -178,13 +190,16 @@ void add_constraints(Mechanics& m, Lowering& lower) {
       }
       if (may_hold(constraint) && says_nothing(m, result)) result.need = Need::identity;
       if (result.need == Need::holds && vanishes(*m.dag, result.gradient)) {
-        throw Error("mechanics", m.model->where(constraint.span),
-                    "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
-                    constraint.joint ? "its bodies do not move against one another here: remove the joint, or give them coordinates"
-                    : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
-                                        : "a constraint relates coordinates, such as holonomic = \"R - d\"");
+        throw Error(
+            "mechanics", m.model->where(constraint.span),
+            "constraint '" + result.label + "' does not depend on any " + (velocities ? "velocity" : "coordinate"),
+            constraint.joint
+                ? "its bodies do not move against one another here: remove the joint, or give them coordinates"
+            : velocities ? "a velocity constraint relates velocities, such as velocity = \"y_dot + z*x_dot\""
+                         : "a constraint relates coordinates, such as holonomic = \"R - d\"");
       }
-      if (result.need == Need::holds && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit) refuse_power(m, result);
+      if (result.need == Need::holds && !velocities && !constraint.joint && !constraint.rolling && !constraint.unit)
+        refuse_power(m, result);
       result.determined = result.need == Need::holds;
       m.constraints.push_back(std::move(result));
     }
@@ -201,8 +216,10 @@ void eliminate_coordinates(Mechanics& m) {
       if (used[k] || !m.constraints[k].holonomic() || m.constraints[k].unilateral || !m.holds(k)) continue;
       const Ref reduced = with_fixed(m, m.constraints[k].psi);
       if (coordinates_in(*m.dag, reduced).empty()) {
-        if (may_repeat(m, m.constraints[k]) && holds_identically(*m.dag, reduced)) m.constraints[k].need = Need::redundant;
-        else refuse_repeated(m, m.constraints[k], reduced);
+        if (may_repeat(m, m.constraints[k]) && holds_identically(*m.dag, reduced))
+          m.constraints[k].need = Need::redundant;
+        else
+          refuse_repeated(m, m.constraints[k], reduced);
         continue;
       }
       FixedCoordinate fixed{};

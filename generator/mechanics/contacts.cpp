@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts: which particle a constraint with friction presses on, the directions in which it can slide there, and how fast it does.
+// Contacts: which particle a constraint with friction presses on, the directions in which it can slide there, and how
+// fast it does.
 #include <algorithm>
 #include <eom/modes/contact_state.hpp>
 #include <functional>
@@ -29,7 +30,8 @@ class ContactReader {
       if (m_.constraints[k].name == constraint.name) contact_.constraints.push_back(k);
     }
     contact_.unilateral = constraint.unilateral;
-    contact_.restitution = constraint.restitution == model::no_node ? dag_.zero() : lower_.scalar(constraint.restitution);
+    contact_.restitution =
+        constraint.restitution == model::no_node ? dag_.zero() : lower_.scalar(constraint.restitution);
     if (constraint.touch) {
       contact_.touch = static_cast<std::uint32_t>(&constraint - m_.model->constraints.data());
       contact_.rolls = rolls(*constraint.touch);
@@ -43,7 +45,8 @@ class ContactReader {
     for (const Vec3& t : contact_.directions) {
       contact_.slip.push_back(lower_.dot(t, relative));
       contact_.tangents.emplace_back();
-      for (std::uint32_t i = 0; i < m_.q.size(); ++i) contact_.tangents.back().push_back(tidy(lower_.dot(t, gradient(i))));
+      for (std::uint32_t i = 0; i < m_.q.size(); ++i)
+        contact_.tangents.back().push_back(tidy(lower_.dot(t, gradient(i))));
     }
     finish(*constraint.friction);
   }
@@ -60,7 +63,8 @@ class ContactReader {
   }
 
  private:
-  // The point of the body that touches has F . dv/dqdot_i, and what it touches the opposite: of the slip velocity v all at once.
+  // The point of the body that touches has F . dv/dqdot_i, and what it touches the opposite: of the slip velocity v all
+  // at once.
   void read_body(const model::Touch& touch, const model::Friction& law) {
     contact_.place = touch.place;
     contact_.gram = {dag_.one()};
@@ -70,7 +74,8 @@ class ContactReader {
       const Vec3 t = lower_.vector(touch.tangents[a]);
       const Ref w = lower_.dot(t, slip);
       std::vector<Ref> slopes;
-      for (std::uint32_t i = 0; i < m_.q.size(); ++i) slopes.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
+      for (std::uint32_t i = 0; i < m_.q.size(); ++i)
+        slopes.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
       contact_.directions.push_back(t);
       contact_.numbers.push_back(a);
       contact_.slip.push_back(w);
@@ -122,7 +127,8 @@ class ContactReader {
     }
     if (contact_.place == 0 || fewest > 3) {
       fail("'" + contact_.name + "' touches no particle: none has all coordinates of the constraint, and at most three",
-           "friction acts where a particle is held on a surface or a curve; for a coordinate alone write a force dry = { .. }");
+           "friction acts where a particle is held on a surface or a curve; for a coordinate alone write a force dry = "
+           "{ .. }");
     }
     if (several) {
       fail("several particles have the coordinates of '" + contact_.name + "', so that it is open which of them rubs",
@@ -134,7 +140,8 @@ class ContactReader {
   void find_tangents() {
     const std::size_t equations = contact_.constraints.size();
     if (own_.size() <= equations) {
-      fail("'" + contact_.name + "' leaves its particle no direction to slide in", "remove the friction, or free a coordinate");
+      fail("'" + contact_.name + "' leaves its particle no direction to slide in",
+           "remove the friction, or free a coordinate");
     }
     std::vector<Vec3> a;
     for (const std::uint32_t i : own_) a.push_back(gradient(i));
@@ -155,7 +162,8 @@ class ContactReader {
       const Ref share = dag_.div(slope(0)[own_[i]], slope(0)[own_[c]]);
       contact_.directions.push_back(unit(lower_.subtract(a[i], lower_.scale(share, a[c]))));
     }
-    if (own_.size() == 3) contact_.directions.push_back(tidy(symbolic::cross(dag_, unit(normals[0]), contact_.directions[0])));
+    if (own_.size() == 3)
+      contact_.directions.push_back(tidy(symbolic::cross(dag_, unit(normals[0]), contact_.directions[0])));
   }
 
   /// sum c_i a_i with c = psi_1,i x psi_2,i: along this no psi changes; shorter than the product of the gradients.
@@ -203,8 +211,10 @@ class ContactReader {
     lower_.set_slip(contact_.slip.size() == 1 ? dag_.call(symbolic::Op::abs, contact_.slip[0])
                                               : dag_.call(symbolic::Op::sqrt, squares));
     contact_.dynamic_coefficient = lower_.scalar(law.dynamic_coefficient);
-    if (law.width != model::no_node) contact_.width = lower_.scalar(law.width);
-    else contact_.static_coefficient = lower_.scalar(law.static_coefficient);
+    if (law.width != model::no_node)
+      contact_.width = lower_.scalar(law.width);
+    else
+      contact_.static_coefficient = lower_.scalar(law.static_coefficient);
     add();
   }
 
@@ -267,7 +277,8 @@ void check_law(const Mechanics& m, const Contact& contact) {
   if (!contact.width) return;
   const std::vector<cln::cl_R> width = known_values(m, {*contact.width});
   if (width.empty() || cln::plusp(width[0])) return;
-  throw Error("mechanics", m.model->where(law_of(m, contact).span), "the width of the friction of '" + contact.name + "' is not positive",
+  throw Error("mechanics", m.model->where(law_of(m, contact).span),
+              "the width of the friction of '" + contact.name + "' is not positive",
               "give a slip speed above 0, small beside those of the motion; or Coulomb's law, which has no width");
 }
 
@@ -295,10 +306,13 @@ void check_determinate(const Mechanics& m) {
     if (contact.width) continue;
     directions += contact.dimensions();
     if (directions <= freedom) continue;
-    throw Error("mechanics", m.model->where(law_of(m, contact).span),
-                "with '" + contact.name + "' friction can hold " + std::to_string(directions) + " directions, and the system has " +
-                    std::to_string(freedom) + (freedom == 1 ? " degree" : " degrees") + " of freedom" + (m.freedom() > static_cast<long>(freedom) ? " while everything touches" : "") + ": where all stick, the forces are not determined",
-                "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
+    throw Error(
+        "mechanics", m.model->where(law_of(m, contact).span),
+        "with '" + contact.name + "' friction can hold " + std::to_string(directions) +
+            " directions, and the system has " + std::to_string(freedom) + (freedom == 1 ? " degree" : " degrees") +
+            " of freedom" + (m.freedom() > static_cast<long>(freedom) ? " while everything touches" : "") +
+            ": where all stick, the forces are not determined",
+        "give fewer contacts friction, or this one the smooth law (law = \"smooth\"), under which nothing sticks");
   }
 }
 
@@ -307,7 +321,8 @@ void check_determinate(const Mechanics& m) {
 Ref rolling_friction(const Mechanics& m, const Contact& contact, std::uint32_t tangent) {
   const auto found = std::find(contact.numbers.begin(), contact.numbers.end(), tangent);
   if (found == contact.numbers.end()) return m.dag->zero();
-  return m.dag->symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(found - contact.numbers.begin()), 0});
+  return m.dag->symbol(
+      {SymbolKind::friction, contact.first + static_cast<std::uint32_t>(found - contact.numbers.begin()), 0});
 }
 
 void drop_held_directions(Mechanics& m) {
@@ -316,7 +331,8 @@ void drop_held_directions(Mechanics& m) {
   for (Contact& contact : m.contacts) {
     for (std::size_t a = contact.directions.size(); a-- > 0 && contact.directions.size() == 2;) {
       const Ref slip = imposed(contact.slip[a]);
-      if (contact.touch ? !vanishes(*m.dag, {slip}) : !m.dag->is_zero(slip)) continue;  // a plane body has no slip across its plane
+      if (contact.touch ? !vanishes(*m.dag, {slip}) : !m.dag->is_zero(slip))
+        continue;  // a plane body has no slip across its plane
       const auto drop = [a](auto& list) { list.erase(list.begin() + static_cast<std::ptrdiff_t>(a)); };
       drop(contact.directions), drop(contact.tangents), drop(contact.slip);
       if (contact.touch) drop(contact.numbers);
@@ -338,7 +354,8 @@ void add_contacts(Mechanics& m, Lowering& lower) {
   ContactReader reader(m, lower);
   for (const model::Constraint& constraint : m.model->constraints) {
     if (!constraint.friction && !constraint.unilateral) continue;
-    if (m.contacts.size() == eom::max_contacts) refuse_more(m, constraint.friction ? constraint.friction->span : constraint.span);
+    if (m.contacts.size() == eom::max_contacts)
+      refuse_more(m, constraint.friction ? constraint.friction->span : constraint.span);
     reader.read(constraint);
   }
   for (const model::Force& force : m.model->forces) {

@@ -16,11 +16,13 @@ namespace {
 
 enum class Approach { none, regular, multiple };
 
-// At a root of multiplicity k a step leaves (1 - 1/k)^k of psi: 1/4 for a square, 1/e at most. A simple root is met quadratically.
+// At a root of multiplicity k a step leaves (1 - 1/k)^k of psi: 1/4 for a square, 1/e at most. A simple root is met
+// quadratically.
 constexpr double least_left = 0.2, most_left = 0.4;
 constexpr int in_a_row = 12, most_steps = 40;
 
-Approach approach(const symbolic::Dag& dag, const std::vector<Ref>& roots, const std::vector<Symbol>& of, std::uint64_t point) {
+Approach approach(const symbolic::Dag& dag, const std::vector<Ref>& roots, const std::vector<Symbol>& of,
+                  std::uint64_t point) {
   std::map<Symbol, double> q;
   for (const Symbol& symbol : of) q[symbol] = symbolic::sample_double(symbol, point);
   const std::function<double(const Symbol&)> at = [&](const Symbol& symbol) {

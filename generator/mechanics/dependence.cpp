@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Equations that follow from the others where all of them hold, though near these configurations they are independent: of closed loops, by
-// joints or by [[constraint]]s. docs/theory.md, "Dependent constraints".
+// Equations that follow from the others where all of them hold, though near these configurations they are independent:
+// of closed loops, by joints or by [[constraint]]s. docs/theory.md, "Dependent constraints".
 #include <cln/rational.h>
 #include <fmt/format.h>
 
@@ -19,7 +19,8 @@ using cln::cl_R;
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
 
-constexpr int dependent_digits = 20;  // rows in 50 digits, configurations to 38: parts outside the span below this are 0
+constexpr int dependent_digits =
+    20;  // rows in 50 digits, configurations to 38: parts outside the span below this are 0
 constexpr double looks_redundant = 1e-4;  // |psi| of an equation that was meant to follow from the others
 
 bool of_joint(const Mechanics& m, std::uint32_t k) { return model_constraint(m, m.constraints[k]).joint.has_value(); }
@@ -29,11 +30,14 @@ bool fixes(const Mechanics& m, std::uint32_t k) {
 }
 
 bool has_friction(const Mechanics& m, std::uint32_t k) {
-  return std::any_of(m.contacts.begin(), m.contacts.end(),
-                     [k](const Contact& c) { return std::find(c.constraints.begin(), c.constraints.end(), k) != c.constraints.end(); });
+  return std::any_of(m.contacts.begin(), m.contacts.end(), [k](const Contact& c) {
+    return std::find(c.constraints.begin(), c.constraints.end(), k) != c.constraints.end();
+  });
 }
 
-Where where(const Mechanics& m, std::uint32_t k) { return m.model->where(m.model->arena[m.constraints[k].written].span); }
+Where where(const Mechanics& m, std::uint32_t k) {
+  return m.model->where(m.model->arena[m.constraints[k].written].span);
+}
 
 /// Rows of constraints on positions or velocities that always hold, by all coordinates.
 struct Bound {
@@ -46,7 +50,9 @@ Bound bound(const Mechanics& m) {
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (m.constraints[k].unilateral || !m.holds(k)) continue;
     result.constraints.push_back(k);
-    result.turns.push_back(fixes(m, k) || has_friction(m, k) ? Turn::always : of_joint(m, k) ? Turn::last : Turn::first);
+    result.turns.push_back(fixes(m, k) || has_friction(m, k) ? Turn::always
+                           : of_joint(m, k)                  ? Turn::last
+                                                             : Turn::first);
   }
   return result;
 }
@@ -66,18 +72,26 @@ bool holds_at(const std::vector<Row>& rows, const Selection& chosen) {
 }
 
 [[noreturn]] void refuse_inexact(const Mechanics& m, const Closure& closure) {
-  throw Error("mechanics", where(m, closure.gap_at()),
-              fmt::format("equation '{}' looks as if it followed from the other constraints, but is off by {:.2g} where they hold", m.constraints[closure.gap_at()].label, closure.gap()),
-              "a loop with redundant joints closes only if the dimensions are exact: write sqrt(3)/2 or cos(pi/6) instead of decimals");
+  throw Error(
+      "mechanics", where(m, closure.gap_at()),
+      fmt::format(
+          "equation '{}' looks as if it followed from the other constraints, but is off by {:.2g} where they hold",
+          m.constraints[closure.gap_at()].label, closure.gap()),
+      "a loop with redundant joints closes only if the dimensions are exact: write sqrt(3)/2 or cos(pi/6) instead of "
+      "decimals");
 }
 
 [[noreturn]] void refuse_special(const Mechanics& m, std::uint32_t k) {
-  throw Error("mechanics", where(m, k), fmt::format("equation '{}' follows from the other constraints for these values of the parameters only", m.constraints[k].label),
-              "write what the values have in common: make one parameter an expression of the others, or use one parameter for both");
+  throw Error("mechanics", where(m, k),
+              fmt::format("equation '{}' follows from the other constraints for these values of the parameters only",
+                          m.constraints[k].label),
+              "write what the values have in common: make one parameter an expression of the others, or use one "
+              "parameter for both");
 }
 
 /// What moves by prescription has to do so alike in all equations that repeat one another.
-void require_same_rates(const Mechanics& m, const Closure& closure, const Bound& of, const Selection& chosen, const Configuration& at) {
+void require_same_rates(const Mechanics& m, const Closure& closure, const Bound& of, const Selection& chosen,
+                        const Configuration& at) {
   std::vector<Row> rows = rows_of(closure, of, at);
   const std::vector<cl_R> rates = closure.rates(at);
   std::vector<Turn> turns(rows.size(), Turn::last);
@@ -86,9 +100,12 @@ void require_same_rates(const Mechanics& m, const Closure& closure, const Bound&
   for (const std::size_t k : select_independent(rows, turns, small(dependent_digits)).kept) {
     if (std::find(chosen.kept.begin(), chosen.kept.end(), k) != chosen.kept.end()) continue;
     const std::uint32_t constraint = of.constraints[k];
-    throw Error("mechanics", where(m, constraint),
-                fmt::format("constraint '{}' contradicts the others: its velocities are a combination of theirs, the rest is not", m.constraints[constraint].label),
-                "remove one of them: no motion satisfies them all");
+    throw Error(
+        "mechanics", where(m, constraint),
+        fmt::format(
+            "constraint '{}' contradicts the others: its velocities are a combination of theirs, the rest is not",
+            m.constraints[constraint].label),
+        "remove one of them: no motion satisfies them all");
   }
 }
 
@@ -109,7 +126,8 @@ class Determined {
   }
   bool operator()(const Row& component) const {
     const cl_R size = length(component);
-    // Entries are directions and arms: what is smaller by so many digits is a zero of a configuration that was solved for.
+    // Entries are directions and arms: what is smaller by so many digits is a zero of a configuration that was solved
+    // for.
     return size < small(dependent_digits) || length(beside(component)) < size * small(dependent_digits);
   }
 
@@ -155,7 +173,9 @@ void require_normal_forces(const Mechanics& m) {
   for (const Contact& contact : m.contacts) {
     for (const std::uint32_t k : contact.constraints) {
       if (m.constraints[k].determined) continue;
-      throw Error("mechanics", where(m, k), fmt::format("the motion does not determine the force of '{}', and its contact needs it", m.constraints[k].label),
+      throw Error("mechanics", where(m, k),
+                  fmt::format("the motion does not determine the force of '{}', and its contact needs it",
+                              m.constraints[k].label),
                   "remove the constraints that repeat it, or give the bodies coordinates that let them part");
     }
   }
@@ -209,8 +229,8 @@ double volume(const std::vector<Row>& rows, const std::vector<double>& usual, co
   return result;
 }
 
-/// An equation that is chosen at the start may say nothing at a configuration that the motion passes (a length between bars in line), where one
-/// of those that follow from it does: they change places.
+/// An equation that is chosen at the start may say nothing at a configuration that the motion passes (a length between
+/// bars in line), where one of those that follow from it does: they change places.
 void keep_on_the_way(const Bound& of, const std::vector<std::vector<Row>>& way, Selection& chosen) {
   constexpr double nearly_nothing = 0.2, plainly_better = 3;
   std::vector<double> usual(of.constraints.size(), 0);
@@ -260,10 +280,12 @@ void drop_at(Mechanics& m, Closure& closure, const Configuration& start, const s
   const std::vector<Row> at_start = rows_of(closure, of, start);
   const Selection there = select_independent(at_start, of.turns, small(dependent_digits));
   if (there.kept.size() == chosen.kept.size() && !holds_at(at_start, chosen)) chosen = there;
-  std::erase_if(chosen.rest, [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run will tell
+  std::erase_if(chosen.rest,
+                [&](std::size_t k) { return of.turns[k] == Turn::always; });  // the start of a run will tell
   if (chosen.rest.empty()) return;
   std::vector<std::vector<Row>> way;
-  for (const std::vector<Configuration>& some : {std::vector{start}, points, on_the_way(closure, start, points.front())}) {
+  for (const std::vector<Configuration>& some :
+       {std::vector{start}, points, on_the_way(closure, start, points.front())}) {
     for (const Configuration& at : some) way.push_back(rows_of(closure, of, at));
   }
   keep_on_the_way(of, way, chosen);

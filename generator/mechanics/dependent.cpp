@@ -22,7 +22,8 @@ bool is_touched(const Mechanics& m, std::uint32_t constraint) {
   });
 }
 
-// Where several coordinates would do, one that nothing but this constraint names leaves the rest as it is; then the last one.
+// Where several coordinates would do, one that nothing but this constraint names leaves the rest as it is; then the
+// last one.
 bool in_configuration(const Mechanics& m, std::uint32_t constraint, std::uint32_t coordinate) {
   Dag& dag = *m.dag;
   symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, coordinate, 0});
@@ -40,7 +41,8 @@ std::optional<FixedCoordinate> solve(const Mechanics& m, std::uint32_t constrain
   for (const std::uint32_t i : m.free) {
     const Symbol symbol{SymbolKind::coordinate, i, 0};
     const Ref slope = symbolic::partial(dag, symbol)(psi);
-    const bool certain = !dag.is_zero(slope) && (dag.is_constant(slope) || dag.is_positive(slope) || dag.is_positive(dag.neg(slope)));
+    const bool certain =
+        !dag.is_zero(slope) && (dag.is_constant(slope) || dag.is_positive(slope) || dag.is_positive(dag.neg(slope)));
     if (!certain || moves(dag, slope)) continue;
     const bool plain = !in_configuration(m, constraint, i);
     if (best && best_is_plain && !plain) continue;

@@ -15,7 +15,8 @@ constexpr std::size_t term_budget = 60, most_nodes = 64;
 
 bool depends_on_coordinates(const Dag& dag, Ref r) {
   const auto symbols = dag.symbols({r});
-  return std::any_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& s) { return s.kind == SymbolKind::coordinate; });
+  return std::any_of(symbols.begin(), symbols.end(),
+                     [](const symbolic::Symbol& s) { return s.kind == SymbolKind::coordinate; });
 }
 
 /// Factors of a product, of a sum those that all its terms have.
@@ -35,7 +36,8 @@ std::vector<Ref> factors(const Dag& dag, Ref r) {
       result.insert(result.end(), more.begin(), more.end());
       return result;
     }
-    case Op::add: case Op::sub: {
+    case Op::add:
+    case Op::sub: {
       std::vector<Ref> a = of(node.args[0]), b = of(node.args[1]), both;
       std::sort(a.begin(), a.end());
       std::sort(b.begin(), b.end());
@@ -60,20 +62,24 @@ Ref without(Dag& dag, Ref r, Ref factor) {
     case Op::neg: return dag.neg(strip(node.args[0]));
     case Op::div: return dag.div(strip(node.args[0]), node.args[1]);
     case Op::power: return dag.mul(strip(node.args[0]), dag.power(node.args[0], node.payload - 1));
-    case Op::mul: return has(node.args[0]) ? dag.mul(strip(node.args[0]), node.args[1]) : dag.mul(node.args[0], strip(node.args[1]));
+    case Op::mul:
+      return has(node.args[0]) ? dag.mul(strip(node.args[0]), node.args[1])
+                               : dag.mul(node.args[0], strip(node.args[1]));
     case Op::add: return dag.add(strip(node.args[0]), strip(node.args[1]));
     default: return dag.sub(strip(node.args[0]), strip(node.args[1]));
   }
 }
 
-/// Where all move along one line: the slope by a coordinate, if it is the same everywhere and the vector is a multiple of it.
+/// Where all move along one line: the slope by a coordinate, if it is the same everywhere and the vector is a multiple
+/// of it.
 std::optional<Vec3> line(Lowering& lower, Dag& dag, std::size_t coordinates, const Vec3& along) {
   for (std::uint32_t k = 0; k < coordinates; ++k) {
     Vec3 slope = lower.gradient(along, k);
     if (symbolic::is_zero(dag, slope)) continue;
     symbolic::Expander expander(dag, term_budget);
     for (Ref& x : slope) x = expander.tidy(x);
-    if (std::any_of(slope.begin(), slope.end(), [&](Ref x) { return depends_on_coordinates(dag, x); })) return std::nullopt;
+    if (std::any_of(slope.begin(), slope.end(), [&](Ref x) { return depends_on_coordinates(dag, x); }))
+      return std::nullopt;
     const Vec3 across = lower.cross(along, slope);
     if (std::all_of(across.begin(), across.end(), [&](Ref x) { return dag.is_zero(expander.tidy(x)); })) return slope;
     return std::nullopt;

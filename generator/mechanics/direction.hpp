@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The direction of a vector that may pass through 0. In: s(q) w. Out: w, where it is seen that w stays when s vanishes, so that
-// w / |w| needs no s / |s|.
+// The direction of a vector that may pass through 0. In: s(q) w. Out: w, where it is seen that w stays when s vanishes,
+// so that w / |w| needs no s / |s|.
 #pragma once
 
 #include <optional>

@@ -20,7 +20,8 @@ using symbolic::SymbolKind;
 // Of a row beside the span of others, from 50 digits.
 cln::cl_R independent_part() { return cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 20)); }
 
-constexpr std::uint32_t first_constant = 0x20000000u;  // of SymbolKind::extra: constants of integrals while others are sought
+constexpr std::uint32_t first_constant =
+    0x20000000u;  // of SymbolKind::extra: constants of integrals while others are sought
 
 /// A surface psi = c on which others are sought: one variable is given by the rest.
 struct Leaf {
@@ -95,8 +96,8 @@ class Classifier {
     return result == Vanishing::proven && !rows.exact ? Vanishing::at_points : result;
   }
 
-  /// The largest integrable system among the combinations of the forms: those whose curvature vanishes, again and again. No rows where
-  /// the effort does not suffice.
+  /// The largest integrable system among the combinations of the forms: those whose curvature vanishes, again and
+  /// again. No rows where the effort does not suffice.
   Echelon last_derived(std::vector<Form> forms) {
     while (true) {
       Echelon rows = space_.echelon(std::move(forms));
@@ -147,15 +148,19 @@ class Classifier {
     switch (alone) {
       case Vanishing::proven: return {Integrable::yes, "Frobenius' condition holds"};
       case Vanishing::at_points:
-        return {Integrable::unknown, "Frobenius' condition holds at random points to 30 digits, but no proof was found"};
-      case Vanishing::unknown: return {Integrable::unknown, "its coefficients have no value at the points that were tried"};
+        return {Integrable::unknown,
+                "Frobenius' condition holds at random points to 30 digits, but no proof was found"};
+      case Vanishing::unknown:
+        return {Integrable::unknown, "its coefficients have no value at the points that were tried"};
       case Vanishing::no: break;
     }
     const std::string why = "Frobenius' condition fails: omega ^ d omega is not zero, with t as a coordinate";
     if (forms_.size() > 1 && within(k, terminal)) {
       const std::string others = others_in(k, terminal);
-      if (terminal.exact && !terminal.rows.empty()) return {Integrable::yes, "not by itself, but together with " + others};
-      return {Integrable::unknown, "not by itself; together with " + others + " at random points, but no proof was found"};
+      if (terminal.exact && !terminal.rows.empty())
+        return {Integrable::yes, "not by itself, but together with " + others};
+      return {Integrable::unknown,
+              "not by itself; together with " + others + " at random points, but no proof was found"};
     }
     const std::size_t integrable = orbit_ ? orbit_->integrable() : terminal.rows.size();
     if (integrable > holonomic_.size() + within_count(terminal)) {
@@ -214,7 +219,9 @@ class Classifier {
     return Substitution(dag_, values)(psi);
   }
 
-  static Symbol constant(std::size_t j) { return {SymbolKind::extra, first_constant + static_cast<std::uint32_t>(j), 0}; }
+  static Symbol constant(std::size_t j) {
+    return {SymbolKind::extra, first_constant + static_cast<std::uint32_t>(j), 0};
+  }
 
   bool seek(const Form& form, std::uint32_t constraint) {
     const Form restricted = on_leaves(form);
@@ -239,7 +246,8 @@ class Classifier {
       try {
         std::vector<Row> rows;
         for (const Form& form : forms) rows.push_back(space_.values(form, point));
-        const Selection independent = select_independent(rows, std::vector<Turn>(rows.size(), Turn::last), independent_part());
+        const Selection independent =
+            select_independent(rows, std::vector<Turn>(rows.size(), Turn::last), independent_part());
         if (independent.rest.empty()) return true;
       } catch (const std::domain_error&) {  // this point says nothing
       }
@@ -340,7 +348,8 @@ const char* name(Integrable verdict) {
 
 void classify_constraints(Mechanics& m) {
   m.classification.assign(m.constraints.size(), {});
-  const bool velocities = std::any_of(m.constraints.begin(), m.constraints.end(), [](const Constraint& c) { return !c.holonomic(); });
+  const bool velocities =
+      std::any_of(m.constraints.begin(), m.constraints.end(), [](const Constraint& c) { return !c.holonomic(); });
   if (velocities) Classifier(m).run();
 }
 

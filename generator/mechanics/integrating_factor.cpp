@@ -21,7 +21,8 @@ constexpr long finest_exponent = 2;  // exponents are multiples of 1/2
 
 class Search {
  public:
-  Search(FormSpace& space, Form form) : space_(space), dag_(space.dag()), form_(std::move(form)), x_(space.variables()) {}
+  Search(FormSpace& space, Form form)
+      : space_(space), dag_(space.dag()), form_(std::move(form)), x_(space.variables()) {}
 
   std::optional<Ref> run() {
     if (const std::optional<Ref> psi = with_factor(dag_.one())) return psi;
@@ -74,7 +75,8 @@ class Search {
       const std::size_t i = order[step];
       std::optional<Ref> rest = space_.simpler(dag_.sub(form[i], d(psi, i)));
       if (space_.vanishing(*rest) == Vanishing::proven) continue;
-      for (std::size_t before = 0; before < step && rest; ++before) rest = symbolic::without(dag_, *rest, x_[order[before]]);
+      for (std::size_t before = 0; before < step && rest; ++before)
+        rest = symbolic::without(dag_, *rest, x_[order[before]]);
       if (rest) rest = symbolic::antiderivative(dag_, *rest, x_[i]);
       if (!rest) return std::nullopt;
       psi = dag_.add(psi, *rest);
@@ -108,11 +110,15 @@ class Search {
     for (const Ref term : symbolic::terms_of(dag_, sum)) {
       Ref u = dag_.zero(), c = dag_.one();
       for (const auto& [base, exponent] : symbolic::factors_of(dag_, term)) {
-        if (dag_[base].op == Op::log && exponent == 1) u = dag_[base].args[0];
-        else c = dag_.mul(c, dag_.power(base, exponent));
+        if (dag_[base].op == Op::log && exponent == 1)
+          u = dag_[base].args[0];
+        else
+          c = dag_.mul(c, dag_.power(base, exponent));
       }
-      if (!dag_.is_zero(u) && dag_.is_constant(c)) product = dag_.mul(product, power_of(u, dag_.value(c)));
-      else rest = dag_.add(rest, term);
+      if (!dag_.is_zero(u) && dag_.is_constant(c))
+        product = dag_.mul(product, power_of(u, dag_.value(c)));
+      else
+        rest = dag_.add(rest, term);
     }
     return dag_.is_zero(rest) ? product : dag_.mul(product, dag_.call(Op::exp, rest));
   }
@@ -124,7 +130,8 @@ class Search {
     const auto add = [&](Ref r) {
       if (dag_.symbols({r}).empty() || std::find(result.begin(), result.end(), r) != result.end()) return;
       const std::vector<Symbol> symbols = dag_.symbols({r});
-      if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; })) result.push_back(r);
+      if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; }))
+        result.push_back(r);
     };
     for (std::size_t i = 0; i < x_.size(); ++i) {
       if (!dag_.is_zero(form_[i])) add(dag_.symbol(x_[i]));
@@ -143,8 +150,8 @@ class Search {
     return result;
   }
 
-  /// d omega + d(log mu) ^ omega = 0 with log mu = sum alpha_b log u_b is linear in alpha: solved by numbers for few bases
-  /// at a time, then proven.
+  /// d omega + d(log mu) ^ omega = 0 with log mu = sum alpha_b log u_b is linear in alpha: solved by numbers for few
+  /// bases at a time, then proven.
   std::optional<Ref> by_powers() {
     const std::vector<Ref> u = bases();
     std::vector<Ref> entries;  // by pair: d omega, then d(log u_b) ^ omega

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: one form. Out: psi with d psi = factor * form, proven. Factors that are tried: 1; functions of one variable; products
-// of powers of the variables, of the parts of the coefficients, and of sums of two squares.
+// In: one form. Out: psi with d psi = factor * form, proven. Factors that are tried: 1; functions of one variable;
+// products of powers of the variables, of the parts of the coefficients, and of sums of two squares.
 #pragma once
 
 #include <optional>

@@ -174,7 +174,8 @@ class Path {
       const auto& [row, i, l] = slopes_[s];
       const std::vector<cl_R>& c = (*series_)[rows_ * n_ + s];
       for (std::size_t k = 0; k <= order; ++k) {
-        for (std::size_t a = 0; a <= k; ++a) right[k][row][l] = right[k][row][l] - c[a] * cl_R(static_cast<long>(k - a + 1)) * x_[k - a + 1][i];
+        for (std::size_t a = 0; a <= k; ++a)
+          right[k][row][l] = right[k][row][l] - c[a] * cl_R(static_cast<long>(k - a + 1)) * x_[k - a + 1][i];
       }
     }
     return solved(right);
@@ -187,7 +188,8 @@ class Path {
     const std::size_t k = A_.size();
     const auto lookup = [&](const Symbol& symbol, std::size_t order) -> cl_R {
       const auto found = std::find(space_.variables().begin(), space_.variables().end(), symbol);
-      if (found != space_.variables().end()) return x_[order][static_cast<std::size_t>(found - space_.variables().begin())];
+      if (found != space_.variables().end())
+        return x_[order][static_cast<std::size_t>(found - space_.variables().begin())];
       return order == 0 ? space_.value(symbol, point_) : cl_R(0);
     };
     series_->extend(lookup);
@@ -207,14 +209,20 @@ class Path {
     const std::size_t k = x_.size() - 1;
     Vector next(n_, cl_R(0));
     for (const std::size_t j : independent_) {
-      next[j] = cln::cl_float(cl_R(symbolic::sample({symbolic::SymbolKind::extra, static_cast<std::uint32_t>(j), 0}, 7 + k) - symbolic::Rational(7) / 10), cln::float_format(digits));
+      next[j] =
+          cln::cl_float(cl_R(symbolic::sample({symbolic::SymbolKind::extra, static_cast<std::uint32_t>(j), 0}, 7 + k) -
+                             symbolic::Rational(7) / 10),
+                        cln::float_format(digits));
     }
     Vector right(rows_, cl_R(0));
     for (std::size_t row = 0; row < rows_; ++row) {
-      for (const std::size_t j : independent_) right[row] = right[row] - cl_R(static_cast<long>(k + 1)) * A_[0][row][j] * next[j];
-      for (std::size_t i = 1; i <= k; ++i) right[row] = right[row] - cl_R(static_cast<long>(k + 1 - i)) * dot(A_[i][row], x_[k + 1 - i]);
+      for (const std::size_t j : independent_)
+        right[row] = right[row] - cl_R(static_cast<long>(k + 1)) * A_[0][row][j] * next[j];
+      for (std::size_t i = 1; i <= k; ++i)
+        right[row] = right[row] - cl_R(static_cast<long>(k + 1 - i)) * dot(A_[i][row], x_[k + 1 - i]);
     }
-    for (std::size_t p = 0; p < rows_; ++p) next[dependent_[p]] = dot(inverse_[p], right) / cl_R(static_cast<long>(k + 1));
+    for (std::size_t p = 0; p < rows_; ++p)
+      next[dependent_[p]] = dot(inverse_[p], right) / cl_R(static_cast<long>(k + 1));
     x_.push_back(std::move(next));
   }
 
@@ -262,7 +270,8 @@ class Path {
 
 bool Orbit::keeps(const Vector& form) const {
   const cl_R length = cln::sqrt(dot(form, form));
-  return std::all_of(directions_.begin(), directions_.end(), [&](const Vector& v) { return cln::abs(dot(form, v)) <= length * small(zero_digits); });
+  return std::all_of(directions_.begin(), directions_.end(),
+                     [&](const Vector& v) { return cln::abs(dot(form, v)) <= length * small(zero_digits); });
 }
 
 std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& forms, std::size_t point) {
@@ -274,7 +283,8 @@ std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& f
       for (std::size_t b = a + 1; b < fields.size(); ++b) {
         cl_R sum = 0;
         for (std::size_t i = 0; i < curl.size(); ++i) {
-          for (std::size_t j = 0; j < curl.size(); ++j) sum = sum + fields[a][0][i][0] * curl[i][j] * fields[b][0][j][0];
+          for (std::size_t j = 0; j < curl.size(); ++j)
+            sum = sum + fields[a][0][i][0] * curl[i][j] * fields[b][0][j][0];
         }
         if (cln::abs(sum) > small(30)) return true;
       }
@@ -285,8 +295,8 @@ std::optional<bool> fails_frobenius(FormSpace& space, const std::vector<Form>& f
   }
 }
 
-// With M_0 the fields and M_(k+1) = M_k' - F M_k along a curve of generic controls, the values of all M_k at its start span the orbit's
-// tangent; the rank grows with k until it is complete.
+// With M_0 the fields and M_(k+1) = M_k' - F M_k along a curve of generic controls, the values of all M_k at its start
+// span the orbit's tangent; the rank grows with k until it is complete.
 std::optional<Orbit> orbit(FormSpace& space, const std::vector<Form>& forms, std::size_t point) {
   const std::size_t n = space.variables().size();
   if (forms.empty() || forms.size() * n * n > most_entries) return std::nullopt;
@@ -311,7 +321,8 @@ std::optional<Orbit> orbit(FormSpace& space, const std::vector<Form>& forms, std
             for (std::size_t i = 0; i < n; ++i) value[i][0] = cl_R(static_cast<long>(o + 1)) * field[o + 1][i][0];
             for (std::size_t p = 0; p < F[o].size(); ++p) {
               for (std::size_t a = 0; a <= o; ++a) {
-                for (std::size_t l = 0; l < n; ++l) value[path.dependent()[p]][0] = value[path.dependent()[p]][0] - F[a][p][l] * field[o - a][l][0];
+                for (std::size_t l = 0; l < n; ++l)
+                  value[path.dependent()[p]][0] = value[path.dependent()[p]][0] - F[a][p][l] * field[o - a][l][0];
               }
             }
             next.push_back(std::move(value));

@@ -52,7 +52,8 @@ class ForceReader {
     for (std::size_t b = 0; b < m_.spins.size() && gravity.order == 2; ++b) {  // (7.71)
       const Spin& spin = m_.spins[b];
       const Vec3 d = lower_.subtract(lower_.position(m_.model->bodies[b].place), center);
-      const std::array<Ref, 3> along{lower_.dot(d, spin.axes[0]), lower_.dot(d, spin.axes[1]), lower_.dot(d, spin.axes[2])};
+      const std::array<Ref, 3> along{lower_.dot(d, spin.axes[0]), lower_.dot(d, spin.axes[1]),
+                                     lower_.dot(d, spin.axes[2])};
       const std::array<Ref, 3> J = times(dag_, spin, along);
       Ref dJd = dag_.zero();
       for (std::size_t k = 0; k < 3; ++k) dJd = dag_.add(dJd, dag_.mul(along[k], J[k]));
@@ -79,8 +80,8 @@ class ForceReader {
     const Ref length = lower_.scalar(spring.length);
     if (spring.energy == model::no_node) {
       // Of no free length: no square root, and no singular point.
-      const Ref extension_squared = dag_.is_zero(length) ? lower_.dot(along, along)
-                                                         : dag_.power(dag_.sub(lower_.norm(along), length), 2);
+      const Ref extension_squared =
+          dag_.is_zero(length) ? lower_.dot(along, along) : dag_.power(dag_.sub(lower_.norm(along), length), 2);
       potential_ = dag_.div(dag_.mul(lower_.scalar(spring.stiffness), extension_squared), dag_.integer(2));
     } else {
       lower_.set_extension(dag_.sub(lower_.norm(along), length));
@@ -123,7 +124,8 @@ class ForceReader {
   void add(const model::Drag& drag) {  // -(1/2) rho A C |v| v, eq. (8.53)
     const Vec3 at = lower_.vector(drag.on);
     const Vec3 v = lower_.ddt(at, force_->span);
-    Ref factor = dag_.mul(lower_.scalar(drag.density), dag_.mul(lower_.scalar(drag.area), lower_.scalar(drag.coefficient)));
+    Ref factor =
+        dag_.mul(lower_.scalar(drag.density), dag_.mul(lower_.scalar(drag.area), lower_.scalar(drag.coefficient)));
     factor = dag_.mul(dag_.constant(symbolic::Rational(-1) / 2), dag_.mul(factor, lower_.norm(v)));
     load(lower_.scale(factor, v), at);
   }
@@ -153,7 +155,8 @@ class ForceReader {
   }
   void require_masses() const {
     if (m_.masses.empty()) {
-      fail("this force acts on masses, and the model has none", "add a [[particle]] or [[body]], or put the potential into [energy]");
+      fail("this force acts on masses, and the model has none",
+           "add a [[particle]] or [[body]], or put the potential into [energy]");
     }
   }
   void require_potential() const {

@@ -78,16 +78,31 @@ const Lowering::Value& Lowering::value(model::NodeId id) {
 Lowering::Value Lowering::lower(const model::Node& node) {
   using model::Op;
   switch (node.op) {
-    case Op::number: case Op::pi: case Op::time: case Op::parameter: case Op::function: case Op::input:
-    case Op::coordinate: case Op::definition: case Op::extension: case Op::integral: case Op::reaction: case Op::slip:
-      return lower_leaf(node);
-    case Op::add: case Op::subtract: case Op::negate: case Op::multiply: case Op::divide: case Op::power: case Op::call:
-    case Op::conditional: case Op::dot: case Op::norm:
-      return lower_arithmetic(node);
-    case Op::total_derivative: case Op::partial_derivative:
-      return lower_derivative(node);
-    default:
-      return lower_vector(node);
+    case Op::number:
+    case Op::pi:
+    case Op::time:
+    case Op::parameter:
+    case Op::function:
+    case Op::input:
+    case Op::coordinate:
+    case Op::definition:
+    case Op::extension:
+    case Op::integral:
+    case Op::reaction:
+    case Op::slip: return lower_leaf(node);
+    case Op::add:
+    case Op::subtract:
+    case Op::negate:
+    case Op::multiply:
+    case Op::divide:
+    case Op::power:
+    case Op::call:
+    case Op::conditional:
+    case Op::dot:
+    case Op::norm: return lower_arithmetic(node);
+    case Op::total_derivative:
+    case Op::partial_derivative: return lower_derivative(node);
+    default: return lower_vector(node);
   }
 }
 
@@ -114,12 +129,14 @@ Ref Lowering::joint_force(const model::Node& node) {
   const std::uint32_t index = *m_.model->constraints[node.index].joint;
   const JointReaction& joint = m_.joints.at(index);
   if (!joint.determined[node.order]) {
-    throw Error("mechanics", m_.model->where(node.span), "the motion does not determine this component of the joint '" + m_.model->joints[index].name + "'",
+    throw Error("mechanics", m_.model->where(node.span),
+                "the motion does not determine this component of the joint '" + m_.model->joints[index].name + "'",
                 "`check` lists those that it determines");
   }
   Ref sum = dag_.zero();
   for (std::uint32_t k = 0; k < joint.equations(); ++k) {
-    sum = dag_.add(sum, dag_.mul(joint.along[node.order][k], dag_.symbol({SymbolKind::multiplier, joint.first + k, 0})));
+    sum =
+        dag_.add(sum, dag_.mul(joint.along[node.order][k], dag_.symbol({SymbolKind::multiplier, joint.first + k, 0})));
   }
   return sum;
 }
@@ -132,12 +149,14 @@ Ref Lowering::multiplier(const model::Node& node) {
   for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
     if (m_.constraints[k].name != wanted.name) continue;
     if (!m_.constraints[k + node.order].determined) {
-      throw Error("mechanics", m_.model->where(node.span), "the motion does not determine the force of '" + m_.constraints[k + node.order].label + "'",
+      throw Error("mechanics", m_.model->where(node.span),
+                  "the motion does not determine the force of '" + m_.constraints[k + node.order].label + "'",
                   "`check` lists the constraints of which it does");
     }
     return dag_.symbol({SymbolKind::multiplier, k + node.order, 0});
   }
-  throw Error("mechanics", m_.model->where(node.span), "this constraint has no force", "name a constraint that holds something");
+  throw Error("mechanics", m_.model->where(node.span), "this constraint has no force",
+              "name a constraint that holds something");
 }
 
 // Friction along one of the tangents, 0 along one that is left out; or the multiplier of the normal.
@@ -204,7 +223,9 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::place: result = position(node.index); break;
     case Op::place_velocity: result = ddt(position(node.index), node.span); break;
     case Op::place_acceleration: result = ddt(ddt(position(node.index), node.span), node.span); break;
-    case Op::unit_basis: case Op::covariant_basis: case Op::contravariant_basis: return basis(node);
+    case Op::unit_basis:
+    case Op::covariant_basis:
+    case Op::contravariant_basis: return basis(node);
     case Op::axis: result = axis(node.index, node.order / 3u, node.order % 3u); break;
     case Op::angular_velocity: result = angular_velocity(node.index); break;
     case Op::cross: result = cross(vector(node.args[0]), vector(node.args[1])); break;
@@ -222,7 +243,8 @@ Lowering::Value Lowering::lower_derivative(const model::Node& node) {
   const Value argument = value(node.args[0]);
   const auto apply = [&](auto&& derivative) {
     if (!argument.vector) return of(derivative(argument.scalar));
-    return of(Vec3{derivative(argument.components[0]), derivative(argument.components[1]), derivative(argument.components[2])});
+    return of(Vec3{derivative(argument.components[0]), derivative(argument.components[1]),
+                   derivative(argument.components[2])});
   };
   if (node.op == model::Op::total_derivative) return apply([&](Ref r) { return ddt(r, node.span); });
   const Ref by = scalar(node.args[1]);
@@ -241,7 +263,8 @@ Lowering::Value Lowering::basis(const model::Node& node) {
   return of(scale(dag_.div(dag_.one(), norm(a)), a));
 }
 
-// The chart's own unit vector for a coordinate that is one of its entries and in no other; it holds where a_q vanishes too.
+// The chart's own unit vector for a coordinate that is one of its entries and in no other; it holds where a_q vanishes
+// too.
 model::NodeId Lowering::chart_vector(std::uint32_t place, std::uint32_t coordinate) {
   const auto& chart = m_.model->places[place].chart;
   model::NodeId result = model::no_node;
@@ -271,7 +294,8 @@ Vec3 Lowering::contravariant(std::uint32_t place, std::uint32_t coordinate, cons
     a.push_back(gradient(position(place), entry.index));
   }
   if (wanted >= a.size()) {
-    throw Error("mechanics", m_.model->where(span), "a contravariant basis vector needs a coordinate of the particle's own chart",
+    throw Error("mechanics", m_.model->where(span),
+                "a contravariant basis vector needs a coordinate of the particle's own chart",
                 "use g_ with a coordinate that its position names");
   }
   // Cramer's rule on the Gram matrix, which is at most 3 x 3: a^i = sum_k cofactor_ik/det a_k.

@@ -19,8 +19,8 @@ class Lowering {
   Vec3 vector(model::NodeId id);
   Vec3 position(std::uint32_t place);
   Vec3 axis(std::uint32_t frame, std::size_t stage, std::size_t k);
-  /// The angular velocity of the axes after a stage: its components along them, and along those before (frame's parent at first)
-  /// of the axes before.
+  /// The angular velocity of the axes after a stage: its components along them, and along those before (frame's parent
+  /// at first) of the axes before.
   std::array<Ref, 3> rates(std::uint32_t frame, std::size_t stage);
   std::array<Ref, 3> rates_before(std::uint32_t frame, std::size_t stage);
   std::array<Ref, 3> own_rates(std::uint32_t frame);

@@ -28,7 +28,8 @@ void add_known_values(Mechanics& m, Lowering& lower) {
   m.function_value.clear();
   m.parameter_value.clear();
   for (const model::Function& function : m.model->functions) m.function_value.push_back(lower.scalar(function.is));
-  for (const model::Parameter& parameter : m.model->parameters) m.parameter_value.push_back(lower.scalar(parameter.value));
+  for (const model::Parameter& parameter : m.model->parameters)
+    m.parameter_value.push_back(lower.scalar(parameter.value));
 }
 
 void add_values(Mechanics& m, Lowering& lower) {
@@ -80,9 +81,11 @@ void require_equations(const Mechanics& m) {
     for (const std::uint32_t k : m.active) presence.push_back(m.constraints[k].gradient[i]);
     if (!vanishes(dag, presence)) continue;
     const model::Coordinate& coordinate = m.model->coordinates[i];
-    throw Error("mechanics", m.model->where(coordinate.span),
-                "nothing that has mass moves with coordinate '" + coordinate.name + "', so it has no equation of motion",
-                "give it inertia (a mass whose position depends on it, or a kinetic energy), fix it by a constraint, or remove it");
+    throw Error(
+        "mechanics", m.model->where(coordinate.span),
+        "nothing that has mass moves with coordinate '" + coordinate.name + "', so it has no equation of motion",
+        "give it inertia (a mass whose position depends on it, or a kinetic energy), fix it by a constraint, or remove "
+        "it");
   }
   if (m.q.empty()) {
     throw Error("mechanics", Where{m.model->file, 0, 0, 1, ""}, "the model has no coordinates",

@@ -26,8 +26,9 @@ struct PointMass {
   std::uint32_t place = 0;
 };
 
-/// How a body turns: T = w.Jw/2, eq. (6.65), with constant components J along `axes`. These are the body's own; where J does not
-/// change as the body turns about one of them they are those before its last rotation, which have simpler components.
+/// How a body turns: T = w.Jw/2, eq. (6.65), with constant components J along `axes`. These are the body's own; where J
+/// does not change as the body turns about one of them they are those before its last rotation, which have simpler
+/// components.
 struct Spin {
   std::string name;
   std::uint32_t frame = 0;
@@ -47,8 +48,8 @@ struct Load {
 
 enum class ConstraintKind { holonomic, velocity };
 
-/// Whether an equation is needed: not where it holds whatever the coordinates are, nor where it does so wherever the other
-/// constraints hold. Such equations are neither imposed nor active and have no multiplier.
+/// Whether an equation is needed: not where it holds whatever the coordinates are, nor where it does so wherever the
+/// other constraints hold. Such equations are neither imposed nor active and have no multiplier.
 enum class Need { holds, identity, redundant };
 const char* name(Need need);  // "holds", "identity", "redundant"
 
@@ -58,9 +59,9 @@ struct Constraint {
   std::string name;   // "sphere"
   std::string label;  // "sphere", or "sphere.2" where the constraint has several equations
   ConstraintKind kind = ConstraintKind::holonomic;
-  Ref psi;                    // 0 of a velocity constraint
-  std::vector<Ref> gradient;  // f_i, all coordinates
-  Ref rate;                   // b: d psi/d t at fixed q
+  Ref psi;                                 // 0 of a velocity constraint
+  std::vector<Ref> gradient;               // f_i, all coordinates
+  Ref rate;                                // b: d psi/d t at fixed q
   model::NodeId written = model::no_node;  // psi, or what is 0 of a velocity constraint, in the model
   bool unilateral = false;                 // psi >= 0: never eliminated
   Need need = Need::holds;
@@ -87,26 +88,27 @@ struct Classification {
 
 /// psi(q, t) of free coordinates, t and independent parameters that constraints on velocities keep at its start value.
 struct Integral {
-  std::string label;  // of the constraint that it stands for
+  std::string label;              // of the constraint that it stands for
   std::vector<std::uint32_t> of;  // constraints whose combination d psi is
   Ref psi;
 };
 
-/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or another body, or one
-/// coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols phi_a = {SymbolKind::friction, first + a}. A unilateral constraint
-/// is a contact with or without friction.
+/// Where a law of friction acts: a particle on a surface (one constraint) or a curve (two), a body on a plane or
+/// another body, or one coordinate with a given normal force. The friction force is sum_a phi_a t_a with the symbols
+/// phi_a = {SymbolKind::friction, first + a}. A unilateral constraint is a contact with or without friction.
 struct Contact {
-  std::string name;                         // of the constraint or the force
-  std::vector<std::uint32_t> constraints;   // 1 or 2 indices; none: the normal force is given
-  std::uint32_t place = 0;                  // of the particle; 0 where a coordinate rubs
-  std::uint32_t coordinate = 0;             // that rubs, where place is 0
-  std::uint32_t first = 0;                  // index of the first phi
-  std::vector<Ref> gram;                    // grad psi_k . grad psi_l at the particle, row-major
-  Ref normal;                               // the given normal force
-  std::vector<Vec3> directions;             // t_a, orthonormal; none where a coordinate rubs
-  std::vector<std::uint32_t> numbers;       // of a body: which of its two tangents t_a are, 0 or 1
-  std::vector<std::vector<Ref>> tangents;   // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
-  std::vector<Ref> slip;                    // t_a . (v - v_s)
+  std::string name;                        // of the constraint or the force
+  std::vector<std::uint32_t> constraints;  // 1 or 2 indices; none: the normal force is given
+  std::uint32_t place = 0;                 // of the particle; 0 where a coordinate rubs
+  std::uint32_t coordinate = 0;            // that rubs, where place is 0
+  std::uint32_t first = 0;                 // index of the first phi
+  std::vector<Ref> gram;                   // grad psi_k . grad psi_l at the particle, row-major
+  Ref normal;                              // the given normal force
+  std::vector<Vec3> directions;            // t_a, orthonormal; none where a coordinate rubs
+  std::vector<std::uint32_t> numbers;      // of a body: which of its two tangents t_a are, 0 or 1
+  std::vector<std::vector<Ref>>
+      tangents;           // t_a . dr/dq_i per t_a, all coordinates; of a body t_a . dv/dqdot_i of its point there
+  std::vector<Ref> slip;  // t_a . (v - v_s)
   Ref static_coefficient, dynamic_coefficient;  // may depend on the slip speed; the first none where there is a width
   std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
   bool unilateral = false;                      // its one constraint can be left
@@ -135,14 +137,15 @@ struct Mechanics {
   std::vector<Ref> q, qdot, qddot;  // all coordinates of the model
   Ref t;
 
-  std::vector<PointMass> masses;  // particles, then bodies with all their mass at the centre
-  std::vector<Spin> spins;        // per Model::bodies entry
-  Ref kinetic_given;  // of [energy], 0 if none
-  Ref kinetic;        // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
-  Ref potential;      // everything that has a potential, and [energy]
+  std::vector<PointMass> masses;        // particles, then bodies with all their mass at the centre
+  std::vector<Spin> spins;              // per Model::bodies entry
+  Ref kinetic_given;                    // of [energy], 0 if none
+  Ref kinetic;                          // sum m/2 v.v + kinetic_given, with the unconstrained coordinates
+  Ref potential;                        // everything that has a potential, and [energy]
   std::vector<Ref> potential_by_force;  // per Model::forces entry, 0 where the force is a Load
   std::vector<Load> loads;
-  std::vector<std::vector<Ref>> force_components;  // per Model::forces entry: its Q_i beyond the potential, loads included
+  std::vector<std::vector<Ref>>
+      force_components;  // per Model::forces entry: its Q_i beyond the potential, loads included
 
   std::vector<Constraint> constraints;
   std::vector<FixedCoordinate> fixed;  // in the order of elimination

@@ -73,7 +73,12 @@ bool solve_small(std::vector<std::vector<cln::cl_R>> A, std::vector<cln::cl_R> b
 }
 
 FormSpace::FormSpace(Mechanics& m, Where where)
-    : m_(m), dag_(*m.dag), imposed_(impose(m)), written_(write_out(m)), parameters_(independent_parameters(m)), effort_{most_effort} {
+    : m_(m),
+      dag_(*m.dag),
+      imposed_(impose(m)),
+      written_(write_out(m)),
+      parameters_(independent_parameters(m)),
+      effort_{most_effort} {
   for (const std::uint32_t i : m.free) variables_.push_back({SymbolKind::coordinate, i, 0});
   variables_.push_back({SymbolKind::time, 0, 0});
   for (const std::uint32_t k : m.active) {
@@ -84,7 +89,8 @@ FormSpace::FormSpace(Mechanics& m, Where where)
   for (std::uint64_t point = 0; point < tried_points && points_.size() < wanted_points; ++point) {
     std::map<Symbol, cln::cl_R> values;
     for (const Symbol& variable : variables_) values[variable] = value_at(variable, point);
-    for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i) values[{SymbolKind::parameter, i, 0}] = value_at({SymbolKind::parameter, i, 0}, point);
+    for (std::uint32_t i = 0; i < m.parameter_value.size(); ++i)
+      values[{SymbolKind::parameter, i, 0}] = value_at({SymbolKind::parameter, i, 0}, point);
     if (where == Where::anywhere || move_onto_constraints(values)) points_.push_back(std::move(values));
   }
 }
@@ -114,7 +120,8 @@ Ref FormSpace::derivative(Ref f, std::size_t variable) {
 }
 
 std::vector<cln::cl_R> FormSpace::values(const std::vector<Ref>& expressions, std::size_t point) const {
-  return symbolic::evaluate(dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, digits);
+  return symbolic::evaluate(
+      dag_, expressions, [&](const Symbol& symbol) { return value(symbol, point); }, digits);
 }
 
 cln::cl_R FormSpace::value(const Symbol& symbol, std::size_t point) const {
@@ -130,8 +137,8 @@ bool FormSpace::move_onto_constraints(std::map<Symbol, cln::cl_R>& point) const 
   for (const Form& row : gradient_) roots.insert(roots.end(), row.begin(), row.end());
   try {
     for (int step = 0; step < 60; ++step) {
-      const std::vector<cln::cl_R> v =
-          symbolic::evaluate(dag_, roots, [&](const Symbol& s) { return point.at(s); }, digits);
+      const std::vector<cln::cl_R> v = symbolic::evaluate(
+          dag_, roots, [&](const Symbol& s) { return point.at(s); }, digits);
       const auto A = [&](std::size_t k, std::size_t i) -> const cln::cl_R& { return v[count + k * (n + 1) + i]; };
       std::vector<std::vector<cln::cl_R>> gram(count, std::vector<cln::cl_R>(count, cln::cl_R(0)));
       cln::cl_R size = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One-forms sum_i c_i dx_i in the free coordinates and t, of which constraints on velocities are made: f_i dq_i + b dt = 0.
-// In: constraints. Out: their forms, elimination among them, and Frobenius' condition, with exact zeros told from those
-// that only numbers show.
+// One-forms sum_i c_i dx_i in the free coordinates and t, of which constraints on velocities are made: f_i dq_i + b dt
+// = 0. In: constraints. Out: their forms, elimination among them, and Frobenius' condition, with exact zeros told from
+// those that only numbers show.
 #pragma once
 
 #include <cln/real.h>
@@ -16,7 +16,8 @@ namespace eomgen::mechanics {
 
 using Form = std::vector<Ref>;  // coefficients of FormSpace::variables
 
-/// How it is known that something vanishes identically; `unknown`: there was no point at which to look, or no effort left to do so.
+/// How it is known that something vanishes identically; `unknown`: there was no point at which to look, or no effort
+/// left to do so.
 enum class Vanishing { proven, at_points, no, unknown };
 
 /// Rows with a 1 in their pivot column and 0 in the pivot columns of the others.
@@ -70,7 +71,7 @@ class FormSpace {
   Dag& dag_;
   symbolic::Substitution imposed_, written_, parameters_;
   std::vector<symbolic::Symbol> variables_;
-  std::vector<Ref> psi_;        // of the active holonomic constraints
+  std::vector<Ref> psi_;  // of the active holonomic constraints
   std::vector<Form> gradient_;
   std::vector<std::map<symbolic::Symbol, cln::cl_R>> points_;
   symbolic::Effort effort_;  // of all proofs and simplifications together

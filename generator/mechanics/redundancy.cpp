@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// [[constraint]]s whose coefficients are combinations of those of others wherever one looks: they repeat them or contradict them. What
-// could be left out of the file is refused; equations that could not, as of rolling, have no multiplier.
+// [[constraint]]s whose coefficients are combinations of those of others wherever one looks: they repeat them or
+// contradict them. What could be left out of the file is refused; equations that could not, as of rolling, have no
+// multiplier.
 #include <cln/integer.h>
 #include <cln/integer_io.h>
 #include <cln/rational.h>
@@ -92,7 +93,8 @@ std::optional<Combination> combination(const Rows& rows, const std::vector<std::
   return result;
 }
 
-/// Whether the rows of a combination are as many as the columns that they have: then every row is a combination of them, which says nothing.
+/// Whether the rows of a combination are as many as the columns that they have: then every row is a combination of
+/// them, which says nothing.
 bool spans_all(const Rows& rows, const std::vector<std::size_t>& independent, const Combination& of, std::size_t k) {
   std::vector<std::size_t> parts{k};
   for (std::size_t a = 0; a < independent.size(); ++a) {
@@ -100,7 +102,10 @@ bool spans_all(const Rows& rows, const std::vector<std::size_t>& independent, co
   }
   std::size_t columns = 0;
   for (std::size_t i = 0; i + 1 < rows[k].size(); ++i) {
-    columns += std::any_of(parts.begin(), parts.end(), [&](std::size_t row) { return cln::abs(rows[row][i]) > small(25); }) ? 1 : 0;
+    columns +=
+        std::any_of(parts.begin(), parts.end(), [&](std::size_t row) { return cln::abs(rows[row][i]) > small(25); })
+            ? 1
+            : 0;
   }
   return columns > 0 && parts.size() > columns;
 }
@@ -139,10 +144,10 @@ std::string listed(const Mechanics& m, const std::vector<std::uint32_t>& constra
   return text;
 }
 
-/// Whether psi of constraint k is that combination of the others too: where they are closed, so is k. True where one that cannot be left
-/// is among them, and where there are no values to tell by.
-bool close_together(const Mechanics& m, FormSpace& space, const std::vector<std::uint32_t>& constraints, const std::vector<std::size_t>& independent,
-                    std::size_t k, const Combination& at) {
+/// Whether psi of constraint k is that combination of the others too: where they are closed, so is k. True where one
+/// that cannot be left is among them, and where there are no values to tell by.
+bool close_together(const Mechanics& m, FormSpace& space, const std::vector<std::uint32_t>& constraints,
+                    const std::vector<std::size_t>& independent, std::size_t k, const Combination& at) {
   std::vector<Ref> psi{space.written(m.constraints[constraints[k]].psi)};
   std::vector<cl_R> coefficients;
   for (std::size_t a = 0; a < independent.size(); ++a) {
@@ -169,19 +174,23 @@ bool close_together(const Mechanics& m, FormSpace& space, const std::vector<std:
 }
 
 Error refusal(const Mechanics& m, const std::vector<std::uint32_t>& constraints, std::size_t k,
-                         const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
+              const std::vector<std::size_t>& independent, const Combination& here, const Combination& there) {
   const Constraint& constraint = m.constraints[constraints[k]];
-  const std::string others = listed(m, constraints, independent, here), formula = named(m, constraints, independent, here, there);
+  const std::string others = listed(m, constraints, independent, here),
+                    formula = named(m, constraints, independent, here, there);
   const Where where = m.model->where(m.model->arena[constraint.written].span);
   std::string what = "constraint '" + constraint.label + "' ";
   if (here.same_rate) {
     what += others.empty() ? "follows from the constraints that fix its coordinates"
-                           : "follows from " + others + (formula.empty() ? ", with coefficients that depend on the state"
-                                                                         : ": " + constraint.label + " = " + formula);
+                           : "follows from " + others +
+                                 (formula.empty() ? ", with coefficients that depend on the state"
+                                                  : ": " + constraint.label + " = " + formula);
     return Error("mechanics", where, what, "remove it: nothing would determine how the force is shared");
   }
-  what += others.empty() ? "contradicts the constraints that fix its coordinates"
-                         : "contradicts " + others + (formula.empty() ? "" : ": its velocities are those of " + formula + ", the rest is not");
+  what += others.empty()
+              ? "contradicts the constraints that fix its coordinates"
+              : "contradicts " + others +
+                    (formula.empty() ? "" : ": its velocities are those of " + formula + ", the rest is not");
   return Error("mechanics", where, what, "remove one of them: no motion satisfies them all");
 }
 
@@ -192,7 +201,8 @@ Refusals drop_repeated(Mechanics& m) {
   std::vector<std::uint32_t> constraints;  // what is given in positions comes first, so that the others are blamed
   for (const bool holonomic : {true, false}) {
     for (const std::uint32_t k : m.active) {
-      if (m.constraints[k].holonomic() == holonomic && !model_constraint(m, m.constraints[k]).joint) constraints.push_back(k);
+      if (m.constraints[k].holonomic() == holonomic && !model_constraint(m, m.constraints[k]).joint)
+        constraints.push_back(k);
     }
   }
   if (constraints.empty()) return {};
@@ -224,7 +234,8 @@ Refusals drop_repeated(Mechanics& m) {
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     if (leavable(k)) continue;
     if (spans[0].holds(at[0][k]) && spans[1].holds(at[1][k])) {
-      const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
+      const std::optional<Combination> here = combination(at[0], independent, k),
+                                       there = combination(at[1], independent, k);
       if (here && there && !spans_all(at[0], independent, *here, k)) {
         Constraint& constraint = m.constraints[constraints[k]];
         Error why = refusal(m, constraints, k, independent, *here, *there);
@@ -240,10 +251,12 @@ Refusals drop_repeated(Mechanics& m) {
   }
   for (std::size_t k = 0; k < constraints.size(); ++k) {
     if (!leavable(k)) continue;
-    const std::optional<Combination> here = combination(at[0], independent, k), there = combination(at[1], independent, k);
+    const std::optional<Combination> here = combination(at[0], independent, k),
+                                     there = combination(at[1], independent, k);
     // Walls that face one another bind the same velocities, and are not touched together.
     const bool dependent = here && there;
-    if (dependent && close_together(m, space, constraints, independent, k, *here)) throw refusal(m, constraints, k, independent, *here, *there);
+    if (dependent && close_together(m, space, constraints, independent, k, *here))
+      throw refusal(m, constraints, k, independent, *here, *there);
     if (!dependent) independent.push_back(k);
   }
   return refusals;
@@ -259,7 +272,8 @@ void drop_repeated_equations(Mechanics& m) {
     if (std::any_of(m.constraints.begin(), m.constraints.end(), needed)) continue;
     const auto why = refusals.find(whole.name);
     if (why != refusals.end()) throw why->second;
-    throw Error("mechanics", m.model->where(whole.span), "constraint '" + whole.name + "' follows from the constraints before it", "remove it");
+    throw Error("mechanics", m.model->where(whole.span),
+                "constraint '" + whole.name + "' follows from the constraints before it", "remove it");
   }
 }
 

@@ -38,7 +38,8 @@ Vec3 Lowering::angular_velocity(std::uint32_t frame) {
   Vec3 sum = angular_velocity(turning.parent);
   for (std::size_t s = 0; s < turning.stages.size(); ++s) {
     for (std::size_t k = 0; k < 3; ++k) {
-      if (turning.stages[s].w[k] != model::no_node) sum = add(sum, scale(scalar(turning.stages[s].w[k]), axis(frame, s, k)));
+      if (turning.stages[s].w[k] != model::no_node)
+        sum = add(sum, scale(scalar(turning.stages[s].w[k]), axis(frame, s, k)));
     }
   }
   return sum;
@@ -47,10 +48,12 @@ Vec3 Lowering::angular_velocity(std::uint32_t frame) {
 namespace {
 
 /// The axis about which the last stage turns, if that is one of the axes and J does not see it.
-std::optional<std::size_t> axis_of_symmetry(const Dag& dag, const model::Stage& last, const std::array<std::array<Ref, 3>, 3>& J) {
+std::optional<std::size_t> axis_of_symmetry(const Dag& dag, const model::Stage& last,
+                                            const std::array<std::array<Ref, 3>, 3>& J) {
   for (std::size_t i = 0; i < 3; ++i) {
     const std::size_t j = (i + 1) % 3, k = (i + 2) % 3;
-    const bool about = last.R[i][j] == model::no_node && last.R[i][k] == model::no_node && last.w[j] == model::no_node && last.w[k] == model::no_node;
+    const bool about = last.R[i][j] == model::no_node && last.R[i][k] == model::no_node &&
+                       last.w[j] == model::no_node && last.w[k] == model::no_node;
     const bool diagonal = dag.is_zero(J[0][1]) && dag.is_zero(J[0][2]) && dag.is_zero(J[1][2]);
     if (about && diagonal && J[j][j] == J[k][k]) return i;
   }
@@ -77,7 +80,8 @@ void add_bodies(Mechanics& m, Lowering& lower) {
       spin.w[*axis] = dag.add(spin.w[*axis], lower.scalar(frame.stages[last].w[*axis]));
       for (std::size_t k = 0; k < 3; ++k) {
         spin.axes[k] = last > 0 ? lower.axis(body.frame, last - 1, k)
-                                : lower.axis(frame.parent, frame.parent > 0 ? m.model->frames[frame.parent].stages.size() - 1 : 0, k);
+                                : lower.axis(frame.parent,
+                                             frame.parent > 0 ? m.model->frames[frame.parent].stages.size() - 1 : 0, k);
       }
     } else {
       spin.w = spin.carrier = m.angular_velocity[body.frame];

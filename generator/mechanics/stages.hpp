@@ -6,20 +6,21 @@
 
 namespace eomgen::mechanics {
 
-void add_masses(Mechanics& mechanics, Lowering& lower);        // masses, kinetic energy, eq. (1.31), (3.20)
-void add_bodies(Mechanics& mechanics, Lowering& lower);        // rotations, eq. (6.65)
-void add_forces(Mechanics& mechanics, Lowering& lower);        // potential, loads, generalised forces
-void add_constraints(Mechanics& mechanics, Lowering& lower);   // psi and its gradient, eq. (2.31)
-void add_contacts(Mechanics& mechanics, Lowering& lower);      // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)
-void check_coefficients(const Mechanics& mechanics);           // of friction, where parameters alone tell them
-void eliminate_coordinates(Mechanics& mechanics);              // which constraints read q_c = d(t), eq. (2.96)
-void add_joints(Mechanics& mechanics, Lowering& lower);        // their reactions
-bool holds_identically(Dag& dag, Ref psi);                     // proven, or by numbers; an unknown is no
-void drop_repeated_equations(Mechanics& mechanics);            // that follow from [[constraint]]s identically, or refuse them
+void add_masses(Mechanics& mechanics, Lowering& lower);       // masses, kinetic energy, eq. (1.31), (3.20)
+void add_bodies(Mechanics& mechanics, Lowering& lower);       // rotations, eq. (6.65)
+void add_forces(Mechanics& mechanics, Lowering& lower);       // potential, loads, generalised forces
+void add_constraints(Mechanics& mechanics, Lowering& lower);  // psi and its gradient, eq. (2.31)
+void add_contacts(Mechanics& mechanics, Lowering& lower);  // Coulomb friction: tangents and slip, eqs. (2.33), (2.40)
+void check_coefficients(const Mechanics& mechanics);       // of friction, where parameters alone tell them
+void eliminate_coordinates(Mechanics& mechanics);          // which constraints read q_c = d(t), eq. (2.96)
+void add_joints(Mechanics& mechanics, Lowering& lower);    // their reactions
+bool holds_identically(Dag& dag, Ref psi);                 // proven, or by numbers; an unknown is no
+void drop_repeated_equations(Mechanics& mechanics);  // that follow from [[constraint]]s identically, or refuse them
 void drop_dependent_equations(Mechanics& mechanics, Lowering& lower);  // those that follow where all hold, as of loops
-/// Whether an equation may follow from others, because nobody could leave it out: of joints, of unit lengths, of rolling and of vectors.
+/// Whether an equation may follow from others, because nobody could leave it out: of joints, of unit lengths, of
+/// rolling and of vectors.
 bool may_repeat(const Mechanics& mechanics, const Constraint& constraint);
 const model::Constraint& model_constraint(const Mechanics& mechanics, const Constraint& constraint);
-void drop_held_directions(Mechanics& mechanics);               // of contacts, along which other constraints let nothing slide
+void drop_held_directions(Mechanics& mechanics);  // of contacts, along which other constraints let nothing slide
 
 }  // namespace eomgen::mechanics

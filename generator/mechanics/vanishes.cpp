@@ -21,15 +21,18 @@ constexpr std::uint64_t points = 4;
 constexpr int digits = 40, more_digits = 70;
 
 // The values at a point; none outside of the domain of a function, which says nothing.
-std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& expressions, std::uint64_t point, int with = digits) {
+std::vector<cln::cl_R> values_at(const Dag& dag, const std::vector<Ref>& expressions, std::uint64_t point,
+                                 int with = digits) {
   try {
-    return symbolic::evaluate(dag, expressions, [point](const Symbol& symbol) -> cln::cl_R { return symbolic::sample(symbol, point); }, with);
+    return symbolic::evaluate(
+        dag, expressions, [point](const Symbol& symbol) -> cln::cl_R { return symbolic::sample(symbol, point); }, with);
   } catch (const std::domain_error&) {
     return {};
   }
 }
 
-/// Far above what is left of terms that cancel; or small, as a narrow bump is far from its place, and the same with more digits.
+/// Far above what is left of terms that cancel; or small, as a narrow bump is far from its place, and the same with
+/// more digits.
 bool is_nonzero(const Dag& dag, Ref expression, std::uint64_t point, const cln::cl_R& value) {
   if (cln::zerop(value)) return false;
   if (cln::abs(value) > cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30))) return true;

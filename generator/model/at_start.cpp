@@ -70,9 +70,15 @@ NodeId AtStart::replaced(NodeId id) {
       result = push(zero);
       break;
     }
-    case Op::total_derivative: case Op::partial_derivative: case Op::place_velocity: case Op::place_acceleration: case Op::angular_velocity:
-    case Op::unit_basis: case Op::covariant_basis: case Op::contravariant_basis: case Op::input:
-      throw Unknown{"it is made of derivatives or base vectors"};
+    case Op::total_derivative:
+    case Op::partial_derivative:
+    case Op::place_velocity:
+    case Op::place_acceleration:
+    case Op::angular_velocity:
+    case Op::unit_basis:
+    case Op::covariant_basis:
+    case Op::contravariant_basis:
+    case Op::input: throw Unknown{"it is made of derivatives or base vectors"};
     default:
       if (const NodeId stands_for = reference(node); stands_for != no_node) {
         result = replaced(stands_for);
@@ -94,7 +100,8 @@ double AtStart::scalar_value(NodeId id) {
   const Node& node = model_.arena[id];
   const auto arg = [&](std::size_t k) { return scalar_value(node.args[k]); };
   switch (node.op) {
-    case Op::dot: case Op::norm: {
+    case Op::dot:
+    case Op::norm: {
       const auto a = vector_value(node.args[0]), b = vector_value(node.args[node.op == Op::dot ? 1 : 0]);
       const double sum = a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
       return node.op == Op::dot ? sum : std::sqrt(sum);
@@ -113,16 +120,20 @@ std::array<double, 3> AtStart::vector_value(NodeId id) {
   using V = std::array<double, 3>;
   const auto part = [&](std::size_t k) { return vector_value(node.args[k]); };
   const auto times = [](double f, V v) { return V{f * v[0], f * v[1], f * v[2]}; };
-  const auto sum = [](const V& a, const V& b, double sign) { return V{a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]}; };
+  const auto sum = [](const V& a, const V& b, double sign) {
+    return V{a[0] + sign * b[0], a[1] + sign * b[1], a[2] + sign * b[2]};
+  };
   const auto is_vector = [&](std::size_t k) { return model_.arena[node.args[k]].vector; };
   switch (node.op) {
     case Op::zero_vector: return {0, 0, 0};
-    case Op::fixed_basis: return {node.index == 0 ? 1.0 : 0.0, node.index == 1 ? 1.0 : 0.0, node.index == 2 ? 1.0 : 0.0};
+    case Op::fixed_basis:
+      return {node.index == 0 ? 1.0 : 0.0, node.index == 1 ? 1.0 : 0.0, node.index == 2 ? 1.0 : 0.0};
     case Op::array: return {scalar_value(node.args[0]), scalar_value(node.args[1]), scalar_value(node.args[2])};
     case Op::add: return sum(part(0), part(1), 1);
     case Op::subtract: return sum(part(0), part(1), -1);
     case Op::negate: return times(-1, part(0));
-    case Op::multiply: return is_vector(0) ? times(scalar_value(node.args[1]), part(0)) : times(scalar_value(node.args[0]), part(1));
+    case Op::multiply:
+      return is_vector(0) ? times(scalar_value(node.args[1]), part(0)) : times(scalar_value(node.args[0]), part(1));
     case Op::divide: return times(1 / scalar_value(node.args[1]), part(0));
     case Op::unit: {
       const V v = part(0);

@@ -27,7 +27,8 @@ std::vector<std::uint32_t> plain(const Model& model, const std::vector<NodeId>& 
 /// Contacts keep modes that belong to directions, which are not carried over yet.
 std::string contact_of(const Model& model) {
   for (const Constraint& constraint : model.constraints) {
-    if (constraint.friction || constraint.unilateral) return fmt::format("constraint '{}' has friction or can be left", constraint.name);
+    if (constraint.friction || constraint.unilateral)
+      return fmt::format("constraint '{}' has friction or can be left", constraint.name);
   }
   for (const Force& force : model.forces) {
     if (std::holds_alternative<Dry>(force.kind)) return fmt::format("'{}' is dry friction", force.name);
@@ -45,16 +46,20 @@ void refuse(const Model& model, SwitchedChart& chart, std::vector<NodeId> entrie
   const std::string name = mention(model, [&](const Node& node, const Root& root) {
     const bool own = rotation ? root.frame == chart.index : root.place == chart.index;
     if (own) return std::string();
-    if (node.op == Op::coordinate && std::find(chart.angles.begin(), chart.angles.end(), node.index) != chart.angles.end())
+    if (node.op == Op::coordinate &&
+        std::find(chart.angles.begin(), chart.angles.end(), node.index) != chart.angles.end())
       return fmt::format("the coordinate '{}'", model.coordinates[node.index].name);
-    if (rotation && node.op == Op::axis && node.index == chart.index && node.order / 3u + 1 < model.frames[chart.index].stages.size())
-      return fmt::format("'{}.e{}{}', an axis on the way of the rotation,", chart.of, node.order % 3 + 1, node.order / 3 == 0 ? "'" : "''");
+    if (rotation && node.op == Op::axis && node.index == chart.index &&
+        node.order / 3u + 1 < model.frames[chart.index].stages.size())
+      return fmt::format("'{}.e{}{}', an axis on the way of the rotation,", chart.of, node.order % 3 + 1,
+                         node.order / 3 == 0 ? "'" : "''");
     return std::string();
   });
   chart.refusal = name.empty() ? contact_of(model) : name;
 }
 
-/// Where x1, x2, x3 of a place are written down: its position without what it is measured from; no_node: along axes that turn.
+/// Where x1, x2, x3 of a place are written down: its position without what it is measured from; no_node: along axes
+/// that turn.
 NodeId components_of(const Model& model, const Place& place) {
   NodeId id = place.position;
   if (place.from > 0 && model.arena[id].op == Op::add) id = model.arena[id].args[1];
@@ -115,7 +120,8 @@ void turn(Model& model, const SwitchedChart& chart) {
   frame.regular = build.call(chart.at_sine ? Fn::cos : Fn::sin, frame.entries[1]);
 }
 
-/// x2 = R sin(phi) cos(theta), x3 = R sin(phi) sin(theta), x1 = R cos(phi): the same components, each one place further on.
+/// x2 = R sin(phi) cos(theta), x3 = R sin(phi) sin(theta), x1 = R cos(phi): the same components, each one place further
+/// on.
 void move_pole(Model& model, const SwitchedChart& chart) {
   Builder build(model);
   Place& place = model.places[chart.index];
@@ -159,7 +165,8 @@ std::vector<SwitchedChart> charts(const Model& model) {
     if (!place.chart || place.chart->system != "spherical") continue;
     SwitchedChart chart;
     chart.kind = SwitchedChart::Kind::position;
-    const bool body = std::any_of(model.bodies.begin(), model.bodies.end(), [k](const Body& b) { return b.place == k; });
+    const bool body =
+        std::any_of(model.bodies.begin(), model.bodies.end(), [k](const Body& b) { return b.place == k; });
     chart.of = body ? place.name + ".position" : place.name;
     chart.index = k;
     chart.own = "spherical about E3";

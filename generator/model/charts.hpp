@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Charts that fail somewhere and can be exchanged for another there: Euler angles of a body or frame, spherical coordinates of a
-// place. In: a Model. Out: which there are, why some cannot be exchanged, and the Model in second charts.
+// Charts that fail somewhere and can be exchanged for another there: Euler angles of a body or frame, spherical
+// coordinates of a place. In: a Model. Out: which there are, why some cannot be exchanged, and the Model in second
+// charts.
 //
-// The second chart of the angles i-j-k differs in the third axis only (313: 312, 321: 323): one fails where E_i is along e_k, the
-// other where it is along another axis of the body, so never at once. That of spherical coordinates has its pole on E1.
+// The second chart of the angles i-j-k differs in the third axis only (313: 312, 321: 323): one fails where E_i is
+// along e_k, the other where it is along another axis of the body, so never at once. That of spherical coordinates has
+// its pole on E1.
 #pragma once
 
 #include <array>
@@ -17,9 +19,9 @@ namespace eomgen::model {
 struct SwitchedChart {
   enum class Kind { rotation, position };
   Kind kind = Kind::rotation;
-  std::string of;           // "B"; "B.position" of a body's centre of mass
-  std::string own, second;  // "313", "312"; "spherical about E3", "spherical about E1"
-  std::uint32_t index = 0;  // into Model::frames or Model::places
+  std::string of;                     // "B"; "B.position" of a body's centre of mass
+  std::string own, second;            // "313", "312"; "spherical about E3", "spherical about E1"
+  std::uint32_t index = 0;            // into Model::frames or Model::places
   std::array<std::size_t, 3> axes{};  // 0 to 2, of the own rotation
   std::size_t second_axis = 0;        // in place of axes[2]
   std::vector<std::uint32_t> angles;  // coordinates that mean something else in the second chart
@@ -34,8 +36,8 @@ struct SwitchedChart {
 /// All that a model has, rotations first, those that cannot be exchanged too.
 std::vector<SwitchedChart> charts(const Model& model);
 
-/// The model with the second charts of those whose bit is set: the same names, other meanings of the angles. Scenes still
-/// speak of the own charts.
+/// The model with the second charts of those whose bit is set: the same names, other meanings of the angles. Scenes
+/// still speak of the own charts.
 Model in_second_charts(const Model& model, const std::vector<SwitchedChart>& charts, unsigned mask);
 
 }  // namespace eomgen::model

@@ -21,7 +21,9 @@ template <class T>
 std::vector<std::uint32_t> sort_by_place(std::vector<T>& items) {
   std::vector<std::uint32_t> order(items.size());
   std::iota(order.begin(), order.end(), 0u);
-  const auto place = [&](std::uint32_t i) { return std::tuple(is_made_up(items[i]), items[i].span.line, items[i].span.column); };
+  const auto place = [&](std::uint32_t i) {
+    return std::tuple(is_made_up(items[i]), items[i].span.line, items[i].span.column);
+  };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
   std::vector<std::uint32_t> moved(items.size());
   std::vector<T> sorted;

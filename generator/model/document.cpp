@@ -18,7 +18,7 @@ std::size_t offset_of(const Source& source, const toml::source_position& place) 
 
 // Walks a TOML string in the source beside its decoded bytes, so that every byte knows where it came from.
 class StringWalk {
-public:
+ public:
   StringWalk(const std::string& source, std::size_t begin, const std::string& decoded)
       : source_(source), at_(begin), decoded_(decoded) {}
 
@@ -47,7 +47,7 @@ public:
     return result;
   }
 
-private:
+ private:
   // Should the walk and toml++ ever disagree, the start of the string is still a place.
   std::vector<std::size_t> fallback() const { return std::vector<std::size_t>(decoded_.size() + 1, begin_); }
 
@@ -157,19 +157,13 @@ const Value* Value::find(std::string_view key) const {
 
 const char* kind_name(Value::Kind kind) {
   switch (kind) {
-    case Value::Kind::text:
-      return "a string";
+    case Value::Kind::text: return "a string";
     case Value::Kind::integer:
-    case Value::Kind::real:
-      return "a number";
-    case Value::Kind::boolean:
-      return "true or false";
-    case Value::Kind::date:
-      return "a date or time";
-    case Value::Kind::array:
-      return "an array";
-    case Value::Kind::table:
-      return "a table";
+    case Value::Kind::real: return "a number";
+    case Value::Kind::boolean: return "true or false";
+    case Value::Kind::date: return "a date or time";
+    case Value::Kind::array: return "an array";
+    case Value::Kind::table: return "a table";
   }
   return "a value";
 }
@@ -191,15 +185,18 @@ void refuse_bare_value(const Source& source, std::size_t at) {
   const auto digit = [](char c) { return c >= '0' && c <= '9'; };
   const Span span = source.span(begin + first, value.size());
   const std::size_t comma = value.find(',');
-  if (comma != std::string::npos && comma > 0 && comma + 1 < value.size() && digit(value[comma - 1]) && digit(value[comma + 1])) {
+  if (comma != std::string::npos && comma > 0 && comma + 1 < value.size() && digit(value[comma - 1]) &&
+      digit(value[comma + 1])) {
     std::string meant = value;
     meant[comma] = '.';
-    source.fail(span, "a comma is no decimal point", fmt::format("write {}", meant.find(' ') == std::string::npos ? meant : '"' + meant + '"'));
+    source.fail(span, "a comma is no decimal point",
+                fmt::format("write {}", meant.find(' ') == std::string::npos ? meant : '"' + meant + '"'));
   }
   // A number that TOML does not take is told as such.
   const bool plain = value.find_first_not_of("0123456789.eE+-_xob") == std::string::npos;
   if (plain || value.size() > 100 || value.find(',') != std::string::npos) return;
-  source.fail(span, fmt::format("{} is no TOML value: units and expressions are texts", quote(value)), fmt::format("write it in quotes: \"{}\"", value));
+  source.fail(span, fmt::format("{} is no TOML value: units and expressions are texts", quote(value)),
+              fmt::format("write it in quotes: \"{}\"", value));
 }
 
 }  // namespace

@@ -33,7 +33,8 @@ enum class Op : std::uint8_t {
   definition,  // index into Model::definitions; scalar or vector
   extension,   // of the spring whose energy expression this is
   integral,    // index into Model::integrals; args[0] is the integrand
-  reaction,    // reaction.NAME in an event: index into Model::constraints, order = which of its equations (of a joint: components), from 0
+  reaction,    // reaction.NAME in an event: index into Model::constraints, order = which of its equations (of a joint:
+               // components), from 0
   slip,        // speed of the contact whose coefficient of friction this is
   // scalar or vector by Node::vector (multiply: one side may be a vector; divide: vector by scalar)
   add,

@@ -15,7 +15,7 @@ constexpr std::size_t largest_pool = 60000;  // of nodes; beyond, nobody wants t
 
 // All trees in one pool; children have smaller ids than their parents.
 class Solver {
-public:
+ public:
   Solver(const std::array<Syntax, 3>& f, const std::array<std::string, 3>& names) {
     for (std::size_t k = 0; k < 3; ++k) {
       span_ = f[k].whole;
@@ -35,7 +35,7 @@ public:
     return result;
   }
 
-private:
+ private:
   struct Equation {
     Id left, right;  // the right-hand side holds no unknown that is still to be found
   };
@@ -112,7 +112,8 @@ private:
       case SyntaxKind::negate: {
         const auto a = part(0);
         if (!a) return std::nullopt;
-        return Linear{make(SyntaxKind::subtract, number(0), a->constant), make(SyntaxKind::subtract, number(0), a->factor)};
+        return Linear{make(SyntaxKind::subtract, number(0), a->constant),
+                      make(SyntaxKind::subtract, number(0), a->factor)};
       }
       case SyntaxKind::add:
       case SyntaxKind::subtract: {
@@ -129,8 +130,7 @@ private:
         const Id by = node.children[other];
         return Linear{make(node.kind, a->constant, by), make(node.kind, a->factor, by)};
       }
-      default:
-        return std::nullopt;
+      default: return std::nullopt;
     }
   }
 
@@ -151,19 +151,18 @@ private:
 
   std::optional<Equation> undone(Id left, Id right, const std::vector<bool>& holds) {
     const SyntaxNode node = pool_[left];
-    if (node.kind == SyntaxKind::negate) return Equation{node.children[0], make(SyntaxKind::subtract, number(0), right)};
+    if (node.kind == SyntaxKind::negate)
+      return Equation{node.children[0], make(SyntaxKind::subtract, number(0), right)};
     if (node.kind == SyntaxKind::call) return inverse_function(node, right);
     if (node.children.size() != 2) return std::nullopt;
     const Id a = node.children[0], b = node.children[1];
     if (holds[a] && holds[b]) return std::nullopt;
     switch (node.kind) {
-      case SyntaxKind::add:
-        return Equation{holds[a] ? a : b, make(SyntaxKind::subtract, right, holds[a] ? b : a)};
+      case SyntaxKind::add: return Equation{holds[a] ? a : b, make(SyntaxKind::subtract, right, holds[a] ? b : a)};
       case SyntaxKind::subtract:
         if (holds[a]) return Equation{a, make(SyntaxKind::add, right, b)};
         return Equation{b, make(SyntaxKind::subtract, a, right)};
-      case SyntaxKind::multiply:
-        return Equation{holds[a] ? a : b, make(SyntaxKind::divide, right, holds[a] ? b : a)};
+      case SyntaxKind::multiply: return Equation{holds[a] ? a : b, make(SyntaxKind::divide, right, holds[a] ? b : a)};
       case SyntaxKind::divide:
         if (holds[a]) return Equation{a, make(SyntaxKind::multiply, right, b)};
         return Equation{b, make(SyntaxKind::divide, a, right)};
@@ -171,8 +170,7 @@ private:
         if (holds[b]) return Equation{b, make(SyntaxKind::divide, call("log", right), call("log", a))};
         if (!is_number(b) || pool_[b].value * 2 != 1) return std::nullopt;
         return Equation{a, make(SyntaxKind::power, right, number(2))};
-      default:
-        return std::nullopt;
+      default: return std::nullopt;
     }
   }
 
@@ -180,13 +178,14 @@ private:
     if (node.children.size() != 1) return std::nullopt;
     const Id x = node.children[0];
     const std::string& f = node.parts[0];
-    for (const auto& [function, inverse] : {std::pair{"exp", "log"}, {"log", "exp"}, {"asin", "sin"}, {"acos", "cos"},
-                                            {"atan", "tan"}}) {
+    for (const auto& [function, inverse] :
+         {std::pair{"exp", "log"}, {"log", "exp"}, {"asin", "sin"}, {"acos", "cos"}, {"atan", "tan"}}) {
       if (f == function) return Equation{x, call(inverse, y)};
     }
     const Id one = number(1), two = number(2), square = make(SyntaxKind::power, y, two);
     if (f == "sqrt") return Equation{x, square};
-    if (f == "sinh") return Equation{x, call("log", make(SyntaxKind::add, y, call("sqrt", make(SyntaxKind::add, square, one))))};
+    if (f == "sinh")
+      return Equation{x, call("log", make(SyntaxKind::add, y, call("sqrt", make(SyntaxKind::add, square, one))))};
     if (f == "tanh") {
       const Id ratio = make(SyntaxKind::divide, make(SyntaxKind::add, one, y), make(SyntaxKind::subtract, one, y));
       return Equation{x, make(SyntaxKind::divide, call("log", ratio), two)};
@@ -227,7 +226,8 @@ private:
         if (!found || pool_.size() > largest_pool) continue;
         std::vector<Equation> rest;
         for (std::size_t other = 0; other < equations.size(); ++other) {
-          if (other != e) rest.push_back({substituted(equations[other].left, holds[k], *found), equations[other].right});
+          if (other != e)
+            rest.push_back({substituted(equations[other].left, holds[k], *found), equations[other].right});
         }
         std::vector<std::size_t> left;
         std::copy_if(unknowns.begin(), unknowns.end(), std::back_inserter(left), [&](std::size_t u) { return u != k; });

@@ -19,7 +19,7 @@ bool digit(char c) { return c >= '0' && c <= '9'; }
 cln::cl_I integer_of(const std::string& digits) { return digits.empty() ? cln::cl_I(0) : cln::cl_I(digits.c_str()); }
 
 class Lexer {
-public:
+ public:
   explicit Lexer(const Text& text) : text_(text) {}
 
   std::vector<Token> all() {
@@ -37,7 +37,7 @@ public:
     return result;
   }
 
-private:
+ private:
   char peek(std::size_t ahead = 0) const { return at_ + ahead < text_.text.size() ? text_.text[at_ + ahead] : '\0'; }
 
   [[noreturn]] void fail(std::size_t at, std::size_t length, const std::string& what, const std::string& remedy) const {
@@ -94,9 +94,11 @@ private:
     Token token{TokenKind::number, text_.text.substr(begin, at_ - begin), begin, at_ - begin, 0, std::nullopt};
     if (letter(peek()) || peek() == '_') {
       if (const std::string remedy = missing_blank(token); !remedy.empty())
-        fail(begin, at_ - begin + 1, fmt::format("a blank is missing between the number {} and its unit", quote(token.text)), remedy);
+        fail(begin, at_ - begin + 1,
+             fmt::format("a blank is missing between the number {} and its unit", quote(token.text)), remedy);
       std::size_t end = at_;
-      while (end < text_.text.size() && (letter(text_.text[end]) || digit(text_.text[end]) || text_.text[end] == '_')) ++end;
+      while (end < text_.text.size() && (letter(text_.text[end]) || digit(text_.text[end]) || text_.text[end] == '_'))
+        ++end;
       const std::string_view word = text_.text.substr(at_, end - at_);
       fail(begin, at_ - begin + 1, fmt::format("a name follows the number {} at once", quote(token.text)),
            fmt::format("there is no implicit multiplication: write {}*{}", token.text, word));
@@ -123,9 +125,11 @@ private:
     std::size_t letters = at_;
     while (letters < text_.text.size() && letter(text_.text[letters])) ++letters;
     const std::string_view first = text_.text.substr(at_, letters - at_);
-    const bool whole = letters == text_.text.size() || std::string_view(" \t)+-,*/").find(text_.text[letters]) != std::string_view::npos;
+    const bool whole = letters == text_.text.size() ||
+                       std::string_view(" \t)+-,*/").find(text_.text[letters]) != std::string_view::npos;
     if (!whole || first.size() < 2 || !parse_unit(first)) return "";  // one letter is a name as often
-    return fmt::format("inside of an expression a unit stands in brackets: {0}[{1}]; a product has its sign: {0}*{1}", token.text, first);
+    return fmt::format("inside of an expression a unit stands in brackets: {0}[{1}]; a product has its sign: {0}*{1}",
+                       token.text, first);
   }
 
   void bracket(Token& token) {

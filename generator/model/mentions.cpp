@@ -22,7 +22,8 @@ class Collector {
       add(of, {b.mass});
       for (const auto& row : b.inertia) add(of, {row[0], row[1], row[2]});
     }
-    for (const Particle& p : model_.particles) add(fmt::format("the particle '{}'", model_.places[p.place].name), {p.mass});
+    for (const Particle& p : model_.particles)
+      add(fmt::format("the particle '{}'", model_.places[p.place].name), {p.mass});
     add("the energies", {model_.energy.kinetic, model_.energy.potential});
     for (const Force& force : model_.forces) {
       of_ = fmt::format("'{}'", force.name);
@@ -35,7 +36,8 @@ class Collector {
   }
 
  private:
-  void add(const std::string& of, std::initializer_list<NodeId> expressions, std::uint32_t frame = 0, std::uint32_t place = 0) {
+  void add(const std::string& of, std::initializer_list<NodeId> expressions, std::uint32_t frame = 0,
+           std::uint32_t place = 0) {
     for (const NodeId id : expressions) {
       if (id != no_node) roots_.push_back({id, of, frame, place});
     }
@@ -84,7 +86,8 @@ class Collector {
     for (const auto& [coordinate, component] : f.components) more({component}), rubbed(coordinate);
   }
   void force(const Dry& f) { more({f.normal}), law(f.law), rubbed(f.coordinate); }
-  /// A component along a coordinate names it, though no expression does: the position or rotation that uses it stands for it.
+  /// A component along a coordinate names it, though no expression does: the position or rotation that uses it stands
+  /// for it.
   void rubbed(std::uint32_t coordinate) {
     for (NodeId id = 0; id < model_.arena.nodes.size(); ++id) {
       const Node& node = model_.arena[id];
@@ -110,7 +113,8 @@ std::string mention(const Model& model, const std::function<std::string(const No
       open.pop_back();
       if (id == no_node || !seen.insert(id).second) continue;
       const Node& node = model.arena[id];
-      if (const std::string name = what(node, root); !name.empty()) return fmt::format("{} is named by {}", name, root.of);
+      if (const std::string name = what(node, root); !name.empty())
+        return fmt::format("{} is named by {}", name, root.of);
       open.insert(open.end(), node.args.begin(), node.args.end());
     }
   }

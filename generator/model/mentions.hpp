@@ -12,9 +12,9 @@ namespace eomgen::model {
 /// An expression that the motion depends on, or that can be an output, and whose it is.
 struct Root {
   NodeId expression = no_node;
-  std::string of;            // "constraint 'level'"
-  std::uint32_t frame = 0;   // of a rotation: whose; else 0
-  std::uint32_t place = 0;   // of a position
+  std::string of;           // "constraint 'level'"
+  std::uint32_t frame = 0;  // of a rotation: whose; else 0
+  std::uint32_t place = 0;  // of a position
 };
 
 /// All of a model's expressions but those of scenes, which speak of its start.

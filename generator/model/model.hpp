@@ -42,7 +42,7 @@ struct Function {  // of time
   std::string tex;
   Span span;
 };
-struct Integral {  // integral(e) of a function of time, from the start of the run
+struct Integral {    // integral(e) of a function of time, from the start of the run
   std::string name;  // "integral_1", for where it becomes a state; no other name of the model is like it
   NodeId integrand = no_node;
   Unit unit;
@@ -78,8 +78,8 @@ struct Chart {
   std::array<NodeId, 3> unit_basis{no_node, no_node, no_node};  // vector expressions e_1, e_2, e_3; no_node: normalise
   bool planar = false;
 };
-/// Axes e1 e2 e3 on the way of a rotation, and the same thing as numbers: e_k = sum_j R[k][j] p_j of the axes before (those of
-/// the parent at first), and the components along e1 e2 e3 of the angular velocity against those before.
+/// Axes e1 e2 e3 on the way of a rotation, and the same thing as numbers: e_k = sum_j R[k][j] p_j of the axes before
+/// (those of the parent at first), and the components along e1 e2 e3 of the angular velocity against those before.
 struct Stage {
   std::array<NodeId, 3> e{no_node, no_node, no_node};  // vectors
   std::array<std::array<NodeId, 3>, 3> R{};            // no_node: 0
@@ -88,11 +88,11 @@ struct Stage {
 /// Axes that turn, of a body or of a [[frame]]; frames[0] are E1 E2 E3, without stages.
 struct Frame {
   std::string name;
-  std::string rotation;        // name in rotations::registry()
-  std::uint32_t parent = 0;    // whose axes it turns against
-  std::vector<NodeId> entries; // angles, parameters
-  std::vector<Stage> stages;   // the last is its own axes
-  NodeId regular = no_node;    // is 0 where the angles fail, for Euler angles
+  std::string rotation;         // name in rotations::registry()
+  std::uint32_t parent = 0;     // whose axes it turns against
+  std::vector<NodeId> entries;  // angles, parameters
+  std::vector<Stage> stages;    // the last is its own axes
+  NodeId regular = no_node;     // is 0 where the angles fail, for Euler angles
   Span span;
 };
 /// A rigid body; its centre of mass is a place.
@@ -149,11 +149,11 @@ struct Drag {
   NodeId on;
   NodeId density, area, coefficient;
 };
-struct Moment {  // on a body or frame
+struct Moment {   // on a body or frame
   NodeId moment;  // vector
   std::uint32_t frame;
 };
-struct Magnus {  // m c w x v at the centre of mass, eq. (8.52)
+struct Magnus {        // m c w x v at the centre of mass, eq. (8.52)
   std::uint32_t body;  // index into Model::bodies
   NodeId coefficient;
 };
@@ -176,7 +176,8 @@ struct Dry {  // Coulomb friction on one coordinate, with a given normal force
 struct Force {
   std::string name;  // given, or "force 2"
   std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized, Dry,
-               Moment, Magnus> kind;
+               Moment, Magnus>
+      kind;
   Span span;
 };
 
@@ -187,11 +188,11 @@ struct Touch {
   std::uint32_t other_place = 0, other_frame = 0;  // of the body that it touches; 0: a plane
   NodeId other_arm = no_node;
   std::array<NodeId, 2> tangents{no_node, no_node};  // t1, t2; vectors
-  NodeId slip = no_node;                           // vector: the velocity of its point there against what it touches
-  NodeId wandering = no_node;                      // vector: that of the point of contact over the body
-  std::vector<NodeId> sinking;                     // vanish if the point of contact is one, per body
-  NodeId beside = no_node;                         // vector: vanishes if the points of both bodies are over one another
-  bool rolling = false;                            // written as rolling
+  NodeId slip = no_node;                             // vector: the velocity of its point there against what it touches
+  NodeId wandering = no_node;                        // vector: that of the point of contact over the body
+  std::vector<NodeId> sinking;                       // vanish if the point of contact is one, per body
+  NodeId beside = no_node;  // vector: vanishes if the points of both bodies are over one another
+  bool rolling = false;     // written as rolling
 };
 
 inline constexpr std::size_t joint_components = 6;  // of reactions: three of the force on B, three of the moment
@@ -202,8 +203,8 @@ struct Constraint {
   bool curve = false;       // holonomic = ["psi1", "psi2"]
   bool velocity = false;    // velocity = "..": psi binds velocities
   bool rolling = false;     // without friction: of three equations the first two bind velocities, the third positions
-  std::optional<Touch> touch;  // of rolling and sliding
-  bool unilateral = false;  // psi >= 0: it pushes and does not pull
+  std::optional<Touch> touch;    // of rolling and sliding
+  bool unilateral = false;       // psi >= 0: it pushes and does not pull
   NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
   std::optional<std::uint32_t> joint;  // whose equations these are
@@ -219,13 +220,15 @@ struct Constraint {
 /// Between two bodies, or a body and the ground. Its equations are those of a Constraint of the same name.
 struct Joint {
   std::string name;
-  std::string type;                    // name in joints::registry()
-  std::array<std::uint32_t, 2> frames{};  // of A and B; 0: the ground
+  std::string type;                                // name in joints::registry()
+  std::array<std::uint32_t, 2> frames{};           // of A and B; 0: the ground
   std::array<NodeId, 2> points{no_node, no_node};  // of the joint in A and B
-  std::array<NodeId, 2> stray{no_node, no_node};   // vectors that vanish if these points are fixed in their bodies; no_node: they are
-  std::vector<NodeId> force, moment;   // per equation, vectors: what lambda = 1 is on B, the moment about its point; no_node: none
-  std::uint32_t axes = 0;              // frame along whose axes the reactions are given
-  std::uint32_t constraint = 0;        // index into Model::constraints
+  std::array<NodeId, 2> stray{
+      no_node, no_node};  // vectors that vanish if these points are fixed in their bodies; no_node: they are
+  std::vector<NodeId> force,
+      moment;              // per equation, vectors: what lambda = 1 is on B, the moment about its point; no_node: none
+  std::uint32_t axes = 0;  // frame along whose axes the reactions are given
+  std::uint32_t constraint = 0;  // index into Model::constraints
   Span span;
 };
 struct Event {  // a change of sign of `when`
@@ -241,10 +244,10 @@ const char* name(Event::Direction direction);  // "any", "up", "down"
 /// A shape of [draw], about its middle along the own axes of a body; of a particle along E1 E2 E3.
 struct Drawn {
   std::uint32_t place = 0;
-  std::string kind;              // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z
+  std::string kind;  // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z
   std::vector<NodeId> lengths;
-  std::uint32_t axis = 2;        // that a cylinder, disk or rod is about
-  std::vector<NodeId> at;        // of its middle; none: 0
+  std::uint32_t axis = 2;  // that a cylinder, disk or rod is about
+  std::vector<NodeId> at;  // of its middle; none: 0
   Span span;
 };
 
@@ -283,7 +286,7 @@ struct Scene {
   std::vector<std::pair<std::uint32_t, std::uint8_t>> solve;  // coordinate, order that may be moved
   std::vector<std::pair<std::uint32_t, NodeId>> parameters;
   std::vector<SceneInput> inputs;
-  std::vector<Named> outputs;  // checked against the names that exist; "energy", "reaction.NAME", ...
+  std::vector<Named> outputs;       // checked against the names that exist; "energy", "reaction.NAME", ...
   std::vector<std::uint32_t> stop;  // events that end this scene, whatever their action
   std::string solver = "auto";
   NodeId rtol = no_node, atol = no_node, step = no_node, every = no_node;
@@ -299,8 +302,9 @@ struct Model {
   Arena arena;
   std::vector<Parameter> parameters;
   std::vector<Function> functions;
-  std::vector<Integral> integrals;          // inner ones before those that use them
-  std::optional<std::uint32_t> start_time;  // the parameter that holds t0 of the run: the last; where there are integrals
+  std::vector<Integral> integrals;  // inner ones before those that use them
+  std::optional<std::uint32_t>
+      start_time;  // the parameter that holds t0 of the run: the last; where there are integrals
   std::vector<Input> inputs;
   std::vector<Coordinate> coordinates;  // in order of declaration or first appearance
   std::vector<Definition> definitions;

@@ -90,7 +90,8 @@ std::optional<std::string> nearest(std::string_view name, const std::vector<std:
   std::size_t best_distance = limit + 1;
   const auto lowered = [](std::string_view text) {
     std::string result(text);
-    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    std::transform(result.begin(), result.end(), result.begin(),
+                   [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
     return result;
   };
   for (const std::string& candidate : candidates) {
@@ -126,7 +127,8 @@ bool looks_misspelt(std::string_view name, std::string_view known) {
   const bool transposed = name.size() == 2 && known.size() == 2 && name[0] == known[1] && name[1] == known[0];
   if (transposed) return !(digit(name[0]) && digit(name[1]));  // x12 and x21
   if (name.size() > 1 || known.size() > 1) return false;
-  // Different numbers are different names, and so are phi and psi, thetaA and thetaB, x_cart and y_cart, phi_a and phi_b.
+  // Different numbers are different names, and so are phi and psi, thetaA and thetaB, x_cart and y_cart, phi_a and
+  // phi_b.
   if ((!name.empty() && digit(name[0])) || (!known.empty() && digit(known[0]))) return false;
   if (name.size() != known.size()) return true;
   const auto upper = [](char c) { return c >= 'A' && c <= 'Z'; };

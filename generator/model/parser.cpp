@@ -18,7 +18,7 @@ struct Term {
 };
 
 class Parser {
-public:
+ public:
   explicit Parser(const Text& text) : text_(text), tokens_(tokens_of(text)) {}
 
   Syntax all() {
@@ -31,7 +31,7 @@ public:
     return std::move(syntax_);
   }
 
-private:
+ private:
   const Token& now() const { return tokens_[at_]; }
   bool is(std::string_view symbol) const { return now().kind == TokenKind::symbol && now().text == symbol; }
   bool take(std::string_view symbol) {
@@ -51,16 +51,20 @@ private:
     const bool operand_before = at_ > 0 && (tokens_[at_ - 1].kind != TokenKind::symbol || tokens_[at_ - 1].text == ")");
     if (operand_before && (token.kind != TokenKind::symbol || token.text == "(")) {
       const bool inside = at_ + 1 < tokens_.size() && (tokens_[at_ + 1].text == ")" || tokens_[at_ + 1].text == ",");
-      if (inside && tokens_[at_ - 1].kind == TokenKind::number && token.kind == TokenKind::name && parse_unit(token.text)) {
+      if (inside && tokens_[at_ - 1].kind == TokenKind::number && token.kind == TokenKind::name &&
+          parse_unit(token.text)) {
         fail(token, fmt::format("an operator is missing before {}", quote(token.text)),
-             fmt::format("inside of an expression a unit stands in brackets: {}[{}]", tokens_[at_ - 1].text, token.text));
+             fmt::format("inside of an expression a unit stands in brackets: {}[{}]", tokens_[at_ - 1].text,
+                         token.text));
       }
       fail(token, fmt::format("an operator is missing before {}", quote(token.text)),
            "there is no implicit multiplication: write a*b; a unit stands last, without blanks in it, as in \"9.81 "
            "m/s^2\"");
     }
-    if (token.text == "," && at_ > 0 && at_ + 1 < tokens_.size() && tokens_[at_ - 1].kind == TokenKind::number && tokens_[at_ + 1].kind == TokenKind::number) {
-      fail(token, "a comma is no decimal point", fmt::format("write {}.{}", tokens_[at_ - 1].text, tokens_[at_ + 1].text));
+    if (token.text == "," && at_ > 0 && at_ + 1 < tokens_.size() && tokens_[at_ - 1].kind == TokenKind::number &&
+        tokens_[at_ + 1].kind == TokenKind::number) {
+      fail(token, "a comma is no decimal point",
+           fmt::format("write {}.{}", tokens_[at_ - 1].text, tokens_[at_ + 1].text));
     }
     fail(token, fmt::format("{} does not fit here", quote(token.text)),
          token.text == ")" ? "there is no open parenthesis for it" : "check the expression up to this place");
@@ -268,9 +272,9 @@ Syntax parse_quantity(const Text& text) {
   auto unit = parse_unit(last->word);
   if (!unit) {
     // "2 fm/s": what could only be a unit is told as one.
-    const bool unit_like = completed_unit(last->word).has_value() ||
-                           (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
-                            last->word.find_first_of("(),+-<>.") == std::string_view::npos);
+    const bool unit_like =
+        completed_unit(last->word).has_value() || (std::isalpha(static_cast<unsigned char>(last->word[0])) != 0 &&
+                                                   last->word.find_first_of("(),+-<>.") == std::string_view::npos);
     if (unit_like) {
       const std::string hint = unit_hint(last->word);
       text.source->fail(text.span(at, last->word.size()), fmt::format("{} is not a unit", quote(last->word)),

@@ -48,9 +48,12 @@ std::uint32_t Reader::frame_named(const Value& value, const std::string& what) {
     for (std::size_t k = 1; k < model_.frames.size(); ++k) names.push_back(model_.frames[k].name);
     const std::string hint = did_you_mean(value.text, names);
     source_.fail(value.span,
-                 symbol == nullptr ? fmt::format("there is no body or frame {}", quote(value.text))
-                                   : fmt::format("{} is {}, which has no axes", quote(value.text), model::kind_name(symbol->kind)),
-                 !hint.empty() ? hint : names.empty() ? "add a [[body]] or a [[frame]]" : fmt::format("the bodies and frames are {}", fmt::join(names, ", ")));
+                 symbol == nullptr
+                     ? fmt::format("there is no body or frame {}", quote(value.text))
+                     : fmt::format("{} is {}, which has no axes", quote(value.text), model::kind_name(symbol->kind)),
+                 !hint.empty()   ? hint
+                 : names.empty() ? "add a [[body]] or a [[frame]]"
+                                 : fmt::format("the bodies and frames are {}", fmt::join(names, ", ")));
   }
   symbol->used = true;
   return symbol->frame;
@@ -58,23 +61,29 @@ std::uint32_t Reader::frame_named(const Value& value, const std::string& what) {
 
 const Entry& Reader::rotation_entry(const Value& rotation) const {
   as(Value::Kind::table, rotation, "a rotation", form);
-  check_keys(rotation, {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}, {}});
+  check_keys(rotation,
+             {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}, {}});
   const Entry* found = nullptr;
   for (const Entry& entry : rotation.entries) {
     if (entry.key == "angles" || entry.key == "angle") continue;
-    if (found != nullptr) source_.fail(entry.span, fmt::format("a rotation is both '{}' and '{}'", found->key, entry.key), "keep one of them");
+    if (found != nullptr)
+      source_.fail(entry.span, fmt::format("a rotation is both '{}' and '{}'", found->key, entry.key),
+                   "keep one of them");
     found = &entry;
   }
   if (found == nullptr) source_.fail(rotation.span, "the rotation says no kind", form);
   for (const Entry& entry : rotation.entries) {
-    const bool fits = &entry == found || (entry.key == "angles" && found->key == "euler") || (entry.key == "angle" && found->key == "axis");
-    if (!fits) source_.fail(entry.span, fmt::format("'{}' does not belong to a rotation by '{}'", entry.key, found->key), form);
+    const bool fits = &entry == found || (entry.key == "angles" && found->key == "euler") ||
+                      (entry.key == "angle" && found->key == "axis");
+    if (!fits)
+      source_.fail(entry.span, fmt::format("'{}' does not belong to a rotation by '{}'", entry.key, found->key), form);
   }
   return *found;
 }
 
 // The values of the entries, and the name of the representation.
-std::vector<const Value*> Reader::rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry, const Value& rotation) {
+std::vector<const Value*> Reader::rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry,
+                                                   const Value& rotation) {
   frame.rotation = found.name;
   if (found.family == "fixed") {
     if (!as(Value::Kind::boolean, entry.value, "'fixed'", "write fixed = true").truth)
@@ -83,11 +92,14 @@ std::vector<const Value*> Reader::rotation_entries(Frame& frame, const rotations
   }
   if (found.family == "axis") return {&needed(rotation, "angle", "a rotation about an axis", "add angle = \"phi\"")};
   const bool euler = found.family == "euler";
-  const Value& list = euler ? needed(rotation, "angles", "a rotation by Euler angles", "add angles = [\"phi\", \"theta\", \"psi\"]") : entry.value;
+  const Value& list =
+      euler ? needed(rotation, "angles", "a rotation by Euler angles", "add angles = [\"phi\", \"theta\", \"psi\"]")
+            : entry.value;
   const std::string what = euler ? "'angles'" : fmt::format("'{}'", entry.key);
   as(Value::Kind::array, list, what, form);
   if (list.items.size() != found.entries.size()) {
-    source_.fail(list.span, fmt::format("{} has {} entries", what, list.items.size()), fmt::format("give {} of them", found.entries.size()));
+    source_.fail(list.span, fmt::format("{} has {} entries", what, list.items.size()),
+                 fmt::format("give {} of them", found.entries.size()));
   }
   std::vector<const Value*> result;
   for (const Value& item : list.items) result.push_back(&item);
@@ -118,7 +130,8 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
       for (const rotations::Rotation& r : rotations::registry()) {
         if (r.family == "euler") sets += (sets.empty() ? "" : ", ") + r.name;
       }
-      source_.fail(entry.value.span, fmt::format("there are no Euler angles {}", quote(name)), "the twelve sets are " + sets);
+      source_.fail(entry.value.span, fmt::format("there are no Euler angles {}", quote(name)),
+                   "the twelve sets are " + sets);
     }
   }
   const rotations::Rotation& found = *rotations::find(name);
@@ -127,7 +140,8 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
   Typed& all = scope_.axes(index).typed;
   for (std::size_t k = 0; k < values.size(); ++k) {
     const Context context{fmt::format("an entry of the rotation of '{}'", frame.name), on_motion, Shape::scalar,
-                          dimension_of(found.entries[k].unit), "angles are made of coordinates, functions of time, parameters and t"};
+                          dimension_of(found.entries[k].unit),
+                          "angles are made of coordinates, functions of time, parameters and t"};
     const Typed typed = resolver_.value(*values[k], context);
     if (!found.unit.empty() && model_.arena[typed.node].op != Op::coordinate) {
       source_.fail(values[k]->span, "an Euler parameter is a coordinate of its own", "give it a name, such as \"e0\"");
@@ -159,9 +173,12 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
 // About an axis that is fixed in the parent: one of its axes, or any sum of them with constant components.
 void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local) {
   const Value& written = *rotation.find("axis");
-  const std::string of = frame.parent == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", model_.frames[frame.parent].name);
-  const Context context{fmt::format("the axis of the rotation of '{}'", frame.name), frame.parent == 0 ? Facts{0} : on_motion, Shape::vector, std::nullopt,
-                        "the axis is fixed in the parent: make it of " + of + "; relative_to = \"B\" names another parent"};
+  const std::string of =
+      frame.parent == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", model_.frames[frame.parent].name);
+  const Context context{
+      fmt::format("the axis of the rotation of '{}'", frame.name), frame.parent == 0 ? Facts{0} : on_motion,
+      Shape::vector, std::nullopt,
+      "the axis is fixed in the parent: make it of " + of + "; relative_to = \"B\" names another parent"};
   const Typed axis = resolver_.value(written, context);
   const auto parallel = [](const std::array<cln::cl_RA, 3>& a, const std::array<cln::cl_RA, 3>& b) {
     return a[0] * b[1] == a[1] * b[0] && a[0] * b[2] == a[2] * b[0] && a[1] * b[2] == a[2] * b[1];
@@ -169,16 +186,20 @@ void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation
   const FrameSource& parent = frame_sources_[frame.parent];
   // In a plane E3 is the axis of all bodies.
   const auto in_space = numbers_of(axis.node);
-  const bool common = parent.upright && parent.axis && parent.axis->numbers && in_space && parallel(*parent.axis->numbers, *in_space);
+  const bool common =
+      parent.upright && parent.axis && parent.axis->numbers && in_space && parallel(*parent.axis->numbers, *in_space);
   const Typed along = frame.parent == 0 || common ? axis : resolver_.in_axes(axis, frame.parent);
   if (along.node == no_node) {
-    source_.fail(written.span, "this axis is not fixed in the parent", "make it of " + of + " with constant components");
+    source_.fail(written.span, "this axis is not fixed in the parent",
+                 "make it of " + of + " with constant components");
   }
   FixedDirection direction;
   direction.numbers = numbers_of(along.node);
   const Typed unit = resolver_.unit_of_vector(along, written.span);
-  for (std::uint32_t k = 0; k < 3; ++k) direction.unit[k] = local["r" + std::to_string(k + 1)] = resolver_.component(unit, k, written.span);
-  const bool same = parent.axis && parent.axis->numbers && direction.numbers && parallel(*parent.axis->numbers, *direction.numbers);
+  for (std::uint32_t k = 0; k < 3; ++k)
+    direction.unit[k] = local["r" + std::to_string(k + 1)] = resolver_.component(unit, k, written.span);
+  const bool same =
+      parent.axis && parent.axis->numbers && direction.numbers && parallel(*parent.axis->numbers, *direction.numbers);
   frame_sources_[index].still = parent.still && local.at("angle").facts == 0;
   if (parent.still || same) frame_sources_[index].axis = direction;
   frame_sources_[index].upright = frame.parent == 0 || (parent.upright && same);
@@ -194,7 +215,8 @@ void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation
 std::optional<std::array<cln::cl_RA, 3>> Reader::numbers_of(NodeId vector) const {
   const Node& node = model_.arena[vector];
   std::array<cln::cl_RA, 3> result{0, 0, 0};
-  const auto combined = [&](const cln::cl_RA& left, std::size_t a, const cln::cl_RA& right, std::size_t b) -> std::optional<std::array<cln::cl_RA, 3>> {
+  const auto combined = [&](const cln::cl_RA& left, std::size_t a, const cln::cl_RA& right,
+                            std::size_t b) -> std::optional<std::array<cln::cl_RA, 3>> {
     const auto x = numbers_of(node.args[a]), y = numbers_of(node.args[b]);
     if (!x || !y) return std::nullopt;
     for (std::size_t k = 0; k < 3; ++k) result[k] = left * (*x)[k] + right * (*y)[k];
@@ -205,7 +227,8 @@ std::optional<std::array<cln::cl_RA, 3>> Reader::numbers_of(NodeId vector) const
     case Op::negate: return combined(-1, 0, 0, 0);
     case Op::add: return combined(1, 0, 1, 1);
     case Op::subtract: return combined(1, 0, -1, 1);
-    case Op::multiply: case Op::divide: {
+    case Op::multiply:
+    case Op::divide: {
       const std::size_t v = model_.arena[node.args[0]].vector ? 0 : 1;
       const Node& factor = model_.arena[node.args[1 - v]];
       if (factor.op != Op::number || cln::zerop(factor.value)) return std::nullopt;
@@ -215,7 +238,8 @@ std::optional<std::array<cln::cl_RA, 3>> Reader::numbers_of(NodeId vector) const
   }
 }
 
-void Reader::add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local, Span span) {
+void Reader::add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local,
+                       Span span) {
   const Context context{"a rotation", on_anything, Shape::scalar, std::nullopt, ""};
   const std::size_t before = model_.frames[index].stages.size();
   const std::uint32_t parent = model_.frames[index].parent;
@@ -245,16 +269,19 @@ Typed Reader::point_on_body(const Value& table, const std::string& what) {
   const Value& at = needed(table, "at", what, "add at = [x, y, z] along the body's axes, from its centre of mass");
   const std::uint32_t frame = frame_named(on, "'on'");
   if (frame == 0 || frame_sources_[frame].place == 0) {
-    source_.fail(on.span, "a point is on a body, and this has no centre of mass", "name a [[body]], or give position = \"<vector>\"");
+    source_.fail(on.span, "a point is on a body, and this has no centre of mass",
+                 "name a [[body]], or give position = \"<vector>\"");
   }
   as(Value::Kind::array, at, "'at'", "write at = [x, y, z] along the body's axes");
-  if (at.items.size() != 3) source_.fail(at.span, fmt::format("'at' has {} entries", at.items.size()), "write at = [x, y, z]");
+  if (at.items.size() != 3)
+    source_.fail(at.span, fmt::format("'at' has {} entries", at.items.size()), "write at = [x, y, z]");
   Typed sum = resolver_.place(frame_sources_[frame].place, on.span);
   const Context context{"a component of 'at'", on_motion, Shape::scalar, dimension_of("m"), ""};
   for (std::size_t k = 0; k < 3; ++k) {
     const Typed component = resolver_.value(at.items[k], context);
     if (component.constant && cln::zerop(*component.constant)) continue;
-    sum = resolver_.sum_of(sum, resolver_.product_of(component, resolver_.own_axis(frame, k, on.span), at.span), at.span);
+    sum =
+        resolver_.sum_of(sum, resolver_.product_of(component, resolver_.own_axis(frame, k, on.span), at.span), at.span);
   }
   return sum;
 }
@@ -270,8 +297,9 @@ void Reader::read_bodies() {
     body.span = model_.frames[k].span;
     const std::string what = fmt::format("'{}'", model_.frames[k].name);
     const Value& value = needed(*source.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
-    const Typed mass = resolver_.value(value, {fmt::format("the mass of {}", what), 0, Shape::scalar, dimension_of("kg"),
-                                               "the mass of a body is made of numbers and parameters; that of a [[particle]] may depend on time"});
+    const Typed mass = resolver_.value(
+        value, {fmt::format("the mass of {}", what), 0, Shape::scalar, dimension_of("kg"),
+                "the mass of a body is made of numbers and parameters; that of a [[particle]] may depend on time"});
     if (mass.constant && !cln::plusp(*mass.constant)) {
       source_.fail(value.span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
     }
@@ -326,7 +354,8 @@ void Reader::complete_parameters(Scene& scene) {
     const auto given = [&](std::size_t k) {
       const std::uint32_t coordinate = model_.arena[frame.entries[k]].index;
       const auto same = [&](const InitialValue& v) { return v.coordinate == coordinate && v.order == 0; };
-      return std::any_of(scene.initial.begin(), scene.initial.end(), same) || std::any_of(scene.guess.begin(), scene.guess.end(), same);
+      return std::any_of(scene.initial.begin(), scene.initial.end(), same) ||
+             std::any_of(scene.guess.begin(), scene.guess.end(), same);
     };
     if (given(0)) continue;
     const auto add = [&](std::vector<InitialValue>& values, std::size_t k, const Rational& value) {
@@ -343,7 +372,9 @@ void Reader::complete_parameters(Scene& scene) {
 // "B.omega" = [..]; false for any other key.
 bool Reader::read_initial_rotation(Scene& scene, const Entry& entry, bool guess) {
   const bool nested = entry.value.is(Value::Kind::table) && entry.value.find("omega") != nullptr;
-  if (nested) source_.fail(entry.span, "the key of an angular velocity has a dot in it", fmt::format("write it in quotes: \"{}.omega\" = [..]", entry.key));
+  if (nested)
+    source_.fail(entry.span, "the key of an angular velocity has a dot in it",
+                 fmt::format("write it in quotes: \"{}.omega\" = [..]", entry.key));
   constexpr std::string_view ending = ".omega";
   if (!entry.key.ends_with(ending)) return false;
   Value name;
@@ -355,10 +386,15 @@ bool Reader::read_initial_rotation(Scene& scene, const Entry& entry, bool guess)
   InitialRotation rotation{frame_named(name, "a key of 'initial'"), {}, entry.span};
   if (rotation.frame == 0) source_.fail(entry.span, "the ground does not turn", "name a body or frame");
   as(Value::Kind::array, entry.value, fmt::format("'{}'", entry.key), remedy);
-  if (entry.value.items.size() != 3) source_.fail(entry.value.span, fmt::format("'{}' has {} entries", entry.key, entry.value.items.size()), remedy);
+  if (entry.value.items.size() != 3)
+    source_.fail(entry.value.span, fmt::format("'{}' has {} entries", entry.key, entry.value.items.size()), remedy);
   for (std::size_t k = 0; k < 3; ++k) {
-    rotation.value[k] = resolver_.value(entry.value.items[k], {fmt::format("a component of '{}'", entry.key), on_time, Shape::scalar, dimension_of("rad/s"),
-                                                               "it is made of numbers, parameters and functions at the start"}).node;
+    rotation.value[k] =
+        resolver_
+            .value(entry.value.items[k],
+                   {fmt::format("a component of '{}'", entry.key), on_time, Shape::scalar, dimension_of("rad/s"),
+                    "it is made of numbers, parameters and functions at the start"})
+            .node;
   }
   scene.rotations.push_back(rotation);
   return true;
@@ -372,7 +408,9 @@ void Reader::check_initial_rotations(const Scene& scene) const {
       const Node& node = model_.arena[entry];
       for (const InitialValue& initial : scene.initial) {
         if (node.op != Op::coordinate || initial.order != 1 || initial.coordinate != node.index) continue;
-        source_.fail(initial.span, fmt::format("'{}_dot' is given, and it follows from '{}.omega' of this scene", model_.coordinates[node.index].name, frame.name),
+        source_.fail(initial.span,
+                     fmt::format("'{}_dot' is given, and it follows from '{}.omega' of this scene",
+                                 model_.coordinates[node.index].name, frame.name),
                      "keep one of them");
       }
     }

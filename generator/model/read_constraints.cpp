@@ -33,11 +33,12 @@ void Reader::read_constraints() {
                    "write one [[constraint]] for each; the velocities of a holonomic one follow");
     }
     constraint.velocity = velocity != nullptr;
-    read_equations(constraint,
-                   velocity != nullptr
-                       ? *velocity
-                       : needed(*table, "holonomic", what,
-                                "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
+    read_equations(
+        constraint,
+        velocity != nullptr
+            ? *velocity
+            : needed(*table, "holonomic", what,
+                     "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
     read_holds(constraint, *table);
     if (const Value* friction = table->find("friction")) read_friction(constraint, *friction);
   }
@@ -50,7 +51,8 @@ bool Reader::read_contact(Constraint& constraint, const Value& table) {
   const Entry& kind = rolling != nullptr ? *rolling : *sliding;
   for (const char* other : {"holonomic", "velocity", "sliding"}) {
     if (table.find(other) == nullptr || other == kind.key) continue;
-    source_.fail(key_span(table, other), fmt::format("the constraint '{}' is both '{}' and '{}'", constraint.name, kind.key, other),
+    source_.fail(key_span(table, other),
+                 fmt::format("the constraint '{}' is both '{}' and '{}'", constraint.name, kind.key, other),
                  "write one [[constraint]] for each");
   }
   read_rolling(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
@@ -73,23 +75,31 @@ void Reader::read_holds(Constraint& constraint, const Value& table) {
     constraint.unilateral = holds->text == "unilateral";
   }
   if (constraint.unilateral && constraint.rolling) {
-    source_.fail(holds->span, fmt::format("{} can be left and has no friction, so that nothing says what a tangential impulse would be", what),
-                 "give it friction = { static = \"..\", dynamic = \"..\" }: where it lands the body slides, and rolls when slip has ended; or write sliding for a smooth one");
+    source_.fail(
+        holds->span,
+        fmt::format("{} can be left and has no friction, so that nothing says what a tangential impulse would be",
+                    what),
+        "give it friction = { static = \"..\", dynamic = \"..\" }: where it lands the body slides, and rolls when slip "
+        "has ended; or write sliding for a smooth one");
   }
   if (constraint.unilateral && (constraint.velocity || constraint.psi.size() > 1)) {
     source_.fail(holds->span,
                  constraint.velocity ? fmt::format("{} binds velocities, and has no side to be left to", what)
-                                     : fmt::format("{} has {} equations; a contact that can be left has one", what, constraint.psi.size()),
+                                     : fmt::format("{} has {} equations; a contact that can be left has one", what,
+                                                   constraint.psi.size()),
                  "write one [[constraint]] with one holonomic = \"psi\" for each contact; it holds psi >= 0");
   }
   if (restitution == nullptr) return;
   if (!constraint.unilateral) {
-    source_.fail(restitution->span, fmt::format("'restitution' of {} has no effect: a bilateral constraint is never hit", what),
+    source_.fail(restitution->span,
+                 fmt::format("'restitution' of {} has no effect: a bilateral constraint is never hit", what),
                  "add holds = \"unilateral\", or remove restitution");
   }
   constraint.restitution =
-      resolver_.value(*restitution, Context{fmt::format("the restitution of {}", what), 0, Shape::scalar, dimension_of("1"),
-                                            "a coefficient of restitution is a number or made of parameters"}).node;
+      resolver_
+          .value(*restitution, Context{fmt::format("the restitution of {}", what), 0, Shape::scalar, dimension_of("1"),
+                                       "a coefficient of restitution is a number or made of parameters"})
+          .node;
 }
 
 void Reader::read_equations(Constraint& constraint, const Value& value) {
@@ -99,22 +109,30 @@ void Reader::read_equations(Constraint& constraint, const Value& value) {
                   "one of velocities is given as velocity = \"..\""};
   if (constraint.velocity) {
     context.allowed = on_motion | on_velocity;
-    context.remedy = "a constraint on velocities is made of velocities, coordinates, functions of time, parameters and t";
+    context.remedy =
+        "a constraint on velocities is made of velocities, coordinates, functions of time, parameters and t";
   }
   // Its gradient vanishes where it holds, so that there would be no constraint force.
   const auto no_power = [&](const Typed& typed, const Value& of) {
     if (typed.vector || constraint.velocity) return;
     NodeId id = typed.node;
-    while (model_.arena[id].op == Op::negate || (model_.arena[id].op == Op::divide && resolver_.coordinates_in(model_.arena[id].args[1]).empty()) ||
+    while (model_.arena[id].op == Op::negate ||
+           (model_.arena[id].op == Op::divide && resolver_.coordinates_in(model_.arena[id].args[1]).empty()) ||
            (model_.arena[id].op == Op::multiply && resolver_.coordinates_in(model_.arena[id].args[1]).empty()))
       id = model_.arena[id].args[0];
-    while (model_.arena[id].op == Op::multiply && resolver_.coordinates_in(model_.arena[id].args[0]).empty()) id = model_.arena[id].args[1];
+    while (model_.arena[id].op == Op::multiply && resolver_.coordinates_in(model_.arena[id].args[0]).empty())
+      id = model_.arena[id].args[1];
     const Node& node = model_.arena[id];
-    if (node.op != Op::power || model_.arena[node.args[1]].op != Op::number || model_.arena[node.args[1]].value <= 1) return;
+    if (node.op != Op::power || model_.arena[node.args[1]].op != Op::number || model_.arena[node.args[1]].value <= 1)
+      return;
     std::string base = of.is(Value::Kind::text) ? of.text : "";
     const std::size_t hat = base.rfind('^');
-    base = hat != std::string::npos && hat > 1 && base.front() == '(' && base[hat - 1] == ')' && base.find(')') == hat - 1 ? base.substr(1, hat - 2) : "";
-    source_.fail(of.span, fmt::format("{} is a power: its gradient vanishes where it holds, so that it has no force", what),
+    base =
+        hat != std::string::npos && hat > 1 && base.front() == '(' && base[hat - 1] == ')' && base.find(')') == hat - 1
+            ? base.substr(1, hat - 2)
+            : "";
+    source_.fail(of.span,
+                 fmt::format("{} is a power: its gradient vanishes where it holds, so that it has no force", what),
                  base.empty() ? "write what is raised to the power" : fmt::format("write \"{}\"", base));
   };
   const auto with_motion = [&](const Typed& typed, Span span) {

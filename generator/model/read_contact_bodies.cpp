@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contact of two bodies: where both are touched, and the normal there. Afterwards it is that of a body with a plane through the point of
-// the other body, which moves as that point does, eq. (7.28).
+// Contact of two bodies: where both are touched, and the normal there. Afterwards it is that of a body with a plane
+// through the point of the other body, which moves as that point does, eq. (7.28).
 #include <fmt/format.h>
 
 #include "model/reader.hpp"
@@ -13,12 +13,16 @@ bool Reader::touches_body(const Value& on) {
   return symbol != nullptr && symbol->frame > 0;
 }
 
-std::optional<std::string> Reader::between_bodies(Touch& touch, const Value& table, std::map<std::string, Typed>& local) {
+std::optional<std::string> Reader::between_bodies(Touch& touch, const Value& table,
+                                                  std::map<std::string, Typed>& local) {
   const Value& on = *table.find("on");
   touch.other_frame = frame_named(on, "'on'");
   touch.other_place = frame_sources_[touch.other_frame].place;
-  if (touch.other_place == 0) source_.fail(on.span, fmt::format("{} has no mass: contact of two bodies needs two", quote(on.text)), "name a [[body]], or write the plane: on = { point = .., normal = .. }");
-  if (touch.other_frame == touch.frame) source_.fail(on.span, fmt::format("{} cannot touch itself", quote(on.text)), "name the other body, or \"ground\"");
+  if (touch.other_place == 0)
+    source_.fail(on.span, fmt::format("{} has no mass: contact of two bodies needs two", quote(on.text)),
+                 "name a [[body]], or write the plane: on = { point = .., normal = .. }");
+  if (touch.other_frame == touch.frame)
+    source_.fail(on.span, fmt::format("{} cannot touch itself", quote(on.text)), "name the other body, or \"ground\"");
   name_motion(touch.other_frame, "b", on.span, local);
   const bool shapes = table.find("shape") != nullptr;
   if (shapes) {
@@ -26,7 +30,8 @@ std::optional<std::string> Reader::between_bodies(Touch& touch, const Value& tab
   } else {
     points_in_contact(table, local);
   }
-  const Context direction{"a tangent", on_motion, Shape::vector, std::nullopt, ""}, any{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
+  const Context direction{"a tangent", on_motion, Shape::vector, std::nullopt, ""},
+      any{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
   if (table.find("tangent") == nullptr) {
     local["t1"] = resolver_.text("unit(E1 - dot(E1, n)*n)", local, table.span, direction);
     local["t2"] = resolver_.text("cross(n, t1)", local, table.span, direction);
@@ -40,20 +45,27 @@ std::optional<std::string> Reader::between_bodies(Touch& touch, const Value& tab
 
 // shape = { sphere = "R" }, shape_b = { sphere = "S" } or { hollow = "S" }, inside of which the other sphere is.
 void Reader::spheres_in_contact(const Value& table, std::map<std::string, Typed>& local) {
-  constexpr const char* form = "write shape = { sphere = \"R\" }, shape_b = { sphere = \"S\" }, or shape_b = { hollow = \"S\" } where it is inside of the other";
+  constexpr const char* form =
+      "write shape = { sphere = \"R\" }, shape_b = { sphere = \"S\" }, or shape_b = { hollow = \"S\" } where it is "
+      "inside of the other";
   for (const char* key : {"at", "at_b", "normal"}) {
-    if (table.find(key) != nullptr) source_.fail(key_span(table, key), fmt::format("this contact has both 'shape' and '{}'", key), form);
+    if (table.find(key) != nullptr)
+      source_.fail(key_span(table, key), fmt::format("this contact has both 'shape' and '{}'", key), form);
   }
   const auto radius = [&](const char* key, const std::vector<std::string_view>& kinds) {
-    const Value& shape = as(Value::Kind::table, needed(table, key, "a contact of two spheres", form), fmt::format("'{}'", key), form);
+    const Value& shape =
+        as(Value::Kind::table, needed(table, key, "a contact of two spheres", form), fmt::format("'{}'", key), form);
     check_keys(shape, {fmt::format("'{}' in a contact of two bodies", key), kinds, {}});
-    if (shape.entries.size() != 1) source_.fail(shape.span, fmt::format("'{}' is given in {} ways", key, shape.entries.size()), form);
-    return resolver_.value(shape.entries[0].value, {"the radius of a contact", 0, Shape::scalar, dimension_of("m"), ""});
+    if (shape.entries.size() != 1)
+      source_.fail(shape.span, fmt::format("'{}' is given in {} ways", key, shape.entries.size()), form);
+    return resolver_.value(shape.entries[0].value,
+                           {"the radius of a contact", 0, Shape::scalar, dimension_of("m"), ""});
   };
   local["R"] = radius("shape", {"sphere"});
   local["Rb"] = radius("shape_b", {"sphere", "hollow"});
   const bool hollow = table.find("shape_b")->find("hollow") != nullptr;
-  const Context direction{"a normal", on_motion, Shape::vector, std::nullopt, ""}, arm{"an arm", on_motion, Shape::vector, dimension_of("m"), ""};
+  const Context direction{"a normal", on_motion, Shape::vector, std::nullopt, ""},
+      arm{"an arm", on_motion, Shape::vector, dimension_of("m"), ""};
   local["n"] = resolver_.text(hollow ? "unit(xb - x)" : "unit(x - xb)", local, table.span, direction);
   local["p"] = resolver_.text("-R*n", local, table.span, arm);
   local["pb"] = resolver_.text(hollow ? "-Rb*n" : "Rb*n", local, table.span, arm);
@@ -62,12 +74,18 @@ void Reader::spheres_in_contact(const Value& table, std::map<std::string, Typed>
 // at, at_b and the normal, which is that of a sphere about the centre of mass of the first body if it is left out.
 void Reader::points_in_contact(const Value& table, std::map<std::string, Typed>& local) {
   const std::string what = "a contact of two bodies";
-  if (const Value* shape = table.find("shape_b")) source_.fail(shape->span, "'shape_b' needs 'shape' of the first body beside it", "add shape = { sphere = \"R\" }, or give at and at_b");
-  const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"), "it is made of coordinates, axes of the bodies, angles and lengths"};
-  const std::string remedy = fmt::format("add at = \"<vector>\" from the body and at_b = \"<vector>\" from '{}' to where they touch, or shape and shape_b", table.find("on")->text);
+  if (const Value* shape = table.find("shape_b"))
+    source_.fail(shape->span, "'shape_b' needs 'shape' of the first body beside it",
+                 "add shape = { sphere = \"R\" }, or give at and at_b");
+  const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"),
+                    "it is made of coordinates, axes of the bodies, angles and lengths"};
+  const std::string remedy = fmt::format(
+      "add at = \"<vector>\" from the body and at_b = \"<vector>\" from '{}' to where they touch, or shape and shape_b",
+      table.find("on")->text);
   local["p"] = resolver_.value(needed(table, "at", what, remedy), arm);
   local["pb"] = resolver_.value(needed(table, "at_b", what, remedy), arm);
-  const Context direction{"a normal", on_motion, Shape::vector, std::nullopt, "a normal is made of coordinates, axes and t"};
+  const Context direction{"a normal", on_motion, Shape::vector, std::nullopt,
+                          "a normal is made of coordinates, axes and t"};
   const Value* normal = table.find("normal");
   local["n"] = normal != nullptr ? resolver_.unit_of_vector(resolver_.value(*normal, direction), normal->span)
                                  : resolver_.text("unit(-p)", local, table.span, direction);

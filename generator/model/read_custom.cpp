@@ -60,7 +60,8 @@ std::array<Typed, 3> Reader::solved_position(const Value& names, const Value& q,
   std::array<Syntax, 3> f;
   std::array<std::string, 3> of;
   for (std::size_t k = 0; k < 3; ++k) {
-    const Value& item = as(Value::Kind::text, q.items[k], "an entry of q", "write an expression of x1, x2, x3 in quotes");
+    const Value& item =
+        as(Value::Kind::text, q.items[k], "an entry of q", "write an expression of x1, x2, x3 in quotes");
     f[k] = parse_quantity(text_in(source_, item));
     of[k] = names.items[k].text;
     for (const char* cartesian : cartesian_names) {
@@ -70,11 +71,13 @@ std::array<Typed, 3> Reader::solved_position(const Value& names, const Value& q,
     }
     const Symbol* symbol = scope_.find(of[k]);
     if (symbol != nullptr && symbol->kind == SymbolKind::coordinate) continue;
-    source_.fail(names.items[k].span, fmt::format("'{}' is no coordinate, and q(x) defines three of them", of[k]), give_x);
+    source_.fail(names.items[k].span, fmt::format("'{}' is no coordinate, and q(x) defines three of them", of[k]),
+                 give_x);
   }
   const auto solution = invert(f, of);
   if (!solution) {
-    source_.fail(q.span, "q(x) cannot be solved for x1, x2, x3: no unknown can be isolated with a single value", give_x);
+    source_.fail(q.span, "q(x) cannot be solved for x1, x2, x3: no unknown can be isolated with a single value",
+                 give_x);
   }
   std::array<Typed, 3> x;
   for (std::size_t k = 0; k < 3; ++k) x[k] = resolver_.tree((*solution)[k], context);
@@ -102,10 +105,11 @@ void Reader::check_inverse(const Spelt& spelt, const Value& q, bool both) {
       const double was = samples.value(spelt.chart.entries[i]), is = samples.value(back[i]);
       finite = finite && std::isfinite(was) && std::isfinite(is);
       if (!finite || std::abs(is - was) <= tolerance * (1 + std::abs(was))) continue;
-      source_.fail(q.items[i].span,
-                   fmt::format("q(x) and x(q) are not inverse: where this coordinate is {:.4g}, they give {:.4g}", was, is),
-                   both ? "correct one of them, or state in [coordinates] the range where they are inverse"
-                        : "state in [coordinates] a range where q(x) has one solution, or give x = [..] too");
+      source_.fail(
+          q.items[i].span,
+          fmt::format("q(x) and x(q) are not inverse: where this coordinate is {:.4g}, they give {:.4g}", was, is),
+          both ? "correct one of them, or state in [coordinates] the range where they are inverse"
+               : "state in [coordinates] a range where q(x) has one solution, or give x = [..] too");
     }
     if (finite) ++seen;
   }

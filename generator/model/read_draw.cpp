@@ -9,13 +9,16 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form = "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod = \"L\" } or { arrow = [\"x\", \"y\", \"z\"] }";
+constexpr const char* form =
+    "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod "
+    "= \"L\" } or { arrow = [\"x\", \"y\", \"z\"] }";
 
 struct DrawnShape {
   std::string_view key;
   std::size_t lengths;
 };
-constexpr std::array<DrawnShape, 6> shapes{{{"sphere", 1}, {"box", 3}, {"cylinder", 2}, {"disk", 1}, {"rod", 1}, {"arrow", 3}}};
+constexpr std::array<DrawnShape, 6> shapes{
+    {{"sphere", 1}, {"box", 3}, {"cylinder", 2}, {"disk", 1}, {"rod", 1}, {"arrow", 3}}};
 
 }  // namespace
 
@@ -23,17 +26,21 @@ void Reader::read_draw() {
   const Value* table = section("draw");
   if (table == nullptr) return;
   for (const Entry& entry : table->entries) {
-    const auto place = std::find_if(model_.places.begin() + 1, model_.places.end(), [&](const Place& p) { return p.name == entry.key; });
+    const auto place = std::find_if(model_.places.begin() + 1, model_.places.end(),
+                                    [&](const Place& p) { return p.name == entry.key; });
     const auto index = static_cast<std::uint32_t>(place - model_.places.begin());
     const auto here = [index](const auto& heavy) { return heavy.place == index; };
-    const bool massive = std::any_of(model_.particles.begin(), model_.particles.end(), here) || std::any_of(model_.bodies.begin(), model_.bodies.end(), here);
+    const bool massive = std::any_of(model_.particles.begin(), model_.particles.end(), here) ||
+                         std::any_of(model_.bodies.begin(), model_.bodies.end(), here);
     if (place == model_.places.end() || !massive) {
       std::vector<std::string> known;
       for (const Particle& p : model_.particles) known.push_back(model_.places[p.place].name);
       for (const Body& b : model_.bodies) known.push_back(model_.places[b.place].name);
       const std::string hint = did_you_mean(entry.key, known);
       source_.fail(entry.span, fmt::format("[draw] names {}, which is no particle or body", quote(entry.key)),
-                   !hint.empty() ? hint : known.empty() ? "leave it out: this model has neither" : fmt::format("particles and bodies are {}", fmt::join(known, ", ")));
+                   !hint.empty()   ? hint
+                   : known.empty() ? "leave it out: this model has neither"
+                                   : fmt::format("particles and bodies are {}", fmt::join(known, ", ")));
     }
     if (entry.value.is(Value::Kind::array)) {
       for (const Value& shape : entry.value.items) model_.drawn.push_back(drawn_shape(index, shape));
@@ -56,7 +63,9 @@ Drawn Reader::drawn_shape(std::uint32_t place, const Value& value) {
   for (const DrawnShape& shape : shapes) {
     const Value* lengths = value.find(shape.key);
     if (lengths == nullptr) continue;
-    if (!drawn.kind.empty()) source_.fail(lengths->span, fmt::format("{} is both '{}' and '{}'", what, drawn.kind, shape.key), "draw one of them, or give an array of tables");
+    if (!drawn.kind.empty())
+      source_.fail(lengths->span, fmt::format("{} is both '{}' and '{}'", what, drawn.kind, shape.key),
+                   "draw one of them, or give an array of tables");
     drawn.kind = shape.key;
     drawn.lengths = drawn_lengths(*lengths, shape.lengths, what, shape.key != "arrow");
   }
@@ -64,23 +73,29 @@ Drawn Reader::drawn_shape(std::uint32_t place, const Value& value) {
   if (const Value* axis = value.find("axis")) {
     const char* remedy = "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about";
     const std::string& text = as(Value::Kind::text, *axis, fmt::format("the axis in {}", what), remedy).text;
-    if (text != "e1" && text != "e2" && text != "e3") source_.fail(axis->span, fmt::format("there is no own axis {}", quote(text)), remedy);
+    if (text != "e1" && text != "e2" && text != "e3")
+      source_.fail(axis->span, fmt::format("there is no own axis {}", quote(text)), remedy);
     drawn.axis = static_cast<std::uint32_t>(text[1] - '1');
   }
   if (const Value* at = value.find("at")) drawn.at = drawn_lengths(*at, 3, what, false);
   return drawn;
 }
 
-std::vector<NodeId> Reader::drawn_lengths(const Value& value, std::size_t count, const std::string& what, bool positive) {
-  const Context context{fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"), "what is drawn is made of numbers and parameters"};
+std::vector<NodeId> Reader::drawn_lengths(const Value& value, std::size_t count, const std::string& what,
+                                          bool positive) {
+  const Context context{fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"),
+                        "what is drawn is made of numbers and parameters"};
   const auto length = [&](const Value& item) {
     const Typed typed = resolver_.value(item, context);
-    if (positive && typed.constant && !cln::plusp(*typed.constant)) source_.fail(item.span, fmt::format("a length in {} is not greater than 0", what), "give a length");
+    if (positive && typed.constant && !cln::plusp(*typed.constant))
+      source_.fail(item.span, fmt::format("a length in {} is not greater than 0", what), "give a length");
     return typed.node;
   };
   if (count == 1) return {length(value)};
   as(Value::Kind::array, value, fmt::format("{}: its lengths", what), form);
-  if (value.items.size() != count) source_.fail(value.span, fmt::format("{} has {} lengths here", what, value.items.size()), fmt::format("give {} of them", count));
+  if (value.items.size() != count)
+    source_.fail(value.span, fmt::format("{} has {} lengths here", what, value.items.size()),
+                 fmt::format("give {} of them", count));
   std::vector<NodeId> lengths;
   for (const Value& item : value.items) lengths.push_back(length(item));
   return lengths;

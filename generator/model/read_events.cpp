@@ -34,8 +34,10 @@ void Reader::read_events() {
   for (const Value* table : sections("event")) {
     Event& event = model_.events[index++];
     const std::string what = fmt::format("the event '{}'", event.name);
-    const Value& when = needed(*table, "when", what, "add when = \"expression\": the event is where it changes its sign");
-    const Typed typed = resolver_.value(when, Context{what, on_anything | on_reaction, Shape::scalar, std::nullopt, ""});
+    const Value& when =
+        needed(*table, "when", what, "add when = \"expression\": the event is where it changes its sign");
+    const Typed typed =
+        resolver_.value(when, Context{what, on_anything | on_reaction, Shape::scalar, std::nullopt, ""});
     if (typed.facts == 0) {
       source_.fail(when.span, fmt::format("{} is of a constant, which never changes its sign", what),
                    "write an expression of coordinates, velocities, accelerations, reaction.NAME, inputs or t");
@@ -43,10 +45,13 @@ void Reader::read_events() {
     event.when = typed.node;
     if (const Value* direction = table->find("direction")) {
       const char* remedy = "write direction = \"up\", \"down\" or \"any\"";
-      const std::string& text = as(Value::Kind::text, *direction, fmt::format("the direction of {}", what), remedy).text;
+      const std::string& text =
+          as(Value::Kind::text, *direction, fmt::format("the direction of {}", what), remedy).text;
       if (text != "any" && text != "up" && text != "down")
         source_.fail(direction->span, fmt::format("an event has no direction {}", quote(text)), remedy);
-      event.direction = text == "up" ? Event::Direction::up : text == "down" ? Event::Direction::down : Event::Direction::any;
+      event.direction = text == "up"     ? Event::Direction::up
+                        : text == "down" ? Event::Direction::down
+                                         : Event::Direction::any;
     }
     if (const Value* action = table->find("action")) {
       const char* remedy = "write action = \"record\" or \"stop\"";
@@ -66,7 +71,8 @@ void Reader::read_stop(Scene& scene, const Value& value) {
     const Symbol* symbol = scope_.find(item.text);
     if (symbol == nullptr || symbol->kind != SymbolKind::event) {
       const std::string hint = did_you_mean(item.text, scope_.names(SymbolKind::event));
-      source_.fail(item.span, fmt::format("'stop' names {}, which is no event", quote(item.text)), hint.empty() ? remedy : hint);
+      source_.fail(item.span, fmt::format("'stop' names {}, which is no event", quote(item.text)),
+                   hint.empty() ? remedy : hint);
     }
     if (std::find(scene.stop.begin(), scene.stop.end(), symbol->index) != scene.stop.end())
       source_.fail(item.span, fmt::format("'{}' is named twice in 'stop'", item.text), "name it once");

@@ -10,7 +10,7 @@ namespace {
 constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
 
 const std::vector<std::string_view>& kinds() {
-  static const std::vector<std::string_view> all{"gravity", "central_gravity", "gravitation", "force",      "spring",
+  static const std::vector<std::string_view> all{"gravity", "central_gravity", "gravitation", "force",       "spring",
                                                  "damper",  "torsion",         "drag",        "generalized", "dry",
                                                  "moment",  "magnus"};
   return all;
@@ -134,10 +134,13 @@ CentralGravity Reader::read_central_gravity(const Value& table, const std::strin
   check_keys(table, {what, {"GM", "order", "center"}, {}});
   if (const Value* order = table.find("order")) {
     if (!order->is(Value::Kind::integer) || (order->text != "0" && order->text != "2")) {
-      source_.fail(order->span, fmt::format("central_gravity has no order {}", quote(order->text)), "write order = 0 or order = 2");
+      source_.fail(order->span, fmt::format("central_gravity has no order {}", quote(order->text)),
+                   "write order = 0 or order = 2");
     }
     if (order->text == "2" && model_.bodies.empty()) {
-      source_.fail(order->span, "central_gravity of order 2 acts on what a [[body]] has of inertia, and the model has none", "write order = 0");
+      source_.fail(order->span,
+                   "central_gravity of order 2 acts on what a [[body]] has of inertia, and the model has none",
+                   "write order = 0");
     }
   }
   CentralGravity result{};
@@ -236,7 +239,8 @@ Moment Reader::read_moment(const Value& table, const std::string& what) {
   Moment result{};
   result.frame = frame_named(on, fmt::format("'on' of {}", what));
   if (result.frame == 0) source_.fail(on.span, "a moment on the ground changes nothing", "name a body or frame");
-  const Context context{what == "this moment" ? what : fmt::format("the moment {}", what), on_state, Shape::vector, dimension_of("N*m"), ""};
+  const Context context{what == "this moment" ? what : fmt::format("the moment {}", what), on_state, Shape::vector,
+                        dimension_of("N*m"), ""};
   result.moment = resolver_.value(*table.find("moment"), context).node;
   return result;
 }
@@ -252,7 +256,8 @@ Magnus Reader::read_magnus(const Value& table, const std::string& what) {
     result.body = k;
     found = true;
   }
-  if (!found) source_.fail(on.span, fmt::format("{} acts on a body, and '{}' has no mass", what, on.text), "name a [[body]]");
+  if (!found)
+    source_.fail(on.span, fmt::format("{} acts on a body, and '{}' has no mass", what, on.text), "name a [[body]]");
   result.coefficient = read_scalar(table, "coefficient", what, "1", on_state);
   return result;
 }

@@ -22,14 +22,16 @@ Friction Reader::read_coefficients(const Value& table, const std::string& what, 
     }
     Typed slip = resolver_.slip(value.span);
     if (speed) slip.dimension = *speed;
-    const Context context{fmt::format("the {} coefficient of {}", key, what), on_state, Shape::scalar, dimension_of("1"),
+    const Context context{fmt::format("the {} coefficient of {}", key, what), on_state, Shape::scalar,
+                          dimension_of("1"),
                           "a coefficient of friction is made of parameters, slip, velocities, coordinates and t"};
     return resolver_.value_with(value, {{"slip", slip}}, context).node;
   };
   law.dynamic_coefficient = coefficient("dynamic");
   const Value* name = table.find("law");
   const Value* width = table.find("width");
-  if (name != nullptr) as(Value::Kind::text, *name, fmt::format("'law' of {}", what), "write law = \"coulomb\" or law = \"smooth\"");
+  if (name != nullptr)
+    as(Value::Kind::text, *name, fmt::format("'law' of {}", what), "write law = \"coulomb\" or law = \"smooth\"");
   if (name != nullptr && name->text != "coulomb" && name->text != "smooth") {
     source_.fail(name->span, fmt::format("there is no law of friction {}", quote(name->text)),
                  "write law = \"coulomb\" (the default), which sticks and slides, or law = \"smooth\"");
@@ -43,12 +45,16 @@ Friction Reader::read_coefficients(const Value& table, const std::string& what, 
     return law;
   }
   if (const Value* value = table.find("static")) {
-    source_.fail(value->span, fmt::format("the smooth law of {} has no static coefficient: under it nothing sticks", what),
+    source_.fail(value->span,
+                 fmt::format("the smooth law of {} has no static coefficient: under it nothing sticks", what),
                  "remove static, or law = \"smooth\"");
   }
-  const Value& given = needed(table, "width", what, "add width = \"1 mm/s\", the slip speed at which friction is mu |N|/sqrt(2)");
-  law.width = resolver_.value(given, Context{fmt::format("the width of {}", what), on_time, Shape::scalar, speed,
-                                             "a width is a slip speed made of parameters"}).node;
+  const Value& given =
+      needed(table, "width", what, "add width = \"1 mm/s\", the slip speed at which friction is mu |N|/sqrt(2)");
+  law.width = resolver_
+                  .value(given, Context{fmt::format("the width of {}", what), on_time, Shape::scalar, speed,
+                                        "a width is a slip speed made of parameters"})
+                  .node;
   return law;
 }
 
@@ -57,7 +63,8 @@ void Reader::read_friction(Constraint& constraint, const Value& value) {
   as(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
   check_keys(value, {what, {"static", "dynamic", "surface_velocity", "law", "width"}, {}});
   if (constraint.velocity) {
-    source_.fail(value.span, fmt::format("'{}' is a constraint on velocities, which has no surface to slide on", constraint.name),
+    source_.fail(value.span,
+                 fmt::format("'{}' is a constraint on velocities, which has no surface to slide on", constraint.name),
                  "friction belongs to a holonomic constraint of one particle: a surface, or a curve of two equations");
   }
   if (constraint.psi.size() > 2) {
@@ -89,13 +96,19 @@ Dry Reader::read_dry(const Value& table, const std::string& what) {
   }
   Dry dry{symbol->index, no_node, {}};
   const Value& normal = needed(table, "normal", what, "add normal = \"m*g\", the force that presses");
-  dry.normal = resolver_.value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
-                                               std::nullopt, "a normal force is made of parameters, the state and t"}).node;
+  dry.normal = resolver_
+                   .value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
+                                          std::nullopt, "a normal force is made of parameters, the state and t"})
+                   .node;
   dry.law = read_coefficients(table, what, std::nullopt);
   for (const Force& before : model_.forces) {
     const Dry* other = std::get_if<Dry>(&before.kind);
-    if (other == nullptr || other->coordinate != dry.coordinate || dry.law.width != no_node || other->law.width != no_node) continue;
-    source_.fail(name.span, fmt::format("{} sticks with '{}' already: how the two share what holds it nothing says", quote(name.text), before.name),
+    if (other == nullptr || other->coordinate != dry.coordinate || dry.law.width != no_node ||
+        other->law.width != no_node)
+      continue;
+    source_.fail(name.span,
+                 fmt::format("{} sticks with '{}' already: how the two share what holds it nothing says",
+                             quote(name.text), before.name),
                  "write one force whose normal force is that of both");
   }
   return dry;
@@ -103,7 +116,8 @@ Dry Reader::read_dry(const Value& table, const std::string& what) {
 
 // friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2 and mode.NAME of a contact.
 bool Reader::is_contact_output(const std::vector<std::string>& parts) {
-  if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode" && parts[0] != "slip")) return false;
+  if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode" && parts[0] != "slip"))
+    return false;
   const Symbol* symbol = scope_.find(parts[1]);
   if (symbol == nullptr) return false;
   const bool dry = symbol->kind == SymbolKind::force && std::holds_alternative<Dry>(model_.forces[symbol->index].kind);
@@ -111,7 +125,8 @@ bool Reader::is_contact_output(const std::vector<std::string>& parts) {
   const bool rough = constraint && model_.constraints[symbol->index].friction.has_value();
   const bool left = constraint && model_.constraints[symbol->index].unilateral;
   if (parts[0] == "mode") return parts.size() == 2 && (dry || rough || left);
-  if (parts[0] == "slip") return (dry || rough) && (parts.size() == 2 || (rough && (parts[2] == "1" || parts[2] == "2")));
+  if (parts[0] == "slip")
+    return (dry || rough) && (parts.size() == 2 || (rough && (parts[2] == "1" || parts[2] == "2")));
   if (dry) return parts.size() == 2;
   if (rough && parts.size() == 2) return true;  // all three components
   return rough && (parts[2] == "1" || parts[2] == "2" || parts[2] == "3");

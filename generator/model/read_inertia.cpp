@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// inertia = { principal = [A, B, C] }, [[..], [..], [..]], "J", or a homogeneous shape: about the centre of mass, along the axes
-// of the body.
+// inertia = { principal = [A, B, C] }, [[..], [..], [..]], "J", or a homogeneous shape: about the centre of mass, along
+// the axes of the body.
 #include <fmt/format.h>
 
 #include "model/reader.hpp"
@@ -8,7 +8,9 @@
 namespace eomgen::model {
 namespace {
 
-constexpr const char* form = "write inertia = { principal = [\"A\", \"B\", \"C\"] }, a symmetric [[..], [..], [..]], or a shape such as { sphere = \"R\" }";
+constexpr const char* form =
+    "write inertia = { principal = [\"A\", \"B\", \"C\"] }, a symmetric [[..], [..], [..]], or a shape such as { "
+    "sphere = \"R\" }";
 
 struct Shape3 {
   std::string_view key;
@@ -51,9 +53,12 @@ void Reader::read_inertia(Body& body, const Value& table) {
         J[i][k] = resolver_.value(value.items[i].items[k], moment_context("an entry of " + what));
         body.inertia[i][k] = J[i][k].node;
         if (k >= i) continue;
-        const bool same = J[i][k].constant && J[k][i].constant ? *J[i][k].constant == *J[k][i].constant
-                                                               : value.items[i].items[k].text == value.items[k].items[i].text;
-        if (!same) source_.fail(value.items[i].items[k].span, fmt::format("{} is not symmetric", what), "write the same expression on both sides of the diagonal");
+        const bool same = J[i][k].constant && J[k][i].constant
+                              ? *J[i][k].constant == *J[k][i].constant
+                              : value.items[i].items[k].text == value.items[k].items[i].text;
+        if (!same)
+          source_.fail(value.items[i].items[k].span, fmt::format("{} is not symmetric", what),
+                       "write the same expression on both sides of the diagonal");
         body.inertia[i][k] = body.inertia[k][i];
       }
     }
@@ -76,17 +81,22 @@ std::array<NodeId, 3> Reader::shape_moments(const Body& body, const Entry& shape
   std::array<NodeId, 3> result{};
   if (shape.key == "principal") {
     as(Value::Kind::array, shape.value, "'principal'", form);
-    if (shape.value.items.size() != 3) source_.fail(shape.value.span, fmt::format("'principal' has {} entries", shape.value.items.size()), form);
+    if (shape.value.items.size() != 3)
+      source_.fail(shape.value.span, fmt::format("'principal' has {} entries", shape.value.items.size()), form);
     std::array<Typed, 3> J;
     for (std::size_t k = 0; k < 3; ++k) {
       J[k] = resolver_.value(shape.value.items[k], moment_context("a principal moment"));
-      if (J[k].constant && cln::minusp(*J[k].constant)) source_.fail(shape.value.items[k].span, "a moment of inertia is negative", "it is a sum of masses times squares");
+      if (J[k].constant && cln::minusp(*J[k].constant))
+        source_.fail(shape.value.items[k].span, "a moment of inertia is negative",
+                     "it is a sum of masses times squares");
       result[k] = J[k].node;
     }
     for (std::size_t k = 0; k < 3; ++k) {
       const auto &a = J[k].constant, &b = J[(k + 1) % 3].constant, &c = J[(k + 2) % 3].constant;
       if (!a || !b || !c || cln::zerop(*a) || cln::zerop(*b) || cln::zerop(*c) || *a <= *b + *c) continue;
-      source_.fail(shape.value.items[k].span, "no body has these moments of inertia: this one is larger than the other two together", "check the values and their units");
+      source_.fail(shape.value.items[k].span,
+                   "no body has these moments of inertia: this one is larger than the other two together",
+                   "check the values and their units");
     }
     return result;
   }
@@ -96,15 +106,18 @@ std::array<NodeId, 3> Reader::shape_moments(const Body& body, const Entry& shape
     const std::string remedy = one ? fmt::format("write {} = \"{}\"", known.key, known.lengths[0])
                                    : fmt::format("write {} = [\"{}\"]", known.key, fmt::join(known.lengths, "\", \""));
     if (!one) as(Value::Kind::array, shape.value, fmt::format("'{}'", known.key), remedy);
-    if (!one && shape.value.items.size() != known.lengths.size()) source_.fail(shape.value.span, fmt::format("'{}' has {} entries", known.key, shape.value.items.size()), remedy);
+    if (!one && shape.value.items.size() != known.lengths.size())
+      source_.fail(shape.value.span, fmt::format("'{}' has {} entries", known.key, shape.value.items.size()), remedy);
     std::map<std::string, Typed> local;
     for (std::size_t k = 0; k < known.lengths.size(); ++k) {
       const Value& length = one ? shape.value : shape.value.items[k];
-      local[std::string(known.lengths[k])] = resolver_.value(length, {fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"), ""});
+      local[std::string(known.lengths[k])] =
+          resolver_.value(length, {fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"), ""});
     }
     const Value& mass = *frame_sources_[body.frame].table->find("mass");
     local["m"] = resolver_.value(mass, {"a mass", 0, Shape::scalar, dimension_of("kg"), ""});
-    for (std::size_t k = 0; k < 3; ++k) result[k] = resolver_.text(known.moments[k], local, shape.span, moment_context(what)).node;
+    for (std::size_t k = 0; k < 3; ++k)
+      result[k] = resolver_.text(known.moments[k], local, shape.span, moment_context(what)).node;
   }
   return result;
 }
@@ -116,7 +129,9 @@ void Reader::read_scalar_inertia(Body& body, const Value& value) {
   const auto& axis = frame_sources_[body.frame].axis;
   if (!axis && frame_sources_[body.frame].still) return;  // it does not turn: any moment does
   if (!axis) {
-    source_.fail(value.span, fmt::format("one moment of inertia does not do: '{}' does not turn about one fixed axis", frame.name), form);
+    source_.fail(value.span,
+                 fmt::format("one moment of inertia does not do: '{}' does not turn about one fixed axis", frame.name),
+                 form);
   }
   // Of J only J r . r moves the body: J r r along the unit vector r.
   const auto on = [&](std::size_t k) { return !axis->numbers || !cln::zerop((*axis->numbers)[k]); };
@@ -124,7 +139,8 @@ void Reader::read_scalar_inertia(Body& body, const Value& value) {
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k <= i; ++k) {
       if (!on(i) || !on(k)) continue;
-      const Typed entry = own ? J : resolver_.product_of(J, resolver_.product_of(axis->unit[i], axis->unit[k], value.span), value.span);
+      const Typed entry =
+          own ? J : resolver_.product_of(J, resolver_.product_of(axis->unit[i], axis->unit[k], value.span), value.span);
       body.inertia[i][k] = body.inertia[k][i] = entry.node;
     }
   }

@@ -11,7 +11,8 @@ namespace eomgen::model {
 namespace {
 
 constexpr const char* form =
-    "write type = \"pin\", bodies = [\"A\", \"B\"], at = [\"point of A\", \"point of B\"], axis = [\"A.e3\", \"B.e3\"]; \"ground\" may be one of the bodies";
+    "write type = \"pin\", bodies = [\"A\", \"B\"], at = [\"point of A\", \"point of B\"], axis = [\"A.e3\", "
+    "\"B.e3\"]; \"ground\" may be one of the bodies";
 
 std::string kinds() {
   std::string names;
@@ -56,13 +57,15 @@ void Reader::read_joint(Joint& joint, const Value& table) {
     std::vector<std::string> names;
     for (const joints::Joint& other : joints::registry()) names.push_back(other.name);
     const std::string hint = did_you_mean(type.text, names);
-    source_.fail(type.span, fmt::format("there is no joint of type {}", quote(type.text)), hint.empty() ? "the types are " + kinds() : hint);
+    source_.fail(type.span, fmt::format("there is no joint of type {}", quote(type.text)),
+                 hint.empty() ? "the types are " + kinds() : hint);
   }
   joint.type = kind->name;
   std::array<JointEnd, 2> ends = joint_ends(table, what);
   for (std::size_t k = 0; k < 2; ++k) joint.frames[k] = ends[k].frame;
   if (const Value* axes = table.find("axes")) joint.axes = frame_named(*axes, fmt::format("'axes' of {}", what));
-  joint_points(joint, ends, needed(table, "at", what, "add at = [\"point of A\", \"point of B\"], the points that coincide"), what);
+  joint_points(joint, ends,
+               needed(table, "at", what, "add at = [\"point of A\", \"point of B\"], the points that coincide"), what);
   joint_axes(*kind, ends, table, what);
 
   AtStart start = at_start(joint.constraint);
@@ -71,7 +74,8 @@ void Reader::read_joint(Joint& joint, const Value& table) {
   std::map<std::string, Typed> local{{"rA", ends[0].point}, {"rB", ends[1].point}};
   local["d"] = resolver_.text("rB - rA", local, table.span, vector);
   const auto uses = [&](const std::string& name) {
-    return std::any_of(kind->equations.begin(), kind->equations.end(), [&](const joints::Equation& e) { return e.psi.find(name) != std::string::npos; });
+    return std::any_of(kind->equations.begin(), kind->equations.end(),
+                       [&](const joints::Equation& e) { return e.psi.find(name) != std::string::npos; });
   };
   if (kind->axes != joints::Axes::none) {
     for (std::size_t k = 0; k < 3; ++k) local[std::array{"a", "a1", "a2"}[k]] = ends[0].axis[k];
@@ -86,33 +90,40 @@ void Reader::read_joint(Joint& joint, const Value& table) {
   Constraint& constraint = model_.constraints[joint.constraint];
   for (const joints::Equation& equation : kind->equations) {
     constraint.psi.push_back(resolver_.text(equation.psi, local, joint.span, any).node);
-    const auto part = [&](const std::string& text) { return text.empty() ? no_node : resolver_.text(text, local, joint.span, vector).node; };
+    const auto part = [&](const std::string& text) {
+      return text.empty() ? no_node : resolver_.text(text, local, joint.span, vector).node;
+    };
     joint.force.push_back(part(equation.force));
     joint.moment.push_back(part(equation.moment));
   }
 }
 
 std::array<Reader::JointEnd, 2> Reader::joint_ends(const Value& table, const std::string& what) {
-  const Value& bodies = as(Value::Kind::array, needed(table, "bodies", what, form), fmt::format("'bodies' of {}", what), form);
+  const Value& bodies =
+      as(Value::Kind::array, needed(table, "bodies", what, form), fmt::format("'bodies' of {}", what), form);
   if (bodies.items.size() != 2) {
-    source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()), "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"");
+    source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()),
+                 "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"");
   }
   std::array<JointEnd, 2> ends;
   for (std::size_t k = 0; k < 2; ++k) {
     ends[k].frame = frame_named(bodies.items[k], fmt::format("'bodies' of {}", what));
     ends[k].name = bodies.items[k].text;
     if (ends[k].frame > 0 && frame_sources_[ends[k].frame].place == 0) {
-      source_.fail(bodies.items[k].span, fmt::format("'{}' is a frame, which has no mass and no place", ends[k].name), "name a [[body]] or \"ground\"");
+      source_.fail(bodies.items[k].span, fmt::format("'{}' is a frame, which has no mass and no place", ends[k].name),
+                   "name a [[body]] or \"ground\"");
     }
   }
   if (ends[0].frame == ends[1].frame) {
-    source_.fail(bodies.span, fmt::format("{} is between '{}' and itself", what, ends[0].name),
-                 ends[0].frame == 0 ? "one of the two has to be a [[body]]" : "name two bodies, or a body and \"ground\"");
+    source_.fail(
+        bodies.span, fmt::format("{} is between '{}' and itself", what, ends[0].name),
+        ends[0].frame == 0 ? "one of the two has to be a [[body]]" : "name two bodies, or a body and \"ground\"");
   }
   return ends;
 }
 
-// Coordinates that something else than this constraint binds: their start is not 0 just because the scene does not give it.
+// Coordinates that something else than this constraint binds: their start is not 0 just because the scene does not give
+// it.
 AtStart Reader::at_start(std::uint32_t constraint) {
   std::set<std::uint32_t> open;
   const auto add = [&](NodeId node) {
@@ -143,8 +154,10 @@ Typed Reader::carried(const Typed& direction, std::uint32_t frame, AtStart& star
     result.facts = 0;
     if (result.node == no_node) {
       source_.fail(span, fmt::format("this joint is as placed at the start, and {}", start.obstacle()),
-                   attitude ? "give that coordinate in 'initial' of [scene.default]: a slider and a fixed joint keep the attitude of one body against the other as it is there"
-                            : "give that coordinate in 'initial' of [scene.default], or write two entries, one for each body: at = [\"..\", \"..\"], axis = [\"..\", \"..\"]");
+                   attitude ? "give that coordinate in 'initial' of [scene.default]: a slider and a fixed joint keep "
+                              "the attitude of one body against the other as it is there"
+                            : "give that coordinate in 'initial' of [scene.default], or write two entries, one for "
+                              "each body: at = [\"..\", \"..\"], axis = [\"..\", \"..\"]");
     }
     return result;
   };
@@ -161,8 +174,10 @@ Typed Reader::carried(const Typed& direction, std::uint32_t frame, AtStart& star
 }
 
 void Reader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Value& at, const std::string& what) {
-  const Context ground{fmt::format("'at' of {}", what), on_time, Shape::vector, dimension_of("m"), "a point of the ground is made of parameters, functions of time and t"};
-  const Context body{ground.what, on_motion, Shape::vector, dimension_of("m"), "a point is made of places, axes of bodies and lengths"};
+  const Context ground{fmt::format("'at' of {}", what), on_time, Shape::vector, dimension_of("m"),
+                       "a point of the ground is made of parameters, functions of time and t"};
+  const Context body{ground.what, on_motion, Shape::vector, dimension_of("m"),
+                     "a point is made of places, axes of bodies and lengths"};
   if (at.is(Value::Kind::array) && at.items.size() == 2) {
     for (std::size_t k = 0; k < 2; ++k) {
       const std::uint32_t frame = ends[k].frame;
@@ -170,14 +185,20 @@ void Reader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Val
       joint.points[k] = ends[k].point.node;
       const Node& node = model_.arena[joint.points[k]];
       if (frame == 0 || (node.op == Op::place && node.index == frame_sources_[frame].place)) continue;
-      const std::map<std::string, Typed> local{{"p", ends[k].point}, {"r", resolver_.place(frame_sources_[frame].place, at.items[k].span)}, {"w", resolver_.angular_velocity(frame, at.items[k].span)}};
-      joint.stray[k] = resolver_.text("ddt(p - r) - cross(w, p - r)", local, at.items[k].span, {what, on_anything, Shape::vector, std::nullopt, ""}).node;
+      const std::map<std::string, Typed> local{{"p", ends[k].point},
+                                               {"r", resolver_.place(frame_sources_[frame].place, at.items[k].span)},
+                                               {"w", resolver_.angular_velocity(frame, at.items[k].span)}};
+      joint.stray[k] = resolver_
+                           .text("ddt(p - r) - cross(w, p - r)", local, at.items[k].span,
+                                 {what, on_anything, Shape::vector, std::nullopt, ""})
+                           .node;
     }
     return;
   }
   if (at.is(Value::Kind::array) && at.items.size() != 3) {
-    source_.fail(at.span, fmt::format("'at' of {} has {} entries", what, at.items.size()),
-                 "write at = [\"point of A\", \"point of B\"], or at = \"<vector>\" for a point as placed at the start");
+    source_.fail(
+        at.span, fmt::format("'at' of {} has {} entries", what, at.items.size()),
+        "write at = [\"point of A\", \"point of B\"], or at = \"<vector>\" for a point as placed at the start");
   }
   const Typed point = resolver_.value(at, body);
   AtStart start = at_start(joint.constraint);
@@ -194,11 +215,13 @@ void Reader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Val
 // The axis of one end with two directions across it, all along the axes of that body with constant components.
 std::array<Typed, 3> Reader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
   const std::string of = end.frame == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", end.name);
-  const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Facts{0} : on_motion, Shape::vector, std::nullopt,
-                        "it is fixed in its body: make it of " + of};
+  const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Facts{0} : on_motion, Shape::vector,
+                        std::nullopt, "it is fixed in its body: make it of " + of};
   const Typed axis = resolver_.value(written, context);
   const Typed along = end.frame == 0 ? axis : resolver_.in_axes(axis, end.frame);
-  if (along.node == no_node) source_.fail(written.span, fmt::format("this axis is not fixed in '{}'", end.name), "make it of " + of + " with constant components");
+  if (along.node == no_node)
+    source_.fail(written.span, fmt::format("this axis is not fixed in '{}'", end.name),
+                 "make it of " + of + " with constant components");
   const auto own = [&](std::size_t k) { return resolver_.own_axis(end.frame, k % 3, written.span); };
   if (const Node& node = model_.arena[along.node]; node.op == Op::fixed_basis) {
     const std::size_t k = node.index;
@@ -206,7 +229,8 @@ std::array<Typed, 3> Reader::triad_about(const Value& written, const JointEnd& e
   }
   AtStart values(model_, {});
   const std::array<double, 3> v = values.vector_value(along.node);
-  if (!(length(v) > 0)) source_.fail(written.span, fmt::format("an axis of {} has no direction", what), "make it of " + of);
+  if (!(length(v) > 0))
+    source_.fail(written.span, fmt::format("an axis of {} has no direction", what), "make it of " + of);
   // Across it: with the axis to which it is least inclined.
   std::size_t least = 0;
   for (std::size_t k = 1; k < 3; ++k) {
@@ -214,7 +238,9 @@ std::array<Typed, 3> Reader::triad_about(const Value& written, const JointEnd& e
   }
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   std::map<std::string, Typed> local{{"v", along}, {"c", resolver_.own_axis(0, least, written.span)}};
-  std::array<Typed, 3> triad{resolver_.text("unit(v)", local, written.span, vector), resolver_.text("unit(cross(v, c))", local, written.span, vector), {}};
+  std::array<Typed, 3> triad{resolver_.text("unit(v)", local, written.span, vector),
+                             resolver_.text("unit(cross(v, c))", local, written.span, vector),
+                             {}};
   triad[2] = resolver_.text("cross(a, a1)", {{"a", triad[0]}, {"a1", triad[1]}}, written.span, vector);
   for (Typed& direction : triad) {
     if (end.frame == 0) continue;
@@ -228,10 +254,13 @@ std::array<Typed, 3> Reader::triad_about(const Value& written, const JointEnd& e
   return triad;
 }
 
-void Reader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table, const std::string& what) {
+void Reader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
+                        const std::string& what) {
   const Value* axis = table.find("axis");
   if (kind.axes == joints::Axes::none) {
-    if (axis != nullptr) source_.fail(axis->span, fmt::format("{} is of type {}, which has no axis", what, kind.name), "remove 'axis', or choose another type");
+    if (axis != nullptr)
+      source_.fail(axis->span, fmt::format("{} is of type {}, which has no axis", what, kind.name),
+                   "remove 'axis', or choose another type");
     return;
   }
   needed(table, "axis", what, "add axis = [\"vector of A\", \"vector of B\"], such as [\"A.e3\", \"B.e3\"]");
@@ -244,28 +273,36 @@ void Reader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends
     const std::array<double, 3> u = start.vector_value(a), v = start.vector_value(b);
     const std::array<double, 3> across{u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
     if (length(across) < parallel * length(u) * length(v)) {
-      source_.fail(axis->span, fmt::format("the axes of {} are parallel at the start", what), "the axes of a universal joint are at right angles: give one that is across the other");
+      source_.fail(axis->span, fmt::format("the axes of {} are parallel at the start", what),
+                   "the axes of a universal joint are at right angles: give one that is across the other");
     }
     return;
   }
   if (kind.axes == joints::Axes::cross) {
-    source_.fail(axis->span, fmt::format("{} has two axes, one in each body, at right angles", what), "write axis = [\"A.e1\", \"B.e2\"]");
+    source_.fail(axis->span, fmt::format("{} has two axes, one in each body, at right angles", what),
+                 "write axis = [\"A.e1\", \"B.e2\"]");
   }
   if (axis->is(Value::Kind::array) && axis->items.size() != 3) {
-    source_.fail(axis->span, fmt::format("'axis' of {} has {} entries", what, axis->items.size()),
-                 "write axis = [\"vector of A\", \"vector of B\"], or axis = \"<vector>\" for one as placed at the start");
+    source_.fail(
+        axis->span, fmt::format("'axis' of {} has {} entries", what, axis->items.size()),
+        "write axis = [\"vector of A\", \"vector of B\"], or axis = \"<vector>\" for one as placed at the start");
   }
-  const Typed direction = resolver_.value(*axis, {fmt::format("the axis of {}", what), on_motion, Shape::vector, std::nullopt, "it is made of axes of bodies, E1, E2, E3 and parameters"});
+  const Typed direction =
+      resolver_.value(*axis, {fmt::format("the axis of {}", what), on_motion, Shape::vector, std::nullopt,
+                              "it is made of axes of bodies, E1, E2, E3 and parameters"});
   AtStart start = at_start(scope_.find(table.find("name")->text)->index);
   axis_at_start(direction, ends, start, axis->span, what);
 }
 
 // One axis, as placed at the start, with two directions across it, all fixed in A; the axis fixed in B too.
-void Reader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span, const std::string& what) {
+void Reader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
+                           const std::string& what) {
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   const Typed placed = carried(direction, 0, start, span);
   const std::array<double, 3> v = start.vector_value(placed.node);
-  if (!(length(v) > 0)) source_.fail(span, fmt::format("the axis of {} has no direction at the start", what), "give a vector that is not 0 there");
+  if (!(length(v) > 0))
+    source_.fail(span, fmt::format("the axis of {} has no direction at the start", what),
+                 "give a vector that is not 0 there");
   std::size_t along = 3, least = 0;
   for (std::size_t k = 0; k < 3; ++k) {
     if (std::abs(v[k]) < std::abs(v[least])) least = k;
@@ -277,7 +314,8 @@ void Reader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends
     triad = {basis(along), basis(along + 1), basis(along + 2)};
   } else {
     const std::map<std::string, Typed> local{{"v", placed}, {"c", basis(least)}};
-    triad = {resolver_.text("unit(v)", local, span, vector), resolver_.text("unit(cross(v, c))", local, span, vector), {}};
+    triad = {
+        resolver_.text("unit(v)", local, span, vector), resolver_.text("unit(cross(v, c))", local, span, vector), {}};
     triad[2] = resolver_.text("cross(a, a1)", {{"a", triad[0]}, {"a1", triad[1]}}, span, vector);
   }
   for (std::size_t e = 0; e < 2; ++e) {

@@ -101,20 +101,13 @@ void Reader::read_ranges() {
 
 Typed Reader::define(Symbol& symbol) {
   switch (symbol.kind) {
-    case SymbolKind::parameter:
-      return define_parameter(symbol);
-    case SymbolKind::function:
-      return define_function(symbol);
-    case SymbolKind::input:
-      return define_input(symbol);
-    case SymbolKind::definition:
-      return define_definition(symbol);
-    case SymbolKind::place:
-      return define_place(symbol);
-    case SymbolKind::frame:
-      return define_axes(symbol);
-    default:
-      return Typed{};
+    case SymbolKind::parameter: return define_parameter(symbol);
+    case SymbolKind::function: return define_function(symbol);
+    case SymbolKind::input: return define_input(symbol);
+    case SymbolKind::definition: return define_definition(symbol);
+    case SymbolKind::place: return define_place(symbol);
+    case SymbolKind::frame: return define_axes(symbol);
+    default: return Typed{};
   }
 }
 

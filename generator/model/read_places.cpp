@@ -42,10 +42,12 @@ void Reader::declare_places() {
     }
     if (which == 0) check_keys(*table, {"[[particle]]", {"name", "mass", "position"}, {}});
     if (which == 1) check_keys(*table, {"[[point]]", {"name", "position", "on", "at"}, {}});
-    if (which == 3) check_keys(*table, {"[[body]]", {"name", "mass", "inertia", "position", "rotation", "relative_to"}, {}});
+    if (which == 3)
+      check_keys(*table, {"[[body]]", {"name", "mass", "inertia", "position", "rotation", "relative_to"}, {}});
     if (which == 4) check_keys(*table, {"[[frame]]", {"name", "rotation", "relative_to"}, {}});
     constexpr std::array<const char*, 5> kinds{"particle", "point", "chain", "body", "frame"};
-    const std::string name = text_of_key(*table, "name", fmt::format("this [[{}]]", kinds[static_cast<std::size_t>(which)]));
+    const std::string name =
+        text_of_key(*table, "name", fmt::format("this [[{}]]", kinds[static_cast<std::size_t>(which)]));
     const Span span = table->find("name")->span;
     if (which == 4) {
       declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
@@ -65,8 +67,11 @@ void Reader::declare_coordinates() {
   std::size_t place = 1;
   // Those of a body's rotation follow those of its position; frames come where they stand among the bodies.
   for (std::size_t frame = 1; frame <= frame_sources_.size(); ++frame) {
-    const std::size_t begin = frame < frame_sources_.size() ? frame_sources_[frame].table->begin : source_.text().size();
-    for (; place < place_sources_.size() && (place_sources_[place].chain > 0 || place_sources_[place].table->begin <= begin); ++place) {
+    const std::size_t begin =
+        frame < frame_sources_.size() ? frame_sources_[frame].table->begin : source_.text().size();
+    for (; place < place_sources_.size() &&
+           (place_sources_[place].chain > 0 || place_sources_[place].table->begin <= begin);
+         ++place) {
       if (place_sources_[place].chain == 0) position(*place_sources_[place].table);
     }
     if (frame < frame_sources_.size()) declare_angles(*frame_sources_[frame].table);
@@ -79,8 +84,10 @@ Typed Reader::define_place(Symbol& symbol) {
   if (where.chain > 0) {
     position = chain_position(where);
   } else if (where.body && where.table->find("position") == nullptr) {
-    position = resolver_.meet(resolver_.number(0, symbol.span), symbol.span, Context{"a position", 0, Shape::vector, std::nullopt, ""});
-  } else if (!where.particle && !where.body && (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
+    position = resolver_.meet(resolver_.number(0, symbol.span), symbol.span,
+                              Context{"a position", 0, Shape::vector, std::nullopt, ""});
+  } else if (!where.particle && !where.body &&
+             (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
     position = point_on_body(*where.table, fmt::format("'{}'", symbol.name));
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);

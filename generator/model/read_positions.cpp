@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// position = { SYSTEM = [..], .. }: charts are spelled out through the registry of coordinate systems; `custom` ones are
-// read in read_custom.cpp.
+// position = { SYSTEM = [..], .. }: charts are spelled out through the registry of coordinate systems; `custom` ones
+// are read in read_custom.cpp.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,7 +32,8 @@ void Reader::declare_entry(const Value& entry, std::string_view unit) {
   const Symbol* known = scope_.find(entry.text);
   if (known == nullptr) {
     const Derivative derivative = split_derivative(entry.text);
-    if (is_reserved(entry.text) || (derivative.order > 0 && scope_.find(derivative.base) != nullptr)) return;  // told later
+    if (is_reserved(entry.text) || (derivative.order > 0 && scope_.find(derivative.base) != nullptr))
+      return;  // told later
     declare_coordinate(entry.text, entry.span, nullptr);
     warn_misspelt(entry.text, entry.span);
     known = scope_.find(entry.text);
@@ -124,8 +125,8 @@ Reader::Spelt Reader::spelt_position(const Value& table, const Entry& entry) {
   if (const std::string key(system.constant.name); !key.empty()) {
     const Value& constant = needed(table, key, fmt::format("a position in {} coordinates", system.name),
                                    fmt::format("add {} = \"..\" beside {}", key, system.name));
-    local[key] = resolver_.value(constant, {fmt::format("'{}'", key), on_time, Shape::scalar,
-                                            dimension_of(system.constant.unit), ""});
+    local[key] = resolver_.value(
+        constant, {fmt::format("'{}'", key), on_time, Shape::scalar, dimension_of(system.constant.unit), ""});
   }
   const Context context{"the position", on_motion, Shape::scalar, std::nullopt, ""};
   for (std::size_t k = 0; k < 3; ++k) spelt.x[k] = resolver_.text(system.x[k], local, span, context);
@@ -157,10 +158,12 @@ void Reader::check_independent(const Spelt& spelt, const Entry& entry, Span cons
     some = some || !std::isnan(independence);
   }
   if (!some) return;
-  source_.fail(constant, fmt::format("these {} coordinates are singular everywhere: their basis vectors are dependent", entry.key),
-               entry.key == "custom" ? "x(q) needs a Jacobian determinant that is not zero; check that every coordinate moves "
-                                       "the particle in its own direction"
-                                     : fmt::format("choose another {}", coordinates::find(entry.key)->constant.name));
+  source_.fail(
+      constant,
+      fmt::format("these {} coordinates are singular everywhere: their basis vectors are dependent", entry.key),
+      entry.key == "custom" ? "x(q) needs a Jacobian determinant that is not zero; check that every coordinate moves "
+                              "the particle in its own direction"
+                            : fmt::format("choose another {}", coordinates::find(entry.key)->constant.name));
 }
 
 Typed Reader::chart_position(std::uint32_t place, const Value& table) {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// rolling = { .. } and sliding = { .. }: a body that touches a plane or another body with a point at rest against it, or only touches it.
-// Written out as equations: of rolling the velocities along the two tangents and the position along the normal, eqs. (7.28), (7.38). With
-// friction the one of the position is left, and the law sees to the others.
+// rolling = { .. } and sliding = { .. }: a body that touches a plane or another body with a point at rest against it,
+// or only touches it. Written out as equations: of rolling the velocities along the two tangents and the position along
+// the normal, eqs. (7.28), (7.38). With friction the one of the position is left, and the law sees to the others.
 #include <fmt/format.h>
 
 #include "model/reader.hpp"
@@ -10,7 +10,8 @@ namespace eomgen::model {
 namespace {
 
 constexpr const char* form =
-    "write rolling = { body = \"B\", at = \"<vector>\", on = \"ground\" }, with shape = { sphere = \"R\" } or { disk = \"R\" } instead of 'at' if it is one";
+    "write rolling = { body = \"B\", at = \"<vector>\", on = \"ground\" }, with shape = { sphere = \"R\" } or { disk = "
+    "\"R\" } instead of 'at' if it is one";
 
 }  // namespace
 
@@ -24,7 +25,8 @@ std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
   if (on.is(Value::Kind::text)) {
     if (on.text != "ground") {
       source_.fail(span, fmt::format("there is no ground and no body {}", quote(on.text)),
-                   "write on = \"ground\", the plane E3.r = 0, on = { point = .., normal = .. }, or the name of another [[body]]");
+                   "write on = \"ground\", the plane E3.r = 0, on = { point = .., normal = .. }, or the name of "
+                   "another [[body]]");
     }
     return {{"o", zero}, {"V", zero}, {"n", basis(2)}, {"t1", basis(0)}, {"t2", basis(1)}};
   }
@@ -38,7 +40,8 @@ std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
   };
   const char* moving = "a plane moves by prescription: it is made of parameters, functions of time and t";
   plane["o"] = vector("point", on_time, "m", moving);
-  plane["V"] = vector("velocity", on_motion, "m/s", "the velocity of a plane where it is touched is made of coordinates, functions of time and t");
+  plane["V"] = vector("velocity", on_motion, "m/s",
+                      "the velocity of a plane where it is touched is made of coordinates, functions of time and t");
   needed(on, "normal", "a plane", "add normal = \"E3\", which points to the side of the body");
   const Typed normal = vector("normal", on_time, "", moving);
   const Node& node = model_.arena[normal.node];
@@ -59,21 +62,29 @@ std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
 Typed Reader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
-    source_.fail(table.span, at == nullptr ? "this contact says not where the body is touched" : "this contact has both 'at' and 'shape'", form);
+    source_.fail(
+        table.span,
+        at == nullptr ? "this contact says not where the body is touched" : "this contact has both 'at' and 'shape'",
+        form);
   }
-  const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"), "it is made of axes of the body, angles and lengths"};
+  const Context arm{"the vector to the point of contact", on_motion, Shape::vector, dimension_of("m"),
+                    "it is made of axes of the body, angles and lengths"};
   if (at != nullptr) return resolver_.value(*at, arm);
   as(Value::Kind::table, *shape, "'shape'", "write shape = { sphere = \"R\" } or { disk = \"R\" }");
   check_keys(*shape, {"a shape in contact", {"sphere", "disk"}, {}});
-  if (shape->entries.size() != 1) source_.fail(shape->span, fmt::format("a shape in contact is given in {} ways", shape->entries.size()), "write shape = { sphere = \"R\" } or { disk = \"R\" }");
+  if (shape->entries.size() != 1)
+    source_.fail(shape->span, fmt::format("a shape in contact is given in {} ways", shape->entries.size()),
+                 "write shape = { sphere = \"R\" } or { disk = \"R\" }");
   const Entry& entry = shape->entries[0];
   local["R"] = resolver_.value(entry.value, {"the radius of a contact", 0, Shape::scalar, dimension_of("m"), ""});
-  return resolver_.text(entry.key == "sphere" ? "-R*n" : "-R*(n - dot(n, e3)*e3)/sqrt(1 - dot(n, e3)^2)", local, entry.value.span, arm);
+  return resolver_.text(entry.key == "sphere" ? "-R*n" : "-R*(n - dot(n, e3)*e3)/sqrt(1 - dot(n, e3)^2)", local,
+                        entry.value.span, arm);
 }
 
-// Of a body: its centre of mass x, the velocity v of that, its angular velocity w, its axis e3. Equations are written in these, so that no
-// name of the model can be taken for another.
-void Reader::name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, Typed>& local) {
+// Of a body: its centre of mass x, the velocity v of that, its angular velocity w, its axis e3. Equations are written
+// in these, so that no name of the model can be taken for another.
+void Reader::name_motion(std::uint32_t frame, const std::string& ending, Span span,
+                         std::map<std::string, Typed>& local) {
   const Context vector{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
   const std::map<std::string, Typed> body{{"x", resolver_.place(frame_sources_[frame].place, span)}};
   local["x" + ending] = body.at("x");
@@ -86,7 +97,8 @@ void Reader::name_motion(std::uint32_t frame, const std::string& ending, Span sp
 void Reader::tangent_of_contact(const Value& table, std::map<std::string, Typed>& local) {
   const Value* value = table.find("tangent");
   if (value == nullptr) return;
-  local["a"] = resolver_.value(*value, {"the tangent of a contact", on_motion, Shape::vector, std::nullopt, "it is made of axes, coordinates and t"});
+  local["a"] = resolver_.value(*value, {"the tangent of a contact", on_motion, Shape::vector, std::nullopt,
+                                        "it is made of axes, coordinates and t"});
   const Context direction{"a tangent", on_motion, Shape::vector, std::nullopt, ""};
   local["t1"] = resolver_.text("unit(a - dot(a, n)*n)", local, value->span, direction);
   local["t2"] = resolver_.text("cross(n, t1)", local, value->span, direction);
@@ -117,7 +129,8 @@ void Reader::read_rolling(Constraint& constraint, const Value& table, bool rolli
   check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}, {}});
   const Value& name = needed(table, "body", what, form);
   const std::uint32_t frame = frame_named(name, fmt::format("'body' of {}", what));
-  if (frame == 0 || frame_sources_[frame].place == 0) source_.fail(name.span, fmt::format("{} needs a body, and this has no mass", what), "name a [[body]]");
+  if (frame == 0 || frame_sources_[frame].place == 0)
+    source_.fail(name.span, fmt::format("{} needs a body, and this has no mass", what), "name a [[body]]");
   constraint.touch.emplace();
   constraint.touch->frame = frame;
   constraint.touch->place = frame_sources_[frame].place;
@@ -131,8 +144,10 @@ void Reader::read_rolling(Constraint& constraint, const Value& table, bool rolli
   } else {
     for (const char* key : {"at_b", "shape_b", "normal"}) {
       if (table.find(key) == nullptr) continue;
-      source_.fail(key_span(table, key), fmt::format("'{}' belongs to a contact of two bodies, and this is one with a plane", key),
-                   *key == 'n' ? "write on = { point = \"<vector>\", normal = \"<vector>\" }" : "remove it, or name the other body in 'on'");
+      source_.fail(key_span(table, key),
+                   fmt::format("'{}' belongs to a contact of two bodies, and this is one with a plane", key),
+                   *key == 'n' ? "write on = { point = \"<vector>\", normal = \"<vector>\" }"
+                               : "remove it, or name the other body in 'on'");
     }
     local = plane_of_contact(on);
     name_motion(frame, "", table.span, local);

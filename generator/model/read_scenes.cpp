@@ -28,7 +28,8 @@ void Reader::read_scenes() {
   if (table != nullptr && table->find("default") == nullptr) {
     for (const Entry& entry : table->entries) {
       std::string lowered = entry.key;
-      std::transform(lowered.begin(), lowered.end(), lowered.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+      std::transform(lowered.begin(), lowered.end(), lowered.begin(),
+                     [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
       if (edit_distance(lowered, "default", 1) > 1) continue;
       source_.fail(entry.span, fmt::format("there is no scene 'default', and {} is next to it", quote(entry.key)),
                    "write [scene.default], or add one: it is the scene that runs where none is named");

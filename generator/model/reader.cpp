@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/reader.hpp"
 
-#include "model/declared_order.hpp"
-#include "model/start_time.hpp"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +8,8 @@
 #include <fstream>
 
 #include "model/content_hash.hpp"
+#include "model/declared_order.hpp"
+#include "model/start_time.hpp"
 #include "model/units.hpp"
 
 namespace eomgen::model {
@@ -54,8 +53,9 @@ Reader::Reader(const Source& source, const Value& root)
 
 Model Reader::read() {
   check_keys(root_, {"a model",
-                     {"format", "title", "notes", "parameters", "functions", "inputs", "coordinates", "definitions",
-                      "energy", "particle", "body", "frame", "point", "chain", "force", "constraint", "joint", "event", "draw", "scene"},
+                     {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
+                      "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
+                      "force",       "constraint", "joint",    "event",      "draw",      "scene"},
                      {}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {

@@ -32,12 +32,12 @@ struct Keys {
 };
 
 class Reader {
-public:
+ public:
   Reader(const Source& source, const Value& root);
   Model read();
   bool units_stated() const { return resolver_.units_stated(); }
 
-private:
+ private:
   // keys.cpp
   void check_keys(const Value& table, const Keys& keys) const;
   const Value& needed(const Value& table, std::string_view key, const std::string& what,
@@ -89,28 +89,31 @@ private:
   };
   void declare_places();
   // read_bodies.cpp: [[body]] [[frame]]; read_inertia.cpp
-  /// A direction that is fixed in a frame and in space: components of its unit vector along the axes of the frame, and in proportion
-  /// to them numbers, where it is made of numbers.
+  /// A direction that is fixed in a frame and in space: components of its unit vector along the axes of the frame, and
+  /// in proportion to them numbers, where it is made of numbers.
   struct FixedDirection {
     std::array<Typed, 3> unit;
     std::optional<std::array<cln::cl_RA, 3>> numbers;
   };
   struct FrameSource {
     const Value* table = nullptr;
-    std::uint32_t place = 0;  // of a body
-    bool still = false;       // it keeps its attitude; the ground does
+    std::uint32_t place = 0;                  // of a body
+    bool still = false;                       // it keeps its attitude; the ground does
     std::optional<FixedDirection> axis = {};  // about which it turns, if that is a fixed one
-    bool upright = false;                     // it turns about that axis alone, from E1, E2, E3 on: the axis has the same components in space
+    bool upright =
+        false;  // it turns about that axis alone, from E1, E2, E3 on: the axis has the same components in space
   };
   void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
   void declare_angles(const Value& table);
   Typed define_axes(Symbol& symbol);
   const Entry& rotation_entry(const Value& rotation) const;
   void read_rotation(Frame& frame, std::uint32_t index, const Value& rotation);
-  std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry, const Value& rotation);
+  std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry,
+                                             const Value& rotation);
   std::optional<std::array<cln::cl_RA, 3>> numbers_of(NodeId vector) const;
   void turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local);
-  void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local, Span span);
+  void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local,
+                 Span span);
   std::uint32_t frame_named(const Value& value, const std::string& what);
   void declare_units();
   void read_units();
@@ -195,9 +198,11 @@ private:
   void read_joint(Joint& joint, const Value& table);
   std::array<JointEnd, 2> joint_ends(const Value& table, const std::string& what);
   void joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Value& at, const std::string& what);
-  void joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table, const std::string& what);
+  void joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
+                  const std::string& what);
   std::array<Typed, 3> triad_about(const Value& axis, const JointEnd& end, const std::string& what);
-  void axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span, const std::string& what);
+  void axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
+                     const std::string& what);
   AtStart at_start(std::uint32_t constraint);
   Typed carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude = false);
 

@@ -46,15 +46,19 @@ Typed Resolver::in_axes(const Typed& vector, std::uint32_t frame) {
     case Op::axis:
       if (node.index != frame || node.order / 3u + 1 != model_.frames[frame].stages.size()) return none;
       return axis(0, 0, node.order % 3, node.span);
-    case Op::add: case Op::subtract: case Op::cross: {
+    case Op::add:
+    case Op::subtract:
+    case Op::cross: {
       const Typed a = in_axes(part(0), frame), b = in_axes(part(1), frame);
       return a.node == no_node || b.node == no_node ? none : make(node.op, true, {a, b}, node.span);
     }
-    case Op::negate: case Op::unit: {
+    case Op::negate:
+    case Op::unit: {
       const Typed a = in_axes(part(0), frame);
       return a.node == no_node ? none : make(node.op, true, {a}, node.span);
     }
-    case Op::multiply: case Op::divide: {
+    case Op::multiply:
+    case Op::divide: {
       const std::size_t v = part(0).vector ? 0 : 1;
       const Typed factor = part(1 - v), a = in_axes(part(v), frame);
       if (a.node == no_node || !coordinates_in(factor.node).empty()) return none;

@@ -31,10 +31,11 @@ Typed Resolver::call(const Syntax& syntax, const SyntaxNode& node) {
   const std::string hint = did_you_mean(name, function_names());
   const bool value = scope_.find(name) != nullptr;
   source_.fail(node.span, fmt::format("there is no function {}", quote(name)),
-               value          ? fmt::format("'{}' is a name: write {}*(...) for a product", name, name)
-               : hint.empty() ? "the functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs "
-                                "sign min max, if, ddt, diff, integral, dot, cross, norm, unit, position, velocity, acceleration"
-                              : hint);
+               value ? fmt::format("'{}' is a name: write {}*(...) for a product", name, name)
+               : hint.empty()
+                   ? "the functions are sin cos tan asin acos atan atan2 sinh cosh tanh exp log sqrt abs "
+                     "sign min max, if, ddt, diff, integral, dot, cross, norm, unit, position, velocity, acceleration"
+                   : hint);
 }
 
 Typed Resolver::scalar_call(const Syntax& syntax, const SyntaxNode& node, const FunctionName& function) {
@@ -154,7 +155,8 @@ Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
   const SyntaxNode& of = syntax.nodes[node.children[0]];
   Symbol* const found = of.kind == SyntaxKind::name && of.parts.size() == 1 ? scope_.find(of.parts[0]) : nullptr;
   if (found == nullptr || found->kind != SymbolKind::coordinate) {
-    source_.fail(of.span, "initial() takes a coordinate", "write initial(q) with the name of a coordinate of the model");
+    source_.fail(of.span, "initial() takes a coordinate",
+                 "write initial(q) with the name of a coordinate of the model");
   }
   symbol(*found, of.span);
   const std::uint32_t coordinate = found->index;
@@ -164,7 +166,8 @@ Typed Resolver::initial(const Syntax& syntax, const SyntaxNode& node) {
   if (index == model_.parameters.size()) {
     Parameter start;
     start.start_of = coordinate;
-    start.name = "initial_" + model_.coordinates[coordinate].name;  // made unlike any other name at the end (start_time.hpp)
+    start.name =
+        "initial_" + model_.coordinates[coordinate].name;  // made unlike any other name at the end (start_time.hpp)
     start.value = number(0, node.span).node;
     start.used = true;
     start.span = node.span;
@@ -258,7 +261,8 @@ Typed Resolver::omega_call(const Syntax& syntax, const SyntaxNode& node) {
                        : nullptr;
   if (argument.kind == SyntaxKind::name && symbol == nullptr) unknown_name(argument);
   if (symbol == nullptr || symbol->frame == 0) {
-    source_.fail(argument.span, "omega() takes the name of a body or frame", "write omega(B) with a [[body]] or [[frame]]");
+    source_.fail(argument.span, "omega() takes the name of a body or frame",
+                 "write omega(B) with a [[body]] or [[frame]]");
   }
   symbol->used = true;
   const Typed result = angular_velocity(symbol->frame, node.span);

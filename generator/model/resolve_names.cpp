@@ -17,14 +17,10 @@ Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
   const SyntaxNode& node = syntax.nodes[id];
   const auto child = [&](std::size_t k) { return this->node(syntax, node.children[k]); };
   switch (node.kind) {
-    case SyntaxKind::number:
-      return number_node(node);
-    case SyntaxKind::name:
-      return name(node);
-    case SyntaxKind::call:
-      return call(syntax, node);
-    case SyntaxKind::negate:
-      return negate(child(0), node.span);
+    case SyntaxKind::number: return number_node(node);
+    case SyntaxKind::name: return name(node);
+    case SyntaxKind::call: return call(syntax, node);
+    case SyntaxKind::negate: return negate(child(0), node.span);
     case SyntaxKind::add:
     case SyntaxKind::subtract: {
       const Typed a = child(0);
@@ -42,8 +38,7 @@ Typed Resolver::node(const Syntax& syntax, std::uint32_t id) {
       const Typed a = child(0);
       return power(a, child(1), node.span);
     }
-    default:
-      source_.fail(node.span, "a comparison stands where a value is asked", "write if(a < b, x, y)");
+    default: source_.fail(node.span, "a comparison stands where a value is asked", "write if(a < b, x, y)");
   }
 }
 
@@ -83,12 +78,14 @@ Typed Resolver::frame_part(const SyntaxNode& node, const Symbol& symbol) {
     const std::size_t stages = model_.frames[symbol.frame].stages.size();
     if (node.primes >= stages) {
       source_.fail(node.span, fmt::format("'{}' has no axis '{}'", symbol.name, written),
-                   stages > 1 ? "one prime stands for the axes after the first of its angles, two for those after the second"
-                              : "primes are for the axes on the way of Euler angles");
+                   stages > 1
+                       ? "one prime stands for the axes after the first of its angles, two for those after the second"
+                       : "primes are for the axes on the way of Euler angles");
     }
     if (node.primes > 0) result = this->axis(symbol.frame, node.primes - 1, k, node.span);
   } else {
-    source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)), "its parts are e1, e2, e3 and omega");
+    source_.fail(node.span, fmt::format("'{}' has no part {}", symbol.name, quote(part)),
+                 "its parts are e1, e2, e3 and omega");
   }
   allow(result.facts, node.span, fmt::format("'{}'", written));
   return result;
@@ -106,9 +103,12 @@ Typed Resolver::reaction(const SyntaxNode& node) {
   allow(on_reaction, node.span, fmt::format("'{}'", written));
   const std::size_t count = model_.constraints[symbol->index].reactions();
   const std::string part = node.parts.size() == 3 ? node.parts[2] : "";
-  const std::size_t k = part.size() == 1 && part[0] > '0' && part[0] <= '9' ? static_cast<std::size_t>(part[0] - '0') : 0;
+  const std::size_t k =
+      part.size() == 1 && part[0] > '0' && part[0] <= '9' ? static_cast<std::size_t>(part[0] - '0') : 0;
   if (count > 1 ? k < 1 || k > count : !part.empty()) {
-    source_.fail(node.span, fmt::format("{} is no constraint force: '{}' has {} equation{}", quote(written), symbol->name, count, count > 1 ? "s" : ""),
+    source_.fail(node.span,
+                 fmt::format("{} is no constraint force: '{}' has {} equation{}", quote(written), symbol->name, count,
+                             count > 1 ? "s" : ""),
                  count > 1 ? fmt::format("write reaction.{0}.1 to reaction.{0}.{1}", symbol->name, count)
                            : fmt::format("write reaction.{}", symbol->name));
   }

@@ -12,13 +12,13 @@ namespace {
 // Sets a member for the time of one call, also when the call throws.
 template <class T>
 class Hold {
-public:
+ public:
   Hold(T& member, T value) : member_(member), before_(member) { member_ = value; }
   ~Hold() { member_ = before_; }
   Hold(const Hold&) = delete;
   Hold& operator=(const Hold&) = delete;
 
-private:
+ private:
   T& member_;
   T before_;
 };
@@ -54,8 +54,7 @@ Typed Resolver::value_with(const Value& value, const std::map<std::string, Typed
       }
       return meet(number(exact.value, value.span), value.span, context);
     }
-    case Value::Kind::text:
-      return syntax(parse_quantity(text_in(source_, value)), context);
+    case Value::Kind::text: return syntax(parse_quantity(text_in(source_, value)), context);
     case Value::Kind::array: {
       if (context.shape == Shape::scalar || value.items.size() != 3) {
         source_.fail(value.span,
@@ -292,35 +291,22 @@ CoordinateSet Resolver::coordinates_in(NodeId root) {
     std::uint8_t inner = shift;
     NodeId reference = no_node;
     switch (node.op) {
-      case Op::coordinate:
-        insert({node.index, node.order}, shift);
-        break;
-      case Op::total_derivative:
-        inner = 1;
-        break;
-      case Op::definition:
-        reference = model_.definitions[node.index].is;
-        break;
+      case Op::coordinate: insert({node.index, node.order}, shift); break;
+      case Op::total_derivative: inner = 1; break;
+      case Op::definition: reference = model_.definitions[node.index].is; break;
       case Op::angular_velocity:
         for (const NodeId e : model_.frames[node.index].stages.back().e) {
           for (const auto& coordinate : coordinates_of(e)) insert(coordinate, static_cast<std::uint8_t>(shift + 1));
         }
         break;
-      case Op::axis:
-        reference = model_.frames[node.index].stages[node.order / 3].e[node.order % 3];
-        break;
+      case Op::axis: reference = model_.frames[node.index].stages[node.order / 3].e[node.order % 3]; break;
       case Op::place_velocity:
-      case Op::place_acceleration:
-        inner = node.op == Op::place_velocity ? 1 : 2;
-        [[fallthrough]];
+      case Op::place_acceleration: inner = node.op == Op::place_velocity ? 1 : 2; [[fallthrough]];
       case Op::place:
       case Op::unit_basis:
       case Op::covariant_basis:
-      case Op::contravariant_basis:
-        reference = model_.places[node.index].position;
-        break;
-      default:
-        break;
+      case Op::contravariant_basis: reference = model_.places[node.index].position; break;
+      default: break;
     }
     inner = static_cast<std::uint8_t>(
         std::min(2, node.op == Op::total_derivative ? shift + inner : std::max(shift, inner)));

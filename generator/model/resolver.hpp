@@ -41,7 +41,7 @@ struct Context {
 };
 
 class Resolver {
-public:
+ public:
   /// Reads the declaration of a symbol that is needed now (the reader's business).
   using Definer = std::function<Typed(Symbol&)>;
 
@@ -95,7 +95,7 @@ public:
   bool units_stated() const { return units_stated_; }
   void warn(Span span, std::string message, std::string remedy);
 
-private:
+ private:
   Typed syntax(const Syntax& syntax, const Context& context);
   Typed node(const Syntax& syntax, std::uint32_t id);
   Typed number_node(const SyntaxNode& node);

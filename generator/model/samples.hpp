@@ -11,7 +11,7 @@
 namespace eomgen::model {
 
 class Samples {
-public:
+ public:
   explicit Samples(const Model& model) : model_(model) {}
 
   /// Another point: every coordinate within its range (between -1.5 and 1.5 where there is none); the same sequence in
@@ -25,7 +25,7 @@ public:
   /// det(a_i . a_k) of the tangents dx/dq_i at this point, each scaled to unit length: 0 where they are dependent.
   double independence(const std::array<NodeId, 3>& x, const std::vector<std::uint32_t>& coordinates);
 
-private:
+ private:
   double fresh(const Node& node);
   double call(const Node& node);
   double random();

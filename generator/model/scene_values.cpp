@@ -10,8 +10,9 @@
 namespace eomgen::model {
 namespace {
 
-constexpr std::array<std::string_view, 14> solvers{"auto",  "rk4",      "dopri5", "tsit5",        "dop853",       "radau5", "radau",
-                                                   "rodas", "midpoint", "ggl",    "taylor", "variational2", "variational4", "variational6"};
+constexpr std::array<std::string_view, 14> solvers{"auto",   "rk4",          "dopri5",       "tsit5",       "dop853",
+                                                   "radau5", "radau",        "rodas",        "midpoint",    "ggl",
+                                                   "taylor", "variational2", "variational4", "variational6"};
 constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
 
 std::vector<std::string> split_at_dots(const std::string& text) {
@@ -70,7 +71,8 @@ void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& en
       input.signal = read_input_table(entry->value, *symbol);
     } else {
       const Context context{fmt::format("the input '{}'", entry->key), on_time, Shape::scalar, symbol->typed.dimension,
-                            "a scene gives an input as a function of t and parameters, or as a table; what depends on the state is a [[force]], or a "
+                            "a scene gives an input as a function of t and parameters, or as a table; what depends on "
+                            "the state is a [[force]], or a "
                             "controller's, which hands u to the emitted code at every step (docs/linking.md)"};
       input.signal = resolver_.value(entry->value, context).node;
     }
@@ -161,12 +163,13 @@ void Reader::check_output(const Value& value) {
       if (count > 1 && parts[2].size() == 1 && parts[2][0] >= '1' &&
           static_cast<std::size_t>(parts[2][0] - '0') <= count)
         return;
-      source_.fail(
-          value.span, model_.constraints[constraint->index].joint
-              ? fmt::format("the joint '{}' has no reaction {}", parts[1], quote(parts[2]))
-              : fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
-          count == 1 ? fmt::format("write reaction.{}", parts[1])
-                     : fmt::format("write reaction.{0} or reaction.{0}.1 to reaction.{0}.{1}", parts[1], count));
+      source_.fail(value.span,
+                   model_.constraints[constraint->index].joint
+                       ? fmt::format("the joint '{}' has no reaction {}", parts[1], quote(parts[2]))
+                       : fmt::format("the constraint '{}' has {} equation{}", parts[1], count, count == 1 ? "" : "s"),
+                   count == 1
+                       ? fmt::format("write reaction.{}", parts[1])
+                       : fmt::format("write reaction.{0} or reaction.{0}.1 to reaction.{0}.{1}", parts[1], count));
     }
   }
   for (const std::string& name : scope_.names(SymbolKind::constraint)) candidates.push_back("reaction." + name);

@@ -7,26 +7,16 @@ namespace eomgen::model {
 
 const char* kind_name(SymbolKind kind) {
   switch (kind) {
-    case SymbolKind::parameter:
-      return "a parameter";
-    case SymbolKind::function:
-      return "a function of time";
-    case SymbolKind::input:
-      return "an input";
-    case SymbolKind::coordinate:
-      return "a coordinate";
-    case SymbolKind::definition:
-      return "a definition";
-    case SymbolKind::place:
-      return "a particle or point";
-    case SymbolKind::frame:
-      return "a frame";
-    case SymbolKind::constraint:
-      return "a constraint";
-    case SymbolKind::force:
-      return "a force";
-    case SymbolKind::event:
-      return "an event";
+    case SymbolKind::parameter: return "a parameter";
+    case SymbolKind::function: return "a function of time";
+    case SymbolKind::input: return "an input";
+    case SymbolKind::coordinate: return "a coordinate";
+    case SymbolKind::definition: return "a definition";
+    case SymbolKind::place: return "a particle or point";
+    case SymbolKind::frame: return "a frame";
+    case SymbolKind::constraint: return "a constraint";
+    case SymbolKind::force: return "a force";
+    case SymbolKind::event: return "an event";
   }
   return "a name";
 }

@@ -48,7 +48,7 @@ struct Symbol {
 };
 
 class Scope {
-public:
+ public:
   explicit Scope(const Source& source) : source_(source) {}
   /// Throws Error if the name is illegal or taken.
   Symbol& declare(SymbolKind kind, const std::string& name, Span span, const Entry* entry = nullptr);
@@ -61,7 +61,7 @@ public:
   /// All symbols of one kind in the order of declaration.
   std::vector<Symbol*> all(SymbolKind kind);
 
-private:
+ private:
   const Source& source_;
   std::map<std::string, Symbol, std::less<>> symbols_;
   std::vector<std::string> order_;

@@ -20,7 +20,7 @@ inline constexpr std::size_t max_line_bytes = 200000;
 inline constexpr std::size_t max_toml_depth = 24;
 
 class Source {
-public:
+ public:
   /// Throws Error if the text is too large, is not UTF-8, holds control characters, or is nested too deeply.
   Source(std::string file, std::string text);
 
@@ -35,7 +35,7 @@ public:
   Where where(const Span& span) const;
   [[noreturn]] void fail(const Span& span, std::string what, std::string remedy) const;
 
-private:
+ private:
   void check_bytes();
   void check_nesting() const;
 

@@ -13,8 +13,8 @@ std::string free_name(const Model& model, std::string name) {
     return std::any_of(list.begin(), list.end(), [&](const auto& item) { return item.name == name; });
   };
   while (taken(model.parameters) || taken(model.functions) || taken(model.inputs) || taken(model.coordinates) ||
-         taken(model.definitions) || taken(model.places) || taken(model.frames) || taken(model.constraints) || taken(model.forces) ||
-         taken(model.events)) {
+         taken(model.definitions) || taken(model.places) || taken(model.frames) || taken(model.constraints) ||
+         taken(model.forces) || taken(model.events)) {
     name += '_';
   }
   return name;

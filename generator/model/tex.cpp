@@ -12,20 +12,24 @@ namespace eomgen::model {
 namespace {
 
 constexpr std::string_view symbols[] = {
-    "alpha",    "beta",   "gamma",   "delta",    "epsilon",   "varepsilon", "zeta",  "eta",   "theta", "vartheta", "iota",  "kappa", "lambda",
-    "mu",       "nu",     "xi",      "pi",       "varpi",     "rho",        "varrho", "sigma", "varsigma", "tau",   "upsilon", "phi",  "varphi",
-    "chi",      "psi",    "omega",   "Gamma",    "Delta",     "Theta",      "Lambda", "Xi",   "Pi",    "Sigma",    "Upsilon", "Phi",  "Psi",
-    "Omega",    "ell",    "hbar",    "prime",    "star",      "ast",        "circ",  "parallel", "perp", "infty",  "varkappa"};
+    "alpha", "beta",     "gamma",  "delta",   "epsilon", "varepsilon", "zeta",     "eta",   "theta", "vartheta",
+    "iota",  "kappa",    "lambda", "mu",      "nu",      "xi",         "pi",       "varpi", "rho",   "varrho",
+    "sigma", "varsigma", "tau",    "upsilon", "phi",     "varphi",     "chi",      "psi",   "omega", "Gamma",
+    "Delta", "Theta",    "Lambda", "Xi",      "Pi",      "Sigma",      "Upsilon",  "Phi",   "Psi",   "Omega",
+    "ell",   "hbar",     "prime",  "star",    "ast",     "circ",       "parallel", "perp",  "infty", "varkappa"};
 constexpr std::string_view accents[] = {"bar",   "hat",   "tilde",    "vec",       "check",   "breve",
-                                                   "acute", "grave", "overline", "underline", "widehat", "widetilde"};
-constexpr std::string_view styles[] = {"mathrm", "mathbf", "mathit", "mathsf", "mathcal", "mathbb", "mathfrak", "boldsymbol"};
+                                        "acute", "grave", "overline", "underline", "widehat", "widetilde"};
+constexpr std::string_view styles[] = {"mathrm",  "mathbf", "mathit",   "mathsf",
+                                       "mathcal", "mathbb", "mathfrak", "boldsymbol"};
 
-bool among(std::string_view word, std::span<const std::string_view> list) { return std::find(list.begin(), list.end(), word) != list.end(); }
+bool among(std::string_view word, std::span<const std::string_view> list) {
+  return std::find(list.begin(), list.end(), word) != list.end();
+}
 
 bool is_word_character(char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0; }
 
-/// list = { atom { "_" argument | "^" argument | "'" } }, at most one subscript and one superscript each, as TeX has it;
-/// atom = character | "{" list "}" | symbol | accent argument | style argument | \text{words}.
+/// list = { atom { "_" argument | "^" argument | "'" } }, at most one subscript and one superscript each, as TeX has
+/// it; atom = character | "{" list "}" | symbol | accent argument | style argument | \text{words}.
 class TexReader {
  public:
   explicit TexReader(std::string_view tex) : tex_(tex) {}
@@ -48,7 +52,9 @@ class TexReader {
       const char c = tex_[at_];
       if (c == '_' || c == '^') {
         bool& taken = c == '_' ? below : above;
-        if (taken) return fail(fmt::format("there are two {}scripts: LaTeX wants braces, as in L_{{1,2}}", c == '_' ? "sub" : "super"));
+        if (taken)
+          return fail(
+              fmt::format("there are two {}scripts: LaTeX wants braces, as in L_{{1,2}}", c == '_' ? "sub" : "super"));
         taken = true;
         ++at_;
         argument(depth, true);
@@ -89,10 +95,12 @@ class TexReader {
       const std::string_view word = command();
       if (among(word, symbols)) return;
       at_ = before;
-      if (!problem_) fail(fmt::format("{} needs braces there: {{{}..}}", quote("\\" + std::string(word)), "\\" + std::string(word)));
+      if (!problem_)
+        fail(fmt::format("{} needs braces there: {{{}..}}", quote("\\" + std::string(word)), "\\" + std::string(word)));
       return;
     }
-    if (!is_word_character(tex_[at_]) && tex_[at_] != '*' && tex_[at_] != '+' && tex_[at_] != '-') return fail(fmt::format("the character {} is not allowed there", quote(tex_.substr(at_, 1))));
+    if (!is_word_character(tex_[at_]) && tex_[at_] != '*' && tex_[at_] != '+' && tex_[at_] != '-')
+      return fail(fmt::format("the character {} is not allowed there", quote(tex_.substr(at_, 1))));
     ++at_;
   }
 
@@ -110,7 +118,8 @@ class TexReader {
     while (end < tex_.size() && std::isalpha(static_cast<unsigned char>(tex_[end])) != 0) ++end;
     const std::string_view word = tex_.substr(at_ + 1, end - at_ - 1);
     const bool known = among(word, symbols) || among(word, accents) || among(word, styles) || word == "text";
-    if (!known) fail(fmt::format("the command {} is not allowed", quote(tex_.substr(at_, std::max<std::size_t>(2, end - at_)))));
+    if (!known)
+      fail(fmt::format("the command {} is not allowed", quote(tex_.substr(at_, std::max<std::size_t>(2, end - at_)))));
     at_ = end;
     return word;
   }
@@ -132,7 +141,8 @@ class TexReader {
     if (!more() || tex_[at_] != '{') return fail("\\text wants braces");
     for (++at_; more() && tex_[at_] != '}'; ++at_) {
       const char c = tex_[at_];
-      if (!is_word_character(c) && std::string_view(" ,'*+-").find(c) == std::string_view::npos) return fail(fmt::format("the character {} is not allowed in \\text", quote(tex_.substr(at_, 1))));
+      if (!is_word_character(c) && std::string_view(" ,'*+-").find(c) == std::string_view::npos)
+        return fail(fmt::format("the character {} is not allowed in \\text", quote(tex_.substr(at_, 1))));
     }
     if (at_ >= tex_.size()) return fail("a '{' is not closed");
     ++at_;

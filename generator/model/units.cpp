@@ -95,9 +95,10 @@ std::optional<MeasuredUnit> single_unit(std::string_view name) {
   return std::nullopt;
 }
 
-// unit = factor { ("*"|"/") factor }, factor = (name | "(" unit ")") [ "^" ( ["-"|"+"] digit | "(" ["-"] digit "/" digit ")" ) ]
+// unit = factor { ("*"|"/") factor }, factor = (name | "(" unit ")") [ "^" ( ["-"|"+"] digit | "(" ["-"] digit "/"
+// digit ")" ) ]
 class UnitParser {
-public:
+ public:
   explicit UnitParser(std::string_view text) : text_(text) {}
 
   std::optional<MeasuredUnit> all() {
@@ -107,7 +108,7 @@ public:
     return result;
   }
 
-private:
+ private:
   std::optional<MeasuredUnit> unit(int depth) {
     auto result = factor(depth);
     while (result && at_ < text_.size() && (text_[at_] == '*' || text_[at_] == '/')) {
@@ -179,12 +180,14 @@ std::optional<std::string> completed_unit(std::string_view text) {
   std::string result;
   for (std::size_t k = 0; k < text.size(); ++k) {
     const bool after_letter = k > 0 && std::isalpha(static_cast<unsigned char>(text[k - 1])) != 0;
-    const bool raised_sign = text[k] == '-' && k + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[k + 1])) != 0;
+    const bool raised_sign =
+        text[k] == '-' && k + 1 < text.size() && std::isdigit(static_cast<unsigned char>(text[k + 1])) != 0;
     if (after_letter && (std::isdigit(static_cast<unsigned char>(text[k])) != 0 || raised_sign)) result += '^';
     if (text.substr(k).starts_with("**")) {
       result += '^';
       ++k;
-    } else if (text.substr(k).starts_with("\xc2\xb2") || text.substr(k).starts_with("\xc2\xb3")) {  // superscript 2 and 3
+    } else if (text.substr(k).starts_with("\xc2\xb2") ||
+               text.substr(k).starts_with("\xc2\xb3")) {  // superscript 2 and 3
       result += text[++k] == '\xb2' ? "^2" : "^3";
     } else if (text.substr(k).starts_with("\xc2\xb7")) {  // a dot in the middle
       result += '*';

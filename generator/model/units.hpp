@@ -20,7 +20,8 @@ struct MeasuredUnit {
 
 /// "m/s^2", "N*m", "1/s", "kg/(m*s)", "deg"; nothing if it is not made of known units.
 std::optional<MeasuredUnit> parse_unit(std::string_view text);
-/// What was meant by "m/s2", "m/s**2", "kg.m": the same with the signs that are missing; nothing if that is no unit either.
+/// What was meant by "m/s2", "m/s**2", "kg.m": the same with the signs that are missing; nothing if that is no unit
+/// either.
 std::optional<std::string> completed_unit(std::string_view text);
 /// The units near to a misspelt one, for did-you-mean.
 std::string unit_hint(std::string_view text);

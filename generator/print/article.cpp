@@ -17,30 +17,40 @@ bool Article::builds_in() const {
   return std::any_of(two.constraints.begin(), two.constraints.end(), fixes);
 }
 
-std::string Article::name_of(std::uint32_t coordinate, std::uint8_t order) const { return out.math(reading::symbol({SymbolKind::coordinate, coordinate, order})); }
+std::string Article::name_of(std::uint32_t coordinate, std::uint8_t order) const {
+  return out.math(reading::symbol({SymbolKind::coordinate, coordinate, order}));
+}
 
 std::vector<Formula> Article::formulas(const std::vector<Statement>& statements) {
   std::vector<Formula> result;
   for (const Statement& s : statements) {
-    if (s.left_out.empty()) result.push_back(s.formula);
-    else left_out.push_back({s.name + (s.role.empty() ? "" : ", " + s.role), s.left_out});
+    if (s.left_out.empty())
+      result.push_back(s.formula);
+    else
+      left_out.push_back({s.name + (s.role.empty() ? "" : ", " + s.role), s.left_out});
   }
   return result;
 }
 
 namespace {
 
-constexpr const char* joint_letters = "Of a joint, a is its axis in the first body, a1 and a2 are directions across it, b is its axis in the second body; b2, g1, g2 and g3 are fixed in the second body, and at the start what a2 and the axes f1, f2 and f3 of the first body are.";
+constexpr const char* joint_letters =
+    "Of a joint, a is its axis in the first body, a1 and a2 are directions across it, b is its axis in the second "
+    "body; b2, g1, g2 and g3 are fixed in the second body, and at the start what a2 and the axes f1, f2 and f3 of the "
+    "first body are.";
 constexpr std::size_t longest_position = 12;  // terms
-constexpr std::size_t longest_value = 30;      // printed characters on a line of a table
+constexpr std::size_t longest_value = 30;     // printed characters on a line of a table
 
 bool uses_amssymb(const model::Model& model) {
-  const auto in = [](const auto& list) { return std::any_of(list.begin(), list.end(), [](const auto& named) { return model::needs_amssymb(named.tex); }); };
+  const auto in = [](const auto& list) {
+    return std::any_of(list.begin(), list.end(), [](const auto& named) { return model::needs_amssymb(named.tex); });
+  };
   return in(model.parameters) || in(model.inputs) || in(model.functions) || in(model.coordinates);
 }
 
 std::string number_word(std::size_t n, const char* one, const char* many) {
-  static constexpr std::array<const char*, 10> small{"no", "one", "two", "three", "four", "five", "six", "seven", "eight", "nine"};
+  static constexpr std::array<const char*, 10> small{"no",   "one", "two",   "three", "four",
+                                                     "five", "six", "seven", "eight", "nine"};
   return (n < small.size() ? small[n] : std::to_string(n)) + " " + (n == 1 ? one : many);
 }
 
@@ -53,7 +63,8 @@ class System {
   void write() {
     counts();
     for (const mechanics::PointMass& mass : m_.masses) describe(mass);
-    if (model_.energy.kinetic != model::no_node) out_.paragraph("The kinetic energy is given as an expression of coordinates and rates.");
+    if (model_.energy.kinetic != model::no_node)
+      out_.paragraph("The kinetic energy is given as an expression of coordinates and rates.");
     parameters();
     inputs();
     forces();
@@ -68,9 +79,13 @@ class System {
     std::size_t constraints = 0;
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) constraints += m_.holds(k) ? 1 : 0;
     const long freedom = m_.freedom();
-    std::string text = parts.empty() ? "The system is described" : "The system consists of " + enumeration(parts) + ". It is described";
-    text += " by " + number_word(model_.coordinates.size(), "coordinate", "coordinates") + " and subject to " + number_word(constraints, "constraint equation", "constraint equations");
-    text += freedom > 0 ? ", which leaves " + number_word(static_cast<std::size_t>(freedom), "degree of freedom.", "degrees of freedom.") : ", which prescribes all of its motion.";
+    std::string text = parts.empty() ? "The system is described"
+                                     : "The system consists of " + enumeration(parts) + ". It is described";
+    text += " by " + number_word(model_.coordinates.size(), "coordinate", "coordinates") + " and subject to " +
+            number_word(constraints, "constraint equation", "constraint equations");
+    text += freedom > 0 ? ", which leaves " + number_word(static_cast<std::size_t>(freedom), "degree of freedom.",
+                                                          "degrees of freedom.")
+                        : ", which prescribes all of its motion.";
     out_.paragraph(text);
   }
 
@@ -89,20 +104,27 @@ class System {
   }
 
   void describe(const mechanics::PointMass& mass) {
-    const auto body = std::find_if(model_.bodies.begin(), model_.bodies.end(), [&](const model::Body& b) { return b.place == mass.place; });
+    const auto body = std::find_if(model_.bodies.begin(), model_.bodies.end(),
+                                   [&](const model::Body& b) { return b.place == mass.place; });
     const bool is_body = body != model_.bodies.end();
     const model::Place& place = model_.places[mass.place];
     std::string text = bold(mass.name) + (is_body ? ": a rigid body" : ": a particle");
     if (const auto m = read_short(mass.mass)) text += " of mass " + out_.math(reading::arrange(*m));
     if (place.chart) {
       std::vector<model::NodeId> slots(place.chart->entries.begin(), place.chart->entries.end());
-      const std::string of = entries(slots), from = place.from == 0 ? "" : " from " + bold(model_.places[place.from].name);
-      if (!of.empty()) text += (is_body ? ", its centre of mass in " : ", in ") + (place.chart->system == "cartesian" ? "Cartesian" : words(place.chart->system)) + " coordinates " + of + from;
+      const std::string of = entries(slots),
+                        from = place.from == 0 ? "" : " from " + bold(model_.places[place.from].name);
+      if (!of.empty())
+        text += (is_body ? ", its centre of mass in " : ", in ") +
+                (place.chart->system == "cartesian" ? "Cartesian" : words(place.chart->system)) + " coordinates " + of +
+                from;
     }
     if (is_body) {
       const model::Frame& frame = model_.frames[body->frame];
       const std::string angles = entries(frame.entries);
-      if (!angles.empty()) text += "; its axes are turned by " + rotation(frame) + " " + angles + (frame.parent == 0 ? "" : " against those of " + bold(model_.frames[frame.parent].name));
+      if (!angles.empty())
+        text += "; its axes are turned by " + rotation(frame) + " " + angles +
+                (frame.parent == 0 ? "" : " against those of " + bold(model_.frames[frame.parent].name));
       text += inertia(*body);
     }
     out_.paragraph(text + ".");
@@ -163,21 +185,24 @@ class System {
 
   void parameters() {
     if (model_.parameters.empty()) return;
-    const bool notes = std::any_of(model_.parameters.begin(), model_.parameters.end(), [](const model::Parameter& p) { return !p.note.empty(); });
+    const bool notes = std::any_of(model_.parameters.begin(), model_.parameters.end(),
+                                   [](const model::Parameter& p) { return !p.note.empty(); });
     std::vector<std::string> values;
     bool all_short = true;
     for (const model::Parameter& p : model_.parameters) {
-      const std::optional<Formula> written = p.value == model::no_node ? std::nullopt : reading::as_written(model_, p.value);
+      const std::optional<Formula> written =
+          p.value == model::no_node ? std::nullopt : reading::as_written(model_, p.value);
       const bool is_short = !written || out_.lines(*written, longest_value).size() == 1;
       values.push_back(!written ? "" : is_short ? out_.math(*written) : out_.cell(*written, longest_value));
       all_short = all_short && is_short;
     }
-    out_.raw(std::string("\\begin{longtable}{@{}l") + (all_short ? "l" : "p{0.42\\linewidth}") + "l" + (notes ? "p{0.3\\linewidth}" : "") + "@{}}\n" +
-             "\\emph{parameter} & \\emph{value} & \\emph{unit}" + (notes ? " & " : "") + " \\\\\n\\endhead\n");
+    out_.raw(std::string("\\begin{longtable}{@{}l") + (all_short ? "l" : "p{0.42\\linewidth}") + "l" +
+             (notes ? "p{0.3\\linewidth}" : "") + "@{}}\n" + "\\emph{parameter} & \\emph{value} & \\emph{unit}" +
+             (notes ? " & " : "") + " \\\\\n\\endhead\n");
     for (std::uint32_t i = 0; i < model_.parameters.size(); ++i) {
       const model::Parameter& p = model_.parameters[i];
-      out_.raw(out_.math(reading::symbol({SymbolKind::parameter, i, 0})) + " & " + values[i] + " & " + unit_in_latex(p.unit.text) +
-               (notes ? " & " + words(p.note) : "") + " \\\\[2pt]\n");
+      out_.raw(out_.math(reading::symbol({SymbolKind::parameter, i, 0})) + " & " + values[i] + " & " +
+               unit_in_latex(p.unit.text) + (notes ? " & " + words(p.note) : "") + " \\\\[2pt]\n");
     }
     out_.raw("\\end{longtable}\n");
   }
@@ -202,8 +227,11 @@ class System {
     std::string text = bold(model_.forces[i].name) + ": ";
     std::vector<Formula> shown;
     const char* letter = model_.forces.size() > 1 ? "U" : nullptr;
-    if (found.conservative == "yes") text += found.many_valued ? "conservative where its potential is not followed around its singular points" : "conservative";
-    else text += found.conservative == "no" ? "not conservative" : "not known to be conservative";
+    if (found.conservative == "yes")
+      text += found.many_valued ? "conservative where its potential is not followed around its singular points"
+                                : "conservative";
+    else
+      text += found.conservative == "no" ? "not conservative" : "not known to be conservative";
     if (!found.reason.empty()) text += " (" + words(found.reason) + ")";
     if (found.conservative == "yes" && found.potential) {
       if (const auto U = read_short(*found.potential)) {
@@ -216,7 +244,8 @@ class System {
       for (std::uint32_t q = 0; q < model_.coordinates.size(); ++q) {
         const auto Q = read_short(m_.force_components[i][q]);
         if (!Q || Q->is_zero()) continue;
-        shown.push_back(reading::relation({reading::mark("Q", {reading::symbol({SymbolKind::coordinate, q, 0})}), reading::arrange(*Q)}));
+        shown.push_back(reading::relation(
+            {reading::mark("Q", {reading::symbol({SymbolKind::coordinate, q, 0})}), reading::arrange(*Q)}));
       }
     }
     out_.paragraph(text + (shown.empty() ? "." : ","));
@@ -231,7 +260,9 @@ class System {
 
 class Coordinates {
  public:
-  explicit Coordinates(Article& a) : a_(a), m_(a.m), model_(a.model), out_(a.out) { add_constraints(m_, a.one, statements_); }
+  explicit Coordinates(Article& a) : a_(a), m_(a.m), model_(a.model), out_(a.out) {
+    add_constraints(m_, a.one, statements_);
+  }
 
   void write() {
     table();
@@ -241,7 +272,9 @@ class Coordinates {
     for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) {
       if (m_.holds(k)) continue;
       const bool identity = m_.constraints[k].need == mechanics::Need::identity;
-      out_.paragraph(bold(m_.constraints[k].label) + (identity ? " holds identically" : " follows from the other constraints") + ": it has no multiplier.");
+      out_.paragraph(bold(m_.constraints[k].label) +
+                     (identity ? " holds identically" : " follows from the other constraints") +
+                     ": it has no multiplier.");
     }
     integrals();
     legend();
@@ -254,7 +287,8 @@ class Coordinates {
     out_.paragraph("The multipliers are");
     out_.raw("\\begin{longtable}{@{}lp{0.8\\linewidth}@{}}\n");
     for (const MultiplierMeaning& meaning : all) {
-      out_.raw(out_.math(reading::symbol({SymbolKind::multiplier, meaning.constraint, 0})) + " & " + words(meaning.text) + " \\\\\n");
+      out_.raw(out_.math(reading::symbol({SymbolKind::multiplier, meaning.constraint, 0})) + " & " +
+               words(meaning.text) + " \\\\\n");
     }
     out_.raw("\\end{longtable}\n");
     if (!model_.joints.empty()) out_.paragraph(joint_letters);
@@ -265,15 +299,20 @@ class Coordinates {
     const auto first = std::find_if(a_.one.constraints.begin(), a_.one.constraints.end(), of);
     if (first != a_.one.constraints.end()) return "fixed by " + bold(first->label);
     const auto second = std::find_if(a_.two.constraints.begin(), a_.two.constraints.end(), of);
-    return second != a_.two.constraints.end() ? "given by the others through " + bold(second->label) + ", in Approach II" : "";
+    return second != a_.two.constraints.end()
+               ? "given by the others through " + bold(second->label) + ", in Approach II"
+               : "";
   }
 
   void table() {
-    out_.raw("\\begin{longtable}{@{}lllp{0.5\\linewidth}@{}}\n\\emph{coordinate} & \\emph{unit} & \\emph{range} & \\\\\n\\endhead\n");
+    out_.raw(
+        "\\begin{longtable}{@{}lllp{0.5\\linewidth}@{}}\n\\emph{coordinate} & \\emph{unit} & \\emph{range} & "
+        "\\\\\n\\endhead\n");
     for (std::uint32_t i = 0; i < model_.coordinates.size(); ++i) {
       const model::Coordinate& q = model_.coordinates[i];
       const auto bound = [&](model::NodeId node) {
-        const std::optional<Formula> written = node == model::no_node ? std::nullopt : reading::as_written(model_, node);
+        const std::optional<Formula> written =
+            node == model::no_node ? std::nullopt : reading::as_written(model_, node);
         return written ? out_.math(*written) : std::string();
       };
       const std::string lower = bound(q.lower), upper = bound(q.upper);
@@ -312,7 +351,8 @@ class Coordinates {
   static std::string reason(const std::string& sentence) {
     static const std::string form = words("omega ^ d omega");
     std::string text = words(sentence);
-    if (const std::size_t at = text.find(form); at != std::string::npos) text.replace(at, form.size(), "$\\omega \\wedge d\\omega$");
+    if (const std::size_t at = text.find(form); at != std::string::npos)
+      text.replace(at, form.size(), "$\\omega \\wedge d\\omega$");
     return text;
   }
 
@@ -322,11 +362,13 @@ class Coordinates {
     const bool moves = !m_.dag->is_zero(c.rate);
     std::string text;
     if (c.holonomic()) {
-      text = std::string("holonomic and ") + (moves ? "rheonomic (it depends on the time)" : "scleronomic (it does not depend on the time)");
+      text = std::string("holonomic and ") +
+             (moves ? "rheonomic (it depends on the time)" : "scleronomic (it does not depend on the time)");
     } else {
-      text = found.integrable == mechanics::Integrable::yes  ? "on velocities, and integrable"
-             : found.integrable == mechanics::Integrable::no ? "nonholonomic: on velocities, and not integrable"
-                                                             : "on velocities; it is not known whether it is integrable";
+      text = found.integrable == mechanics::Integrable::yes ? "on velocities, and integrable"
+             : found.integrable == mechanics::Integrable::no
+                 ? "nonholonomic: on velocities, and not integrable"
+                 : "on velocities; it is not known whether it is integrable";
       if (!found.reason.empty()) text += " (" + reason(found.reason) + ")";
       if (moves) text += "; rheonomic (a part of it is free of velocities)";
     }
@@ -385,7 +427,8 @@ void write_coordinates(Article& a) {
   Coordinates(a).write();
 }
 
-std::string latex_document(const Mechanics& m, const reading::ReadingForm& one, const reading::ReadingForm& two, const std::optional<Findings>& findings) {
+std::string latex_document(const Mechanics& m, const reading::ReadingForm& one, const reading::ReadingForm& two,
+                           const std::optional<Findings>& findings) {
   const Notation notation(m);
   LatexText out(notation);
   const model::Model& model = *m.model;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The derivation of one model as a paper has it. In: Mechanics, both reading forms, and what later stages have found. Out: a LaTeX document.
+// The derivation of one model as a paper has it. In: Mechanics, both reading forms, and what later stages have found.
+// Out: a LaTeX document.
 #pragma once
 
 #include <complex>
@@ -45,14 +46,14 @@ struct Findings {
   std::optional<reading::RouthForm> routh;  // where a coordinate is cyclic
   std::vector<SteadyFinding> steady;
   std::vector<std::pair<std::string, double>> held;  // what the search held, by name
-  std::string no_steady;    // why none is looked for; empty where the search was made
-  std::string certificate;  // the verdict of the comparison
-  std::string judged;       // what was compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
+  std::string no_steady;                             // why none is looked for; empty where the search was made
+  std::string certificate;                           // the verdict of the comparison
+  std::string judged;  // what was compared with d'Alembert's principle: "lagrange I, lagrange II, ..."
   std::vector<work::LeftOut> left_out;
 };
 
 /// Without findings: the sections as far as the equations, the constraint forces and the singular sets.
-std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one, const reading::ReadingForm& two,
-                           const std::optional<Findings>& findings = {});
+std::string latex_document(const mechanics::Mechanics& mechanics, const reading::ReadingForm& one,
+                           const reading::ReadingForm& two, const std::optional<Findings>& findings = {});
 
 }  // namespace eomgen::print

@@ -22,15 +22,18 @@ namespace {
 
 constexpr std::size_t half_width = 33, whole_width = 66;  // printed characters of a cell
 constexpr std::size_t tallest_beside = 5;                 // lines of a cell that has another one beside it
-constexpr std::size_t tallest_row = 30;                   // lines that still fit on a page: a row cannot be continued on the next
+constexpr std::size_t tallest_row = 30;  // lines that still fit on a page: a row cannot be continued on the next
 
-Formula symbol_of(std::uint32_t coordinate, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, coordinate, order}); }
+Formula symbol_of(std::uint32_t coordinate, std::uint8_t order) {
+  return reading::symbol({SymbolKind::coordinate, coordinate, order});
+}
 
 /// Multipliers or friction in a sum.
 bool has_forces_of_constraints(const reading::Sum& sum) {
   bool found = false;
   reading::for_each_atom(sum, [&](const reading::Atom& atom) {
-    found = found || (atom.op == reading::Op::symbol && (atom.symbol.kind == SymbolKind::multiplier || atom.symbol.kind == SymbolKind::friction));
+    found = found || (atom.op == reading::Op::symbol &&
+                      (atom.symbol.kind == SymbolKind::multiplier || atom.symbol.kind == SymbolKind::friction));
   });
   return found;
 }
@@ -58,7 +61,8 @@ class Equations {
       out_.subsection("Partial derivatives");
       steps(a_.one);
       out_.subsection("The equations");
-      if (!m_.constraints.empty()) out_.paragraph("No constraint fixes a coordinate, so Approach I and Approach II are one.");
+      if (!m_.constraints.empty())
+        out_.paragraph("No constraint fixes a coordinate, so Approach I and Approach II are one.");
     }
     const std::vector<Row> rows = rows_of("equations");
     show(rows);
@@ -74,17 +78,24 @@ class Equations {
     const Letters letters(a_.model, false);
     const Formula q = mark("q"), rate = dotted(q);
     std::vector<Formula> left{reading::wrap(Form::rate, {reading::wrap(Form::partial, {mark(letters.T), rate})}),
-                              reading::negative(reading::wrap(Form::partial, {mark(letters.T), q})), reading::wrap(Form::partial, {mark(letters.U), q})};
+                              reading::negative(reading::wrap(Form::partial, {mark(letters.T), q})),
+                              reading::wrap(Form::partial, {mark(letters.U), q})};
     const bool constrained = !a_.one.constraints.empty();
     out_.paragraph(std::string("Of every coordinate $q$, with its generalised force $Q_q$ beyond the potential") +
                    (constrained ? " and the forces of the constraints on the right side," : ","));
-    out_.raw("\\[\n" + plain(reading::sum(std::move(left))) + " = Q_q" + (constrained ? " + \\sum_k " + multiplier() + " f_{k q}" : "") + "\n\\]\n");
+    out_.raw("\\[\n" + plain(reading::sum(std::move(left))) + " = Q_q" +
+             (constrained ? " + \\sum_k " + multiplier() + " f_{k q}" : "") + "\n\\]\n");
     if (!constrained) return;
-    const bool holonomic = std::any_of(a_.one.constraints.begin(), a_.one.constraints.end(), [](const auto& c) { return c.holonomic; });
-    const bool velocities = std::any_of(a_.one.constraints.begin(), a_.one.constraints.end(), [](const auto& c) { return !c.holonomic; });
+    const bool holonomic =
+        std::any_of(a_.one.constraints.begin(), a_.one.constraints.end(), [](const auto& c) { return c.holonomic; });
+    const bool velocities =
+        std::any_of(a_.one.constraints.begin(), a_.one.constraints.end(), [](const auto& c) { return !c.holonomic; });
     std::string text = "Here $f_{kq}$ is ";
-    if (holonomic) text += "$\\partial\\" + std::string(letters.psi == "psi" ? "psi" : "Psi") + "_k/\\partial q$ of a holonomic constraint";
-    if (velocities) text += std::string(holonomic ? ", and " : "") + "the factor of $\\dot{q}$ in a constraint on velocities";
+    if (holonomic)
+      text += "$\\partial\\" + std::string(letters.psi == "psi" ? "psi" : "Psi") +
+              "_k/\\partial q$ of a holonomic constraint";
+    if (velocities)
+      text += std::string(holonomic ? ", and " : "") + "the factor of $\\dot{q}$ in a constraint on velocities";
     out_.paragraph(text + ".");
   }
   std::string plain(const Formula& f) const {
@@ -99,8 +110,8 @@ class Equations {
   }
 
   static bool equal(const Partials& a, const Partials& b) {
-    return a.coordinate == b.coordinate && a.left_out.empty() && b.left_out.empty() && a.momentum == b.momentum && a.rate == b.rate && a.kinetic == b.kinetic &&
-           a.potential == b.potential && a.force == b.force;
+    return a.coordinate == b.coordinate && a.left_out.empty() && b.left_out.empty() && a.momentum == b.momentum &&
+           a.rate == b.rate && a.kinetic == b.kinetic && a.potential == b.potential && a.force == b.force;
   }
 
   /// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate.
@@ -114,7 +125,9 @@ class Equations {
     std::vector<std::string> unchanged;
     std::vector<Partials> all = reading::partial_derivatives(m_, form);
     if (two) {
-      const auto as_before = [&](const Partials& p) { return std::any_of(first_.begin(), first_.end(), [&](const Partials& f) { return equal(f, p); }); };
+      const auto as_before = [&](const Partials& p) {
+        return std::any_of(first_.begin(), first_.end(), [&](const Partials& f) { return equal(f, p); });
+      };
       for (const Partials& p : all) {
         if (as_before(p)) unchanged.push_back(a_.name_of(p.coordinate));
       }
@@ -122,29 +135,43 @@ class Equations {
     } else {
       first_ = all;
     }
-    out_.paragraph(two ? all.empty() ? "The derivatives are those of Approach I." : "Of the energies with constraints built in:" : "Of the energies above:");
-    if (!unchanged.empty() && !all.empty()) out_.paragraph("Those by " + enumeration(unchanged) + " are as before. The others are");
+    out_.paragraph(two ? all.empty() ? "The derivatives are those of Approach I."
+                                     : "Of the energies with constraints built in:"
+                       : "Of the energies above:");
+    if (!unchanged.empty() && !all.empty())
+      out_.paragraph("Those by " + enumeration(unchanged) + " are as before. The others are");
     for (const Partials& p : all) {
       if (!p.left_out.empty()) {
-        a_.left_out.push_back({std::string("partial derivatives by ") + a_.model.coordinates[p.coordinate].name, p.left_out});
+        a_.left_out.push_back(
+            {std::string("partial derivatives by ") + a_.model.coordinates[p.coordinate].name, p.left_out});
         continue;
       }
       std::vector<Formula> shown;
-      const auto partial = [&](const std::string& letter, std::uint8_t order) { return reading::wrap(Form::partial, {mark(letter), symbol_of(p.coordinate, order)}); };
+      const auto partial = [&](const std::string& letter, std::uint8_t order) {
+        return reading::wrap(Form::partial, {mark(letter), symbol_of(p.coordinate, order)});
+      };
       const auto add = [&](std::vector<Formula> formulas) {  // on one line where there is room
         Formula together = reading::wrap(Form::list, formulas);
-        if (formulas.size() > 1 && out_.fits_on_a_line(together)) shown.push_back(std::move(together));
-        else shown.insert(shown.end(), formulas.begin(), formulas.end());
+        if (formulas.size() > 1 && out_.fits_on_a_line(together))
+          shown.push_back(std::move(together));
+        else
+          shown.insert(shown.end(), formulas.begin(), formulas.end());
       };
       std::vector<Formula> momentum{reading::relation({partial(letters.T, 1), arrange(p.momentum)})};
-      if (!p.rate.is_zero()) momentum.push_back(reading::relation({reading::wrap(Form::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
+      if (!p.rate.is_zero())
+        momentum.push_back(
+            reading::relation({reading::wrap(Form::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
       add(std::move(momentum));
-      add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}), reading::relation({partial(letters.U, 0), arrange(p.potential)}),
-                                reading::relation({mark("Q", {symbol_of(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
+      add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
+           reading::relation({partial(letters.U, 0), arrange(p.potential)}),
+           reading::relation({mark("Q", {symbol_of(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
       std::string why;
       for (const Formula& f : shown) why = why.empty() ? out_.too_long(f) : why;
-      if (why.empty()) out_.display(shown);
-      else a_.left_out.push_back({std::string("partial derivatives by ") + a_.model.coordinates[p.coordinate].name, "one of them " + why});
+      if (why.empty())
+        out_.display(shown);
+      else
+        a_.left_out.push_back(
+            {std::string("partial derivatives by ") + a_.model.coordinates[p.coordinate].name, "one of them " + why});
     }
   }
 
@@ -153,7 +180,9 @@ class Equations {
     std::vector<std::string> names;
     for (const mechanics::FixedCoordinate& fixed : m_.fixed) names.push_back(a_.name_of(fixed.coordinate));
     std::string text = "Where both approaches give the same equation it stands once.";
-    if (!names.empty()) text += " Those of Approach I have " + enumeration(names) + " with " + (names.size() == 1 ? "its" : "their") + " rates and accelerations imposed.";
+    if (!names.empty())
+      text += " Those of Approach I have " + enumeration(names) + " with " + (names.size() == 1 ? "its" : "their") +
+              " rates and accelerations imposed.";
     out_.paragraph(text);
   }
 
@@ -163,7 +192,8 @@ class Equations {
     add_equations(m_, a_.two, right);
     std::vector<Row> rows;
     const auto place = [&](const Statement& s) -> Row& {
-      const auto index = std::find_if(a_.model.coordinates.begin(), a_.model.coordinates.end(), [&](const model::Coordinate& q) { return q.name == s.coordinate; });
+      const auto index = std::find_if(a_.model.coordinates.begin(), a_.model.coordinates.end(),
+                                      [&](const model::Coordinate& q) { return q.name == s.coordinate; });
       const auto coordinate = static_cast<std::uint32_t>(index - a_.model.coordinates.begin());
       const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) { return r.coordinate == coordinate; });
       if (row != rows.end()) return *row;
@@ -179,21 +209,29 @@ class Equations {
     return rows;
   }
 
-  bool same(const std::optional<Formula>& a, const std::optional<Formula>& b) const { return a.has_value() == b.has_value() && (!a || out_.math(*a) == out_.math(*b)); }
+  bool same(const std::optional<Formula>& a, const std::optional<Formula>& b) const {
+    return a.has_value() == b.has_value() && (!a || out_.math(*a) == out_.math(*b));
+  }
   bool merged(const Row& row) const { return !a_.builds_in() || same(row.one, row.two); }
   bool repeats(const Row& row, const std::vector<Row>& rows) const {
-    return std::any_of(rows.begin(), rows.end(), [&](const Row& r) { return r.coordinate == row.coordinate && same(r.one, row.one) && same(r.two, row.two); });
+    return std::any_of(rows.begin(), rows.end(), [&](const Row& r) {
+      return r.coordinate == row.coordinate && same(r.one, row.one) && same(r.two, row.two);
+    });
   }
 
   void show(const std::vector<Row>& rows) {
     if (rows.empty()) return;
-    const auto tall = [&](const std::optional<Formula>& f) { return f && out_.lines(*f, whole_width).size() > tallest_row; };
-    if (!a_.builds_in() || std::any_of(rows.begin(), rows.end(), [&](const Row& r) { return tall(r.one) || tall(r.two); })) {
+    const auto tall = [&](const std::optional<Formula>& f) {
+      return f && out_.lines(*f, whole_width).size() > tallest_row;
+    };
+    if (!a_.builds_in() ||
+        std::any_of(rows.begin(), rows.end(), [&](const Row& r) { return tall(r.one) || tall(r.two); })) {
       for (const Row& row : rows) listed(row);
       return;
     }
-    out_.raw("\\begin{longtable}{@{}p{0.07\\linewidth}p{0.41\\linewidth}p{0.41\\linewidth}r@{}}\n"
-             " & \\textbf{Approach I} & \\textbf{Approach II} & \\\\[6pt]\n\\endhead\n");
+    out_.raw(
+        "\\begin{longtable}{@{}p{0.07\\linewidth}p{0.41\\linewidth}p{0.41\\linewidth}r@{}}\n"
+        " & \\textbf{Approach I} & \\textbf{Approach II} & \\\\[6pt]\n\\endhead\n");
     for (const Row& row : rows) tabulated(row);
     out_.raw("\\end{longtable}\n");
   }
@@ -221,15 +259,20 @@ class Equations {
   void tabulated(const Row& row) {
     const std::string name = a_.name_of(row.coordinate);
     const auto spanning = [&](const std::string& label, const Formula& f) {
-      out_.raw(label + " & \\multicolumn{2}{p{0.84\\linewidth}}{" + out_.cell(f, whole_width) + "} & " + number(row) + " \\\\[6pt]\n");
+      out_.raw(label + " & \\multicolumn{2}{p{0.84\\linewidth}}{" + out_.cell(f, whole_width) + "} & " + number(row) +
+               " \\\\[6pt]\n");
     };
     if (merged(row)) {
       if (row.one) spanning(name, *row.one);
       return;
     }
-    const auto short_enough = [&](const std::optional<Formula>& f) { return !f || out_.lines(*f, half_width).size() <= tallest_beside; };
+    const auto short_enough = [&](const std::optional<Formula>& f) {
+      return !f || out_.lines(*f, half_width).size() <= tallest_beside;
+    };
     if (short_enough(row.one) && short_enough(row.two)) {
-      const auto cell = [&](const std::optional<Formula>& f) { return f ? out_.cell(*f, half_width) : std::string("---"); };
+      const auto cell = [&](const std::optional<Formula>& f) {
+        return f ? out_.cell(*f, half_width) : std::string("---");
+      };
       out_.raw(name + " & " + cell(row.one) + " & " + cell(row.two) + " & " + number(row) + " \\\\[6pt]\n");
       return;
     }
@@ -252,38 +295,50 @@ class Equations {
     bool friction = false;
     for (const Equation& e : a_.one.equations) {
       const bool rubs = has_forces_of_constraints(e.force);
-      if (!e.of_motion) of_forces.push_back(&e);
-      else (rubs || !e.multipliers.empty() ? coupled : pure).push_back(&e);
+      if (!e.of_motion)
+        of_forces.push_back(&e);
+      else
+        (rubs || !e.multipliers.empty() ? coupled : pure).push_back(&e);
       friction = friction || (e.of_motion && rubs);
     }
     out_.subsection("What decouples");
     const auto s = [](const std::vector<const Equation*>& list) { return list.size() == 1; };
-    if (!of_forces.empty()) out_.paragraph("By Approach I " + numbers(of_forces) + (s(of_forces) ? " gives the constraint force, once the motion is known." : " give the constraint forces, once the motion is known."));
+    if (!of_forces.empty())
+      out_.paragraph("By Approach I " + numbers(of_forces) +
+                     (s(of_forces) ? " gives the constraint force, once the motion is known."
+                                   : " give the constraint forces, once the motion is known."));
     if (coupled.empty()) {
       if (!pure.empty()) {
-        out_.paragraph(numbers(pure) + (s(pure) ? " has" : " have") + " no constraint force in " + (s(pure) ? "it: it is the equation" : "them: they are the equations") +
-                       " of motion. " + (of_forces.empty() ? "" : "Approach II gives " + std::string(s(pure) ? "it" : "them") + " alone."));
+        out_.paragraph(
+            numbers(pure) + (s(pure) ? " has" : " have") + " no constraint force in " +
+            (s(pure) ? "it: it is the equation" : "them: they are the equations") + " of motion. " +
+            (of_forces.empty() ? "" : "Approach II gives " + std::string(s(pure) ? "it" : "them") + " alone."));
       }
       return;
     }
-    if (!pure.empty()) out_.paragraph(numbers(pure) + (s(pure) ? " has" : " have") + " no constraint force in " + (s(pure) ? "it." : "them."));
+    if (!pure.empty())
+      out_.paragraph(numbers(pure) + (s(pure) ? " has" : " have") + " no constraint force in " +
+                     (s(pure) ? "it." : "them."));
     if (friction) {
-      out_.paragraph("Friction depends on the constraint forces, so " + numbers(coupled) + (s(coupled) ? " does" : " do") +
+      out_.paragraph("Friction depends on the constraint forces, so " + numbers(coupled) +
+                     (s(coupled) ? " does" : " do") +
                      " not decouple: motion and constraint forces are found together, with the law of friction below.");
       return;
     }
     out_.paragraph("The multipliers of constraints that fix no coordinate stay in " + numbers(coupled) +
-                   ": these do not decouple. Multipliers and accelerations are found together, from these equations and the time derivatives of the constraints.");
+                   ": these do not decouple. Multipliers and accelerations are found together, from these equations "
+                   "and the time derivatives of the constraints.");
     for (const reading::ReadConstraint& c : a_.two.constraints) {
       if (!c.fixes || m_.is_eliminated(c.fixes->coordinate)) continue;
-      out_.paragraph("By Approach II \\textbf{" + words(c.label) + "} takes " + a_.name_of(c.fixes->coordinate) + " out, and its multiplier with it.");
+      out_.paragraph("By Approach II \\textbf{" + words(c.label) + "} takes " + a_.name_of(c.fixes->coordinate) +
+                     " out, and its multiplier with it.");
     }
   }
 
   Article& a_;
   const mechanics::Mechanics& m_;
   LatexText& out_;
-  std::vector<Partials> first_;  // of Approach I
+  std::vector<Partials> first_;                   // of Approach I
   std::map<std::uint32_t, std::string> numbers_;  // of the first equation of each coordinate
 };
 
@@ -299,7 +354,10 @@ void write_energies(Article& a) {
     if (!form.no_spins.empty()) a.left_out.push_back({"angular velocities", form.no_spins});
   };
   const bool spins = !a.one.spins.empty();
-  if (spins) a.out.paragraph("The components $\\omega$ are those of the angular velocities, along the axes about which the moments of inertia are taken.");
+  if (spins)
+    a.out.paragraph(
+        "The components $\\omega$ are those of the angular velocities, along the axes about which the moments of "
+        "inertia are taken.");
   show(a.one);
   if (!a.builds_in()) return;
   a.out.paragraph("With the constraints built in these are");
@@ -324,7 +382,8 @@ void write_contacts(Article& a) {
   std::vector<Statement> all;
   add_contacts(a.m, all);
   if (all.empty()) return;
-  const bool rubs = std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.dimensions() > 0; });
+  const bool rubs =
+      std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.dimensions() > 0; });
   const bool opens = std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.unilateral; });
   a.out.section(rubs && opens ? "Contacts and friction" : rubs ? "Friction" : "Contacts that can be left");
   std::string name;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was found beyond the equations: conserved quantities, Routh's reduction, steady motions, singular sets, the certificate.
+// What was found beyond the equations: conserved quantities, Routh's reduction, steady motions, singular sets, the
+// certificate.
 #include <array>
 #include <charconv>
 
@@ -15,7 +16,9 @@ namespace {
 /// 1.5e-07 -> 1.5\cdot 10^{-7}
 std::string number_in_latex(double value) {
   std::array<char, 32> digits{};
-  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value, std::chars_format::general, 6).ptr;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value == 0 ? 0.0 : value,
+                                 std::chars_format::general, 6)
+                       .ptr;
   std::string text(digits.data(), end);
   const std::size_t e = text.find('e');
   if (e == std::string::npos) return text;
@@ -34,20 +37,28 @@ Formula letter_of(const Article& a, const ConservedFinding& c) {
 
 std::string reason_of(const Article& a, const ConservedFinding& c) {
   const auto rates = [&](const char* what) {
-    return std::string("its rate is the power of moving constraints, of friction and of forces that are in no potential, less the slope of ") + what + " by the time, and all of this vanishes";
+    return std::string(
+               "its rate is the power of moving constraints, of friction and of forces that are in no potential, less "
+               "the slope of ") +
+           what + " by the time, and all of this vanishes";
   };
   if (c.cyclic) {
     const std::string q = a.name_of(*c.cyclic);
-    return q + " is cyclic: the Lagrangian of Approach II has " + a.name_of(*c.cyclic, 1) + " but not " + q + ", and along " + q +
-           " neither a force beyond the potential nor a constraint that keeps its multiplier acts";
+    return q + " is cyclic: the Lagrangian of Approach II has " + a.name_of(*c.cyclic, 1) + " but not " + q +
+           ", and along " + q + " neither a force beyond the potential nor a constraint that keeps its multiplier acts";
   }
   if (c.name == "energy") return rates("the Lagrangian");
   if (c.name == "jacobi") {
-    return "the Lagrangian of Approach II is free of the time, and no constraint that keeps its multiplier moves; the energy itself is not conserved, since constraints do work";
+    return "the Lagrangian of Approach II is free of the time, and no constraint that keeps its multiplier moves; the "
+           "energy itself is not conserved, since constraints do work";
   }
-  if (c.name == "energy.applied") return "all forces have potentials, which are added here to $U$, and the Lagrangian is free of the time";
-  if (c.name.starts_with("linear_momentum.")) return "a displacement of the whole along this axis changes neither energies nor constraints, and no force acts along it";
-  if (c.name.starts_with("angular_momentum.")) return "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts about it";
+  if (c.name == "energy.applied")
+    return "all forces have potentials, which are added here to $U$, and the Lagrangian is free of the time";
+  if (c.name.starts_with("linear_momentum."))
+    return "a displacement of the whole along this axis changes neither energies nor constraints, and no force acts "
+           "along it";
+  if (c.name.starts_with("angular_momentum."))
+    return "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts about it";
   return "the constraint on velocities is the rate of it";
 }
 
@@ -69,8 +80,11 @@ std::optional<Formula> value_of(Article& a, const ConservedFinding& c) {
 std::string eigenvalues_of(const SteadyFinding& s) {
   std::vector<std::string> parts;
   for (const std::complex<double>& e : s.eigenvalues) {
-    if (e.imag() == 0) parts.push_back("$" + number_in_latex(e.real()) + "$");
-    else parts.push_back("$" + (e.real() == 0 ? "" : number_in_latex(e.real())) + " \\pm " + number_in_latex(e.imag()) + "\\,\\mathrm{i}$");
+    if (e.imag() == 0)
+      parts.push_back("$" + number_in_latex(e.real()) + "$");
+    else
+      parts.push_back("$" + (e.real() == 0 ? "" : number_in_latex(e.real())) + " \\pm " + number_in_latex(e.imag()) +
+                      "\\,\\mathrm{i}$");
   }
   if (s.zeros > 0) parts.push_back(s.zeros == 1 ? "one zero" : std::to_string(s.zeros) + " zeros");
   return enumeration(parts);
@@ -78,12 +92,15 @@ std::string eigenvalues_of(const SteadyFinding& s) {
 
 void write_steady_motion(Article& a, const SteadyFinding& s) {
   std::vector<std::string> values;
-  for (const auto& [symbol, value] : s.values) values.push_back(a.out.math(reading::symbol(symbol)) + "~$= " + number_in_latex(value) + "$");
+  for (const auto& [symbol, value] : s.values)
+    values.push_back(a.out.math(reading::symbol(symbol)) + "~$= " + number_in_latex(value) + "$");
   std::string text = "\\textbf{" + words(s.kind) + "}: ";
   for (std::size_t i = 0; i < values.size(); ++i) text += (i > 0 ? ", " : "") + values[i];
   text += ". ";
-  if (s.family > 0) text += "One of a family of " + std::to_string(s.family) + (s.family == 1 ? " dimension. " : " dimensions. ");
-  text += "\\emph{" + words(s.stability) + "}: " + words(s.reason) + ". Eigenvalues of the linearised equations: " + eigenvalues_of(s) + ".";
+  if (s.family > 0)
+    text += "One of a family of " + std::to_string(s.family) + (s.family == 1 ? " dimension. " : " dimensions. ");
+  text += "\\emph{" + words(s.stability) + "}: " + words(s.reason) +
+          ". Eigenvalues of the linearised equations: " + eigenvalues_of(s) + ".";
   a.out.paragraph(text);
 }
 
@@ -92,10 +109,14 @@ void write_steady_motion(Article& a, const SteadyFinding& s) {
 void write_conserved(Article& a) {
   a.out.section("Conserved quantities");
   const std::vector<ConservedFinding>& all = a.findings->conserved;
-  if (all.empty()) a.out.paragraph("None was found: no coordinate is cyclic, neither the energy nor Jacobi's integral is conserved, nor a momentum along or about a fixed axis.");
+  if (all.empty())
+    a.out.paragraph(
+        "None was found: no coordinate is cyclic, neither the energy nor Jacobi's integral is conserved, nor a "
+        "momentum along or about a fixed axis.");
   for (const ConservedFinding& c : all) {
     std::string title = c.cyclic ? "generalised momentum of " + a.name_of(*c.cyclic) : words(c.title);
-    a.out.paragraph("The " + title + " is conserved: " + reason_of(a, c) + (c.proven ? "." : " (shown by numbers, in 40 digits)."));
+    a.out.paragraph("The " + title + " is conserved: " + reason_of(a, c) +
+                    (c.proven ? "." : " (shown by numbers, in 40 digits)."));
     const std::optional<Formula> value = value_of(a, c);
     if (!value) continue;
     const bool integral = c.name.starts_with("integral.");
@@ -110,16 +131,21 @@ void write_routh(Article& a) {
   for (const std::uint32_t c : form.cyclic) names.push_back(a.name_of(c));
   a.out.section("Routh's reduction");
   if (form.by_parts) {
-    a.out.paragraph("The reduction by " + enumeration(names) + " is too long to be written out, or the momenta do not give the rates.");
+    a.out.paragraph("The reduction by " + enumeration(names) +
+                    " is too long to be written out, or the momenta do not give the rates.");
     return;
   }
   std::vector<Formula> rates;
   for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
-    rates.push_back(reading::relation({reading::symbol({symbolic::SymbolKind::coordinate, form.cyclic[i], 1}), reading::arrange(form.rates[i])}));
+    rates.push_back(reading::relation(
+        {reading::symbol({symbolic::SymbolKind::coordinate, form.cyclic[i], 1}), reading::arrange(form.rates[i])}));
   }
   a.out.paragraph("The momenta of the cyclic coordinates are constants of the motion, and give the rates");
   a.out.display(rates);
-  a.out.paragraph("With these the Routhian, the Lagrangian of Approach II less " + std::string(form.cyclic.size() == 1 ? "the product of momentum and rate" : "the products of momenta and rates") + ", is");
+  a.out.paragraph(
+      "With these the Routhian, the Lagrangian of Approach II less " +
+      std::string(form.cyclic.size() == 1 ? "the product of momentum and rate" : "the products of momenta and rates") +
+      ", is");
   a.out.display({reading::relation({mark("cal R"), reading::arrange(form.routhian)})});
   if (form.equations.empty()) return;
   a.out.paragraph(form.equations.size() == 1 ? "and one equation is left:" : "and the equations that are left are");
@@ -138,9 +164,13 @@ void write_steady(Article& a) {
   }
   std::string text = "At the parameters of the default scene";
   for (std::size_t i = 0; i < found.held.size(); ++i) {
-    text += (i == 0 ? ", with " : ", ") + words(found.held[i].first) + " held at $" + number_in_latex(found.held[i].second) + "$";
+    text += (i == 0 ? ", with " : ", ") + words(found.held[i].first) + " held at $" +
+            number_in_latex(found.held[i].second) + "$";
   }
-  a.out.paragraph(text + ", " + (found.steady.empty() ? "a search has found no equilibrium and no steady motion." : "a search has found these, in SI units; it does not prove that there are no others.") +
+  a.out.paragraph(text + ", " +
+                  (found.steady.empty()
+                       ? "a search has found no equilibrium and no steady motion."
+                       : "a search has found these, in SI units; it does not prove that there are no others.") +
                   (found.steady.empty() ? "" : " In a steady motion only coordinates that nothing feels advance."));
   for (const SteadyFinding& s : found.steady) write_steady_motion(a, s);
 }
@@ -156,7 +186,9 @@ void write_singular(Article& a) {
       if (s.left_out.empty() && s.role == role) shown.push_back(s.formula);
     }
     if (shown.empty()) continue;
-    a.out.paragraph(std::string(role) == "both" ? "By both approaches they have no solution, or a force has no value, where" : "By Approach " + std::string(role) + " this is so where");
+    a.out.paragraph(std::string(role) == "both"
+                        ? "By both approaches they have no solution, or a force has no value, where"
+                        : "By Approach " + std::string(role) + " this is so where");
     a.out.display(shown);
   }
   for (const Statement& s : all) {
@@ -167,7 +199,9 @@ void write_singular(Article& a) {
 void write_certificate(Article& a) {
   if (a.findings != nullptr) {
     a.out.section("Certificate");
-    a.out.paragraph("The equations above and the routes " + words(a.findings->judged) + " were compared with d'Alembert's principle, evaluated from the model alone: " + words(a.findings->certificate) + ".");
+    a.out.paragraph("The equations above and the routes " + words(a.findings->judged) +
+                    " were compared with d'Alembert's principle, evaluated from the model alone: " +
+                    words(a.findings->certificate) + ".");
   }
   if (a.left_out.empty()) return;
   a.out.section("Left out");

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sections of a document, in its order. Each writes to `out`; what takes more than its budget is named in `left_out`.
+// The sections of a document, in its order. Each writes to `out`; what takes more than its budget is named in
+// `left_out`.
 #pragma once
 
 #include "print/article.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the constraints exert, as vectors. On a particle: N = sum lambda_k dpsi_k/dq^i a^i along the unit vectors of its coordinates, eqs. (1.22), (2.99). On a body: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, with the slopes of
-// the constraint by the rates of its coordinates and angles as components along the dual bases, eqs. (9.2), (9.84).
+// What the constraints exert, as vectors. On a particle: N = sum lambda_k dpsi_k/dq^i a^i along the unit vectors of its
+// coordinates, eqs. (1.22), (2.99). On a body: F_c = sum lambda_k f_k^i a^i and M_c = sum lambda_k h_k^i g^i, with the
+// slopes of the constraint by the rates of its coordinates and angles as components along the dual bases, eqs. (9.2),
+// (9.84).
 #include <algorithm>
 #include <optional>
 
@@ -18,7 +20,8 @@ using reading::Sum;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
-/// What is shown of multipliers: by approach II those of constraints that are built in are no unknowns, and a vector with them is left out.
+/// What is shown of multipliers: by approach II those of constraints that are built in are no unknowns, and a vector
+/// with them is left out.
 class Multipliers {
  public:
   Multipliers(const Mechanics& m, const ReadingForm& form) : m_(m), built_in_(m.constraints.size(), false) {
@@ -33,8 +36,10 @@ class Multipliers {
   std::vector<bool> built_in_;
 };
 
-/// Whether the coordinate moves anything but the mass at `place` and the body: what constraints exert along it is else exerted on these.
-bool moves_others(const Mechanics& m, std::uint32_t coordinate, std::uint32_t place, std::optional<std::uint32_t> body) {
+/// Whether the coordinate moves anything but the mass at `place` and the body: what constraints exert along it is else
+/// exerted on these.
+bool moves_others(const Mechanics& m, std::uint32_t coordinate, std::uint32_t place,
+                  std::optional<std::uint32_t> body) {
   symbolic::Derivation by = symbolic::partial(*m.dag, {SymbolKind::coordinate, coordinate, 1});
   const auto moves = [&](Ref r) { return !m.dag->is_zero(by(r)); };
   for (const mechanics::PointMass& mass : m.masses) {
@@ -57,14 +62,17 @@ class BodyForces {
     if (place.chart && !place.chart->planar) {
       const auto q = coordinates({place.chart->entries.begin(), place.chart->entries.end()});
       const bool fixed = place.chart->system == "cartesian" && along_fixed_axes(q);
-      if (!q.empty()) within_budget("constraint force", "bold F", q, [&](std::size_t i) {
-        return fixed ? mark("E", {reading::number(static_cast<long>(i + 1))}) : mark("a", {}, {coordinate(q[i])});
-      });
+      if (!q.empty())
+        within_budget("constraint force", "bold F", q, [&](std::size_t i) {
+          return fixed ? mark("E", {reading::number(static_cast<long>(i + 1))}) : mark("a", {}, {coordinate(q[i])});
+        });
     }
     const model::Frame& frame = m_.model->frames[body.frame];
     if (frame.rotation.empty() || frame.entries.size() != 3) return;
     const auto angles = coordinates(frame.entries);
-    if (!angles.empty()) within_budget("constraint moment", "bold M", angles, [&](std::size_t i) { return mark("bold g", {}, {coordinate(angles[i])}); });
+    if (!angles.empty())
+      within_budget("constraint moment", "bold M", angles,
+                    [&](std::size_t i) { return mark("bold g", {}, {coordinate(angles[i])}); });
   }
 
  private:
@@ -76,7 +84,8 @@ class BodyForces {
     for (const model::NodeId entry : entries) {
       if (entry == model::no_node) return {};
       const model::Node& node = m_.model->arena[entry];
-      if (node.op != model::Op::coordinate || std::find(result.begin(), result.end(), node.index) != result.end()) return {};
+      if (node.op != model::Op::coordinate || std::find(result.begin(), result.end(), node.index) != result.end())
+        return {};
       if (moves_others(m_, node.index, m_.model->bodies[body_].place, body_)) return {};
       result.push_back(node.index);
     }
@@ -130,7 +139,8 @@ class BodyForces {
         }
         continue;
       }
-      const bool all_minus = std::all_of(parts.begin(), parts.end(), [](const Formula& f) { return f.form == reading::Form::negative; });
+      const bool all_minus =
+          std::all_of(parts.begin(), parts.end(), [](const Formula& f) { return f.form == reading::Form::negative; });
       if (all_minus) std::for_each(parts.begin(), parts.end(), [](Formula& f) { f = reading::negative(std::move(f)); });
       Formula term = reading::product({lambda, reading::sum(std::move(parts))});
       terms.push_back(all_minus ? reading::negative(std::move(term)) : std::move(term));
@@ -138,7 +148,8 @@ class BodyForces {
     if (terms.empty()) return;
     std::vector<Formula> sub;
     if (m_.model->bodies.size() > 1) sub.push_back(reading::number(static_cast<long>(body_ + 1)));
-    out_.push_back({"reactions", m_.spins[body_].name, "", role, reading::relation({mark(letter, std::move(sub)), reading::sum(std::move(terms))})});
+    out_.push_back({"reactions", m_.spins[body_].name, "", role,
+                    reading::relation({mark(letter, std::move(sub)), reading::sum(std::move(terms))})});
   }
 
   const Mechanics& m_;
@@ -151,7 +162,8 @@ class BodyForces {
 std::vector<Formula> vectors_of(const reading::Geometry& g) {
   std::vector<Formula> result;
   if (g.contravariant_unit.empty()) {
-    for (const std::uint32_t i : g.coordinates) result.push_back(mark("a", {}, {reading::symbol({SymbolKind::coordinate, i, 0})}));
+    for (const std::uint32_t i : g.coordinates)
+      result.push_back(mark("a", {}, {reading::symbol({SymbolKind::coordinate, i, 0})}));
     result.resize(3);
     return result;
   }
@@ -161,7 +173,8 @@ std::vector<Formula> vectors_of(const reading::Geometry& g) {
   return result;
 }
 
-void add_particle_force(const Mechanics& m, const Multipliers& multipliers, const reading::Geometry& g, std::size_t number, std::vector<Statement>& out) {
+void add_particle_force(const Mechanics& m, const Multipliers& multipliers, const reading::Geometry& g,
+                        std::size_t number, std::vector<Statement>& out) {
   reading::Components force{};
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!multipliers.holds(k)) continue;
@@ -170,14 +183,18 @@ void add_particle_force(const Mechanics& m, const Multipliers& multipliers, cons
       const Sum slope = reading::read(m, m.constraints[k].gradient[g.coordinates[i]]);
       if (slope.is_zero()) continue;
       if (multipliers.built_in(k)) return;
-      if (g.contravariant_unit.empty()) force[i] += lambda * slope;
-      else for (std::size_t j = 0; j < 3; ++j) force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
+      if (g.contravariant_unit.empty())
+        force[i] += lambda * slope;
+      else
+        for (std::size_t j = 0; j < 3; ++j)
+          force[j] = reading::simplify(force[j] + lambda * slope * g.contravariant_unit[i][j]);
     }
   }
   if (std::all_of(force.begin(), force.end(), [](const Sum& s) { return s.is_zero(); })) return;
   std::vector<Formula> sub;
   if (m.masses.size() > 1) sub.push_back(reading::number(static_cast<long>(number)));
-  out.push_back({"reactions", g.name, "", "constraint force", reading::relation({mark("bold N", std::move(sub)), combination(force, vectors_of(g))})});
+  out.push_back({"reactions", g.name, "", "constraint force",
+                 reading::relation({mark("bold N", std::move(sub)), combination(force, vectors_of(g))})});
 }
 
 /// Of particles whose three coordinates, or two in their plane, move them alone.
@@ -185,13 +202,18 @@ void add_particle_forces(const Mechanics& m, const Multipliers& multipliers, std
   if (m.constraints.empty()) return;
   std::vector<reading::LeftOut> unseen;
   for (const reading::Geometry& g : reading::geometry(m, &unseen)) {
-    const auto mass = std::find_if(m.masses.begin(), m.masses.end(), [&](const mechanics::PointMass& p) { return m.model->places[p.place].name == g.name; });
+    const auto mass = std::find_if(m.masses.begin(), m.masses.end(), [&](const mechanics::PointMass& p) {
+      return m.model->places[p.place].name == g.name;
+    });
     if (mass == m.masses.end() || g.inverse.empty()) continue;
     const auto& chart = m.model->places[mass->place].chart;
     const std::size_t directions = chart && chart->planar ? 2 : 3;
-    const bool of_body = std::any_of(m.model->bodies.begin(), m.model->bodies.end(), [&](const model::Body& b) { return b.place == mass->place; });
+    const bool of_body = std::any_of(m.model->bodies.begin(), m.model->bodies.end(),
+                                     [&](const model::Body& b) { return b.place == mass->place; });
     const auto shared = [&](std::uint32_t i) { return moves_others(m, i, mass->place, std::nullopt); };
-    if (of_body || g.coordinates.size() != directions || std::any_of(g.coordinates.begin(), g.coordinates.end(), shared)) continue;
+    if (of_body || g.coordinates.size() != directions ||
+        std::any_of(g.coordinates.begin(), g.coordinates.end(), shared))
+      continue;
     try {
       const work::Budget budget(reading::item_budget);
       add_particle_force(m, multipliers, g, static_cast<std::size_t>(mass - m.masses.begin()) + 1, out);

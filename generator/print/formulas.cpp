@@ -22,7 +22,8 @@ using reading::SymbolKind;
 
 namespace {
 
-constexpr std::size_t longest_in_a_list = 3;  // terms of an acceleration that still fits on a line with its coordinate and rate
+constexpr std::size_t longest_in_a_list =
+    3;  // terms of an acceleration that still fits on a line with its coordinate and rate
 
 Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
 Formula dotted(const Formula& f) {
@@ -74,7 +75,9 @@ Formula component(const reading::ReadSpin& spin, std::size_t k) {
 std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named) {
   std::vector<Formula> terms;
   std::array<bool, 3> done{};
-  const auto square = [&](std::size_t k) { return named ? reading::wrap(Form::power, {component(spin, k), reading::number(2)}) : squared(spin.w[k]); };
+  const auto square = [&](std::size_t k) {
+    return named ? reading::wrap(Form::power, {component(spin, k), reading::number(2)}) : squared(spin.w[k]);
+  };
   for (std::size_t i = 0; i < 3; ++i) {
     if (done[i] || spin.J[i][i].is_zero()) continue;
     std::vector<Formula> squares;
@@ -93,7 +96,8 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = i + 1; k < 3; ++k) {
       if (spin.J[i][k].is_zero() || spin.w[i].is_zero() || spin.w[k].is_zero()) continue;
-      const Formula a = named ? component(spin, i) : arrange(spin.w[i]), b = named ? component(spin, k) : arrange(spin.w[k]);
+      const Formula a = named ? component(spin, i) : arrange(spin.w[i]),
+                    b = named ? component(spin, k) : arrange(spin.w[k]);
       terms.push_back(reading::product({arrange(spin.J[i][k]), a, b}));
     }
   }
@@ -103,7 +107,8 @@ std::vector<Formula> rotational_terms(const reading::ReadSpin& spin, bool named)
 /// T as squares of velocities and of components of angular velocities; of a model without bodies as it is.
 Formula kinetic_formula(const ReadingForm& form) {
   if (form.spins.empty()) return arrange(form.kinetic);
-  std::vector<Formula> terms = form.translation.is_zero() ? std::vector<Formula>{} : reading::arranged_terms(form.translation, Layout::grouped);
+  std::vector<Formula> terms =
+      form.translation.is_zero() ? std::vector<Formula>{} : reading::arranged_terms(form.translation, Layout::grouped);
   for (const reading::ReadSpin& spin : form.spins) {
     for (Formula& term : rotational_terms(spin, false)) terms.push_back(std::move(term));
   }
@@ -135,8 +140,10 @@ Formula read_or_dots(const Mechanics& m, symbolic::Ref expression) {
 // Q + sum lambda_k dpsi_k/dq, a positive term first if there is one
 Formula right_side(const Equation& equation) {
   std::vector<Formula> terms = reading::arranged_terms(equation.force, Layout::terms);
-  for (const reading::MultiplierTerm& term : equation.multipliers) terms.push_back(times_multiplier(term.constraint, term.slope));
-  const auto positive = std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
+  for (const reading::MultiplierTerm& term : equation.multipliers)
+    terms.push_back(times_multiplier(term.constraint, term.slope));
+  const auto positive =
+      std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
   if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
   return reading::sum(std::move(terms));
 }
@@ -159,7 +166,8 @@ Formula explicit_form(const Equation& equation) {
 void add_angular_velocities(const ReadingForm& form, std::vector<Statement>& out) {
   for (const reading::ReadSpin& spin : form.spins) {
     for (std::size_t k = 0; k < 3; ++k) {
-      out.push_back({"energies", "angular velocity of " + spin.name, "", "", reading::relation({component(spin, k), arrange(spin.w[k])})});
+      out.push_back({"energies", "angular velocity of " + spin.name, "", "",
+                     reading::relation({component(spin, k), arrange(spin.w[k])})});
     }
   }
 }
@@ -172,11 +180,13 @@ void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<State
   const auto add = [&](std::string name, Formula left, const Sum& right) {
     out.push_back({"energies", std::move(name), "", "", reading::relation({std::move(left), arrange(right)})});
   };
-  out.push_back({"energies", two ? "constrained kinetic energy" : "kinetic energy", "", "", reading::relation({mark(letters.T), kinetic_formula(form)})});
+  out.push_back({"energies", two ? "constrained kinetic energy" : "kinetic energy", "", "",
+                 reading::relation({mark(letters.T), kinetic_formula(form)})});
   const bool moving = form.by_degree && !((*form.by_degree)[1].is_zero() && (*form.by_degree)[2].is_zero());
   if (moving) {
     for (int k = 0; k < 3; ++k) {
-      add("T" + std::to_string(2 - k), mark(letters.T, {reading::number(2 - k)}), (*form.by_degree)[static_cast<std::size_t>(k)]);
+      add("T" + std::to_string(2 - k), mark(letters.T, {reading::number(2 - k)}),
+          (*form.by_degree)[static_cast<std::size_t>(k)]);
     }
   }
   add(two ? "constrained potential energy" : "potential energy", mark(letters.U), form.potential);
@@ -185,7 +195,8 @@ void add_energies(const Mechanics& m, const ReadingForm& form, std::vector<State
 void add_lagrangian(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   if (form.by_parts) return;
   const Formula L = mark(Letters(*m.model, form.approach == system::Approach::two).L);
-  std::vector<Formula> terms = form.spins.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped) : std::vector<Formula>{kinetic_formula(form)};
+  std::vector<Formula> terms = form.spins.empty() ? reading::arranged_terms(form.kinetic, Layout::grouped)
+                                                  : std::vector<Formula>{kinetic_formula(form)};
   if (!form.potential.is_zero()) {
     for (Formula& term : reading::arranged_terms(-form.potential, Layout::grouped)) terms.push_back(std::move(term));
   }
@@ -206,7 +217,8 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
       out.push_back({"constraints", c.label, "", std::move(role), std::move(formula)});
     };
     const Formula zero = reading::number(0);
-    const Formula psi = form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
+    const Formula psi =
+        form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
     const auto as_read = [&] {
       if (!(c.holonomic ? c.no_psi : c.no_rate).empty()) return mark("...");
       return arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms);
@@ -214,8 +226,10 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
     const std::optional<Formula> as_given = reading::as_written(*m.model, m.constraints[c.constraint].written);
     const Formula written = as_given ? *as_given : as_read();
     const auto add_sum = [&](const char* role, const Sum& sum, const std::string& why) {
-      if (why.empty()) add(role, reading::relation({arrange(sum, Layout::terms), zero}));
-      else out.push_back(left_out("constraints", c.label, role, why));
+      if (why.empty())
+        add(role, reading::relation({arrange(sum, Layout::terms), zero}));
+      else
+        out.push_back(left_out("constraints", c.label, role, why));
     };
     if (c.fixes) {
       const std::uint32_t q = c.fixes->coordinate;
@@ -235,7 +249,8 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
                                                : "binds velocities, integrability unknown",
           reading::relation({written, zero}));
       for (const mechanics::Integral& integral : m.integrals) {
-        if (integral.label == c.label) add("its integral", reading::relation({reading::wrap(Form::rate, {read_or_dots(m, integral.psi)}), zero}));
+        if (integral.label == c.label)
+          add("its integral", reading::relation({reading::wrap(Form::rate, {read_or_dots(m, integral.psi)}), zero}));
       }
       add_sum("its time derivative", c.acceleration, c.no_acceleration);
     } else {
@@ -255,20 +270,25 @@ Formula by_parts(const Mechanics& m, const Equation& equation) {
     const Formula r = mark("r", {reading::number(static_cast<long>(place))});
     Formula acceleration = reading::wrap(Form::dot, {r});
     acceleration.order = 2;
-    left.push_back(reading::product({mark("m", {reading::number(static_cast<long>(place))}),
-                                     reading::wrap(Form::dot_product, {acceleration, reading::wrap(Form::partial, {r, q})})}));
+    left.push_back(
+        reading::product({mark("m", {reading::number(static_cast<long>(place))}),
+                          reading::wrap(Form::dot_product, {acceleration, reading::wrap(Form::partial, {r, q})})}));
   }
   for (const mechanics::Spin& spin : m.spins) {  // dH/dt . dw/dqdot_i, eq. (9.39)
     const Formula body = reading::number(static_cast<long>(spin.frame));
-    left.push_back(reading::wrap(Form::dot_product, {dotted(mark("H", {body})), reading::wrap(Form::partial, {mark("omega", {body}), coordinate(equation.coordinate, 1)})}));
+    left.push_back(
+        reading::wrap(Form::dot_product,
+                      {dotted(mark("H", {body})),
+                       reading::wrap(Form::partial, {mark("omega", {body}), coordinate(equation.coordinate, 1)})}));
   }
   right.push_back(reading::negative(reading::wrap(Form::partial, {mark("U"), q})));
   right.push_back(mark("Q", {q}));
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!m.holds(k)) continue;
     const Formula psi = mark("psi", {reading::number(k + 1)});
-    const Formula slope = m.constraints[k].holonomic() ? reading::wrap(Form::partial, {psi, q})
-                                                       : reading::wrap(Form::partial, {dotted(psi), coordinate(equation.coordinate, 1)});
+    const Formula slope = m.constraints[k].holonomic()
+                              ? reading::wrap(Form::partial, {psi, q})
+                              : reading::wrap(Form::partial, {dotted(psi), coordinate(equation.coordinate, 1)});
     right.push_back(reading::product({multiplier(k), slope}));
   }
   return reading::relation({reading::sum(std::move(left)), reading::sum(std::move(right))});
@@ -283,7 +303,8 @@ void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Stat
     }
   };
   if (form.by_parts) {
-    for (const bool of_motion : {true, false}) add("equations", of_motion, [&](const Equation& e) { return by_parts(m, e); });
+    for (const bool of_motion : {true, false})
+      add("equations", of_motion, [&](const Equation& e) { return by_parts(m, e); });
     return;
   }
   for (const bool of_motion : {true, false}) add("equations", of_motion, momentum_form);
@@ -295,11 +316,13 @@ void add_reactions(const ReadingForm& form, std::vector<Statement>& out) {
     if (!reaction.value) continue;
     const bool long_sum = reaction.value->size() > 8;  // brackets cannot be broken over lines, terms can
     out.push_back({"reactions", reaction.label, "", "",
-                   reading::relation({multiplier(reaction.constraint), arrange(*reaction.value, long_sum ? Layout::terms : Layout::grouped)})});
+                   reading::relation({multiplier(reaction.constraint),
+                                      arrange(*reaction.value, long_sum ? Layout::terms : Layout::grouped)})});
   }
 }
 
-void add_statements(const Mechanics& m, const ReadingForm& form, const std::vector<std::string>& show, std::vector<Statement>& out) {
+void add_statements(const Mechanics& m, const ReadingForm& form, const std::vector<std::string>& show,
+                    std::vector<Statement>& out) {
   const auto wanted = [&](const char* key) {
     return std::any_of(show.begin(), show.end(), [&](const std::string& s) { return s == key || s == "all"; });
   };

@@ -23,9 +23,10 @@ inline Statement left_out(std::string key, std::string name, std::string role, s
 struct Item;  // render.hpp
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
 
-/// The statements that `show` names, in a fixed order of keys; what is there already when an interruption is thrown is whole.
-void add_statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, const std::vector<std::string>& show,
-                    std::vector<Statement>& out);
+/// The statements that `show` names, in a fixed order of keys; what is there already when an interruption is thrown is
+/// whole.
+void add_statements(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                    const std::vector<std::string>& show, std::vector<Statement>& out);
 
 /// d/dt(dL/dqdot) - dL/dq = Q + lambda grad psi, as (2.109).
 reading::Formula momentum_form(const reading::Equation& equation);
@@ -35,15 +36,20 @@ reading::Formula explicit_form(const reading::Equation& equation);
 void add_energies(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
 /// Components of the angular velocities, along the axes in which the inertias stand.
 void add_angular_velocities(const reading::ReadingForm& form, std::vector<Statement>& out);
-void add_constraints(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
-void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
-void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_constraints(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                     std::vector<Statement>& out);
+void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                   std::vector<Statement>& out);
+void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                    std::vector<Statement>& out);
 void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);
 /// Force and moment of the constraints on every body that has coordinates and angles of its own.
-void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form, std::vector<Statement>& out);
+void add_constraint_forces(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                           std::vector<Statement>& out);
 /// x e_1 + y e_2 + z e_3
 reading::Formula combination(const reading::Components& components, const std::vector<reading::Formula>& vectors);
-void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys, std::vector<Statement>& out);
+void add_geometry(const mechanics::Mechanics& mechanics, const std::vector<std::string>& keys,
+                  std::vector<Statement>& out);
 
 /// Frenet triad, curvature, torsion, line element of the curve that is left; `asked`: throws Error where there is none.
 void add_frenet(const mechanics::Mechanics& mechanics, bool asked, std::vector<Statement>& out);

@@ -64,14 +64,18 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   } catch (const work::OverBudget& over) {
     out.push_back(left_out("frenet", m.masses[0].name, "", over.what()));
     return;
-  } catch (const Error&) {  // two constraints of which each says the same of the directions: found only as the curve is looked at
+  } catch (const Error&) {  // two constraints of which each says the same of the directions: found only as the curve is
+                            // looked at
     if (asked) throw;
     return;
   }
   std::vector<Formula> fixed, unit;
   for (int k = 1; k <= 3; ++k) fixed.push_back(mark("E", {reading::number(k)}));
-  for (const std::uint32_t i : f.unit_names) unit.push_back(mark("e", {reading::symbol({reading::SymbolKind::coordinate, i, 0})}));
-  const auto add = [&](const char* role, Formula formula) { out.push_back({"frenet", f.name, "", role, std::move(formula)}); };
+  for (const std::uint32_t i : f.unit_names)
+    unit.push_back(mark("e", {reading::symbol({reading::SymbolKind::coordinate, i, 0})}));
+  const auto add = [&](const char* role, Formula formula) {
+    out.push_back({"frenet", f.name, "", role, std::move(formula)});
+  };
   const auto vector = [&](const char* role, const char* letter, const FrenetVector& v) {
     std::vector<Formula> sides{mark("e", {mark(letter)})};
     if (v.unit && !same(*v.unit, v.fixed)) sides.push_back(in_terms_of(*v.unit, unit));
@@ -85,8 +89,9 @@ void add_frenet(const mechanics::Mechanics& m, bool asked, std::vector<Statement
   if (f.torsion) add("torsion", reading::relation({mark("tau"), as_quotient(*f.torsion)}));
   if (f.along) {
     const Formula q = reading::symbol({reading::SymbolKind::coordinate, *f.along, 0});
-    add("arc length", reading::relation({reading::wrap(reading::Form::differential, {mark("s")}),
-                                         reading::product({arrange(f.speed), reading::wrap(reading::Form::differential, {q})})}));
+    add("arc length",
+        reading::relation({reading::wrap(reading::Form::differential, {mark("s")}),
+                           reading::product({arrange(f.speed), reading::wrap(reading::Form::differential, {q})})}));
   }
 }
 

@@ -45,7 +45,8 @@ class ContactFormulas {
     show("is apart", {multiplier(k), reading::number(0)});
     show("is apart while", {read(m_.constraints[k].psi), reading::number(0)}, true);
     const auto rate = [&](const char* when) {
-      Formula result = reading::wrap(Form::dot, {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
+      Formula result =
+          reading::wrap(Form::dot, {mark(free_letter(*m_.model, "psi", "Psi"), subscript({}), {mark(when)})});
       result.order = 1;
       return result;
     };
@@ -60,7 +61,8 @@ class ContactFormulas {
     return more;
   }
   std::vector<Formula> number_of(std::size_t a) const {
-    return subscript(contact_.dimensions() > 1 ? std::vector<Formula>{reading::number(static_cast<long>(a + 1))} : std::vector<Formula>{});
+    return subscript(contact_.dimensions() > 1 ? std::vector<Formula>{reading::number(static_cast<long>(a + 1))}
+                                               : std::vector<Formula>{});
   }
   Formula slip(std::size_t a) const { return mark(slip_, number_of(a)); }
   Formula friction(std::size_t a) const {
@@ -112,7 +114,9 @@ class ContactFormulas {
   Formula normal_force() {
     if (contact_.constraints.empty()) return call(symbolic::Op::abs, read(contact_.normal));
     const std::size_t n = contact_.constraints.size();
-    const auto lambda = [&](std::size_t k) { return dag_.symbol({SymbolKind::multiplier, contact_.constraints[k], 0}); };
+    const auto lambda = [&](std::size_t k) {
+      return dag_.symbol({SymbolKind::multiplier, contact_.constraints[k], 0});
+    };
     Ref sum = dag_.zero();
     for (std::size_t k = 0; k < n * n; ++k) {
       sum = dag_.add(sum, dag_.mul(contact_.gram[k], dag_.mul(lambda(k / n), lambda(k % n))));

@@ -58,10 +58,12 @@ class Tables {
   void metric() {
     const std::string scalar = letter_ == "a" ? "metric a" : letter_;
     for (std::size_t i = 0; i < n_; ++i) {
-      for (std::size_t k = i; k < n_; ++k) entry("metric", mark(scalar, {q(i), q(k)}), g_.metric[i * n_ + k], "covariant");
+      for (std::size_t k = i; k < n_; ++k)
+        entry("metric", mark(scalar, {q(i), q(k)}), g_.metric[i * n_ + k], "covariant");
     }
     for (std::size_t i = 0; i < n_ && !g_.inverse.empty(); ++i) {
-      for (std::size_t k = i; k < n_; ++k) entry("metric", mark(scalar, {}, {q(i), q(k)}), g_.inverse[i * n_ + k], "contravariant");
+      for (std::size_t k = i; k < n_; ++k)
+        entry("metric", mark(scalar, {}, {q(i), q(k)}), g_.inverse[i * n_ + k], "contravariant");
     }
     if (g_.inverse.empty()) return;
     out_.push_back({"metric", g_.name, "", "determinant",
@@ -69,7 +71,8 @@ class Tables {
   }
 
   void line_element() {
-    out_.push_back({"line_element", g_.name, "", "", reading::relation({mark("ds^2"), with_differentials(arrange(g_.line_element))})});
+    out_.push_back({"line_element", g_.name, "", "",
+                    reading::relation({mark("ds^2"), with_differentials(arrange(g_.line_element))})});
   }
 
   void christoffel() {
@@ -93,7 +96,11 @@ class Tables {
   Formula q(std::size_t i) const { return coordinate(g_.coordinates[i]); }
   void entry(const char* key, Formula left, const Sum& right, const char* role) {
     if (right.is_zero()) return;
-    out_.push_back({key, g_.name, "", role, reading::relation({std::move(left), arrange(right, right.size() > 6 ? Layout::terms : Layout::grouped)})});  // a bracket must fit on a line
+    out_.push_back(
+        {key, g_.name, "", role,
+         reading::relation(
+             {std::move(left),
+              arrange(right, right.size() > 6 ? Layout::terms : Layout::grouped)})});  // a bracket must fit on a line
   }
 
   const Geometry& g_;
@@ -127,7 +134,8 @@ void add_geometry(const Mechanics& m, const std::vector<std::string>& keys, std:
   const std::vector<Geometry> particles = reading::geometry(m, &unseen);
   // One free particle's manifold is its space; of anything else the whole has a metric of its own.
   const bool whole = m.masses.size() != 1 || particles.empty() || !m.fixed.empty();
-  const bool needed = whole && std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key != "basis"; });
+  const bool needed =
+      whole && std::any_of(keys.begin(), keys.end(), [](const std::string& key) { return key != "basis"; });
   const std::optional<Geometry> system = needed ? reading::configuration_space(m, &unseen) : std::nullopt;
   for (reading::LeftOut& l : unseen) out.push_back(left_out(keys.front(), std::move(l.what), "", std::move(l.why)));
   for (const std::string& key : keys) {

@@ -49,8 +49,10 @@ std::size_t visible(const std::string& latex) {
       std::size_t end = i + 1;
       while (end < latex.size() && std::isalpha(static_cast<unsigned char>(latex[end])) != 0) ++end;
       const std::string command = latex.substr(i + 1, end - i - 1);
-      if (command == "sin" || command == "cos" || command == "tan") count += 3;
-      else if (!greek(command).empty() || command.starts_with("frac")) count += 1;
+      if (command == "sin" || command == "cos" || command == "tan")
+        count += 3;
+      else if (!greek(command).empty() || command.starts_with("frac"))
+        count += 1;
       i = command.empty() ? i + 1 : end - 1;
     } else if (c != '{' && c != '}' && c != '^' && c != '_' && c != ' ') {
       count += c == '+' || c == '-' || c == '=' ? 2 : 1;
@@ -77,7 +79,8 @@ class LatexStyle final : public Style {
   Piece literal(const std::string& digits) const override { return {digits, Piece::atom}; }
   Piece pi() const override { return {"\\pi", Piece::atom}; }
   Piece symbol(const Glyph& glyph) const override { return {latex(glyph), Piece::atom}; }
-  Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
+  Piece mark(const std::string& word, const std::vector<std::string>& lower,
+             const std::vector<std::string>& upper) const override {
     if (word == "[]") return {"[" + lower[0] + "\\," + lower[1] + ",\\," + lower[2] + "]", Piece::atom};
     std::string text = letter(word);
     if (!upper.empty()) text += "^{" + joined(upper) + "}";
@@ -116,11 +119,14 @@ class LatexStyle final : public Style {
     for (const Piece& factor : factors) {
       if (!text.empty()) text += after_call ? "\\, " : " ";
       text += factor.text;
-      after_call = factor.text.starts_with("\\sin") || factor.text.starts_with("\\cos") || factor.text.starts_with("\\tan");
+      after_call =
+          factor.text.starts_with("\\sin") || factor.text.starts_with("\\cos") || factor.text.starts_with("\\tan");
     }
     return {text, Piece::product};
   }
-  Piece rate(const Piece& inside) const override { return {"\\frac{d}{dt}\\left(" + inside.text + "\\right)", Piece::call}; }
+  Piece rate(const Piece& inside) const override {
+    return {"\\frac{d}{dt}\\left(" + inside.text + "\\right)", Piece::call};
+  }
   Piece partial(const Piece& above, const Piece& below) const override {
     return {"\\frac{\\partial " + above.text + "}{\\partial " + below.text + "}", Piece::call};
   }

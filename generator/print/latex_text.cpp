@@ -8,7 +8,7 @@ namespace {
 
 using reading::Formula;
 
-constexpr std::size_t page_width = 78;  // printed characters
+constexpr std::size_t page_width = 78;    // printed characters
 constexpr std::size_t most_lines = 24;    // of a formula beside the equations themselves
 constexpr std::size_t longest_word = 24;  // that stands in a sentence unbroken
 
@@ -88,9 +88,12 @@ std::string enumeration(const std::vector<std::string>& parts) {
   return result;
 }
 
-LatexText::LatexText(const Notation& notation) : notation_(notation), wide_(latex_style(page_width)), endless_(latex_style(std::string::npos)) {}
+LatexText::LatexText(const Notation& notation)
+    : notation_(notation), wide_(latex_style(page_width)), endless_(latex_style(std::string::npos)) {}
 
-void LatexText::title(const std::string& text) { text_ += "\\begin{center}\n\\LARGE " + words(text) + "\n\\end{center}\n"; }
+void LatexText::title(const std::string& text) {
+  text_ += "\\begin{center}\n\\LARGE " + words(text) + "\n\\end{center}\n";
+}
 
 std::vector<std::string> LatexText::lines(const Formula& formula, std::size_t width) const {
   static const std::string opening = "\\begin{aligned}[t]\n", closing = "\n\\end{aligned}", between = " \\\\\n";
@@ -136,7 +139,9 @@ std::string LatexText::too_long(const Formula& formula) const {
   return count <= most_lines ? "" : "takes " + std::to_string(count) + " lines";
 }
 
-bool LatexText::fits_on_a_line(const Formula& formula) const { return wide_->fits(print(formula, notation_, *endless_)); }
+bool LatexText::fits_on_a_line(const Formula& formula) const {
+  return wide_->fits(print(formula, notation_, *endless_));
+}
 
 std::string LatexText::finish(bool amssymb) {
   return std::string(begin) + (amssymb ? "\\usepackage{amssymb}\n" : "") + preamble + text_ + "\\end{document}\n";

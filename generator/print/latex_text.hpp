@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A LaTeX document as it is written: sections, sentences, displays. Article, amsmath, longtable; nothing beyond texlive-latex-recommended.
-// What is the user's comes in through `words` or as a formula.
+// A LaTeX document as it is written: sections, sentences, displays. Article, amsmath, longtable; nothing beyond
+// texlive-latex-recommended. What is the user's comes in through `words` or as a formula.
 #pragma once
 
 #include <memory>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Letters of mechanics that a model has not taken for something of its own: a rod of length L leaves the Lagrangian a script L.
+// Letters of mechanics that a model has not taken for something of its own: a rod of length L leaves the Lagrangian a
+// script L.
 #pragma once
 
 #include <algorithm>
@@ -12,9 +13,12 @@ namespace eomgen::print {
 
 inline std::string free_letter(const model::Model& model, const char* letter, const char* otherwise) {
   const auto taken = [&](const auto& list) {
-    return std::any_of(list.begin(), list.end(), [&](const auto& entry) { return split_name(entry.name).base == letter; });
+    return std::any_of(list.begin(), list.end(),
+                       [&](const auto& entry) { return split_name(entry.name).base == letter; });
   };
-  return taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs) ? otherwise : letter;
+  return taken(model.parameters) || taken(model.coordinates) || taken(model.functions) || taken(model.inputs)
+             ? otherwise
+             : letter;
 }
 
 /// As reading::mark takes them; with a tilde where constraints are built in.
@@ -22,7 +26,10 @@ struct Letters {
   std::string T, U, L, psi;
 
   Letters(const model::Model& model, bool constrained)
-      : T(free_letter(model, "T", "cal T")), U(free_letter(model, "U", "cal U")), L(free_letter(model, "L", "cal L")), psi(free_letter(model, "psi", "Psi")) {
+      : T(free_letter(model, "T", "cal T")),
+        U(free_letter(model, "U", "cal U")),
+        L(free_letter(model, "L", "cal L")),
+        psi(free_letter(model, "psi", "Psi")) {
     if (!constrained) return;
     for (std::string* letter : {&T, &U, &L}) *letter += "~";
   }

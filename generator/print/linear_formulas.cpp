@@ -27,7 +27,9 @@ class Entries {
 
  private:
   Formula coordinate(std::size_t i) const { return reading::symbol({SymbolKind::coordinate, f_.coordinates[i], 0}); }
-  Formula column(std::size_t j, bool input) const { return input ? reading::symbol({SymbolKind::input, f_.inputs[j], 0}) : coordinate(j); }
+  Formula column(std::size_t j, bool input) const {
+    return input ? reading::symbol({SymbolKind::input, f_.inputs[j], 0}) : coordinate(j);
+  }
 
   void matrix(const char* letter, const std::vector<Sum>& entries, bool input, const std::string& where) {
     const std::size_t n = f_.coordinates.size(), columns = input ? f_.inputs.size() : n;
@@ -35,7 +37,8 @@ class Entries {
       for (std::size_t j = 0; j < columns; ++j) {
         const Sum& entry = entries[i * columns + j];
         if (entry.is_zero()) continue;
-        out_.push_back({"linear", "", "", where + ": " + letter, reading::relation({mark(letter, {coordinate(i), column(j, input)}), arrange(entry)})});
+        out_.push_back({"linear", "", "", where + ": " + letter,
+                        reading::relation({mark(letter, {coordinate(i), column(j, input)}), arrange(entry)})});
       }
     }
   }

@@ -29,12 +29,15 @@ std::string infix(const std::string& sign) { return "<mo form=\"infix\">" + sign
 constexpr const char* apply_function = "&#x2061;";
 // MathML Core has no gap around the invisible operators; a thin one stands where TeX puts it.
 constexpr const char* thin_behind = " lspace=\"0\" rspace=\"0.167em\"";
-std::string invisible(const char* sign, bool gap) { return std::string("<mo") + (gap ? thin_behind : "") + ">" + sign + "</mo>"; }
+std::string invisible(const char* sign, bool gap) {
+  return std::string("<mo") + (gap ? thin_behind : "") + ">" + sign + "</mo>";
+}
 
 bool begins(const std::string& text, std::string_view with) { return text.starts_with(with); }
 /// A function with its argument, sin x or sin^2 x; not a fraction or a power that has one inside.
 bool is_function(const std::string& text) {
-  return (begins(text, "<mrow><mi>") || begins(text, "<mrow><msup><mi>")) && text.find(apply_function) < text.find("</mrow>");
+  return (begins(text, "<mrow><mi>") || begins(text, "<mrow><msup><mi>")) &&
+         text.find(apply_function) < text.find("</mrow>");
 }
 bool ends_with_bracket(const std::string& text) { return text.ends_with(")</mo></mrow></mrow>"); }
 /// A name of several letters, which is upright and would run together with its neighbour.
@@ -70,20 +73,26 @@ std::string utf8(unsigned code) {
   text += static_cast<char>(0x80 | (code & 0x3f));
   return text;
 }
-std::string in_alphabet(std::string_view word, unsigned capital_a, unsigned small_a, std::string_view gaps, const unsigned* instead) {
+std::string in_alphabet(std::string_view word, unsigned capital_a, unsigned small_a, std::string_view gaps,
+                        const unsigned* instead) {
   std::string text;
   for (const char c : word) {
-    if (const std::size_t gap = gaps.find(c); gap != std::string_view::npos) text += utf8(instead[gap]);
-    else if (c >= 'A' && c <= 'Z') text += utf8(capital_a + static_cast<unsigned>(c - 'A'));
-    else if (c >= 'a' && c <= 'z') text += utf8(small_a + static_cast<unsigned>(c - 'a'));
-    else text += c;
+    if (const std::size_t gap = gaps.find(c); gap != std::string_view::npos)
+      text += utf8(instead[gap]);
+    else if (c >= 'A' && c <= 'Z')
+      text += utf8(capital_a + static_cast<unsigned>(c - 'A'));
+    else if (c >= 'a' && c <= 'z')
+      text += utf8(small_a + static_cast<unsigned>(c - 'a'));
+    else
+      text += c;
   }
   return text;
 }
 std::string bold(std::string_view word) { return in_alphabet(word, 0x1d400, 0x1d41a, "", nullptr); }
 // Some script letters were there before the alphabet, and stand elsewhere in Unicode.
 std::string script(std::string_view word) {
-  static constexpr unsigned elsewhere[] = {0x212c, 0x2130, 0x2131, 0x210b, 0x2110, 0x2112, 0x2133, 0x211b, 0x212f, 0x210a, 0x2134};
+  static constexpr unsigned elsewhere[] = {0x212c, 0x2130, 0x2131, 0x210b, 0x2110, 0x2112,
+                                           0x2133, 0x211b, 0x212f, 0x210a, 0x2134};
   return in_alphabet(word, 0x1d49c, 0x1d4b6, "BEFHILMRego", elsewhere);
 }
 
@@ -112,14 +121,17 @@ class MathmlStyle final : public Style {
  public:
   Piece number(const reading::Rational& value) const override {
     if (reading::is_integer(value)) return {number_element(cln::numerator(value)), Piece::atom};
-    return {"<mfrac>" + number_element(cln::numerator(value)) + number_element(cln::denominator(value)) + "</mfrac>", Piece::call};
+    return {"<mfrac>" + number_element(cln::numerator(value)) + number_element(cln::denominator(value)) + "</mfrac>",
+            Piece::call};
   }
   Piece literal(const std::string& digits) const override { return {"<mn>" + digits + "</mn>", Piece::atom}; }
   Piece pi() const override { return {"<mi>π</mi>", Piece::atom}; }
   Piece symbol(const Glyph& glyph) const override { return {mathml(glyph), Piece::atom}; }
-  Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
+  Piece mark(const std::string& word, const std::vector<std::string>& lower,
+             const std::vector<std::string>& upper) const override {
     if (word == "[]") {
-      return {row(op("[") + lower[0] + "<mspace width=\"0.2em\"/>" + lower[1] + op(",") + lower[2] + op("]")), Piece::atom};
+      return {row(op("[") + lower[0] + "<mspace width=\"0.2em\"/>" + lower[1] + op(",") + lower[2] + op("]")),
+              Piece::atom};
     }
     const std::string base = letter(word);
     if (lower.empty() && upper.empty()) return {base, Piece::atom};
@@ -141,7 +153,8 @@ class MathmlStyle final : public Style {
     }
   }
   Piece call_power(Op function, const std::vector<Piece>& args, const std::string& exponent) const override {
-    return {row("<msup><mi>" + function_name(function) + "</mi>" + exponent + "</msup>" + applied_to(args)), Piece::call};
+    return {row("<msup><mi>" + function_name(function) + "</mi>" + exponent + "</msup>" + applied_to(args)),
+            Piece::call};
   }
   Piece power(const Piece& base, const std::string& exponent) const override {
     // An index and an exponent stand above one another.
@@ -150,7 +163,9 @@ class MathmlStyle final : public Style {
       const std::string inside = base.text.substr(open.size(), base.text.size() - open.size() - close.size());
       return {"<msubsup>" + inside + row(exponent) + "</msubsup>", Piece::call};
     }
-    return {"<msup>" + (begins(base.text, "<mi>") || begins(base.text, "<mn>") ? base.text : row(base.text)) + row(exponent) + "</msup>", Piece::call};
+    return {"<msup>" + (begins(base.text, "<mi>") || begins(base.text, "<mn>") ? base.text : row(base.text)) +
+                row(exponent) + "</msup>",
+            Piece::call};
   }
   Piece fraction(const Piece& above, const Piece& below) const override {
     return {"<mfrac>" + row(above.text) + row(below.text) + "</mfrac>", Piece::call};
@@ -172,11 +187,14 @@ class MathmlStyle final : public Style {
   Piece dotted(const Piece& base, int dots) const override {
     return {"<mover accent=\"true\">" + base.text + op(dots == 1 ? "˙" : "¨") + "</mover>", Piece::atom};
   }
-  Piece dot_product(const Piece& a, const Piece& b) const override { return {row(a.text + op("·") + b.text), Piece::product}; }
+  Piece dot_product(const Piece& a, const Piece& b) const override {
+    return {row(a.text + op("·") + b.text), Piece::product};
+  }
   Piece integral(const Piece& inside) const override {
     const std::string of = inside.binding < Piece::product ? bracket(inside.text) : inside.text;
-    return {row("<msubsup><mo>∫</mo><msub><mi>t</mi><mn>0</mn></msub><mi>t</mi></msubsup>" + of + "<mi>d</mi><mi>t</mi>"),
-            Piece::product};
+    return {
+        row("<msubsup><mo>∫</mo><msub><mi>t</mi><mn>0</mn></msub><mi>t</mi></msubsup>" + of + "<mi>d</mi><mi>t</mi>"),
+        Piece::product};
   }
   Piece differential(const Piece& a) const override { return {row("<mi>d</mi>" + a.text), Piece::atom}; }
   std::string bracket(const std::string& inside) const override { return bracketed(inside); }
@@ -197,7 +215,9 @@ class MathmlStyle final : public Style {
     }
     return result + close;
   }
-  std::string open_rate() const override { return "<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + open_bracket(); }
+  std::string open_rate() const override {
+    return "<mfrac><mi>d</mi>" + row("<mi>d</mi><mi>t</mi>") + "</mfrac>" + open_bracket();
+  }
   std::string close_rate() const override { return close_bracket(); }
   // What is broken over elements: each would be stretched alone.
   std::string open_bracket() const override { return "<mo stretchy=\"false\">(</mo>"; }
@@ -211,7 +231,8 @@ class MathmlStyle final : public Style {
     if (word.starts_with("cal ")) return "<mi>" + script(word.substr(4)) + "</mi>";
     if (word.starts_with("bold ")) return "<mi>" + bold(word.substr(5)) + "</mi>";
     if (word.starts_with("det ")) {
-      return row("<mi>det</mi>" + op("(") + "<msub><mi>" + word.substr(4) + "</mi>" + row("<mi>i</mi><mi>k</mi>") + "</msub>" + op(")"));
+      return row("<mi>det</mi>" + op("(") + "<msub><mi>" + word.substr(4) + "</mi>" + row("<mi>i</mi><mi>k</mi>") +
+                 "</msub>" + op(")"));
     }
     if (word == "...") return op("…");
     if (word == "metric a") return "<mi>a</mi>";

@@ -15,12 +15,13 @@ namespace {
 using symbolic::SymbolKind;
 
 constexpr std::array<std::pair<std::string_view, std::string_view>, 37> letters{{
-    {"alpha", "α"}, {"beta", "β"}, {"gamma", "γ"}, {"delta", "δ"}, {"epsilon", "ϵ"}, {"varepsilon", "ε"},
-    {"zeta", "ζ"}, {"eta", "η"}, {"theta", "θ"}, {"vartheta", "ϑ"}, {"iota", "ι"}, {"kappa", "κ"},
-    {"lambda", "λ"}, {"mu", "μ"}, {"nu", "ν"}, {"xi", "ξ"}, {"pi", "π"}, {"rho", "ρ"},
-    {"sigma", "σ"}, {"tau", "τ"}, {"upsilon", "υ"}, {"phi", "ϕ"}, {"varphi", "φ"}, {"chi", "χ"},
-    {"psi", "ψ"}, {"omega", "ω"}, {"Gamma", "Γ"}, {"Delta", "Δ"}, {"Theta", "Θ"}, {"Lambda", "Λ"},
-    {"Xi", "Ξ"}, {"Pi", "Π"}, {"Sigma", "Σ"}, {"Upsilon", "Υ"}, {"Phi", "Φ"}, {"Psi", "Ψ"}, {"Omega", "Ω"},
+    {"alpha", "α"},  {"beta", "β"},  {"gamma", "γ"},   {"delta", "δ"},    {"epsilon", "ϵ"}, {"varepsilon", "ε"},
+    {"zeta", "ζ"},   {"eta", "η"},   {"theta", "θ"},   {"vartheta", "ϑ"}, {"iota", "ι"},    {"kappa", "κ"},
+    {"lambda", "λ"}, {"mu", "μ"},    {"nu", "ν"},      {"xi", "ξ"},       {"pi", "π"},      {"rho", "ρ"},
+    {"sigma", "σ"},  {"tau", "τ"},   {"upsilon", "υ"}, {"phi", "ϕ"},      {"varphi", "φ"},  {"chi", "χ"},
+    {"psi", "ψ"},    {"omega", "ω"}, {"Gamma", "Γ"},   {"Delta", "Δ"},    {"Theta", "Θ"},   {"Lambda", "Λ"},
+    {"Xi", "Ξ"},     {"Pi", "Π"},    {"Sigma", "Σ"},   {"Upsilon", "Υ"},  {"Phi", "Φ"},     {"Psi", "Ψ"},
+    {"Omega", "Ω"},
 }};
 
 bool is_letter(char c) { return std::isalpha(static_cast<unsigned char>(c)) != 0; }
@@ -65,7 +66,8 @@ std::vector<JointDirection> joint_directions(const mechanics::Mechanics& m) {
     for (std::uint32_t k = 0; k < kind->equations.size(); ++k) {
       const joints::Equation& e = kind->equations[k];
       const bool force = !e.force.empty();
-      result.push_back({m.joints[i].first + k, &joint, force ? "F" + std::to_string(++forces) : "M" + std::to_string(++moments),
+      result.push_back({m.joints[i].first + k, &joint,
+                        force ? "F" + std::to_string(++forces) : "M" + std::to_string(++moments),
                         force ? "force along " + e.force : "moment along " + direction_of(e.moment)});
     }
   }
@@ -79,7 +81,8 @@ std::vector<MultiplierMeaning> multiplier_meanings(const mechanics::Mechanics& m
   const std::vector<JointDirection> of_joints = joint_directions(m);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!m.holds(k)) continue;
-    const auto found = std::find_if(of_joints.begin(), of_joints.end(), [k](const JointDirection& d) { return d.constraint == k; });
+    const auto found =
+        std::find_if(of_joints.begin(), of_joints.end(), [k](const JointDirection& d) { return d.constraint == k; });
     if (found == of_joints.end()) {
       result.push_back({k, "of the constraint '" + m.constraints[k].label + "'"});
       continue;
@@ -151,7 +154,8 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
   };
   switch (symbol.kind) {
     case SymbolKind::time: return split_name("t");
-    case SymbolKind::parameter: return named(model_->parameters[symbol.index].name, model_->parameters[symbol.index].tex);
+    case SymbolKind::parameter:
+      return named(model_->parameters[symbol.index].name, model_->parameters[symbol.index].tex);
     case SymbolKind::input: return named(model_->inputs[symbol.index].name, model_->inputs[symbol.index].tex);
     case SymbolKind::function: return named(model_->functions[symbol.index].name, model_->functions[symbol.index].tex);
     case SymbolKind::coordinate:
@@ -159,7 +163,8 @@ Glyph Notation::operator()(const symbolic::Symbol& symbol) const {
     case SymbolKind::multiplier: return multiplier(symbol.index);
     case SymbolKind::integral: return split_name("I_" + std::to_string(symbol.index + 1));
     case SymbolKind::friction: return split_name("F_f_" + std::to_string(symbol.index + 1));
-    case SymbolKind::side: case SymbolKind::contact: break;
+    case SymbolKind::side:
+    case SymbolKind::contact: break;
     case SymbolKind::extra:
       if (symbol != reading::momentum_symbol(symbol.index)) break;
       return split_name(momentum_letter_ + "_" + model_->coordinates[symbol.index].name);
@@ -200,7 +205,8 @@ std::string mathml(const Glyph& glyph) {
   }
   if (glyph.index.empty()) return base;
   std::string index;
-  for (std::size_t i = 0; i < glyph.index.size(); ++i) index += (i > 0 ? "<mo>,</mo>" : "") + mathml_word(glyph.index[i]);
+  for (std::size_t i = 0; i < glyph.index.size(); ++i)
+    index += (i > 0 ? "<mo>,</mo>" : "") + mathml_word(glyph.index[i]);
   return "<msub>" + base + "<mrow>" + index + "</mrow></msub>";
 }
 
@@ -224,15 +230,23 @@ std::string escape_latex(std::string_view text) {
     }
     switch (c) {
       case '\\': result += "\\textbackslash{}"; break;
-      case '{': case '}': case '$': case '&': case '#': case '%': case '_': result += std::string("\\") + c; break;
+      case '{':
+      case '}':
+      case '$':
+      case '&':
+      case '#':
+      case '%':
+      case '_': result += std::string("\\") + c; break;
       case '^': result += "\\textasciicircum{}"; break;
       case '~': result += "\\textasciitilde{}"; break;
       case '<': result += "\\textless{}"; break;
       case '>': result += "\\textgreater{}"; break;
       case '"': result += "''"; break;
       default:
-        if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f) result += c;
-        else result += ' ';
+        if (static_cast<unsigned char>(c) >= 0x20 && c != 0x7f)
+          result += c;
+        else
+          result += ' ';
     }
   }
   return result;

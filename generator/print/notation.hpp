@@ -18,8 +18,8 @@ struct Glyph {
   std::string base;                // "theta", "x", "length"
   std::vector<std::string> index;  // "1", "max"
   int dots = 0;
-  std::string name;                // plain, "theta1_dot"
-  std::string tex;                 // an override of base and index; empty for none
+  std::string name;  // plain, "theta1_dot"
+  std::string tex;   // an override of base and index; empty for none
 };
 
 /// "theta1" -> theta, 1; "m_P" -> m, P; "x1_ref" -> x, 1, ref; "length" -> length.
@@ -40,7 +40,7 @@ class Notation {
   std::size_t multipliers_;
   std::vector<std::optional<Glyph>> of_joints_;  // per constraint
   std::string momentum_letter_ = "p";  // p_theta: the constant of a cyclic coordinate; Pi where a model has a p
-  std::string multiplier_letter_;  // mu where a model has a lambda of its own
+  std::string multiplier_letter_;      // mu where a model has a lambda of its own
 };
 
 /// "\theta_{1}", "\dot{\theta}_{1}", "\mathrm{length}".
@@ -48,7 +48,8 @@ std::string latex(const Glyph& glyph);
 /// "<msub><mi>θ</mi><mn>1</mn></msub>".
 std::string mathml(const Glyph& glyph);
 
-/// What a multiplier is the force of, for a legend: "of the constraint 'wire.2'", "force of the joint 'pin' on 'second' along E1".
+/// What a multiplier is the force of, for a legend: "of the constraint 'wire.2'", "force of the joint 'pin' on 'second'
+/// along E1".
 struct MultiplierMeaning {
   std::uint32_t constraint;
   std::string text;

@@ -21,7 +21,8 @@ std::optional<std::string> as_decimal(const reading::Rational& value) {
   constexpr long most = 10000;
   const cln::cl_I bottom = cln::denominator(value);
   if (bottom < 100 || cln::mod(most, bottom) != 0) return std::nullopt;
-  const cln::cl_I shifted = cln::numerator(value) * cln::exquo(cln::cl_I(most), bottom), whole = cln::floor1(shifted, most);
+  const cln::cl_I shifted = cln::numerator(value) * cln::exquo(cln::cl_I(most), bottom),
+                  whole = cln::floor1(shifted, most);
   if (whole > most) return std::nullopt;
   std::string decimals = std::to_string(cln::cl_I_to_long(most + cln::mod(shifted, most))).substr(1);
   decimals.erase(decimals.find_last_not_of('0') + 1);
@@ -47,7 +48,8 @@ class Walk {
       case Form::rate: return style_.rate((*this)(f.args[0]));
       case Form::partial: return style_.partial((*this)(f.args[0]), (*this)(f.args[1]));
       case Form::dot: return style_.dotted((*this)(f.args[0]), f.order);
-      case Form::dot_product: return style_.dot_product({at_least(f.args[0], Piece::product)}, {at_least(f.args[1], Piece::product)});
+      case Form::dot_product:
+        return style_.dot_product({at_least(f.args[0], Piece::product)}, {at_least(f.args[1], Piece::product)});
       case Form::differential: return style_.differential((*this)(f.args[0]));
       case Form::relation: return {listed(f.args, between(f)), Piece::relation};
       case Form::list: return {listed(f.args, style_.comma()), Piece::relation};
@@ -59,7 +61,8 @@ class Walk {
     return relation.word == reading::at_least ? style_.at_least() : style_.equals();
   }
 
-  /// Top-level terms of all sides of a relation, with their signs and the equals signs; after them what abbreviations mean.
+  /// Top-level terms of all sides of a relation, with their signs and the equals signs; after them what abbreviations
+  /// mean.
   std::string whole(const Formula& f) const {
     std::vector<std::string> all;
     std::vector<Start> starts;
@@ -83,7 +86,8 @@ class Walk {
     for (std::size_t i = 0; i < shorten.meanings().size(); ++i) {
       all.back() += ",";
       const Formula meaning = shorten.meanings()[i];
-      add(broken_terms(meaning, shorten), (*this)(Shortener::abbreviation(i)).text + style_.equals(), Start::abbreviation);
+      add(broken_terms(meaning, shorten), (*this)(Shortener::abbreviation(i)).text + style_.equals(),
+          Start::abbreviation);
     }
     return style_.whole(all, starts);
   }
@@ -125,8 +129,12 @@ class Walk {
     const bool whole = f.args[1].form == Form::number && reading::is_integer(f.args[1].number);
     if (base.form == Form::call && whole) {
       switch (base.op) {
-        case Op::sin: case Op::cos: case Op::tan: case Op::sinh: case Op::cosh: case Op::tanh:
-          return style_.call_power(base.op, pieces(base.args), exponent);
+        case Op::sin:
+        case Op::cos:
+        case Op::tan:
+        case Op::sinh:
+        case Op::cosh:
+        case Op::tanh: return style_.call_power(base.op, pieces(base.args), exponent);
         default: break;
       }
     }
@@ -174,7 +182,8 @@ class Walk {
   std::vector<std::string> bracket_pieces(const Formula& term, Shortener& shorten) const {
     const auto is_sum = [](const Formula& f) { return f.form == Form::sum; };
     if (term.form != Form::product || std::count_if(term.args.begin(), term.args.end(), is_sum) != 1) return {};
-    const auto at = static_cast<std::size_t>(std::find_if(term.args.begin(), term.args.end(), is_sum) - term.args.begin());
+    const auto at =
+        static_cast<std::size_t>(std::find_if(term.args.begin(), term.args.end(), is_sum) - term.args.begin());
     const std::string place = "\x1a";  // no printed text has this character
     std::vector<Piece> factors = pieces(term.args);
     for (Piece& factor : factors) {

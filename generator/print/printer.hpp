@@ -13,8 +13,8 @@
 namespace eomgen::print {
 
 enum class Format {
-  text,      // m d^2 sin^2(phi) theta_dot
-  latex,     // m d^{2} \sin^{2}\phi\, \dot{\theta}
+  text,   // m d^2 sin^2(phi) theta_dot
+  latex,  // m d^{2} \sin^{2}\phi\, \dot{\theta}
   mathml,
   language,  // m*d^2*sin(phi)^2*theta_dot: the language of model files
 };
@@ -34,10 +34,11 @@ class Style {
  public:
   virtual ~Style() = default;
   virtual Piece number(const reading::Rational& value) const = 0;  // not negative
-  virtual Piece literal(const std::string& digits) const = 0;  // a decimal as the author wrote it
+  virtual Piece literal(const std::string& digits) const = 0;      // a decimal as the author wrote it
   virtual Piece pi() const = 0;
   virtual Piece symbol(const Glyph& glyph) const = 0;
-  virtual Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const = 0;
+  virtual Piece mark(const std::string& word, const std::vector<std::string>& lower,
+                     const std::vector<std::string>& upper) const = 0;
   virtual Piece call(reading::Op op, const std::vector<Piece>& args) const = 0;  // args without brackets
   virtual Piece call_power(reading::Op op, const std::vector<Piece>& args, const std::string& exponent) const = 0;
   virtual Piece power(const Piece& base, const std::string& exponent) const = 0;
@@ -51,7 +52,7 @@ class Style {
   virtual Piece differential(const Piece& a) const = 0;
   virtual std::string bracket(const std::string& inside) const = 0;
   virtual std::string plus() const = 0;
-  virtual std::string minus() const = 0;         // between terms
+  virtual std::string minus() const = 0;  // between terms
   virtual std::string leading_minus() const = 0;
   virtual std::string equals() const = 0;
   virtual std::string at_least() const = 0;

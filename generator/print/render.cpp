@@ -43,7 +43,8 @@ std::vector<Item> render_singular(const mechanics::Mechanics& mechanics) {
   return render(mechanics, all);
 }
 
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, const reading::Sum& expression) {
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
+                       const reading::Sum& expression) {
   const Notation notation(mechanics);
   Item item;
   item.key = std::move(key);
@@ -55,7 +56,8 @@ Item render_expression(const mechanics::Mechanics& mechanics, std::string key, s
   return item;
 }
 
-Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name, symbolic::Ref expression) {
+Item render_expression(const mechanics::Mechanics& mechanics, std::string key, std::string name,
+                       symbolic::Ref expression) {
   try {
     return render_expression(mechanics, key, name, reading::read(mechanics, expression));
   } catch (const work::OverBudget& over) {

@@ -46,7 +46,8 @@ class TextStyle final : public Style {
   Piece literal(const std::string& digits) const override { return {digits, Piece::atom}; }
   Piece pi() const override { return {"pi", Piece::atom}; }
   Piece symbol(const Glyph& glyph) const override { return {glyph.name, Piece::atom}; }
-  Piece mark(const std::string& word, const std::vector<std::string>& lower, const std::vector<std::string>& upper) const override {
+  Piece mark(const std::string& word, const std::vector<std::string>& lower,
+             const std::vector<std::string>& upper) const override {
     if (word == "[]") return {"[" + joined({lower[0], lower[1]}, " ") + ", " + lower[2] + "]", Piece::atom};
     std::string text = letter(word);
     if (!upper.empty()) text += "^" + (upper.size() == 1 ? upper[0] : "(" + joined(upper, " ") + ")");
@@ -55,7 +56,8 @@ class TextStyle final : public Style {
   }
   Piece call(Op op, const std::vector<Piece>& args) const override {
     if (op == Op::select) {
-      return {"if(" + args[0].text + " < " + args[1].text + ", " + args[2].text + ", " + args[3].text + ")", Piece::atom};
+      return {"if(" + args[0].text + " < " + args[1].text + ", " + args[2].text + ", " + args[3].text + ")",
+              Piece::atom};
     }
     return {function_name(op) + arguments(args), Piece::atom};
   }
@@ -114,7 +116,11 @@ class TextStyle final : public Style {
     if (word.starts_with("det ")) return "det(" + word.substr(4) + "_ik)";
     if (!word.starts_with("cal ")) return word;
     const std::string rest = word.substr(5);
-    return (word[4] == 'T' ? "kinetic" : word[4] == 'U' ? "potential" : word[4] == 'R' ? "Routhian" : "Lagrangian") + rest;
+    return (word[4] == 'T'   ? "kinetic"
+            : word[4] == 'U' ? "potential"
+            : word[4] == 'R' ? "Routhian"
+                             : "Lagrangian") +
+           rest;
   }
   static std::string joined(const std::vector<std::string>& parts, const char* separator) {
     std::string result;

@@ -63,9 +63,12 @@ AbiFunctions::AbiFunctions(system::EquationSystem system, const std::map<std::ui
   Dag& dag = *system_.dag;
   std::map<Symbol, Ref> solution;
   ties_ = ties;
-  if (system_.solution) std::tie(qddot_, lambda_) = std::tie(system_.solution->qddot, system_.solution->lambda);
-  else if (system_.contacts.empty()) std::tie(qddot_, lambda_) = solve().motion();
-  else close_contacts(solution);
+  if (system_.solution)
+    std::tie(qddot_, lambda_) = std::tie(system_.solution->qddot, system_.solution->lambda);
+  else if (system_.contacts.empty())
+    std::tie(qddot_, lambda_) = solve().motion();
+  else
+    close_contacts(solution);
   for (std::size_t i = 0; i < n_; ++i) {
     qdot_.push_back(dag.symbol({SymbolKind::coordinate, system_.free[i], 1}));
     const Symbol qddot{SymbolKind::coordinate, system_.free[i], 2};
@@ -159,8 +162,8 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
   Dag& dag = *system_.dag;
   symbolic::Derivation d = symbolic::partial(dag, along);
   std::vector<Ref> r, c;
-  // The law of friction is not linear, and what a route has solved by itself obeys M, f, A and gamma only where the constraints hold (Euler
-  // parameters of unit length): the solution is differentiated.
+  // The law of friction is not linear, and what a route has solved by itself obeys M, f, A and gamma only where the
+  // constraints hold (Euler parameters of unit length): the solution is differentiated.
   if (!system_.contacts.empty() || (system_.solution && m_ > 0)) {
     for (const Ref a : qddot_) r.push_back(d(a));
     for (const system::IntegralState& integral : system_.integrals) r.push_back(d(integral.rate));
@@ -218,14 +221,16 @@ WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
   return function;
 }
 
-// Of L = T - U. Its rate is f + (dp/dq) qdot + dp/dt, since M = dp/dqdot and M qddot = f + A^T lambda: every route has it.
+// Of L = T - U. Its rate is f + (dp/dq) qdot + dp/dt, since M = dp/dqdot and M qddot = f + A^T lambda: every route has
+// it.
 WantedFunction AbiFunctions::momenta() {
   Dag& dag = *system_.dag;
   WantedFunction function{"momenta", {{"momenta", {}}, {"rates", {}}}, {}, {}};
   const Ref lagrangian = dag.sub(system_.kinetic, system_.potential);
   symbolic::Derivation by_time = symbolic::partial(dag, {SymbolKind::time, 0, 0});
   std::map<Symbol, Ref> none;
-  for (std::size_t b = 0; b < friction_.phi.size(); ++b) none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = dag.zero();
+  for (std::size_t b = 0; b < friction_.phi.size(); ++b)
+    none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = dag.zero();
   Substitution frictionless(dag, none);
   for (std::size_t i = 0; i < n_; ++i) {
     const Ref p = symbolic::partial(dag, {SymbolKind::coordinate, system_.free[i], 1})(lagrangian);
@@ -301,11 +306,13 @@ WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
 WantedFunction AbiFunctions::events() {
   WantedFunction function{"events", {{"g", {}}}, {}, {}};
   bool solved = false;
-  for (const system::Event& event : system_.events) function.results[0].second.push_back(written_out(event.value, solved));
+  for (const system::Event& event : system_.events)
+    function.results[0].second.push_back(written_out(event.value, solved));
   for (const Kink& kink : kinks_) function.results[0].second.push_back(kink.value);
   for (const ContactWatch& watch : friction_.watch) {
     solved = true;
-    for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin}) function.results[0].second.push_back(value);
+    for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin})
+      function.results[0].second.push_back(value);
   }
   if (solved) add_solution(function);
   return function;

@@ -45,8 +45,8 @@ class AbiFunctions {
   WantedFunction reactions();
   /// Throws Error with the names that exist where one is unknown.
   WantedFunction outputs(const std::vector<std::string>& names);
-  /// The events of the model, then the surfaces of the kinks that are held, then slip, above, below, hold, margin of each contact
-  /// (friction.hpp).
+  /// The events of the model, then the surfaces of the kinks that are held, then slip, above, below, hold, margin of
+  /// each contact (friction.hpp).
   WantedFunction events();
 
   const std::vector<Kink>& kinks() const { return kinks_; }

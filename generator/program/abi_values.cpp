@@ -21,12 +21,14 @@ namespace {
 using cln::cl_R;
 
 const Function* find(const Program& program, const std::string& name) {
-  const auto found = std::find_if(program.functions.begin(), program.functions.end(), [&](const Function& f) { return f.name == name; });
+  const auto found = std::find_if(program.functions.begin(), program.functions.end(),
+                                  [&](const Function& f) { return f.name == name; });
   return found == program.functions.end() ? nullptr : &*found;
 }
 
 template <class Real>
-Arguments<Real> prepared_for(const Program& program, const std::string& function, Arguments<Real> at, const std::vector<Real>& defaults) {
+Arguments<Real> prepared_for(const Program& program, const std::string& function, Arguments<Real> at,
+                             const std::vector<Real>& defaults) {
   at.side.assign(program.kinks.size(), Real(0));
   if (!has_mode(function)) {
     at.u = defaults;
@@ -40,7 +42,9 @@ Arguments<Real> prepared_for(const Program& program, const std::string& function
   return at;
 }
 
-Values<cl_R> run(const Function& function, const Arguments<cl_R>& at, int digits) { return interpret(function, at, digits); }
+Values<cl_R> run(const Function& function, const Arguments<cl_R>& at, int digits) {
+  return interpret(function, at, digits);
+}
 Values<double> run(const Function& function, const Arguments<double>& at, int) { return interpret(function, at); }
 
 // Whether the emitted code would go on: pivots, and what ends it with a code.
@@ -51,7 +55,9 @@ bool ends_well(const Function& function, const Values<cl_R>& values) {
   }
   for (std::size_t r = 0; r < values.results.size(); ++r) {
     if (!is_code(function.results[r].first)) continue;
-    if (std::any_of(values.results[r].begin(), values.results[r].end(), [](const cl_R& code) { return cln::minusp(code); })) return false;
+    if (std::any_of(values.results[r].begin(), values.results[r].end(),
+                    [](const cl_R& code) { return cln::minusp(code); }))
+      return false;
   }
   return true;
 }
@@ -85,9 +91,11 @@ Result all_prepared(const Program& program, const One& one) {
   return result;
 }
 
-/// The recurrences, driven as emitted code does (templates, emit/taylor.cpp). `checked` says whether the start is regular.
+/// The recurrences, driven as emitted code does (templates, emit/taylor.cpp). `checked` says whether the start is
+/// regular.
 template <class Real>
-std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real>& at, int order, int digits, const std::function<bool(const Values<Real>&)>& checked) {
+std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real>& at, int order, int digits,
+                                      const std::function<bool(const Values<Real>&)>& checked) {
   std::vector<Real> coefficients = at.x;
   const std::size_t n = at.x.size();
   if (order == 0) return coefficients;
@@ -105,7 +113,9 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
     }
     w[taylor.prepared() - 2] = Real(k == 1 ? 1 : 0);
     w[taylor.prepared() - 1] = Real(1) / Real(k);
-    Arguments<Real> next{Real(k), {coefficients.end() - static_cast<std::ptrdiff_t>(n), coefficients.end()}, at.p, at.u, w, at.side, at.mode};
+    Arguments<Real> next{
+        Real(k), {coefficients.end() - static_cast<std::ptrdiff_t>(n), coefficients.end()}, at.p, at.u, w, at.side,
+        at.mode};
     const Values<Real> values = run(taylor.next, next, digits);
     a.push_back(values.results[0]);
     b.push_back(values.results[1]);
@@ -119,7 +129,8 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
 /// Infinite where binary64 ends.
 double to_binary64(const cl_R& value) {
   const bool held = cln::abs(value) <= cln::rational(cln::cl_R(cln::cl_DF(std::numeric_limits<double>::max())));
-  return held ? cln::double_approx(value) : std::copysign(std::numeric_limits<double>::infinity(), cln::minusp(value) ? -1.0 : 1.0);
+  return held ? cln::double_approx(value)
+              : std::copysign(std::numeric_limits<double>::infinity(), cln::minusp(value) ? -1.0 : 1.0);
 }
 
 Arguments<double> in_binary64(const Arguments<cl_R>& at) {
@@ -153,9 +164,12 @@ std::vector<std::string> abi_function_names(const Program& program) {
   return names;
 }
 
-bool has_mode(const std::string& function) { return function != "mass" && function != "constraints" && function != "prepare"; }
+bool has_mode(const std::string& function) {
+  return function != "mass" && function != "constraints" && function != "prepare";
+}
 
-std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments, int digits) try {
+std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments,
+                                     int digits) try {
   const Program* const here = in_charts(program, arguments.at.mode);
   if (here == nullptr) return std::nullopt;
   Arguments<cl_R> at = prepared_for(*here, function, arguments.at, arguments.default_inputs);
@@ -164,7 +178,7 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
     return AbiResults{taylor_coefficients<cl_R>(*here->taylor, at, arguments.order, digits, checked)};
   }
   if (function == "prepare") {
-    return AbiResults{all_prepared<std::vector<cl_R>>(program, [&](const Function& prepare) { 
+    return AbiResults{all_prepared<std::vector<cl_R>>(program, [&](const Function& prepare) {
       Values<cl_R> values = interpret(prepare, at, digits);
       if (!ends_well(prepare, values)) throw std::domain_error("singular");
       return values.results[0];
@@ -172,8 +186,10 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
   }
   const Function* wanted = find(*here, function);
   if (function == "rhs_prepared") {
-    if (wanted == nullptr) wanted = find(*here, "rhs");  // nothing worth preparing in this chart
-    else at.w = interpret(*find(*here, "prepare"), at, digits).results[0];
+    if (wanted == nullptr)
+      wanted = find(*here, "rhs");  // nothing worth preparing in this chart
+    else
+      at.w = interpret(*find(*here, "prepare"), at, digits).results[0];
   }
   if (wanted == nullptr) return std::nullopt;
   Values<cl_R> values = interpret(*wanted, at, digits);
@@ -185,7 +201,8 @@ std::optional<AbiResults> abi_values(const Program& program, const std::string& 
   return std::nullopt;
 }
 
-std::vector<std::vector<double>> abi_bounds(const Program& program, const std::string& function, const AbiArguments& arguments) {
+std::vector<std::vector<double>> abi_bounds(const Program& program, const std::string& function,
+                                            const AbiArguments& arguments) {
   const Program& here = *in_charts(program, arguments.at.mode);
   Arguments<double> at = prepared_for(here, function, in_binary64(arguments.at), in_binary64(arguments.default_inputs));
   if (function == "taylor") {
@@ -193,16 +210,21 @@ std::vector<std::vector<double>> abi_bounds(const Program& program, const std::s
     constexpr int digits = 40;
     constexpr double caution = 100;
     const std::optional<AbiResults> exact = abi_values(program, function, arguments, digits);
-    if (!exact) return {std::vector<double>(at.x.size() * static_cast<std::size_t>(arguments.order + 1), std::numeric_limits<double>::infinity())};
-    const std::vector<double> got = taylor_coefficients<double>(*here.taylor, at, arguments.order, 0, [](const Values<double>&) { return true; });
+    if (!exact)
+      return {std::vector<double>(at.x.size() * static_cast<std::size_t>(arguments.order + 1),
+                                  std::numeric_limits<double>::infinity())};
+    const std::vector<double> got =
+        taylor_coefficients<double>(*here.taylor, at, arguments.order, 0, [](const Values<double>&) { return true; });
     std::vector<double> off;
     double largest = 0;
     for (const double value : got) largest = std::max(largest, std::fabs(value));
-    for (std::size_t i = 0; i < got.size(); ++i) off.push_back(caution * (std::fabs(got[i] - to_binary64(exact->front()[i])) + half_unit * largest));
+    for (std::size_t i = 0; i < got.size(); ++i)
+      off.push_back(caution * (std::fabs(got[i] - to_binary64(exact->front()[i])) + half_unit * largest));
     return {off};
   }
   if (function == "prepare") {
-    return {all_prepared<std::vector<double>>(program, [&](const Function& prepare) { return rounding_bounds(prepare, at)[0]; })};
+    return {all_prepared<std::vector<double>>(
+        program, [&](const Function& prepare) { return rounding_bounds(prepare, at)[0]; })};
   }
   const Function* wanted = find(here, function);
   std::vector<double> w_off;

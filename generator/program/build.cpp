@@ -86,7 +86,8 @@ std::vector<Candidate> raw_candidates(const std::vector<system::EquationSystem>&
   for (std::size_t i = 0; i < systems.size(); ++i) {
     for (const Ties ties : {Ties::ascending, Ties::descending}) {
       // Where the route has solved its equations itself there is nothing to order.
-      if (ties == Ties::descending && (systems[i].solution || systems[i].free.size() + systems[i].active.size() < 2)) continue;
+      if (ties == Ties::descending && (systems[i].solution || systems[i].free.size() + systems[i].active.size() < 2))
+        continue;
       Candidate candidate;
       candidate.index = i;
       candidate.functions = std::make_unique<AbiFunctions>(systems[i], request.fix, ties, hold);
@@ -155,8 +156,9 @@ WantedFunction wanted_function(AbiFunctions& functions, const std::string& name,
   if (name == "momenta") return functions.momenta();
   if (name == "reactions") return functions.reactions();
   if (name == "events") return functions.events();
-  throw Error("program", {}, fmt::format("there is no function `{}`", name),
-              "functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
+  throw Error(
+      "program", {}, fmt::format("there is no function `{}`", name),
+      "functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
 }
 
 }  // namespace

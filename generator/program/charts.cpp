@@ -13,8 +13,8 @@ namespace eomgen::program {
 namespace {
 
 /// y = the whole state, of which the angles and their rates change.
-Function exchange(const symbolic::Dag& dag, const std::string& name, const Program& program, const system::ChartChange& change,
-                  const std::vector<Ref>& formulas) {
+Function exchange(const symbolic::Dag& dag, const std::string& name, const Program& program,
+                  const system::ChartChange& change, const std::vector<Ref>& formulas) {
   // Symbols exist in the graph already where a formula uses them; the others are made in a copy.
   symbolic::Dag graph = dag;
   WantedFunction wanted{name, {{"y", {}}}, {}, {}};
@@ -23,8 +23,8 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
     for (const std::uint32_t q : program.free) {
       const auto angle = std::find(change.angles.begin(), change.angles.end(), q);
       const std::size_t place = static_cast<std::size_t>(angle - change.angles.begin()) + order * change.angles.size();
-      wanted.results[0].second.push_back(angle == change.angles.end() ? graph.symbol({symbolic::SymbolKind::coordinate, q, order})
-                                                                      : formulas[place]);
+      wanted.results[0].second.push_back(
+          angle == change.angles.end() ? graph.symbol({symbolic::SymbolKind::coordinate, q, order}) : formulas[place]);
     }
   }
   for (const std::uint32_t i : program.integrals) {
@@ -37,12 +37,14 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
 
 }  // namespace
 
-std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& known,
+std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs,
+                                          const std::vector<std::string>& known,
                                           const std::vector<std::string>& exchanged) {
   std::vector<std::uint32_t> result;
   for (std::uint32_t i = 0; i < outputs.size(); ++i) {
     const bool momentum = std::any_of(exchanged.begin(), exchanged.end(), [&](const std::string& angle) {
-      return outputs[i] == angle + "_ddot" || outputs[i] == "momentum." + angle || outputs[i] == "magnitude.momentum." + angle;
+      return outputs[i] == angle + "_ddot" || outputs[i] == "momentum." + angle ||
+             outputs[i] == "magnitude.momentum." + angle;
     });
     if (!momentum && std::find(known.begin(), known.end(), outputs[i]) != known.end()) result.push_back(i);
   }
@@ -51,8 +53,9 @@ std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& output
 
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes) {
   if (program.kinks.size() > most_kinks_with_charts) {
-    throw Error("program", {}, fmt::format("{} kinks leave no room in `mode` for charts", program.kinks.size()),
-                fmt::format("at most {} can be held beside them: leave the charts or the events out", most_kinks_with_charts));
+    throw Error(
+        "program", {}, fmt::format("{} kinks leave no room in `mode` for charts", program.kinks.size()),
+        fmt::format("at most {} can be held beside them: leave the charts or the events out", most_kinks_with_charts));
   }
   for (const system::ChartChange& change : changes) {
     ChartInfo info{change.of, change.own, change.second, change.regular, {}, 0, change.second_at_sine, {}, {}};
@@ -69,12 +72,14 @@ void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<sy
 }
 
 void add_second(Program& program, Program second, unsigned charts, const std::vector<std::uint32_t>& places) {
-  const bool fits = second.free == program.free && second.integrals == program.integrals && second.holonomic == program.holonomic &&
-                    second.active_constraints == program.active_constraints && second.reactions == program.reactions &&
-                    second.kinks.size() == program.kinks.size() && second.event_count() == program.event_count();
+  const bool fits = second.free == program.free && second.integrals == program.integrals &&
+                    second.holonomic == program.holonomic && second.active_constraints == program.active_constraints &&
+                    second.reactions == program.reactions && second.kinks.size() == program.kinks.size() &&
+                    second.event_count() == program.event_count();
   if (!fits) {
-    throw Error("program", {}, "in its second charts this model keeps other coordinates, constraints or kinks",
-                "this is a defect of eomgen: please report it with the model; --no-charts leaves the second charts out");
+    throw Error(
+        "program", {}, "in its second charts this model keeps other coordinates, constraints or kinks",
+        "this is a defect of eomgen: please report it with the model; --no-charts leaves the second charts out");
   }
   second.in_charts = eom::mode_of_charts(charts);
   for (Function& function : second.functions) {

@@ -41,7 +41,8 @@ bool never_vanishes(const Dag& dag, Ref r) {
 }
 
 /// Rows that share a column, directly or by others, and the columns that they have.
-std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::vector<Ref>& A, std::size_t n, std::size_t m) {
+std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::vector<Ref>& A, std::size_t n,
+                                                   std::size_t m) {
   std::vector<std::size_t> label(m);
   for (std::size_t k = 0; k < m; ++k) label[k] = k;
   for (std::size_t i = 0; i < n; ++i) {
@@ -61,14 +62,16 @@ std::vector<std::pair<Columns, Columns>> connected(const Dag& dag, const std::ve
     }
     if (rows.empty()) continue;
     for (std::size_t i = 0; i < n; ++i) {
-      if (std::any_of(rows.begin(), rows.end(), [&](std::size_t j) { return !dag.is_zero(A[j * n + i]); })) columns.push_back(i);
+      if (std::any_of(rows.begin(), rows.end(), [&](std::size_t j) { return !dag.is_zero(A[j * n + i]); }))
+        columns.push_back(i);
     }
     result.emplace_back(std::move(rows), std::move(columns));
   }
   return result;
 }
 
-/// Whether r is 0 in many digits wherever it is looked at: a determinant whose terms cancel, which in binary64 leaves a trace.
+/// Whether r is 0 in many digits wherever it is looked at: a determinant whose terms cancel, which in binary64 leaves a
+/// trace.
 bool is_rounding(const Dag& dag, Ref r) {
   const cln::cl_R small = cln::cl_R(cln::expt(symbolic::Rational(1) / 10, 30));
   for (std::uint64_t point = 1; point <= 4; ++point) {
@@ -83,7 +86,8 @@ bool is_rounding(const Dag& dag, Ref r) {
 }
 
 /// The choice of dependent columns whose determinant never vanishes, or else is the shortest that is not always zero.
-std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows, const Columns& columns) {
+std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std::size_t n, const Columns& rows,
+                                       const Columns& columns) {
   if (rows.size() > most_rows || columns.size() > most_columns || columns.size() < rows.size()) return std::nullopt;
   std::optional<DependentBlock> best;
   std::size_t best_size = 0;
@@ -91,7 +95,8 @@ std::optional<DependentBlock> block_of(Dag& dag, const std::vector<Ref>& A, std:
   std::fill(chosen.begin(), chosen.begin() + static_cast<std::ptrdiff_t>(rows.size()), true);
   do {
     DependentBlock block{rows, {}, {}, {}};
-    for (std::size_t j = 0; j < columns.size(); ++j) (chosen[j] ? block.dependent : block.independent).push_back(columns[j]);
+    for (std::size_t j = 0; j < columns.size(); ++j)
+      (chosen[j] ? block.dependent : block.independent).push_back(columns[j]);
     block.determinant = determinant(dag, A, n, rows, block.dependent);
     if (dag.is_zero(block.determinant) || is_singular_everywhere(dag, {dag.power(block.determinant, 2)}, 1)) continue;
     const std::size_t size = never_vanishes(dag, block.determinant) ? 0 : dag.reachable({block.determinant}).size();
@@ -118,7 +123,8 @@ bool form_applies(const system::EquationSystem& s, system::Form form, bool every
   if (form == system::Form::multipliers) return true;
   if (s.active.empty() || s.active.size() >= s.free.size()) return false;
   const auto can_be_left = [](const system::Contact& contact) { return contact.unilateral.has_value(); };
-  if (std::any_of(s.contacts.begin(), s.contacts.end(), can_be_left)) return false;  // the dependent velocities change with the mode
+  if (std::any_of(s.contacts.begin(), s.contacts.end(), can_be_left))
+    return false;  // the dependent velocities change with the mode
   const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
   if (!blocks || !everywhere) return blocks.has_value();
   return std::all_of(blocks->begin(), blocks->end(), [&](const DependentBlock& block) {
@@ -129,7 +135,13 @@ bool form_applies(const system::EquationSystem& s, system::Form form, bool every
 }
 
 ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
-    : dag_(s.dag), n_(s.free.size()), m_(s.active.size()), divided_(s.form == system::Form::chaplygin), M_(s.M), A_(s.A), f_(s.f),
+    : dag_(s.dag),
+      n_(s.free.size()),
+      m_(s.active.size()),
+      divided_(s.form == system::Form::chaplygin),
+      M_(s.M),
+      A_(s.A),
+      f_(s.f),
       gamma_(s.gamma) {
   Dag& dag = *dag_;
   const std::optional<std::vector<DependentBlock>> blocks = dependent_blocks(s);
@@ -165,7 +177,8 @@ ConstrainedSolve::ConstrainedSolve(const system::EquationSystem& s, Ties ties)
   std::vector<Ref> gram(m_ * m_, dag.zero());
   for (std::size_t a = 0; a < m_; ++a) {
     for (std::size_t b = 0; b < m_; ++b) {
-      for (std::size_t i = 0; i < n_; ++i) gram[a * m_ + b] = dag.add(gram[a * m_ + b], dag.mul(A_[a * n_ + i], A_[b * n_ + i]));
+      for (std::size_t i = 0; i < n_; ++i)
+        gram[a * m_ + b] = dag.add(gram[a * m_ + b], dag.mul(A_[a * n_ + i], A_[b * n_ + i]));
       gram[a * m_ + b] = simpler(gram[a * m_ + b]);
     }
   }
@@ -192,7 +205,8 @@ void ConstrainedSolve::add_null_vectors(const DependentBlock& block, bool divide
     Z_.back()[free] = divided ? dag.one() : block.determinant;
     for (std::size_t i = 0; i < r; ++i) {
       Ref sum = dag.zero();
-      for (std::size_t j = 0; j < r; ++j) sum = dag.sub(sum, dag.mul(adjugate[i * r + j], A_[block.rows[j] * n_ + free]));
+      for (std::size_t j = 0; j < r; ++j)
+        sum = dag.sub(sum, dag.mul(adjugate[i * r + j], A_[block.rows[j] * n_ + free]));
       Z_.back()[block.dependent[i]] = simpler(sum);
     }
   }
@@ -237,7 +251,8 @@ std::vector<Ref> ConstrainedSolve::multipliers(const std::vector<Ref>& excess) c
     const auto& [rows, dependent, independent, det] = blocks_[block];
     for (std::size_t i = 0; i < rows.size(); ++i) {
       for (std::size_t j = 0; j < rows.size(); ++j) {
-        lambda[rows[j]] = dag.add(lambda[rows[j]], dag.mul(adjugate_[block][i * rows.size() + j], excess[dependent[i]]));
+        lambda[rows[j]] =
+            dag.add(lambda[rows[j]], dag.mul(adjugate_[block][i * rows.size() + j], excess[dependent[i]]));
       }
     }
   }

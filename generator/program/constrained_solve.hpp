@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: EquationSystem with constraints A qddot = c. Out: M x = r + A^T lambda, A x = c solved without a Schur complement:
+// In: EquationSystem with constraints A qddot = c. Out: M x = r + A^T lambda, A x = c solved without a Schur
+// complement:
 //   x = p + Z w with A Z = 0, A p = c,   (Z^T M Z) w = Z^T (r - M p),
 // which is Maggi's and Kane's form for the accelerations (w are the rates of independent speeds, apart from Zdot), and
 // with Z = [1; -A_d^-1 A_i] Chaplygin's and Voronets', where the dependent velocities are solved for (docs/theory.md).
@@ -43,8 +44,8 @@ class ConstrainedSolve : public LinearSolve {
   bool divided_;  // Chaplygin's form
   std::vector<Ref> M_, A_, f_, gamma_;
   std::vector<DependentBlock> blocks_;
-  std::vector<std::vector<Ref>> adjugate_;  // per block, over its determinant if divided_
-  std::vector<std::vector<Ref>> Z_;         // columns
+  std::vector<std::vector<Ref>> adjugate_;         // per block, over its determinant if divided_
+  std::vector<std::vector<Ref>> Z_;                // columns
   std::unique_ptr<Factorisation> reduced_, gram_;  // Z^T M Z; A A^T where the form is not divided
 };
 

@@ -64,7 +64,8 @@ class Factoring {
     std::int32_t exponent = 0;
     for (const Term& term : with) {
       for (const Factor& f : term.factors) {
-        if (f.node == shared.node && (exponent == 0 || std::abs(f.exponent) < std::abs(exponent))) exponent = f.exponent;
+        if (f.node == shared.node && (exponent == 0 || std::abs(f.exponent) < std::abs(exponent)))
+          exponent = f.exponent;
       }
     }
     return {1, {{shared.node, exponent}}};

@@ -57,7 +57,9 @@ class Writer {
     words(values.size());
     for (const std::uint32_t value : values) word(value);
   }
-  void operand(const Operand& o) { fmt::format_to(std::back_inserter(text), "{}{},{} ", o.negated ? "-" : "", static_cast<int>(o.slot), o.index); }
+  void operand(const Operand& o) {
+    fmt::format_to(std::back_inserter(text), "{}{},{} ", o.negated ? "-" : "", static_cast<int>(o.slot), o.index);
+  }
 
   void function(const Function& f) {
     words(f.name, f.results.size(), f.constants.size(), f.code.size(), f.pivots.size());

@@ -7,7 +7,8 @@
 
 namespace eomgen::program {
 
-/// Everything that a program calculates, as text: two programs with one fingerprint give the same values. For keys of what is kept.
+/// Everything that a program calculates, as text: two programs with one fingerprint give the same values. For keys of
+/// what is kept.
 std::string fingerprint(const Program& program);
 
 }  // namespace eomgen::program

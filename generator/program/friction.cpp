@@ -133,7 +133,8 @@ class Closure {
       const Affine law = sliding_law(j, a);
       const std::size_t row = c.first + a;
       if (c.reactions.size() == 2 && !coupled_.empty()) {
-        by_normal_[place_of(j)][row] = dag_.neg(by_mode(j, dag_.zero(), dag_.mul(c.dynamic_coefficient, heading(j, a))));
+        by_normal_[place_of(j)][row] =
+            dag_.neg(by_mode(j, dag_.zero(), dag_.mul(c.dynamic_coefficient, heading(j, a))));
       }
       for (std::size_t b = 0; b < count_; ++b) {
         const Ref none = b == row ? dag_.one() : dag_.zero();  // apart: phi = 0
@@ -184,7 +185,8 @@ class Closure {
     return static_cast<std::size_t>(std::find(coupled_.begin(), coupled_.end(), curve) - coupled_.begin());
   }
 
-  // nu = |lambda^T G lambda|^(1/2) with lambda = l0 - sigma mu nu L: (1 - mu^2 LGL) nu^2 + 2 sigma mu l0GL nu - l0Gl0 = 0.
+  // nu = |lambda^T G lambda|^(1/2) with lambda = l0 - sigma mu nu L: (1 - mu^2 LGL) nu^2 + 2 sigma mu l0GL nu - l0Gl0 =
+  // 0.
   void close_curve(std::uint32_t j) {
     const Contact& c = s_.contacts[j];
     const auto form = [&](auto&& x, auto&& y) {
@@ -196,7 +198,8 @@ class Closure {
     };
     const auto value = [](const Affine& l) { return l.value; };
     const auto slope = [&c](const Affine& l) { return l.slope[c.first]; };
-    const Ref square = form(value, value), feedback = form(slope, slope), sigma_mu = dag_.mul(heading(j, 0), c.dynamic_coefficient);
+    const Ref square = form(value, value), feedback = form(slope, slope),
+              sigma_mu = dag_.mul(heading(j, 0), c.dynamic_coefficient);
     if (dag_.is_zero(feedback)) {
       curve_normal_[j] = root(square);
       return;
@@ -207,7 +210,8 @@ class Closure {
     const Ref discriminant = dag_.add(dag_.mul(b, b), dag_.mul(a, square));
     curve_normal_[j] = dag_.div(dag_.sub(root(discriminant), b), a);
     margin_[j] = by_mode(j, dag_.one(), a);
-    // a < 0: the roots have one sign, that of b; both are solutions where it is positive and the discriminant allows, none otherwise.
+    // a < 0: the roots have one sign, that of b; both are solutions where it is positive and the discriminant allows,
+    // none otherwise.
     add_codes(margin_[j], dag_.call(symbolic::Op::min, b, discriminant));
   }
 
@@ -293,7 +297,8 @@ class Closure {
       const Ref limit = dag_.mul(c.static_coefficient, normal), phi = result_.phi[c.first];
       watch.above = dag_.sub(limit, phi);
       if (c.slip.size() == 1) watch.below = dag_.add(limit, phi);
-      if (c.slip.size() == 2) watch.above = dag_.sub(limit, root(dag_.add(dag_.mul(phi, phi), dag_.power(result_.phi[c.first + 1], 2))));
+      if (c.slip.size() == 2)
+        watch.above = dag_.sub(limit, root(dag_.add(dag_.mul(phi, phi), dag_.power(result_.phi[c.first + 1], 2))));
     }
     if (margin_.contains(j)) watch.margin = margin_.at(j);
     result_.watch.push_back(watch);
@@ -302,13 +307,13 @@ class Closure {
   const system::EquationSystem& s_;
   Dag& dag_;
   std::size_t count_ = 0;
-  std::vector<Symbol> unknown_;                     // qddot, then the multipliers
-  std::vector<Affine> motion_;                      // of these
+  std::vector<Symbol> unknown_;                          // qddot, then the multipliers
+  std::vector<Affine> motion_;                           // of these
   std::map<std::uint32_t, std::vector<Affine>> normal_;  // multipliers of each contact
   std::map<std::uint32_t, Ref> curve_normal_, margin_;
-  std::vector<Ref> matrix_, right_;                 // of phi
-  std::vector<std::uint32_t> coupled_;              // curves, where their normal forces are coupled
-  std::vector<std::vector<Ref>> by_normal_;         // per coupled curve: what its normal force adds to right_
+  std::vector<Ref> matrix_, right_;          // of phi
+  std::vector<std::uint32_t> coupled_;       // curves, where their normal forces are coupled
+  std::vector<std::vector<Ref>> by_normal_;  // per coupled curve: what its normal force adds to right_
   FrictionSolution result_;
 };
 

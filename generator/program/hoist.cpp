@@ -41,7 +41,8 @@ class Splitting {
 
  private:
   bool all_parametric(const Term& term) const {
-    return std::all_of(term.factors.begin(), term.factors.end(), [this](const Factor& f) { return parametric_[f.node]; });
+    return std::all_of(term.factors.begin(), term.factors.end(),
+                       [this](const Factor& f) { return parametric_[f.node]; });
   }
   bool is_parametric(NodeId id) const {
     const Node& node = rest_[id];

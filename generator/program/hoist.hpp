@@ -16,8 +16,8 @@ struct Hoisted {
   Function rest;     // reads w through Slot::prepared
 };
 
-/// The cheapest of what the equal graphs `starts` become without their parts of parameters only; nothing where that saves
-/// less than a fiftieth of the cost of `whole`. `shape` as in `schedule`.
+/// The cheapest of what the equal graphs `starts` become without their parts of parameters only; nothing where that
+/// saves less than a fiftieth of the cost of `whole`. `shape` as in `schedule`.
 std::optional<Hoisted> hoist(const std::vector<Polynomials>& starts, const Operations& whole, const std::string& name,
                              const std::vector<std::pair<std::string, std::size_t>>& shape);
 

@@ -26,12 +26,16 @@ Real call(Op op, const std::vector<Real>& arguments, int digits) {
   Ref root;
   switch (op) {
     case Op::pow: root = dag.pow(refs[0], refs[1]); break;
-    case Op::atan2: case Op::min: case Op::max: root = dag.call(op, refs[0], refs[1]); break;
+    case Op::atan2:
+    case Op::min:
+    case Op::max: root = dag.call(op, refs[0], refs[1]); break;
     case Op::select: root = dag.select(refs[0], refs[1], refs[2], refs[3]); break;
     case Op::div: root = dag.div(refs[0], refs[1]); break;
     default: root = dag.call(op, refs[0]); break;
   }
-  const std::function<Real(const symbolic::Symbol&)> lookup = [&](const symbolic::Symbol& s) { return arguments[s.index]; };
+  const std::function<Real(const symbolic::Symbol&)> lookup = [&](const symbolic::Symbol& s) {
+    return arguments[s.index];
+  };
   if constexpr (std::is_same_v<Real, double>) {
     return symbolic::evaluate(dag, {root}, lookup)[0];
   } else {
@@ -44,7 +48,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
                  const std::function<Real(const symbolic::Rational&)>& number, const Real& pi) {
   std::vector<Real> value;
   value.reserve(function.code.size());
-  std::vector<std::string> reasons;           // why values are missing; the branch that is not taken may be
+  std::vector<std::string> reasons;            // why values are missing; the branch that is not taken may be
   std::map<std::size_t, std::size_t> missing;  // values, by reason
   const auto why = [&](const Operand& operand) -> std::optional<std::size_t> {
     const auto found = operand.slot == Slot::value ? missing.find(operand.index) : missing.end();
@@ -121,15 +125,22 @@ Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>
   const cln::float_format_t format = cln::float_format(static_cast<std::uintptr_t>(digits));
   const auto rounded = [format](const cln::cl_R& x) -> cln::cl_R { return cln::cl_float(x, format); };
   Arguments<cln::cl_R> floats{rounded(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode};
-  for (const auto& [from, to] : {std::pair{&arguments.x, &floats.x}, {&arguments.p, &floats.p}, {&arguments.u, &floats.u}, {&arguments.w, &floats.w}}) {
+  for (const auto& [from, to] : {std::pair{&arguments.x, &floats.x},
+                                 {&arguments.p, &floats.p},
+                                 {&arguments.u, &floats.u},
+                                 {&arguments.w, &floats.w}}) {
     for (const cln::cl_R& x : *from) to->push_back(rounded(x));
   }
-  const std::function<cln::cl_R(const symbolic::Rational&)> number = [&](const symbolic::Rational& x) { return rounded(x); };
+  const std::function<cln::cl_R(const symbolic::Rational&)> number = [&](const symbolic::Rational& x) {
+    return rounded(x);
+  };
   return run<cln::cl_R>(function, floats, digits, number, cln::pi(format));
 }
 
 Values<double> interpret(const Function& function, const Arguments<double>& arguments) {
-  const std::function<double(const symbolic::Rational&)> number = [](const symbolic::Rational& x) { return cln::double_approx(x); };
+  const std::function<double(const symbolic::Rational&)> number = [](const symbolic::Rational& x) {
+    return cln::double_approx(x);
+  };
   return run<double>(function, arguments, 0, number, 3.14159265358979323846);
 }
 

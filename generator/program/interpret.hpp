@@ -16,15 +16,15 @@ template <class Real>
 struct Arguments {
   Real t{};
   std::vector<Real> x, p, u;
-  std::vector<Real> w{};  // what `prepare` made of p
+  std::vector<Real> w{};        // what `prepare` made of p
   std::vector<Real> side = {};  // of the kinks; left out: their branches follow the state
-  int mode = 0;  // of friction contacts
+  int mode = 0;                 // of friction contacts
 };
 
 template <class Real>
 struct Values {
-  std::vector<std::vector<Real>> results;         // one list per Function::results
-  std::vector<std::pair<Real, Real>> pivots;      // pivot, scale
+  std::vector<std::vector<Real>> results;     // one list per Function::results
+  std::vector<std::pair<Real, Real>> pivots;  // pivot, scale
 };
 
 /// Throws std::domain_error where a function leaves its real domain or a division is by zero.

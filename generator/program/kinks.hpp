@@ -2,9 +2,9 @@
 // Kinks of the equations of motion (abs, sign, min, max, select) as switching surfaces. In: a system as it was derived.
 // Out: the same system whose branches can be held, and the surfaces.
 //
-// Surface k is the argument of abs and sign, a - b of min(a, b), max(a, b) and of select(a < b). In place of its value the
-// branch is chosen by the symbol {SymbolKind::side, k} where that is not 0: 1 stands for values above 0, -1 for values
-// below. With side 0 the system is what it was.
+// Surface k is the argument of abs and sign, a - b of min(a, b), max(a, b) and of select(a < b). In place of its value
+// the branch is chosen by the symbol {SymbolKind::side, k} where that is not 0: 1 stands for values above 0, -1 for
+// values below. With side 0 the system is what it was.
 #pragma once
 
 #include <vector>
@@ -28,8 +28,8 @@ inline constexpr std::size_t first_kink_bit = 8, most_kinks = 11;
 bool has_kinks(system::EquationSystem system);
 
 /// Makes branches of the equations of motion and of the laws of contacts depend on sides, and in reactions, outputs and
-/// events those that are the same. Surfaces of parameters alone and those where a contact changes its mode are left as they
-/// are, and so is what exceeds most_kinks.
+/// events those that are the same. Surfaces of parameters alone and those where a contact changes its mode are left as
+/// they are, and so is what exceeds most_kinks.
 std::vector<Kink> hold_kinks(system::EquationSystem& system);
 
 }  // namespace eomgen::program

@@ -34,7 +34,8 @@ class Iteration {
     }
     Ref size = dag_.zero();
     for (const Ref nu : result.nu) size = dag_.call(Op::max, size, nu);
-    const symbolic::Rational enough = symbolic::Rational(1) / 1000000000;  // its square, the error that is left, is rounding
+    const symbolic::Rational enough =
+        symbolic::Rational(1) / 1000000000;  // its square, the error that is left, is rounding
     result.settled = dag_.sub(dag_.mul(dag_.constant(enough), size), last);
     // At rest without any normal force nothing is left to settle.
     result.settled = dag_.select(dag_.zero(), size, result.settled, dag_.one());
@@ -45,10 +46,13 @@ class Iteration {
   // One curve: nu^2 = a.Ga + 2 nu a.Gb + nu^2 b.Gb, with one positive solution where b.Gb < 1.
   NormalForces closed() const {
     const CurveForce& c = curves_[0];
-    const Ref A = form(c, c.a, c.a), half = form(c, c.a, c.b[0]), margin = dag_.sub(dag_.one(), form(c, c.b[0], c.b[0]));
+    const Ref A = form(c, c.a, c.a), half = form(c, c.a, c.b[0]),
+              margin = dag_.sub(dag_.one(), form(c, c.b[0], c.b[0]));
     const Ref discriminant = dag_.add(dag_.mul(half, half), dag_.mul(margin, A));
     // Beyond that the roots have one sign: both are solutions where their sum 2 half/margin is positive.
-    return {{dag_.div(dag_.add(half, root(discriminant)), margin)}, margin, dag_.call(Op::min, dag_.neg(half), discriminant)};
+    return {{dag_.div(dag_.add(half, root(discriminant)), margin)},
+            margin,
+            dag_.call(Op::min, dag_.neg(half), discriminant)};
   }
 
  private:

@@ -58,7 +58,8 @@ std::size_t hash(const std::vector<Term>& terms, std::size_t start) {
   std::size_t h = start;
   for (const Term& term : terms) {
     h = scramble(h, cln::equal_hashcode(term.coefficient));
-    for (const Factor& f : term.factors) h = scramble(h, (std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
+    for (const Factor& f : term.factors)
+      h = scramble(h, (std::uint64_t{f.node} << 32) + static_cast<std::uint32_t>(f.exponent));
   }
   return h;
 }
@@ -87,8 +88,8 @@ Term content(const std::vector<Term>& terms) {
     same_size = same_size && cln::abs(term.coefficient) == cln::abs(result.coefficient);
     Monomial common;
     for (const Factor& f : result.factors) {
-      const auto found = std::find_if(term.factors.begin(), term.factors.end(),
-                                      [&f](const Factor& g) { return g.node == f.node; });
+      const auto found =
+          std::find_if(term.factors.begin(), term.factors.end(), [&f](const Factor& g) { return g.node == f.node; });
       if (found == term.factors.end() || (found->exponent > 0) != (f.exponent > 0)) continue;
       const bool smaller = std::abs(found->exponent) < std::abs(f.exponent);
       common.push_back(smaller ? *found : f);

@@ -118,7 +118,8 @@ class Walk {
 /// Operations of the straight-line code that `schedule` makes of a graph.
 Operations count_operations(const Polynomials& graph);
 
-/// Straight-line code. `shape`: argument names and the numbers of their entries, which are the graph's results in order.
+/// Straight-line code. `shape`: argument names and the numbers of their entries, which are the graph's results in
+/// order.
 Function schedule(const Polynomials& graph, const std::string& name,
                   const std::vector<std::pair<std::string, std::size_t>>& shape);
 

@@ -41,8 +41,8 @@ struct Instruction {
   std::uint32_t pack = 0, lane = 0;
 };
 
-/// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix. Where the scale
-/// is the constant 0 the pivot must only differ from zero.
+/// A value that must not vanish relative to a scale (pivots of the solve): code 1, singular_mass_matrix. Where the
+/// scale is the constant 0 the pivot must only differ from zero.
 struct PivotTest {
   Operand pivot, scale;
 };
@@ -52,7 +52,7 @@ struct PivotTest {
 inline constexpr double pivot_tolerance = 1e-13;
 
 struct Function {
-  std::string name;  // of the ABI: "rhs", "prepare", "mass", ...
+  std::string name;                                                   // of the ABI: "rhs", "prepare", "mass", ...
   std::vector<std::pair<std::string, std::vector<Operand>>> results;  // argument name, its entries (column-major)
   std::vector<std::uint32_t> places;  // where the entries of the first result go; none: one after the other
   std::vector<symbolic::Rational> constants;
@@ -66,7 +66,8 @@ struct Function {
 /// The array w of `next`: `zeros` values of order 0, then the sums S, then 1 where k is 1 and else 0, then 1/k.
 struct Taylor {
   Function start;  // "taylor_start": results z (into w), dx
-  Function next;   // "taylor_next": time is k, the state x is x_k; results a, b (k-th factors of each sum), dx (its k-th coefficient)
+  Function next;  // "taylor_next": time is k, the state x is x_k; results a, b (k-th factors of each sum), dx (its k-th
+                  // coefficient)
   std::size_t zeros = 0, products = 0;
   std::size_t prepared() const { return zeros + products + 2; }
 };
@@ -112,7 +113,7 @@ struct Program {
     for (const Program& other : second) count += count > 0 ? other.entries("prepare") : 0;
     return count;
   }
-  std::size_t event_count() const { return entries("events"); }      // of the array g
+  std::size_t event_count() const { return entries("events"); }  // of the array g
   std::size_t state_count() const { return 2 * free.size() + integrals.size(); }
   std::string route;
   system::Approach approach = system::Approach::two;
@@ -122,14 +123,15 @@ struct Program {
   std::vector<std::string> reactions;  // labels, in the order of the array lambda
   std::vector<std::string> outputs;    // names, in the order of the array y
   std::vector<std::string> events;     // of the model; first in the array g of the function events
-  std::vector<std::string> kinks;      // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
+  std::vector<std::string>
+      kinks;  // "abs", "if": after them the surfaces whose branches `mode` can hold, then 5 per contact
   std::size_t active_constraints = 0;
   std::vector<ContactInfo> contacts;
-  std::optional<Taylor> taylor;        // where it was asked for
-  std::vector<bool> holonomic;         // per active constraint: false where it binds velocities only
-  std::vector<ChartInfo> charts;       // that can be exchanged; none where the code has one chart only
-  std::vector<Program> second;         // the same functions with second charts
-  int in_charts = 0;                   // of such a program: its bits of `mode`
+  std::optional<Taylor> taylor;   // where it was asked for
+  std::vector<bool> holonomic;    // per active constraint: false where it binds velocities only
+  std::vector<ChartInfo> charts;  // that can be exchanged; none where the code has one chart only
+  std::vector<Program> second;    // the same functions with second charts
+  int in_charts = 0;              // of such a program: its bits of `mode`
 };
 
 }  // namespace eomgen::program

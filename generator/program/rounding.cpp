@@ -45,12 +45,14 @@ Bounded quotient(const Bounded& a, const Bounded& b) {
 
 Bounded root(const Bounded& a) {
   if (a.value - a.off > 0) return rounded(std::sqrt(a.value), a.off / std::sqrt(a.value - a.off));
-  return a.off == 0 && a.value == 0 ? Bounded{0, 0} : Bounded{std::sqrt(std::max(0.0, a.value)), std::sqrt(std::fabs(a.value) + a.off)};
+  return a.off == 0 && a.value == 0 ? Bounded{0, 0}
+                                    : Bounded{std::sqrt(std::max(0.0, a.value)), std::sqrt(std::fabs(a.value) + a.off)};
 }
 
 Bounded power(const Bounded& a, const Bounded& b) {
   const double value = std::pow(a.value, b.value);
-  const double off = std::fabs(value) * (std::fabs(b.value) * a.off / std::fabs(a.value) + std::fabs(std::log(a.value)) * b.off);
+  const double off =
+      std::fabs(value) * (std::fabs(b.value) * a.off / std::fabs(a.value) + std::fabs(std::log(a.value)) * b.off);
   return rounded(value, off, library);
 }
 
@@ -63,13 +65,16 @@ Bounded inverse_sine(Op op, const Bounded& a) {
 Bounded of_one(Op op, const Bounded& a) {
   const double x = a.value;
   // The slope at x, and one half of what the curvature adds.
-  const auto smooth = [&](double value, double slope) { return rounded(value, times(std::fabs(slope), a.off) + times(a.off, a.off), library); };
+  const auto smooth = [&](double value, double slope) {
+    return rounded(value, times(std::fabs(slope), a.off) + times(a.off, a.off), library);
+  };
   switch (op) {
     case Op::sqrt: return root(a);
     case Op::sin: return smooth(std::sin(x), std::cos(x));
     case Op::cos: return smooth(std::cos(x), std::sin(x));
     case Op::tan: return smooth(std::tan(x), 1 + std::tan(x) * std::tan(x));
-    case Op::asin: case Op::acos: return inverse_sine(op, a);
+    case Op::asin:
+    case Op::acos: return inverse_sine(op, a);
     case Op::atan: return smooth(std::atan(x), 1 / (1 + x * x));
     case Op::sinh: return smooth(std::sinh(x), std::cosh(x));
     case Op::cosh: return smooth(std::cosh(x), std::sinh(x));
@@ -83,7 +88,9 @@ Bounded of_one(Op op, const Bounded& a) {
 }
 
 /// Whether rounding may turn a < b into its opposite.
-bool undecided(const Bounded& a, const Bounded& b) { return a.off + b.off > 0 && std::fabs(a.value - b.value) <= a.off + b.off; }
+bool undecided(const Bounded& a, const Bounded& b) {
+  return a.off + b.off > 0 && std::fabs(a.value - b.value) <= a.off + b.off;
+}
 
 Bounded of_two(Op op, const Bounded& a, const Bounded& b) {
   switch (op) {
@@ -91,7 +98,8 @@ Bounded of_two(Op op, const Bounded& a, const Bounded& b) {
     case Op::pow: return power(a, b);
     case Op::atan2: {
       const double square = a.value * a.value + b.value * b.value;
-      return rounded(std::atan2(a.value, b.value), (std::fabs(b.value) * a.off + std::fabs(a.value) * b.off) / square, library);
+      return rounded(std::atan2(a.value, b.value), (std::fabs(b.value) * a.off + std::fabs(a.value) * b.off) / square,
+                     library);
     }
     case Op::min: return {std::min(a.value, b.value), std::max(a.off, b.off)};
     case Op::max: return {std::max(a.value, b.value), std::max(a.off, b.off)};
@@ -130,7 +138,8 @@ class Run {
       case Slot::state: return {arguments_.x.at(operand.index), 0};
       case Slot::parameter: return {arguments_.p.at(operand.index), 0};
       case Slot::input: return {arguments_.u.at(operand.index), 0};
-      case Slot::prepared: return {arguments_.w.at(operand.index), operand.index < w_off_.size() ? w_off_[operand.index] : 0};
+      case Slot::prepared:
+        return {arguments_.w.at(operand.index), operand.index < w_off_.size() ? w_off_[operand.index] : 0};
       case Slot::side: return {operand.index < arguments_.side.size() ? arguments_.side[operand.index] : 0, 0};
       case Slot::contact: return {static_cast<double>(eom::contact_leaf(arguments_.mode, operand.index)), 0};
       case Slot::value: break;
@@ -149,11 +158,13 @@ class Run {
     if (instruction.op == Op::add || instruction.op == Op::mul) {
       Bounded result = o[0];
       for (std::size_t i = 1; i < o.size(); ++i) {
-        result = instruction.op == Op::add ? rounded(result.value + o[i].value, result.off + o[i].off) : product(result, o[i]);
+        result = instruction.op == Op::add ? rounded(result.value + o[i].value, result.off + o[i].off)
+                                           : product(result, o[i]);
       }
       return result;
     }
-    if (instruction.op == Op::select) return undecided(o[0], o[1]) ? Bounded{0, infinite} : o[0].value < o[1].value ? o[2] : o[3];
+    if (instruction.op == Op::select)
+      return undecided(o[0], o[1]) ? Bounded{0, infinite} : o[0].value < o[1].value ? o[2] : o[3];
     return o.size() == 1 ? of_one(instruction.op, o[0]) : of_two(instruction.op, o[0], o[1]);
   }
 
@@ -165,7 +176,8 @@ class Run {
 
 }  // namespace
 
-std::vector<std::vector<double>> rounding_bounds(const Function& function, const Arguments<double>& arguments, const std::vector<double>& w_off) {
+std::vector<std::vector<double>> rounding_bounds(const Function& function, const Arguments<double>& arguments,
+                                                 const std::vector<double>& w_off) {
   return Run(function, arguments, w_off)();
 }
 

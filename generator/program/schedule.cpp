@@ -42,7 +42,9 @@ void count_call(Op op, Operations& operations) {
   switch (op) {
     case Op::div: ++operations.div; break;
     case Op::sqrt: ++operations.sqrt; break;
-    case Op::sin: case Op::cos: case Op::tan: ++operations.trig; break;
+    case Op::sin:
+    case Op::cos:
+    case Op::tan: ++operations.trig; break;
     default: ++operations.other; break;
   }
 }
@@ -105,9 +107,8 @@ class Schedule {
       const bool negative = cln::minusp(label.value.coefficient);
       if (node.kind != Node::Kind::sum) continue;
       // The value of this name is minus the node: turn the node around where that costs nothing.
-      flipped_[id] = negative && std::any_of(node.terms.begin(), node.terms.end(), [](const Term& term) {
-                       return cln::minusp(term.coefficient);
-                     });
+      flipped_[id] = negative && std::any_of(node.terms.begin(), node.terms.end(),
+                                             [](const Term& term) { return cln::minusp(term.coefficient); });
       name_[id] = negative && !flipped_[id] ? "minus_" + label.name : label.name;
     }
   }
@@ -141,7 +142,9 @@ class Schedule {
       walk.from(angle, take);
       angles.emplace_back(angle.is_constant() ? constant(angle.coefficient) : term(angle, ""), id);
     }
-    const auto angle_of = [](const auto& pair) { return std::tuple(pair.first.slot, pair.first.index, pair.first.negated); };
+    const auto angle_of = [](const auto& pair) {
+      return std::tuple(pair.first.slot, pair.first.index, pair.first.negated);
+    };
     std::stable_sort(angles.begin(), angles.end(), [&](const auto& a, const auto& b) {
       return std::tuple(angle_of(a), graph_[a.second].op) < std::tuple(angle_of(b), graph_[b.second].op);
     });
@@ -154,7 +157,8 @@ class Schedule {
     packs_ += pack ? 1 : 0;
     for (std::size_t i = 0; i < angles.size(); ++i) {
       const Operand& angle = angles[i].first;
-      walk.from(angles[i].second, [&](NodeId id) { value_[id] = add_instruction(graph_[id].op, {angle}, name_of(id)); });
+      walk.from(angles[i].second,
+                [&](NodeId id) { value_[id] = add_instruction(graph_[id].op, {angle}, name_of(id)); });
       if (!pack) continue;
       function_.code.back().pack = packs_;
       function_.code.back().lane = lanes[i];

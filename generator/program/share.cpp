@@ -78,8 +78,10 @@ class ProductSharing {
     }
     const auto change = [&](Item a, Item b, int times) {
       const std::uint64_t key = (std::uint64_t{a} << 32) | b;
-      if (sign > 0) pairs_.add(key, index, times);
-      else pairs_.remove(key, times);
+      if (sign > 0)
+        pairs_.add(key, index, times);
+      else
+        pairs_.remove(key, times);
     };
     for (std::size_t i = 0; i < distinct.size(); ++i) {
       if (distinct[i].second > 1) change(distinct[i].first, distinct[i].first, distinct[i].second / 2);
@@ -182,8 +184,10 @@ class SumSharing {
     const auto& items = rows_[index].items;
     for (std::size_t i = 0; i < items.size(); ++i) {
       for (std::size_t j = i + 1; j < items.size(); ++j) {
-        if (sign > 0) pairs_.add(key(items[i], items[j]), index);
-        else pairs_.remove(key(items[i], items[j]));
+        if (sign > 0)
+          pairs_.add(key(items[i], items[j]), index);
+        else
+          pairs_.remove(key(items[i], items[j]));
       }
     }
   }

@@ -21,7 +21,8 @@ using symbolic::Symbol;
 namespace {
 
 /// Per constraint: whether it binds coordinates of one block of M alone, and that block is singular.
-std::vector<bool> within_singular_blocks(const Dag& dag, const std::vector<Ref>& M, std::size_t n, const std::vector<Ref>& A) {
+std::vector<bool> within_singular_blocks(const Dag& dag, const std::vector<Ref>& M, std::size_t n,
+                                         const std::vector<Ref>& A) {
   std::vector<std::size_t> block(n, n);
   std::vector<bool> singular;
   for (std::size_t first = 0; first < n; ++first) {
@@ -55,7 +56,12 @@ std::vector<bool> within_singular_blocks(const Dag& dag, const std::vector<Ref>&
 }  // namespace
 
 Solve::Solve(const system::EquationSystem& system, Ties ties)
-    : dag_(system.dag), n_(system.free.size()), m_(system.active.size()), A_(system.A), f_(system.f), gamma_(system.gamma),
+    : dag_(system.dag),
+      n_(system.free.size()),
+      m_(system.active.size()),
+      A_(system.A),
+      f_(system.f),
+      gamma_(system.gamma),
       quasi_(system.quasi) {
   Dag& dag = *dag_;
   std::vector<Ref> M = quasi_ ? quasi_->M : system.M;
@@ -63,7 +69,8 @@ Solve::Solve(const system::EquationSystem& system, Ties ties)
   if (augmented_) {
     quasi_.reset();
     M = system.M;
-    // Constraints of a singular block alone, as the lengths of Euler parameters, leave the other zeros of M as they are.
+    // Constraints of a singular block alone, as the lengths of Euler parameters, leave the other zeros of M as they
+    // are.
     const std::vector<bool> within = within_singular_blocks(dag, M, n_, A_);
     const std::vector<Ref> mass = M;
     augment(M, within);

@@ -3,12 +3,12 @@
 //   M qddot = f + A^T lambda,   A qddot = -gamma                              (docs/theory.md, index-1 form)
 // by M = L D L^T, unrolled in an order that keeps the zeros of M, then
 //   S lambda = -gamma - A M^-1 f,   S = A M^-1 A^T = Y^T D^-1 Y,   Y = L^-1 A^T.
-// Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix is
-// factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without
-// mass, Euler parameters) M + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. The rows of A are those that bind a singular block
-// of M alone, where that suffices, so that bodies with coordinates of their own stay apart. S is diagonal,
-// of the size of M, so that nothing small is lost in the sum. A constraint that is left has a row of zeros in A and 1 on the diagonal of the
-// Schur complement, so that its lambda is 0.
+// Structural zeros cost nothing; a diagonal M gives plain divisions. Where the system has QuasiEquations their matrix
+// is factorised, M^-1 = S^-1 M_theta^-1 S^-T. Where M alone is singular (a coordinate without mass, Euler parameters) M
+// + A^T S A takes its place, with f - A^T S gamma for f: on the constraints nothing changes. The rows of A are those
+// that bind a singular block of M alone, where that suffices, so that bodies with coordinates of their own stay apart.
+// S is diagonal, of the size of M, so that nothing small is lost in the sum. A constraint that is left has a row of
+// zeros in A and 1 on the diagonal of the Schur complement, so that its lambda is 0.
 #pragma once
 
 #include <memory>

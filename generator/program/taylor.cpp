@@ -117,7 +117,11 @@ class Recurrences {
       case Op::cos: return trig(a[0], instruction)[1];
       case Op::sqrt: return root(a[0], name);
       case Op::pow: return general_power(a[0], a[1], instruction);
-      case Op::abs: case Op::sign: case Op::min: case Op::max: case Op::select: return branch(a, instruction);
+      case Op::abs:
+      case Op::sign:
+      case Op::min:
+      case Op::max:
+      case Op::select: return branch(a, instruction);
       default: return function(a, instruction);
     }
   }
@@ -141,7 +145,8 @@ class Recurrences {
     if (keys(a) == keys(b)) {
       c.next = at_next(Op::add, {s, at_next(Op::mul, {constant(next_, 2), kept(a.zero), a.next})});
     } else {
-      c.next = at_next(Op::add, {s, at_next(Op::mul, {kept(a.zero), b.next}), at_next(Op::mul, {a.next, kept(b.zero)})});
+      c.next =
+          at_next(Op::add, {s, at_next(Op::mul, {kept(a.zero), b.next}), at_next(Op::mul, {a.next, kept(b.zero)})});
     }
     return c;
   }
@@ -154,8 +159,10 @@ class Recurrences {
     std::vector<Operand> still;
     std::vector<Series> moving;
     for (const Series& s : a) {
-      if (s.moves) moving.push_back(s);
-      else still.push_back(s.zero);
+      if (s.moves)
+        moving.push_back(s);
+      else
+        still.push_back(s.zero);
     }
     const bool last_scales = !still.empty();
     Series result = moving[0];
@@ -206,7 +213,8 @@ class Recurrences {
     const Operand w = weighted(a), of_c = open(w), of_s = open(w);
     const auto signed_by = [turns](const Operand& o) { return turns ? minus(o) : o; };
     s.next = at_next(Op::mul, {one_over_k, at_next(Op::add, {of_c, at_next(Op::mul, {w, kept(c.zero)})})});
-    c.next = at_next(Op::mul, {one_over_k, at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, kept(s.zero)}))})});
+    c.next = at_next(Op::mul,
+                     {one_over_k, at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, kept(s.zero)}))})});
     close(of_c, c.next);
     close(of_s, s.next);
   }
@@ -243,7 +251,8 @@ class Recurrences {
         close(s, next);
         return c;
       }
-      case Op::tan: case Op::tanh: {
+      case Op::tan:
+      case Op::tanh: {
         const bool plus = instruction.op == Op::tan;
         const Operand square = at_start(Op::mul, {c.zero, c.zero});
         const Operand slope = at_start(Op::add, {one(), plus ? square : minus(square)});
@@ -252,7 +261,8 @@ class Recurrences {
         close(s, one_and_square(c, plus).next);
         return c;
       }
-      case Op::sinh: case Op::cosh: {
+      case Op::sinh:
+      case Op::cosh: {
         const bool odd = instruction.op == Op::sinh;
         Series other{true, at_start(odd ? Op::cosh : Op::sinh, {a[0].zero}), {}};
         pair(a[0], odd ? c : other, odd ? other : c, false);
@@ -280,7 +290,9 @@ class Recurrences {
     };
     add(y, x, false);
     add(x, y, true);
-    const auto square = [this](const Series& s) { return s.moves ? times(s, s) : Series{false, at_start(Op::mul, {s.zero, s.zero}), {}}; };
+    const auto square = [this](const Series& s) {
+      return s.moves ? times(s, s) : Series{false, at_start(Op::mul, {s.zero, s.zero}), {}};
+    };
     return divided(n, total({square(x), square(y)}));
   }
 
@@ -288,7 +300,8 @@ class Recurrences {
   Series general_power(const Series& a, const Series& b, const Instruction& instruction) {
     Series c{true, copied(instruction).zero, {}};
     if (b.moves) {
-      const Series log = a.moves ? function({a}, logarithm(instruction)) : Series{false, at_start(Op::log, {a.zero}), {}};
+      const Series log =
+          a.moves ? function({a}, logarithm(instruction)) : Series{false, at_start(Op::log, {a.zero}), {}};
       const Series exponent = a.moves ? times(b, log) : scaled(b, log.zero);
       const auto [next, s] = integrated(exponent, c.zero);
       c.next = next;
@@ -358,7 +371,8 @@ class Recurrences {
     if (o.slot == Slot::side) o = {Slot::prepared, zeros + sums + o.index, o.negated};
   }
 
-  /// A partner that was added has its angle in another pack, perhaps: packs and lanes anew, by what comes one after another.
+  /// A partner that was added has its angle in another pack, perhaps: packs and lanes anew, by what comes one after
+  /// another.
   void number_packs() {
     std::uint32_t packs = 0, before = 0;
     std::vector<Operand> angles;
@@ -378,8 +392,10 @@ class Recurrences {
   Taylor finished() {
     write_results();
     number_packs();
-    for (Instruction& instruction : next_.code) std::for_each(instruction.operands.begin(), instruction.operands.end(), [this](Operand& o) { place(o); });
-    for (auto& [name, entries] : next_.results) std::for_each(entries.begin(), entries.end(), [this](Operand& o) { place(o); });
+    for (Instruction& instruction : next_.code)
+      std::for_each(instruction.operands.begin(), instruction.operands.end(), [this](Operand& o) { place(o); });
+    for (auto& [name, entries] : next_.results)
+      std::for_each(entries.begin(), entries.end(), [this](Operand& o) { place(o); });
     for (Function* function : {&start_, &next_}) count(*function);
     return {std::move(start_), std::move(next_), zeros_.size(), factors_.size()};
   }
@@ -393,7 +409,9 @@ class Recurrences {
         case Op::mul: o.mul += n - 1; break;
         case Op::div: ++o.div; break;
         case Op::sqrt: ++o.sqrt; break;
-        case Op::sin: case Op::cos: case Op::tan: ++o.trig; break;
+        case Op::sin:
+        case Op::cos:
+        case Op::tan: ++o.trig; break;
         default: ++o.other;
       }
     }
@@ -402,8 +420,8 @@ class Recurrences {
   const Function& rhs_;
   Function start_, next_;
   std::string section_;
-  std::vector<Series> values_;                     // per instruction of rhs
-  std::vector<std::array<Operand, 2>> factors_;    // of the sums
+  std::vector<Series> values_;                   // per instruction of rhs
+  std::vector<std::array<Operand, 2>> factors_;  // of the sums
   std::vector<Operand> zeros_;
   std::map<std::pair<Slot, std::uint32_t>, std::uint32_t> kept_;
   std::map<Key, Operand> weighted_;
@@ -422,7 +440,8 @@ Taylor recurrences(const Function& rhs) { return Recurrences(rhs).run(); }
 Taylor taylor_series(const Function& rhs) {
   Taylor taylor = recurrences(rhs);
   if (taylor_order(taylor) < taylor_lowest_order) {
-    throw Error("program", {}, fmt::format("the equations are too large for Taylor series: {} products", taylor.products),
+    throw Error("program", {},
+                fmt::format("the equations are too large for Taylor series: {} products", taylor.products),
                 "take another solver, and leave taylor out of --with");
   }
   return taylor;

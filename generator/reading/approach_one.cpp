@@ -15,9 +15,12 @@ std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge&
     const Equation& equation = form.equations[fixed->coordinate];
     Sum rest = equation.expanded - equation.force, own;
     for (const MultiplierTerm& term : equation.multipliers) {
-      if (term.constraint == fixed->constraint) own = term.slope;
-      else if (lambda[term.constraint]) rest -= term.slope * *lambda[term.constraint];
-      else rest -= term.slope * bridge.alphabet()({SymbolKind::multiplier, term.constraint, 0});
+      if (term.constraint == fixed->constraint)
+        own = term.slope;
+      else if (lambda[term.constraint])
+        rest -= term.slope * *lambda[term.constraint];
+      else
+        rest -= term.slope * bridge.alphabet()({SymbolKind::multiplier, term.constraint, 0});
     }
     lambda[fixed->constraint] = simplify(quotient(rest, own));
   }

@@ -53,7 +53,8 @@ Formula decimal(const Rational& value) {
   std::ostringstream text;
   text << scaled;
   std::string all = text.str();
-  if (all.size() <= static_cast<std::size_t>(digits)) all.insert(0, static_cast<std::size_t>(digits) + 1 - all.size(), '0');
+  if (all.size() <= static_cast<std::size_t>(digits))
+    all.insert(0, static_cast<std::size_t>(digits) + 1 - all.size(), '0');
   inside.word = all.insert(all.size() - static_cast<std::size_t>(digits), ".");
   return f;
 }
@@ -129,6 +130,8 @@ class Writer {
 
 }  // namespace
 
-std::optional<Formula> as_written(const model::Model& model, model::NodeId expression) { return Writer(model)(expression); }
+std::optional<Formula> as_written(const model::Model& model, model::NodeId expression) {
+  return Writer(model)(expression);
+}
 
 }  // namespace eomgen::reading

@@ -35,7 +35,8 @@ Evaluator::Flat Evaluator::flat(const Sum& sum) {
     Term term{cln::double_approx(coefficient), {}};
     for (const Factor& factor : monomial) {
       const bool whole = is_integer(factor.exponent) && cln::abs(factor.exponent) <= largest_whole;
-      term.powers.push_back({place(*factor.atom), whole ? cln::cl_I_to_int(cln::numerator(factor.exponent)) : 0, whole ? 0 : cln::double_approx(factor.exponent)});
+      term.powers.push_back({place(*factor.atom), whole ? cln::cl_I_to_int(cln::numerator(factor.exponent)) : 0,
+                             whole ? 0 : cln::double_approx(factor.exponent)});
     }
     size_ += 1 + term.powers.size();
     result.push_back(std::move(term));
@@ -60,7 +61,8 @@ double Evaluator::value(const Flat& sum) const {
   double result = 0;
   for (const Term& term : sum) {
     double product = term.coefficient;
-    for (const Power& p : term.powers) product *= p.whole != 0 ? power(items_[p.item].value, p.whole) : std::pow(items_[p.item].value, p.exponent);
+    for (const Power& p : term.powers)
+      product *= p.whole != 0 ? power(items_[p.item].value, p.whole) : std::pow(items_[p.item].value, p.exponent);
     result += product;
   }
   return result;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of a canonical sum in binary64, at many points. In: a Sum. Out: its value; not a number where a function is not defined there.
+// Values of a canonical sum in binary64, at many points. In: a Sum. Out: its value; not a number where a function is
+// not defined there.
 #pragma once
 
 #include <cstddef>

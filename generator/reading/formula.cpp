@@ -56,11 +56,15 @@ Formula product(std::vector<Formula> factors) {
       f = std::move(inside);
     }
     std::vector<Formula> parts;
-    if (f.form == Form::product) parts = std::move(f.args);
-    else parts.push_back(std::move(f));
+    if (f.form == Form::product)
+      parts = std::move(f.args);
+    else
+      parts.push_back(std::move(f));
     for (Formula& part : parts) {
-      if (part.form == Form::number) number = number * part.number;
-      else flat.push_back(std::move(part));
+      if (part.form == Form::number)
+        number = number * part.number;
+      else
+        flat.push_back(std::move(part));
     }
   }
   if (cln::zerop(number)) return reading::number(0);
@@ -79,8 +83,10 @@ Formula sum(std::vector<Formula> terms) {
   std::vector<Formula> flat;
   for (Formula& f : terms) {
     if (is_zero(f)) continue;
-    if (f.form == Form::sum) flat.insert(flat.end(), f.args.begin(), f.args.end());
-    else flat.push_back(std::move(f));
+    if (f.form == Form::sum)
+      flat.insert(flat.end(), f.args.begin(), f.args.end());
+    else
+      flat.push_back(std::move(f));
   }
   if (flat.empty()) return number(0);
   if (flat.size() == 1) return flat[0];

@@ -11,23 +11,23 @@
 namespace eomgen::reading {
 
 enum class Form {
-  number,      // exact, not negative
+  number,  // exact, not negative
   pi,
-  symbol,      // of the model
-  mark,        // a letter of mechanics: T, U, L, Gamma, E, e, a, lambda, psi, ds^2 (`word`), with `lower` and `upper` indices
-  call,        // op, args
-  power,       // args[0] ^ args[1]
-  negative,    // -args[0]
-  product,     // args
-  fraction,    // args[0] / args[1]
-  sum,         // args; a term that is `negative` is subtracted
-  rate,        // d/dt (args[0])
-  partial,     // d args[0] / d args[1]
-  dot,         // args[0] with `order` dots over it
-  dot_product, // args[0] . args[1]
-  differential,// d args[0]
-  relation,    // args[0] = args[1] = ...; with `word` at_least: args[0] >= args[1]
-  list,        // args, with commas
+  symbol,  // of the model
+  mark,  // a letter of mechanics: T, U, L, Gamma, E, e, a, lambda, psi, ds^2 (`word`), with `lower` and `upper` indices
+  call,  // op, args
+  power,         // args[0] ^ args[1]
+  negative,      // -args[0]
+  product,       // args
+  fraction,      // args[0] / args[1]
+  sum,           // args; a term that is `negative` is subtracted
+  rate,          // d/dt (args[0])
+  partial,       // d args[0] / d args[1]
+  dot,           // args[0] with `order` dots over it
+  dot_product,   // args[0] . args[1]
+  differential,  // d args[0]
+  relation,      // args[0] = args[1] = ...; with `word` at_least: args[0] >= args[1]
+  list,          // args, with commas
 };
 
 struct Formula {
@@ -36,7 +36,7 @@ struct Formula {
   Symbol symbol{};
   Op op = Op::symbol;
   int order = 0;
-  std::string word;               // of a mark: "T", "tilde L", "Gamma", ...: see print/notation.hpp
+  std::string word;  // of a mark: "T", "tilde L", "Gamma", ...: see print/notation.hpp
   std::vector<Formula> args;
   std::vector<Formula> lower, upper;
 };
@@ -56,8 +56,8 @@ bool is_zero(const Formula& f);
 
 /// How sums are factored for reading.
 enum class Layout {
-  terms,     // equations: every product of velocities or accelerations is a term of its own
-  grouped,   // energies, reactions: common factors of terms of like kind are taken out
+  terms,    // equations: every product of velocities or accelerations is a term of its own
+  grouped,  // energies, reactions: common factors of terms of like kind are taken out
 };
 Formula arrange(const Sum& sum, Layout layout = Layout::grouped);
 /// As a product of irreducible factors, for determinants.

@@ -46,7 +46,8 @@ class Along {
     for (std::size_t c = 0; c < 3; ++c) {
       Sum sum;
       for (std::size_t i = 0; i < coordinates_.size(); ++i) {
-        if (!direction_[i].is_zero()) sum += direction_[i] * bridge_.derivative(v[c], coordinate_symbol(coordinates_[i], 0));
+        if (!direction_[i].is_zero())
+          sum += direction_[i] * bridge_.derivative(v[c], coordinate_symbol(coordinates_[i], 0));
       }
       result[c] = simplify(sum);
     }
@@ -98,7 +99,8 @@ std::vector<Components> unit_vectors(Mechanics& m, Bridge& bridge, Frenet& f) {
   }
   bool orthonormal = result.size() == 3;
   for (std::size_t i = 0; orthonormal && i < 3; ++i) {
-    for (std::size_t k = i; k < 3; ++k) orthonormal = orthonormal && is_zero(dot(result[i], result[k]) - Sum(i == k ? 1 : 0));
+    for (std::size_t k = i; k < 3; ++k)
+      orthonormal = orthonormal && is_zero(dot(result[i], result[k]) - Sum(i == k ? 1 : 0));
   }
   if (!orthonormal) result.clear();
   return result;
@@ -110,7 +112,8 @@ std::string why_no_curve(const Mechanics& m) {
   if (!m.spins.empty()) return "the model has bodies, and a curve is of one particle";
   if (m.masses.size() != 1) return fmt::format("the model has {} particles, and a curve is of one", m.masses.size());
   for (const std::uint32_t k : m.active) {
-    if (!m.constraints[k].holonomic()) return fmt::format("'{}' is a constraint on velocities, which leaves no curve", m.constraints[k].label);
+    if (!m.constraints[k].holonomic())
+      return fmt::format("'{}' is a constraint on velocities, which leaves no curve", m.constraints[k].label);
   }
   const std::size_t freedom = m.free.size() - m.active.size();
   if (freedom != 1) return fmt::format("its constraints leave {} degrees of freedom, and a curve has one", freedom);
@@ -119,7 +122,8 @@ std::string why_no_curve(const Mechanics& m) {
 
 Frenet frenet(const Mechanics& mechanics) {
   if (const std::string why = why_no_curve(mechanics); !why.empty()) {
-    throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""}, "there is no curve whose Frenet triad could be shown: " + why,
+    throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""},
+                "there is no curve whose Frenet triad could be shown: " + why,
                 "leave 'frenet' out of --show, or constrain one particle by two holonomic constraints");
   }
   const work::Budget budget(form_budget);
@@ -134,7 +138,8 @@ Frenet frenet(const Mechanics& mechanics) {
   const Components first = along(r), second = along(first), third = along(second);
   if (vanishes(first)) {
     throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""},
-                "there is no curve whose Frenet triad could be shown: the particle stays at one point", "leave 'frenet' out of --show");
+                "there is no curve whose Frenet triad could be shown: the particle stays at one point",
+                "leave 'frenet' out of --show");
   }
   const std::map<Symbol, Sum> imposed = imposed_values(m, bridge);
   const auto on_curve = [&](const Sum& sum) { return bridge.substitute(sum, imposed); };
@@ -143,7 +148,8 @@ Frenet frenet(const Mechanics& mechanics) {
     FrenetVector result{over(v, length), std::nullopt};
     if (!unit.empty()) result.unit = over({dot(v, unit[0]), dot(v, unit[1]), dot(v, unit[2])}, length);
     for (Sum& component : result.fixed) component = on_curve(component);
-    if (result.unit) for (Sum& component : *result.unit) component = on_curve(component);
+    if (result.unit)
+      for (Sum& component : *result.unit) component = on_curve(component);
     return result;
   };
   const Sum speed = power(dot(first, first), Rational(1) / 2);

@@ -11,19 +11,19 @@
 namespace eomgen::reading {
 
 struct FrenetVector {
-  Components fixed;               // along E1..E3
-  std::optional<Components> unit; // along the chart's unit vectors, where it names three that are orthonormal
+  Components fixed;                // along E1..E3
+  std::optional<Components> unit;  // along the chart's unit vectors, where it names three that are orthonormal
 };
 
 struct Frenet {
-  std::string name;                      // of the particle
-  std::optional<std::uint32_t> along;    // the free coordinate, where there is one; the triad points to where it grows
-  Sum speed;                             // ds/dq of that coordinate
+  std::string name;                    // of the particle
+  std::optional<std::uint32_t> along;  // the free coordinate, where there is one; the triad points to where it grows
+  Sum speed;                           // ds/dq of that coordinate
   FrenetVector tangent;
   std::optional<FrenetVector> normal, binormal;  // nothing where the curve is straight
   Sum curvature;
   std::optional<Sum> torsion;
-  std::vector<std::uint32_t> unit_names; // whose coordinate's e_q each is
+  std::vector<std::uint32_t> unit_names;  // whose coordinate's e_q each is
 };
 
 /// Why a model has no such curve; empty where it has.

@@ -24,7 +24,8 @@ void add_christoffel(Bridge& bridge, Geometry& g) {
   const std::size_t n = g.coordinates.size();
   std::vector<Sum> slope(n * n * n);  // da_ij/dq_k at (i n + j) n + k
   for (std::size_t i = 0; i < n * n; ++i) {
-    for (std::size_t k = 0; k < n; ++k) slope[i * n + k] = bridge.derivative(g.metric[i], coordinate_symbol(g.coordinates[k], 0));
+    for (std::size_t k = 0; k < n; ++k)
+      slope[i * n + k] = bridge.derivative(g.metric[i], coordinate_symbol(g.coordinates[k], 0));
   }
   const auto d = [&](std::size_t i, std::size_t j, std::size_t k) -> const Sum& { return slope[(i * n + j) * n + k]; };
   for (std::size_t i = 0; i < n; ++i) {
@@ -131,7 +132,8 @@ Geometry of_place(Bridge& bridge, Mechanics& m, std::uint32_t index, const mecha
   }
   Components position;
   const mechanics::Vec3 from = m.place_position[place.from].value();
-  for (std::size_t c = 0; c < 3; ++c) position[c] = simplify(bridge.sum((*m.place_position[index])[c]) - bridge.sum(from[c]));
+  for (std::size_t c = 0; c < 3; ++c)
+    position[c] = simplify(bridge.sum((*m.place_position[index])[c]) - bridge.sum(from[c]));
   add_bases(bridge, position, g);
   add_unit_vectors(bridge, m, *place.chart, g);
   add_christoffel(bridge, g);
@@ -163,7 +165,9 @@ std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>*
 std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<LeftOut>* left_out) {
   const std::size_t n = m.free.size();
   if (n > largest_manifold) {
-    if (left_out != nullptr) left_out->push_back({"geometry of the configuration manifold", "more than " + std::to_string(largest_manifold) + " coordinates"});
+    if (left_out != nullptr)
+      left_out->push_back(
+          {"geometry of the configuration manifold", "more than " + std::to_string(largest_manifold) + " coordinates"});
     return std::nullopt;
   }
   Bridge bridge(m);

@@ -60,9 +60,12 @@ ex Bridge::to_ginac(const Sum& sum) {
     for (const Factor& factor : monomial) {
       const Atom& atom = *factor.atom;
       ex base;
-      if (atom.op == Op::symbol) base = symbol(atom.symbol);
-      else if (atom.op == Op::pi) base = GiNaC::Pi;
-      else if (atom.op == Op::add) base = to_ginac(atom.args[0]);
+      if (atom.op == Op::symbol)
+        base = symbol(atom.symbol);
+      else if (atom.op == Op::pi)
+        base = GiNaC::Pi;
+      else if (atom.op == Op::add)
+        base = to_ginac(atom.args[0]);
       else {
         std::vector<ex> args;
         for (const Sum& arg : atom.args) args.push_back(to_ginac(arg));
@@ -165,7 +168,8 @@ Sum Bridge::explicit_derivative(const Sum& sum) {
 
 Sum Bridge::substitute(const Sum& sum, const std::map<Symbol, Sum>& values) {
   bool present = false;
-  for_each_atom(sum, [&](const Atom& atom) { present = present || (atom.op == Op::symbol && values.contains(atom.symbol)); });
+  for_each_atom(
+      sum, [&](const Atom& atom) { present = present || (atom.op == Op::symbol && values.contains(atom.symbol)); });
   if (!present) return sum;
   GiNaC::exmap map;
   for (const auto& [s, value] : values) map[symbol(s)] = to_ginac(value);

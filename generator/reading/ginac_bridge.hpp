@@ -14,12 +14,11 @@ namespace eomgen::reading {
 
 class Bridge {
  public:
-  explicit Bridge(const mechanics::Mechanics& mechanics)
-      : dag_(*mechanics.dag), alphabet_(*mechanics.model) {}
+  explicit Bridge(const mechanics::Mechanics& mechanics) : dag_(*mechanics.dag), alphabet_(*mechanics.model) {}
 
-  GiNaC::ex from_dag(symbolic::Ref r);      // memoised over the Dag, iterative
+  GiNaC::ex from_dag(symbolic::Ref r);  // memoised over the Dag, iterative
   GiNaC::ex to_ginac(const Sum& sum);
-  Sum from_ginac(const GiNaC::ex& e);       // multiplied out and simplified (trig.hpp); throws work::OverBudget
+  Sum from_ginac(const GiNaC::ex& e);  // multiplied out and simplified (trig.hpp); throws work::OverBudget
   const GiNaC::symbol& symbol(const Symbol& symbol);
   Alphabet& alphabet() { return alphabet_; }
 

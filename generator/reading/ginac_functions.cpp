@@ -26,7 +26,8 @@ ex select_derivative(const ex& a, const ex& b, const ex&, const ex&, unsigned k)
 }
 
 unsigned abs_serial() {
-  static const unsigned serial = function::register_new(function_options("real_abs", 1).derivative_func(abs_derivative));
+  static const unsigned serial =
+      function::register_new(function_options("real_abs", 1).derivative_func(abs_derivative));
   return serial;
 }
 unsigned sign_serial() {
@@ -35,11 +36,13 @@ unsigned sign_serial() {
   return serial;
 }
 unsigned min_serial() {
-  static const unsigned serial = function::register_new(function_options("real_min", 2).derivative_func(min_derivative));
+  static const unsigned serial =
+      function::register_new(function_options("real_min", 2).derivative_func(min_derivative));
   return serial;
 }
 unsigned max_serial() {
-  static const unsigned serial = function::register_new(function_options("real_max", 2).derivative_func(max_derivative));
+  static const unsigned serial =
+      function::register_new(function_options("real_max", 2).derivative_func(max_derivative));
   return serial;
 }
 unsigned select_serial() {

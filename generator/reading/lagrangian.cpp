@@ -102,7 +102,8 @@ std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic) {
     bool inside = false;
     for (const Factor& factor : monomial) {
       if (is_rate(*factor.atom)) degree = degree + factor.exponent;
-      for (const Sum& arg : factor.atom->args) for_each_atom(arg, [&](const Atom& atom) { inside = inside || is_rate(atom); });
+      for (const Sum& arg : factor.atom->args)
+        for_each_atom(arg, [&](const Atom& atom) { inside = inside || is_rate(atom); });
     }
     if (inside || !is_integer(degree) || cln::minusp(degree) || degree > 2) return std::nullopt;
     parts[static_cast<std::size_t>(2 - to_long(degree))].add(monomial, coefficient);
@@ -112,9 +113,11 @@ std::optional<std::array<Sum, 3>> split_by_degree(const Sum& kinetic) {
 
 namespace {
 
-/// e_i + sum_c e_c dq_c/dq_i over the eliminated coordinates q_c that depend on q_i, of components e along the coordinates.
+/// e_i + sum_c e_c dq_c/dq_i over the eliminated coordinates q_c that depend on q_i, of components e along the
+/// coordinates.
 template <class Component>
-Sum along_free(const Mechanics& m, Bridge& bridge, std::uint32_t i, const std::map<Symbol, Sum>& values, Component&& component) {
+Sum along_free(const Mechanics& m, Bridge& bridge, std::uint32_t i, const std::map<Symbol, Sum>& values,
+               Component&& component) {
   Sum result = component(i);
   for (const mechanics::FixedCoordinate& fixed : m.fixed) {
     const Sum slope = bridge.derivative(values.at(coordinate_symbol(fixed.coordinate, 0)), coordinate_symbol(i, 0));
@@ -142,7 +145,8 @@ Equation lagrange_equation(const Mechanics& m, Bridge& bridge, const Sum& lagran
     const mechanics::Constraint& c = m.constraints[k];
     if (!m.holds(k)) continue;
     const auto gradient = [&](std::uint32_t j) {
-      return c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(j, 0)) : simplify(bridge.sum(c.gradient[j]));
+      return c.holonomic() ? bridge.derivative(bridge.sum(c.psi), coordinate_symbol(j, 0))
+                           : simplify(bridge.sum(c.gradient[j]));
     };
     Sum imposed = bridge.substitute(along_free(m, bridge, i, values, gradient), values);
     if (!imposed.is_zero()) result.multipliers.push_back({k, std::move(imposed)});

@@ -62,7 +62,8 @@ bool has_negative_term(const Sum& sum) {
 // -(a - b) as it is written: b - a.
 Formula negated_bracket(const Sum& base) {
   std::vector<Formula> terms = polynomial_terms(-base);
-  const auto positive = std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
+  const auto positive =
+      std::find_if(terms.begin(), terms.end(), [](const Formula& f) { return f.form != Form::negative; });
   if (positive != terms.end()) std::rotate(terms.begin(), positive, positive + 1);
   return sum(std::move(terms));
 }
@@ -72,13 +73,15 @@ Formula opposite(Formula f);
 // a - b + c as b - a - c; the first that is added leads.
 Formula opposite_sum(Formula f) {
   for (Formula& term : f.args) term = opposite(std::move(term));
-  const auto added = std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
+  const auto added =
+      std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
   if (added != f.args.end()) std::rotate(f.args.begin(), added, added + 1);
   return f;
 }
 
 bool subtracts(const Formula& f) {
-  return f.form == Form::sum && std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form == Form::negative; });
+  return f.form == Form::sum &&
+         std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form == Form::negative; });
 }
 
 // -f without a minus in front, where a bracket can take it: -(a - b) c is (b - a) c.
@@ -101,7 +104,8 @@ Formula led_by_plus(Formula f, bool reordered) {
   if (f.form != Form::sum || f.args[0].form != Form::negative) return f;
   f.args[0] = opposite(std::move(f.args[0].args[0]));
   if (!reordered || f.args[0].form != Form::negative) return f;
-  const auto added = std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
+  const auto added =
+      std::find_if(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form != Form::negative; });
   if (added != f.args.end()) std::rotate(f.args.begin(), added, added + 1);
   return f;
 }
@@ -251,7 +255,8 @@ std::vector<Formula> polynomial_terms(const Sum& sum) {
     }
     Factored taken;
     while (take_out_best(left, taken)) result.push_back(factored_formula(taken));
-    for (const auto& [monomial, coefficient] : display_order(left)) result.push_back(term_formula(coefficient, monomial));
+    for (const auto& [monomial, coefficient] : display_order(left))
+      result.push_back(term_formula(coefficient, monomial));
   }
   return result;
 }
@@ -259,7 +264,8 @@ std::vector<Formula> polynomial_terms(const Sum& sum) {
 // Velocities and accelerations in the order of a term's kind: accelerations, quadratic, linear, none.
 std::pair<Rational, Rational> kind(const Monomial& motion) {
   std::pair<Rational, Rational> result{0, 0};
-  for (const Factor& factor : motion) (factor.atom->symbol.order >= 2 ? result.first : result.second) += factor.exponent;
+  for (const Factor& factor : motion)
+    (factor.atom->symbol.order >= 2 ? result.first : result.second) += factor.exponent;
   return result;
 }
 
@@ -338,7 +344,8 @@ std::vector<Formula> arranged_terms(const Sum& whole, Layout layout) {
       ++last;
     }
     const Factored f = factor_out(together);
-    const bool motion_only = std::any_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return moves(*x.atom); });
+    const bool motion_only =
+        std::any_of(f.monomial.begin(), f.monomial.end(), [](const Factor& x) { return moves(*x.atom); });
     const bool shared = last - first > 1 && last - first <= longest_bracket && !f.monomial.empty() && !motion_only;
     const std::vector<ByMotion> part(groups.begin() + static_cast<std::ptrdiff_t>(first),
                                      groups.begin() + static_cast<std::ptrdiff_t>(last));
@@ -363,9 +370,12 @@ Formula factored(const Sum& whole) {
     minus = minus && !takes;
     brackets.push_back(times == 1 ? std::move(f) : wrap(Form::power, {std::move(f), number(times)}));
   }
-  return term_formula(minus ? -parts.content.number : parts.content.number, parts.content.monomial, std::move(brackets));
+  return term_formula(minus ? -parts.content.number : parts.content.number, parts.content.monomial,
+                      std::move(brackets));
 }
 
-Formula arrange(const Sum& whole, Layout layout) { return led_by_plus(sum(arranged_terms(whole, layout)), layout == Layout::grouped); }
+Formula arrange(const Sum& whole, Layout layout) {
+  return led_by_plus(sum(arranged_terms(whole, layout)), layout == Layout::grouped);
+}
 
 }  // namespace eomgen::reading

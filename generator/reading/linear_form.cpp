@@ -12,8 +12,10 @@ using mechanics::Mechanics;
 
 std::string obstacle(const Mechanics& m, const ReadingForm& form) {
   if (form.by_parts) return form.why_by_parts;
-  if (!m.model->integrals.empty()) return "integrals over time are states of their own: eomgen linearize gives A and B at a state";
-  if (!m.contacts.empty()) return "contacts have modes, each with slopes of its own: eomgen linearize gives A and B at a state";
+  if (!m.model->integrals.empty())
+    return "integrals over time are states of their own: eomgen linearize gives A and B at a state";
+  if (!m.contacts.empty())
+    return "contacts have modes, each with slopes of its own: eomgen linearize gives A and B at a state";
   for (const Equation& equation : form.equations) {
     if (!equation.multipliers.empty()) return "constraints keep multipliers: eomgen linearize gives A and B at a state";
   }
@@ -22,7 +24,8 @@ std::string obstacle(const Mechanics& m, const ReadingForm& form) {
 
 class Linearisation {
  public:
-  Linearisation(Bridge& bridge, LinearForm& form, const std::vector<Sum>& residuals) : bridge_(bridge), form_(form), r_(residuals) {
+  Linearisation(Bridge& bridge, LinearForm& form, const std::vector<Sum>& residuals)
+      : bridge_(bridge), form_(form), r_(residuals) {
     for (const std::uint32_t q : form.coordinates) {
       for (const std::uint8_t order : {std::uint8_t{1}, std::uint8_t{2}}) rest_[coordinate_symbol(q, order)] = Sum();
     }
@@ -37,7 +40,8 @@ class Linearisation {
         add(slope(r, coordinate_symbol(q, 1)), form_.along.damping, form_.at_rest.damping);
         add(slope(r, coordinate_symbol(q, 0)), form_.along.stiffness, form_.at_rest.stiffness);
       }
-      for (const std::uint32_t u : form_.inputs) add(-slope(r, {SymbolKind::input, u, 0}), form_.along.input, form_.at_rest.input);
+      for (const std::uint32_t u : form_.inputs)
+        add(-slope(r, {SymbolKind::input, u, 0}), form_.along.input, form_.at_rest.input);
     }
   }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The equations of motion beside a motion: M dq'' + C dq' + K dq = B du for small deviations, with M, C, K, B at any state, and at
-// rest, where M, C, K are those of an equilibrium. In: Mechanics. Approach II, of models without multipliers and friction.
+// The equations of motion beside a motion: M dq'' + C dq' + K dq = B du for small deviations, with M, C, K, B at any
+// state, and at rest, where M, C, K are those of an equilibrium. In: Mechanics. Approach II, of models without
+// multipliers and friction.
 #pragma once
 
 #include "reading/reading.hpp"
 
 namespace eomgen::reading {
 
-/// n x n by rows (equations) and columns (coordinates); B n x m. Slopes of r = M qddot + h - Q by qddot, qdot, q, and of -r by u.
+/// n x n by rows (equations) and columns (coordinates); B n x m. Slopes of r = M qddot + h - Q by qddot, qdot, q, and
+/// of -r by u.
 struct Slopes {
   std::vector<Sum> mass, damping, stiffness, input;
 };

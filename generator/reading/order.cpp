@@ -16,13 +16,16 @@ int rank(const Atom& atom) {
   if (atom.op != Op::symbol) return calls;
   const int order = atom.symbol.order;
   switch (atom.symbol.kind) {
-    case SymbolKind::multiplier: case SymbolKind::friction: case SymbolKind::contact: return 1;
+    case SymbolKind::multiplier:
+    case SymbolKind::friction:
+    case SymbolKind::contact: return 1;
     case SymbolKind::parameter: return 2;
     case SymbolKind::input: return 3;
     case SymbolKind::function: return order == 0 ? 4 : order == 1 ? rates : accelerations;
     case SymbolKind::integral: return 4;
     case SymbolKind::time: return 5;
-    case SymbolKind::side: case SymbolKind::extra: return 5;
+    case SymbolKind::side:
+    case SymbolKind::extra: return 5;
     case SymbolKind::coordinate: return order == 0 ? coordinates : order == 1 ? rates + 1 : accelerations + 1;
   }
   return calls;
@@ -37,8 +40,10 @@ using Weight = std::array<Rational, 4>;
 void weigh(const Monomial& monomial, Weight& weight) {
   for (const Factor& factor : monomial) {
     const int r = rank(*factor.atom);
-    if (r >= accelerations) weight[0] += factor.exponent;
-    else if (r >= rates) weight[1] += factor.exponent;
+    if (r >= accelerations)
+      weight[0] += factor.exponent;
+    else if (r >= rates)
+      weight[1] += factor.exponent;
     if (r == rates + 1) weight[2] += factor.exponent;
     if (r == coordinates || r == calls) weight[3] += 1;
   }

@@ -20,7 +20,8 @@ std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const R
       p.rate = simplify(bridge.total_derivative(p.momentum));
       p.kinetic = bridge.derivative(form.kinetic, q);
       p.potential = bridge.derivative(form.potential, q);
-      p.force = form.approach == system::Approach::one ? generalized_force(m, bridge, equation.coordinate) : equation.force;
+      p.force =
+          form.approach == system::Approach::one ? generalized_force(m, bridge, equation.coordinate) : equation.force;
     } catch (const work::OverBudget& over) {
       p = {};
       p.coordinate = equation.coordinate;

@@ -86,7 +86,8 @@ Sum term_power(const Monomial& monomial, const Rational& coefficient, const Rati
   }
   if (inside.empty()) return outside * number_power(coefficient, exponent);
   const Rational size = cln::abs(coefficient);
-  return outside * number_power(size, exponent) * atomic_power(Sum(inside, cln::minusp(coefficient) ? -1 : 1), exponent);
+  return outside * number_power(size, exponent) *
+         atomic_power(Sum(inside, cln::minusp(coefficient) ? -1 : 1), exponent);
 }
 
 }  // namespace
@@ -123,8 +124,8 @@ Sum power(const Sum& x, const Rational& exponent) {
 
 namespace {
 
-/// Quarter turns that stand in an angle beside something else: 1 of pi/2 - x; the angle is left without them. None where what
-/// stands there is no whole number of them.
+/// Quarter turns that stand in an angle beside something else: 1 of pi/2 - x; the angle is left without them. None
+/// where what stands there is no whole number of them.
 long take_quarter_turns(Sum& angle) {
   for (const auto& [monomial, coefficient] : angle.terms()) {
     const bool of_pi = monomial.size() == 1 && monomial[0].atom->op == Op::pi && is_one(monomial[0].exponent);
@@ -161,10 +162,16 @@ Sum call(Op function, std::vector<Sum> args) {
   const auto negated = [&]() -> Sum { return call(function, {-args[0]}); };
   if (args.size() == 1 && leads_negative(args[0])) {
     switch (function) {
-      case Op::sin: case Op::tan: case Op::asin: case Op::atan: case Op::sinh: case Op::tanh: case Op::sign:
-        return -negated();
-      case Op::cos: case Op::cosh: case Op::abs:
-        return negated();
+      case Op::sin:
+      case Op::tan:
+      case Op::asin:
+      case Op::atan:
+      case Op::sinh:
+      case Op::tanh:
+      case Op::sign: return -negated();
+      case Op::cos:
+      case Op::cosh:
+      case Op::abs: return negated();
       default: break;
     }
   }

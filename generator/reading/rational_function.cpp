@@ -116,8 +116,7 @@ std::optional<Sum> exact_quotient(const Sum& a, const Sum& b) {
   ex q;
   if (!x || !y || !GiNaC::divide(*x, *y, q)) return std::nullopt;
   const Sum front(common_a.monomial, common_a.number);
-  return front * multiply(inverse(common_b.monomial), {}) * letters.sum(q.expand()) *
-         Sum(cln::recip(common_b.number));
+  return front * multiply(inverse(common_b.monomial), {}) * letters.sum(q.expand()) * Sum(cln::recip(common_b.number));
 }
 
 namespace {

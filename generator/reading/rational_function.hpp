@@ -13,7 +13,8 @@ namespace eomgen::reading {
 /// Denominators that are sums are brought together and cancelled where that makes the sum shorter.
 Sum cancel(const Sum& sum);
 
-/// u^2/sqrt(u^2 + v^2) + v^2/sqrt(u^2 + v^2) -> sqrt(u^2 + v^2): a root that all terms have takes in what is left of them.
+/// u^2/sqrt(u^2 + v^2) + v^2/sqrt(u^2 + v^2) -> sqrt(u^2 + v^2): a root that all terms have takes in what is left of
+/// them.
 Sum absorb_roots(const Sum& sum);
 
 /// a / b if it is a sum without b in a denominator.

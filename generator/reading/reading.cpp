@@ -52,10 +52,13 @@ void read_constraint(const Mechanics& m, Bridge& bridge, ReadConstraint& c, Read
   });
   c.no_rate = c.no_psi;
   if (c.no_rate.empty()) {
-    c.no_rate = within_budget([&] { c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k]))); });
+    c.no_rate = within_budget([&] {
+      c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
+    });
   }
   c.no_acceleration = c.no_rate;
-  if (c.no_acceleration.empty()) c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
+  if (c.no_acceleration.empty())
+    c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
   const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
   const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes);
   if (found == m.fixed.end()) return;
@@ -137,13 +140,17 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
   try {
     const work::Budget budget(form_budget);
     if (terms > longest) throw TermBudget();
-    if (approach == system::Approach::one) approach_one(m, bridge, form);
-    else approach_two(m, bridge, form);
+    if (approach == system::Approach::one)
+      approach_one(m, bridge, form);
+    else
+      approach_two(m, bridge, form);
   } catch (const work::OverBudget& over) {
     leave_by_parts(m, form, over.what());
   }
-  if (terms <= longest_of_spins) add_spins(m, bridge, form);
-  else form.no_spins = TermBudget().what();
+  if (terms <= longest_of_spins)
+    add_spins(m, bridge, form);
+  else
+    form.no_spins = TermBudget().what();
   add_constraints(m, bridge, form);
   return form;
 }
@@ -161,7 +168,8 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
     }
     result.push_back(residual);
   }
-  for (const ReadConstraint& c : form.constraints) {  // what approach II wrote in terms of other coordinates has moved as it says
+  for (const ReadConstraint& c :
+       form.constraints) {  // what approach II wrote in terms of other coordinates has moved as it says
     if (!c.fixes || m.is_eliminated(c.fixes->coordinate)) continue;
     result.push_back(dag.sub(m.qddot[c.fixes->coordinate], to_dag(dag, c.value_acceleration)));
   }

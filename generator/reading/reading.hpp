@@ -18,8 +18,8 @@ namespace eomgen::reading {
 
 using Components = std::array<Sum, 3>;
 
-/// Operations (products and sums of two terms) that are spent on a form, and on one formula of those that are shown beside it. What
-/// takes more is left out, on every machine the same.
+/// Operations (products and sums of two terms) that are spent on a form, and on one formula of those that are shown
+/// beside it. What takes more is left out, on every machine the same.
 inline constexpr std::size_t form_budget = 5'000'000, item_budget = 200'000;
 
 using work::LeftOut;
@@ -31,8 +31,9 @@ struct ReadConstraint {
   bool holonomic = true;
   Sum psi, rate, acceleration;
   std::string no_psi, no_rate, no_acceleration;  // why they are left out; empty where they are there
-  std::optional<mechanics::FixedCoordinate> fixes;  // where it reads q_c = d(t); by approach II also of other coordinates
-  Sum value, value_rate, value_acceleration;        // of that coordinate
+  std::optional<mechanics::FixedCoordinate>
+      fixes;                                  // where it reads q_c = d(t); by approach II also of other coordinates
+  Sum value, value_rate, value_acceleration;  // of that coordinate
 };
 
 /// lambda_k dpsi_k/dq_i of one equation.
@@ -49,7 +50,7 @@ struct Equation {
   Sum slope;       // dL/dq_i
   Sum force;       // Q_i = F . dr/dq_i and given generalised forces
   std::vector<MultiplierTerm> multipliers;
-  Sum expanded;    // the left-hand side written out: M qddot + h
+  Sum expanded;  // the left-hand side written out: M qddot + h
 };
 
 /// lambda_k as an expression; nothing where only the equations of motion together determine it.
@@ -61,9 +62,9 @@ struct ReadReaction {
 
 /// A set where the inertia matrix of an approach, or a metric, has no inverse: factor = 0.
 struct SingularSet {
-  std::string approach;           // "I", "II", "both"
+  std::string approach;  // "I", "II", "both"
   Sum factor;
-  std::vector<Formula> solutions; // phi = 0, phi = pi where these are known
+  std::vector<Formula> solutions;  // phi = 0, phi = pi where these are known
 };
 
 /// Rotation of a body: T = sum_ik J_ik w_i w_k/2.
@@ -78,10 +79,10 @@ struct ReadingForm {
   system::Approach approach = system::Approach::one;
   bool by_parts = false;  // too large to be multiplied out: m r_ddot . dr/dq in place of the equations written out
   std::string why_by_parts;
-  Sum kinetic, potential, lagrangian;  // unconstrained for I, constrained for II
-  Sum translation;              // the part of `kinetic` that is not of `spins`; 0 where by_parts
-  std::vector<ReadSpin> spins;  // for I as they are, for II with the constraints imposed
-  std::string no_spins;         // why there are none, where bodies turn
+  Sum kinetic, potential, lagrangian;           // unconstrained for I, constrained for II
+  Sum translation;                              // the part of `kinetic` that is not of `spins`; 0 where by_parts
+  std::vector<ReadSpin> spins;                  // for I as they are, for II with the constraints imposed
+  std::string no_spins;                         // why there are none, where bodies turn
   std::optional<std::array<Sum, 3>> by_degree;  // II: T2, T1, T0, eq. (3.50)
   std::vector<ReadConstraint> constraints;
   std::vector<Equation> equations;  // I: all coordinates, II: the free ones
@@ -93,18 +94,18 @@ ReadingForm derive_reading(const mechanics::Mechanics& mechanics, system::Approa
 
 /// Curvilinear coordinates of one particle: bases, metric, Christoffel symbols; n = 1, 2 or 3 coordinates.
 struct Geometry {
-  std::string name;                         // of the particle
-  std::vector<std::uint32_t> coordinates;   // n
-  std::vector<Components> covariant;        // a_i along E1..E3, eq. (1.20)
-  std::vector<Components> contravariant;    // a^i, eq. (1.22)
-  std::vector<Components> covariant_unit;   // the same along the chart's unit vectors; empty where it names none
+  std::string name;                        // of the particle
+  std::vector<std::uint32_t> coordinates;  // n
+  std::vector<Components> covariant;       // a_i along E1..E3, eq. (1.20)
+  std::vector<Components> contravariant;   // a^i, eq. (1.22)
+  std::vector<Components> covariant_unit;  // the same along the chart's unit vectors; empty where it names none
   std::vector<Components> contravariant_unit;
   std::vector<std::optional<std::uint32_t>> unit_names;  // whose coordinate's e_q each unit vector is
-  std::vector<Sum> metric, inverse;         // n x n, eq. (1.31)
+  std::vector<Sum> metric, inverse;                      // n x n, eq. (1.31)
   Sum determinant;
-  std::vector<Sum> first, second;           // [ij,k] and Gamma^k_ij at (i n + j) n + k, (2.184), (2.185)
-  Sum line_element;                         // (ds/dt)^2 = a_ik qdot_i qdot_k
-  Sum kinetic;                              // T, eq. (1.32)
+  std::vector<Sum> first, second;  // [ij,k] and Gamma^k_ij at (i n + j) n + k, (2.184), (2.185)
+  Sum line_element;                // (ds/dt)^2 = a_ik qdot_i qdot_k
+  Sum kinetic;                     // T, eq. (1.32)
 };
 
 /// For every particle whose position is given in a chart.
@@ -112,9 +113,11 @@ std::vector<Geometry> geometry(const mechanics::Mechanics& mechanics, std::vecto
 
 /// The configuration manifold: M_ik from T2 (free coordinates, constraints imposed) with its Christoffel symbols;
 /// nothing where it is too large. `name` is empty, the bases are empty.
-std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
+std::optional<Geometry> configuration_space(const mechanics::Mechanics& mechanics,
+                                            std::vector<LeftOut>* left_out = nullptr);
 
-/// Where the equations of an approach fail, and where a potential or force does. What was not looked at is told in `left_out`.
+/// Where the equations of an approach fail, and where a potential or force does. What was not looked at is told in
+/// `left_out`.
 std::vector<SingularSet> singular_sets(const mechanics::Mechanics& mechanics, std::vector<LeftOut>* left_out = nullptr);
 
 /// lhs - rhs of each equation of motion, in the order of ReadingForm::equations, on the Dag of `mechanics`: symbols q,

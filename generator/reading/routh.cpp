@@ -14,17 +14,22 @@ namespace {
 
 using mechanics::Mechanics;
 
-bool is_in(const std::vector<std::uint32_t>& list, std::uint32_t i) { return std::find(list.begin(), list.end(), i) != list.end(); }
+bool is_in(const std::vector<std::uint32_t>& list, std::uint32_t i) {
+  return std::find(list.begin(), list.end(), i) != list.end();
+}
 
-// M_ck of the cyclic coordinates from their momenta; false where these are not linear in the rates, or do not give them.
+// M_ck of the cyclic coordinates from their momenta; false where these are not linear in the rates, or do not give
+// them.
 bool solve_rates(Bridge& bridge, RouthForm& form) {
   const std::size_t n = form.cyclic.size();
   std::map<Symbol, Sum> at_rest;
   for (const std::uint32_t c : form.cyclic) at_rest[coordinate_symbol(c, 1)] = Sum();
   std::vector<Sum> inertia, right;
   for (std::size_t i = 0; i < n; ++i) {
-    for (const std::uint32_t c : form.cyclic) inertia.push_back(simplify(bridge.derivative(form.momenta[i], coordinate_symbol(c, 1))));
-    right.push_back(Sum(bridge.alphabet().atom(momentum_symbol(form.cyclic[i]))) - bridge.substitute(form.momenta[i], at_rest));
+    for (const std::uint32_t c : form.cyclic)
+      inertia.push_back(simplify(bridge.derivative(form.momenta[i], coordinate_symbol(c, 1))));
+    right.push_back(Sum(bridge.alphabet().atom(momentum_symbol(form.cyclic[i]))) -
+                    bridge.substitute(form.momenta[i], at_rest));
   }
   for (const Sum& entry : inertia) {
     for (const std::uint32_t c : form.cyclic) {

@@ -11,10 +11,10 @@ namespace eomgen::reading {
 struct RouthForm {
   bool by_parts = false;  // too large to be written out, or the momenta do not give the rates: nothing below
   std::vector<std::uint32_t> cyclic;
-  std::vector<Sum> momenta;     // dL/dqdot_c, per cyclic coordinate
-  std::vector<Sum> rates;       // qdot_c by the momenta
-  Sum routhian;                 // L - sum p_c qdot_c
-  std::optional<Sum> energy;    // sum qdot_a dR/dqdot_a - R, where R is free of t
+  std::vector<Sum> momenta;         // dL/dqdot_c, per cyclic coordinate
+  std::vector<Sum> rates;           // qdot_c by the momenta
+  Sum routhian;                     // L - sum p_c qdot_c
+  std::optional<Sum> energy;        // sum qdot_a dR/dqdot_a - R, where R is free of t
   std::vector<Equation> equations;  // of the free coordinates that are not cyclic
 };
 

@@ -23,7 +23,8 @@ using mechanics::Mechanics;
 constexpr std::size_t largest_determinant = 4;
 
 bool varies(const Symbol& symbol) {
-  return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::function || symbol.kind == SymbolKind::time;
+  return symbol.kind == SymbolKind::coordinate || symbol.kind == SymbolKind::function ||
+         symbol.kind == SymbolKind::time;
 }
 bool varies(const Atom& atom) { return atom.op == Op::symbol && varies(atom.symbol); }
 bool varies(const Sum& sum) {
@@ -108,8 +109,8 @@ bool positive_always(const Sum& factor) {
   return constant_part;
 }
 
-/// Whether a search for a zero ends far from one, from many starts: then a factor of a determinant that is never negative has none.
-/// Parameters count as positive, as masses, inertias and lengths are.
+/// Whether a search for a zero ends far from one, from many starts: then a factor of a determinant that is never
+/// negative has none. Parameters count as positive, as masses, inertias and lengths are.
 bool stays_away_from_zero(const Sum& factor) {
   constexpr int starts = 40, shrinkings = 40;
   constexpr double near = 1e-5;  // of the largest value met
@@ -141,8 +142,10 @@ bool stays_away_from_zero(const Sum& factor) {
           const double there = value(at);
           if ((there < 0) != negative) return false;
           largest = std::max(largest, std::isfinite(there) ? std::abs(there) : 0);
-          if (std::abs(there) < std::abs(here)) here = there, better = true;
-          else at[s] = before;
+          if (std::abs(there) < std::abs(here))
+            here = there, better = true;
+          else
+            at[s] = before;
         }
       }
       if (!better) step /= 2, ++turn;
@@ -153,17 +156,19 @@ bool stays_away_from_zero(const Sum& factor) {
 }
 
 // Of masses and bodies the determinant is never negative; a kinetic energy that the file gives may be anything.
-void add_determinant(const Mechanics& m, Bridge& bridge, const std::string& approach, const Sum& kinetic, const std::vector<std::uint32_t>& which, Sets& sets) {
+void add_determinant(const Mechanics& m, Bridge& bridge, const std::string& approach, const Sum& kinetic,
+                     const std::vector<std::uint32_t>& which, Sets& sets) {
   const bool of_masses = m.dag->is_zero(m.kinetic_given);
   Sets candidates;
   candidates.add_factors(approach, simplify(determinant(mass_matrix(bridge, kinetic, which), which.size())));
   for (const SingularSet& set : candidates.take()) {
-    if (!positive_always(set.factor) && !(of_masses && stays_away_from_zero(set.factor))) sets.add(approach, set.factor);
+    if (!positive_always(set.factor) && !(of_masses && stays_away_from_zero(set.factor)))
+      sets.add(approach, set.factor);
   }
 }
 
-// Where the determinant is too large to be written out: the angles of bodies fail where their basis has no dual. With the first or
-// the last of them gone the basis of the other two never fails.
+// Where the determinant is too large to be written out: the angles of bodies fail where their basis has no dual. With
+// the first or the last of them gone the basis of the other two never fails.
 void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Symbol, Sum>& values, Sets& sets) {
   Mechanics m = mechanics;  // shares the Dag; lowering may add nodes to it
   for (const model::Body& body : m.model->bodies) {
@@ -176,7 +181,8 @@ void add_rotations(const Mechanics& mechanics, Bridge& bridge, const std::map<Sy
     const auto given = [&](std::size_t k) { return m.model->arena[frame.entries[k]].op != model::Op::coordinate; };
     const Sum regular = bridge.sum(mechanics::lower_scalar(m, frame.regular));
     if (m.q.size() > largest_determinant && !given(0) && !given(2)) sets.add_factors("I", regular);
-    if (m.free.size() > largest_determinant && !gone(0) && !gone(2)) sets.add_factors("II", bridge.substitute(regular, values));
+    if (m.free.size() > largest_determinant && !gone(0) && !gone(2))
+      sets.add_factors("II", bridge.substitute(regular, values));
   }
 }
 

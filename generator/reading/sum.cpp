@@ -68,8 +68,10 @@ Sum multiply(const Monomial& a, const Monomial& b) {
   auto i = a.begin(), j = b.begin();
   while (i != a.end() || j != b.end()) {
     const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
-    if (c < 0) keep(*i++);
-    else if (c > 0) keep(*j++);
+    if (c < 0)
+      keep(*i++);
+    else if (c > 0)
+      keep(*j++);
     else {
       keep({i->atom, i->exponent + j->exponent});
       ++i;

@@ -91,8 +91,8 @@ struct Atom {
 
 /// Product of two monomials as a sum: powers of sums that become whole are multiplied out.
 Sum multiply(const Monomial& a, const Monomial& b);
-/// x^exponent: multiplied out for whole exponents >= 0, the common factor pulled out of other ones, sqrt(x^2) = |x| or x
-/// where x is known to be positive.
+/// x^exponent: multiplied out for whole exponents >= 0, the common factor pulled out of other ones, sqrt(x^2) = |x| or
+/// x where x is known to be positive.
 Sum power(const Sum& x, const Rational& exponent);
 /// A function call with its sign pulled out: sin(-x) = -sin(x), cos(-x) = cos(x).
 Sum call(Op function, std::vector<Sum> args);

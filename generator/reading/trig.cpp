@@ -35,7 +35,8 @@ std::vector<Sum> angles(const Sum& sum) {
   std::map<Sum, bool, SumLess> found;
   for (const auto& [monomial, coefficient] : sum.terms()) {
     for (const Factor& factor : monomial) {
-      if ((is_call(factor, Op::sin) || is_call(factor, Op::cos)) && factor.exponent >= 2) found[factor.atom->args[0]] = true;
+      if ((is_call(factor, Op::sin) || is_call(factor, Op::cos)) && factor.exponent >= 2)
+        found[factor.atom->args[0]] = true;
     }
   }
   std::vector<Sum> result;
@@ -57,8 +58,10 @@ Sum replace_square(const Sum& sum, Op f, const Sum& angle) {
       factor.exponent = factor.exponent - 2 * pairs;
     }
     std::erase_if(rest, [](const Factor& factor) { return cln::zerop(factor.exponent); });
-    if (pairs == 0) result.add(monomial, coefficient);
-    else result += Sum(rest, coefficient) * power(other, pairs);
+    if (pairs == 0)
+      result.add(monomial, coefficient);
+    else
+      result += Sum(rest, coefficient) * power(other, pairs);
   }
   return result;
 }
@@ -200,7 +203,8 @@ std::pair<Sum, Sum> addition(const Sum& angle) {
     }
     const Sum cu = call(Op::cos, {unit});
     const Sum su = cln::minusp(times) ? -call(Op::sin, {unit}) : call(Op::sin, {unit});
-    for (long n = cln::cl_I_to_long(cln::abs(times)); n > 0; --n) std::tie(c, s) = std::pair(c * cu - s * su, s * cu + c * su);
+    for (long n = cln::cl_I_to_long(cln::abs(times)); n > 0; --n)
+      std::tie(c, s) = std::pair(c * cu - s * su, s * cu + c * su);
   }
   return {c, s};
 }

@@ -23,7 +23,10 @@ struct Rows {
 class Start {
  public:
   Start(const program::Function& constraints, std::size_t n, const std::vector<double>& p, int digits)
-      : constraints_(constraints), n_(n), digits_(digits), format_(cln::float_format(static_cast<std::uintptr_t>(digits))) {
+      : constraints_(constraints),
+        n_(n),
+        digits_(digits),
+        format_(cln::float_format(static_cast<std::uintptr_t>(digits))) {
     for (const double value : p) at_.p.emplace_back(cln::cl_DF(value));
     zero_ = cln::cl_float(0, format_);
   }
@@ -89,7 +92,8 @@ class Start {
     const std::size_t m = b.size();
     for (std::size_t k = 0; k < m; ++k) {
       if (!cln::plusp(G[k * m + k])) {
-        throw Error("reference", {}, "the constraints depend on one another at the start", "start elsewhere", Fault::numerical);
+        throw Error("reference", {}, "the constraints depend on one another at the start", "start elsewhere",
+                    Fault::numerical);
       }
       for (std::size_t i = k + 1; i < m; ++i) {
         const Number factor = G[i * m + k] / G[k * m + k];
@@ -113,8 +117,8 @@ class Start {
 
 }  // namespace
 
-std::vector<Number> consistent(const program::Function& constraints, std::size_t n, const Number& t, std::vector<Number> x,
-                               const std::vector<double>& p, int digits) {
+std::vector<Number> consistent(const program::Function& constraints, std::size_t n, const Number& t,
+                               std::vector<Number> x, const std::vector<double>& p, int digits) {
   return Start(constraints, n, p, digits).moved(t, std::move(x));
 }
 

@@ -74,8 +74,9 @@ void Expansion::run_next() {
   }
 }
 
-std::vector<std::vector<Number>> Expansion::operator()(const Number& t, const std::vector<Number>& x, const std::vector<double>& p,
-                                                       const std::vector<double>& u, int order) {
+std::vector<std::vector<Number>> Expansion::operator()(const Number& t, const std::vector<Number>& x,
+                                                       const std::vector<double>& p, const std::vector<double>& u,
+                                                       int order) {
   program::Arguments<cln::cl_R> at;
   at.t = t;
   at.x.assign(x.begin(), x.end());

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Taylor coefficients of a motion in any precision: the recurrences of the program (program/taylor.hpp), read in CLN's arithmetic.
+// Taylor coefficients of a motion in any precision: the recurrences of the program (program/taylor.hpp), read in CLN's
+// arithmetic.
 #pragma once
 
 #include <cln/float.h>
@@ -18,8 +19,8 @@ class Expansion {
   Expansion(const program::Taylor& taylor, int digits);
 
   /// c[k][i], k = 0..order. Throws std::domain_error where a function leaves its domain.
-  std::vector<std::vector<Number>> operator()(const Number& t, const std::vector<Number>& x, const std::vector<double>& p,
-                                              const std::vector<double>& u, int order);
+  std::vector<std::vector<Number>> operator()(const Number& t, const std::vector<Number>& x,
+                                              const std::vector<double>& p, const std::vector<double>& u, int order);
 
   Number number(double value) const;  // exactly
 

@@ -19,7 +19,7 @@ namespace {
 
 using States = std::vector<std::vector<Number>>;
 
-constexpr int guard = 4;                  // digits between the last terms and the rounding of the arithmetic
+constexpr int guard = 4;  // digits between the last terms and the rounding of the arithmetic
 constexpr std::size_t most_steps = 1000000;
 
 [[noreturn]] void fail(const Number& t, const std::string& why) {
@@ -83,7 +83,8 @@ class Run {
     }
     x_ = at(c, next - t_);
     t_ = next;
-    if (problem_.progress) problem_.progress((cln::double_approx(t_) - problem_.t0) / (problem_.times.back() - problem_.t0));
+    if (problem_.progress)
+      problem_.progress((cln::double_approx(t_) - problem_.t0) / (problem_.times.back() - problem_.t0));
   }
 
   /// Where the last two terms are 10^-(digits - guard) of the largest value.
@@ -153,7 +154,8 @@ Solution solve(const Problem& problem, Settings first, Settings second) {
   for (std::size_t j = 0; j < b.size(); ++j) solution.digits = std::min(solution.digits, agreement(a[j], b[j], scale));
   solution.digits_at_end = std::min({first.digits, second.digits, agreement(a.back(), b.back(), scale)});
   solution.steps = sharp.steps();
-  solution.method = fmt::format("Taylor series of orders {} and {} in {} and {} digits", first.order, second.order, first.digits, second.digits);
+  solution.method = fmt::format("Taylor series of orders {} and {} in {} and {} digits", first.order, second.order,
+                                first.digits, second.digits);
   return solution;
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A motion to 30 digits and more: the program in CLN's arithmetic with Taylor steps, twice, at different order and precision. What the
-// two agree in is what the reference claims. Parameters, starts and times are the binary64 numbers, exactly; but for constraints, which starts meet
-// in all digits.
+// A motion to 30 digits and more: the program in CLN's arithmetic with Taylor steps, twice, at different order and
+// precision. What the two agree in is what the reference claims. Parameters, starts and times are the binary64 numbers,
+// exactly; but for constraints, which starts meet in all digits.
 #pragma once
 
 #include <cln/float.h>
@@ -27,8 +27,9 @@ struct Problem {
   double t0 = 0;
   std::vector<Piece> pieces;
   std::vector<double> times;  // where the state is wanted, in the direction of the run; the last is its end
-  const program::Function* constraints = nullptr;  // the function of that name, where there is one: the start is moved to meet them
-  std::size_t coordinates = 0;                     // that it takes, first in x; their rates follow
+  const program::Function* constraints =
+      nullptr;                  // the function of that name, where there is one: the start is moved to meet them
+  std::size_t coordinates = 0;  // that it takes, first in x; their rates follow
   const std::atomic<bool>* interrupt = nullptr;
   std::function<void(double fraction)> progress = {};
 };

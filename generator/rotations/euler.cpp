@@ -33,7 +33,9 @@ Components cross(const Components& a, const Components& b) {
 }
 
 /// Components of a vector along the axes that a step leads to.
-Components turned(const Step& step, const Components& v) { return {dot(step.R[0], v), dot(step.R[1], v), dot(step.R[2], v)}; }
+Components turned(const Step& step, const Components& v) {
+  return {dot(step.R[0], v), dot(step.R[1], v), dot(step.R[2], v)};
+}
 
 }  // namespace
 
@@ -48,17 +50,20 @@ Step about_axis(std::size_t axis, const std::string& n) {
 }
 
 Rotation euler(int i, int j, int k) {
-  const std::array<std::size_t, 3> axis{static_cast<std::size_t>(i - 1), static_cast<std::size_t>(j - 1), static_cast<std::size_t>(k - 1)};
+  const std::array<std::size_t, 3> axis{static_cast<std::size_t>(i - 1), static_cast<std::size_t>(j - 1),
+                                        static_cast<std::size_t>(k - 1)};
   Rotation result;
   result.name = std::to_string(i) + std::to_string(j) + std::to_string(k);
   result.family = "euler";
-  result.title = "Euler angles about the axes " + std::to_string(i) + ", " + std::to_string(j) + ", " + std::to_string(k);
+  result.title =
+      "Euler angles about the axes " + std::to_string(i) + ", " + std::to_string(j) + ", " + std::to_string(k);
   for (std::size_t s = 0; s < 3; ++s) {
     result.entries.push_back({"n" + std::to_string(s + 1), "rad"});
     result.steps.push_back(about_axis(axis[s], result.entries[s].name));
   }
   const Components after_two = turned(result.steps[1], unit_vector(axis[0]));  // g1
-  result.basis = {turned(result.steps[2], after_two), turned(result.steps[2], unit_vector(axis[1])), unit_vector(axis[2])};
+  result.basis = {turned(result.steps[2], after_two), turned(result.steps[2], unit_vector(axis[1])),
+                  unit_vector(axis[2])};
   // g1 . (g2 x g3), which does not depend on n1 and n3.
   const std::string volume = dot(after_two, cross(unit_vector(axis[1]), unit_vector(axis[2])));
   for (std::size_t s = 0; s < 3; ++s) {

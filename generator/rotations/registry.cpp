@@ -9,12 +9,9 @@ namespace {
 
 const std::vector<Rotation>& all() {
   static const std::vector<Rotation> rotations{
-      euler(1, 2, 1), euler(1, 3, 1), euler(2, 1, 2), euler(2, 3, 2), euler(3, 1, 3), euler(3, 2, 3),
-      euler(1, 2, 3), euler(1, 3, 2), euler(2, 1, 3), euler(2, 3, 1), euler(3, 1, 2), euler(3, 2, 1),
-      fixed_axis(),
-      euler_parameters(),
-      rodrigues(),
-      fixed(),
+      euler(1, 2, 1), euler(1, 3, 1),     euler(2, 1, 2), euler(2, 3, 2), euler(3, 1, 3), euler(3, 2, 3),
+      euler(1, 2, 3), euler(1, 3, 2),     euler(2, 1, 3), euler(2, 3, 1), euler(3, 1, 2), euler(3, 2, 1),
+      fixed_axis(),   euler_parameters(), rodrigues(),    fixed(),
   };
   return rotations;
 }

@@ -16,7 +16,9 @@ Rotation rodrigues() {
                      {over("2*(l1*l3 + l2)"), over("2*(l2*l3 - l1)"), over("1 - l1^2 - l2^2 + l3^2")}}},
                    {over("2*(l1_dot + l2_dot*l3 - l3_dot*l2)"), over("2*(l2_dot + l3_dot*l1 - l1_dot*l3)"),
                     over("2*(l3_dot + l1_dot*l2 - l2_dot*l1)")}}};
-  result.basis = {{over("2"), over("-2*l3"), over("2*l2")}, {over("2*l3"), over("2"), over("-2*l1")}, {over("-2*l2"), over("2*l1"), over("2")}};
+  result.basis = {{over("2"), over("-2*l3"), over("2*l2")},
+                  {over("2*l3"), over("2"), over("-2*l1")},
+                  {over("-2*l2"), over("2*l1"), over("2")}};
   result.dual = {{"(1 + l1^2)/2", "(l1*l2 - l3)/2", "(l1*l3 + l2)/2"},
                  {"(l1*l2 + l3)/2", "(1 + l2^2)/2", "(l2*l3 - l1)/2"},
                  {"(l1*l3 - l2)/2", "(l2*l3 + l1)/2", "(1 + l3^2)/2"}};

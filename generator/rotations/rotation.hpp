@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Representations of rotations as data: a family is one file with a function that makes one of these, a representation is one
-// line in registry.cpp. The formulas are in the language of model files, over the names of the entries; the model reader
-// spells axes and angular velocities out with them, so that nothing downstream knows a representation by name.
+// Representations of rotations as data: a family is one file with a function that makes one of these, a representation
+// is one line in registry.cpp. The formulas are in the language of model files, over the names of the entries; the
+// model reader spells axes and angular velocities out with them, so that nothing downstream knows a representation by
+// name.
 #pragma once
 
 #include <array>
@@ -19,8 +20,8 @@ struct Entry {
   std::string unit;  // "rad", "1"
 };
 
-/// A step takes the axes p1 p2 p3 to e_k = sum_j R[k][j] p_j. `w` are the components along e1 e2 e3 of the angular velocity
-/// that it adds.
+/// A step takes the axes p1 p2 p3 to e_k = sum_j R[k][j] p_j. `w` are the components along e1 e2 e3 of the angular
+/// velocity that it adds.
 struct Step {
   std::array<Components, 3> R;
   Components w;
@@ -32,7 +33,8 @@ struct Rotation {
   std::string title;
   std::vector<Entry> entries;
   std::vector<Step> steps;
-  /// w = sum_i basis_i d(entry_i)/dt, eq. (5.59), and w . dual_i = d(entry_i)/dt: components along the axes after the last step.
+  /// w = sum_i basis_i d(entry_i)/dt, eq. (5.59), and w . dual_i = d(entry_i)/dt: components along the axes after the
+  /// last step.
   std::vector<Components> basis, dual;
   std::string unit = {};      // is 0 on the entries that are allowed; empty: all are
   std::string singular = {};  // where the basis has no dual, for reading; empty: nowhere

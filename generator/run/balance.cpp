@@ -9,9 +9,9 @@
 namespace eomgen::run {
 namespace {
 
-constexpr double always = 1e-4;        // of the energies: less is no sign of an event that was missed
-constexpr double of_tolerance = 1e4;   // an energy follows the states, and adds up over many steps
-constexpr double of_estimate = 1e3;    // an end may be nearer the truth than the states on the way
+constexpr double always = 1e-4;       // of the energies: less is no sign of an event that was missed
+constexpr double of_tolerance = 1e4;  // an energy follows the states, and adds up over many steps
+constexpr double of_estimate = 1e3;   // an end may be nearer the truth than the states on the way
 constexpr double without_estimate = 0.1;
 
 /// The largest estimate of a state, relative to the largest of its kind.
@@ -40,11 +40,15 @@ void require_balance(const RunRequest& request, RunResult& result) {
   if (told || !(open > always)) return;
   const bool fixed = request.scene.step > 0;
   double allowed = fixed ? 0 : of_tolerance * request.scene.rtol;
-  allowed = std::max(allowed, result.error_estimate.empty() ? without_estimate : of_estimate * relative_estimate(request, result));
+  allowed = std::max(
+      allowed, result.error_estimate.empty() ? without_estimate : of_estimate * relative_estimate(request, result));
   if (open <= allowed) return;
   result.outcome = eom::Outcome::balance_open;
-  result.detail = fmt::format("the energy changes by {:.2g} of itself more than the forces account for, and the error estimate does not explain it: something was passed over; compare with "
-                              "--max-step, a tighter --rtol or another solver", open);
+  result.detail = fmt::format(
+      "the energy changes by {:.2g} of itself more than the forces account for, and the error estimate does not "
+      "explain it: something was passed over; compare with "
+      "--max-step, a tighter --rtol or another solver",
+      open);
 }
 
 }  // namespace eomgen::run

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run knows beforehand: times at which inputs jump or a kink of time is crossed, what jumps there, and where fixed steps have to be shorter.
+// What a run knows beforehand: times at which inputs jump or a kink of time is crossed, what jumps there, and where
+// fixed steps have to be shorter.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,8 +31,10 @@ std::vector<Integration::Piece> Integration::pieces() const {
   std::size_t kept = 0;
   for (const Piece& piece : pieces) {
     if (piece.next >= scene.t1 || piece.end <= scene.t0) continue;
-    if (kept > 0 && piece.end <= pieces[kept - 1].next) pieces[kept - 1].next = std::max(pieces[kept - 1].next, piece.next);
-    else pieces[kept++] = piece;
+    if (kept > 0 && piece.end <= pieces[kept - 1].next)
+      pieces[kept - 1].next = std::max(pieces[kept - 1].next, piece.next);
+    else
+      pieces[kept++] = piece;
   }
   pieces.resize(kept);
   pieces.push_back({scene.t1, scene.t1, scene.step});
@@ -71,18 +74,24 @@ void Integration::cross_jump(const Piece& before, eom::Result& total, const OnEv
   const std::vector<double> u(inputs(before.end), inputs(before.end) + u_.size());
   const std::vector<double> x = total.x;
   const double side = std::exchange(side_, std::nextafter(before.next, request_.scene.t1));
-  const Jumps::Told told = request_.scene.jumps->cross({before.end, x, u.data()}, before.next, inputs(before.next), total.x);
+  const Jumps::Told told =
+      request_.scene.jumps->cross({before.end, x, u.data()}, before.next, inputs(before.next), total.x);
   jump_ = told.undetermined;
   if (!told.velocities && !told.potential) return;
   const bool touches = contacts_ && compiled().contacts.size() > 0 && any_contact_touches();
   if (jump_.empty() && told.velocities && touches)
-    jump_ = fmt::format("the velocity of a support jumps at t = {:.17g} while a contact touches: the equations do not say what the impulse does there; make it a motion that takes some time", before.next);
+    jump_ = fmt::format(
+        "the velocity of a support jumps at t = {:.17g} while a contact touches: the equations do not say what the "
+        "impulse does there; make it a motion that takes some time",
+        before.next);
   total.t = before.next;
   hold_sides(total.t, total.x.data(), true);
   if (jump_.empty() && told.velocities && rows_.size() > 0) {
     const double position = position_correction, velocity = velocity_correction;
     if (project(before.next, total.x.data()) != 0)
-      jump_ = fmt::format("the velocity of a support jumps at t = {:.17g}, and no velocities satisfy the constraints after it", before.next);
+      jump_ = fmt::format(
+          "the velocity of a support jumps at t = {:.17g}, and no velocities satisfy the constraints after it",
+          before.next);
     position_correction = position, velocity_correction = velocity;
     projected_.clear();
   }
@@ -102,7 +111,14 @@ void Integration::cross_jump(const Piece& before, eom::Result& total, const OnEv
     if (!name.empty()) name += ", ";
     name += request_.state_names[i];
   }
-  if (event) event({before.next, "impulse", !name.empty() ? name : !told.what.empty() ? told.what : told.velocities ? "constraints" : "potential", done}, total.x);
+  if (event)
+    event({before.next, "impulse",
+           !name.empty()        ? name
+           : !told.what.empty() ? told.what
+           : told.velocities    ? "constraints"
+                                : "potential",
+           done},
+          total.x);
 }
 
 bool Integration::any_contact_touches() const {
@@ -113,11 +129,14 @@ bool Integration::any_contact_touches() const {
 }
 
 /// Of an event function: where in a step it first leaves its side, though no sample shows it.
-std::optional<std::pair<double, double>> Integration::hidden(const eom::StepView& step, std::size_t i, int side, double from, double to) const {
+std::optional<std::pair<double, double>> Integration::hidden(const eom::StepView& step, std::size_t i, int side,
+                                                             double from, double to) const {
   if (!request_.ranges.any() || charts_.second() != 0) return std::nullopt;
   if (i >= first_contact()) {
     const std::size_t j = (i - first_contact()) / eom::contact_values;
-    if (j >= compiled().contacts.size() || !compiled().contacts[j].unilateral || eom::contact_digit(mode_ & eom::contact_bits, j) < 3) return std::nullopt;
+    if (j >= compiled().contacts.size() || !compiled().contacts[j].unilateral ||
+        eom::contact_digit(mode_ & eom::contact_bits, j) < 3)
+      return std::nullopt;
   }
   return request_.ranges.first(step, i, side, from, to, [this](double t) { return inputs(t); });
 }

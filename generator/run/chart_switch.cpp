@@ -11,8 +11,9 @@ namespace {
 
 constexpr double pi = std::numbers::pi;
 
-// Of the sine or cosine that vanishes where a chart fails. The steps of a run shrink in proportion to it, and its rounding errors
-// grow with its inverse; the second chart is never below sqrt(1 - 0.4^2) while the own one is below 0.4.
+// Of the sine or cosine that vanishes where a chart fails. The steps of a run shrink in proportion to it, and its
+// rounding errors grow with its inverse; the second chart is never below sqrt(1 - 0.4^2) while the own one is below
+// 0.4.
 constexpr double leaves_below = 0.2;
 constexpr double returns_above = 0.4;
 constexpr double forbidden = 0.02;  // of the angle: beyond what a step may reach in the chart that it began in
@@ -25,7 +26,11 @@ double regular(bool at_sine, double angle) { return at_sine ? std::sin(angle) : 
 }  // namespace
 
 ChartSwitch::ChartSwitch(const RunRequest& request)
-    : request_(request), code_(&request.code), n_(request.code.free.size()), floor_(request.charts.size()), side_(request.charts.size(), 1) {}
+    : request_(request),
+      code_(&request.code),
+      n_(request.code.free.size()),
+      floor_(request.charts.size()),
+      side_(request.charts.size(), 1) {}
 
 int ChartSwitch::mode() const { return eom::mode_of_charts(in_); }
 
@@ -81,8 +86,8 @@ bool ChartSwitch::follow(const eom::StepView& step) {
   return due_ != in_;
 }
 
-/// The own charts at a time of the step, after what is between, if an angle turns fast there: near where the own chart fails
-/// the motion is slow in the second one only.
+/// The own charts at a time of the step, after what is between, if an angle turns fast there: near where the own chart
+/// fails the motion is slow in the second one only.
 void ChartSwitch::sample(const eom::StepView& step, double until, const double* x, int depth) {
   const Sample& last = samples_.back();
   Sample next{until, std::vector<double>(2 * n_ + request_.code.integrals)};
@@ -111,13 +116,16 @@ void ChartSwitch::own(double t, const double* x, std::span<double> result) const
   std::copy_n(x, result.size(), result.begin());
   if (in_ == 0) return;
   code_->chart(x, mode(), 0, result.data());
-  const auto nearest = std::min_element(samples_.begin(), samples_.end(), [t](const Sample& a, const Sample& b) { return std::abs(a.t - t) < std::abs(b.t - t); });
+  const auto nearest = std::min_element(samples_.begin(), samples_.end(), [t](const Sample& a, const Sample& b) {
+    return std::abs(a.t - t) < std::abs(b.t - t);
+  });
   for (std::size_t j = 0; j < request_.charts.size(); ++j) {
     if (is_second(j)) made_continuous(j, nearest->x, result);
   }
 }
 
-/// The formulas give the attitude with a positive sine or cosine; the same one has a negative one, and whole turns more.
+/// The formulas give the attitude with a positive sine or cosine; the same one has a negative one, and whole turns
+/// more.
 void ChartSwitch::made_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const {
   const ExchangedChart& chart = request_.charts[j];
   for (std::size_t k = 0; k < chart.angles.size(); ++k) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The charts that one integration is in. In: the state at the end of each step. Out: when and how it goes to second charts and
-// back, and the state in the own charts, angles continuous, for whoever reports it (docs/runtime.md, "Charts").
+// The charts that one integration is in. In: the state at the end of each step. Out: when and how it goes to second
+// charts and back, and the state in the own charts, angles continuous, for whoever reports it (docs/runtime.md,
+// "Charts").
 #pragma once
 
 #include "run/runner.hpp"
@@ -18,7 +19,8 @@ class ChartSwitch {
 
   /// The state of a start, in the own charts; whether it is to be exchanged there.
   bool start(double t, const double* x);
-  /// 2 where the state is so near to where its chart fails that it must not be asked: a step that gets there is made shorter.
+  /// 2 where the state is so near to where its chart fails that it must not be asked: a step that gets there is made
+  /// shorter.
   int admits(const double* x) const;
   /// An accepted step, the first to be told of it; true: the state is to be exchanged at its end.
   bool follow(const eom::StepView& step);
@@ -47,8 +49,8 @@ class ChartSwitch {
   const Code* code_;
   std::size_t n_;
   unsigned in_ = 0, due_ = 0;
-  std::vector<double> floor_;  // per chart: the zero of its sine or cosine below the guarded angle
-  std::vector<double> side_;   // 1, -1: the sign of the own sine or cosine where the own chart was left
+  std::vector<double> floor_;    // per chart: the zero of its sine or cosine below the guarded angle
+  std::vector<double> side_;     // 1, -1: the sign of the own sine or cosine where the own chart was left
   std::vector<Sample> samples_;  // along the last step, while some chart is a second one
 };
 

@@ -23,16 +23,17 @@ using symbolic::SymbolKind;
 
 constexpr std::size_t most_boxes = 100'000;  // of one search for roots
 constexpr std::size_t most_breaks = 20'000;
-constexpr std::size_t most_cells = 2'000;    // of one smooth function
-constexpr double resolved = 0.5;             // change of the slope times the length of a cell, of the function's range
-constexpr double ripple = 1e-3;              // of the largest value of a term: a smaller range is none
-constexpr double steps_per_cell = 8;         // a sine is bounded to steps of half a period at least
-constexpr double shortest = 1e-12;           // of the span, in a search
+constexpr std::size_t most_cells = 2'000;  // of one smooth function
+constexpr double resolved = 0.5;           // change of the slope times the length of a cell, of the function's range
+constexpr double ripple = 1e-3;            // of the largest value of a term: a smaller range is none
+constexpr double steps_per_cell = 8;       // a sine is bounded to steps of half a period at least
+constexpr double shortest = 1e-12;         // of the span, in a search
 
 /// What each node depends on: 0: on parameters and tables, 1: on t too, 2: on more.
 class Dependence {
  public:
-  Dependence(const Dag& dag, const std::vector<ClockInput>& inputs) : dag_(dag), inputs_(inputs), of_(dag.size(), unseen) {}
+  Dependence(const Dag& dag, const std::vector<ClockInput>& inputs)
+      : dag_(dag), inputs_(inputs), of_(dag.size(), unseen) {}
 
   void see(const std::vector<Ref>& roots) {
     for (const Ref r : dag_.reachable(roots)) {
@@ -69,8 +70,17 @@ class Dependence {
 
 class Search {
  public:
-  Search(const system::EquationSystem& system, const std::vector<double>& parameters, const std::vector<ClockInput>& inputs, double t0, double t1)
-      : system_(system), dag_(*system.dag), parameters_(parameters), inputs_(inputs), t0_(t0), t1_(t1), depends_(dag_, inputs), at_(1 + inputs.size()), box_(1 + inputs.size()) {}
+  Search(const system::EquationSystem& system, const std::vector<double>& parameters,
+         const std::vector<ClockInput>& inputs, double t0, double t1)
+      : system_(system),
+        dag_(*system.dag),
+        parameters_(parameters),
+        inputs_(inputs),
+        t0_(t0),
+        t1_(t1),
+        depends_(dag_, inputs),
+        at_(1 + inputs.size()),
+        box_(1 + inputs.size()) {}
 
   Clock run() {
     std::vector<Ref> roots;
@@ -85,10 +95,12 @@ class Search {
     const std::size_t moving = roots.size();
     for (const Ref r : {system_.kinetic, system_.potential}) roots.push_back(r);
     for (const system::Output& output : system_.outputs) {  // what jumps there
-      if (output.name.find(".position") != std::string::npos || output.name.find(".velocity") != std::string::npos) roots.push_back(output.value);
+      if (output.name.find(".position") != std::string::npos || output.name.find(".velocity") != std::string::npos)
+        roots.push_back(output.value);
     }
     depends_.see(roots);
-    if (std::none_of(depends_.seen().begin(), depends_.seen().end(), [&](Ref r) { return depends_(r) == 1; })) return {};
+    if (std::none_of(depends_.seen().begin(), depends_.seen().end(), [&](Ref r) { return depends_(r) == 1; }))
+      return {};
     for (const ClockInput& input : inputs_) {
       if (input.expression) continue;
       for (const double t : input.signal->jumps()) {
@@ -115,8 +127,10 @@ class Search {
     std::sort(breaks.begin(), breaks.end(), [](const Break& a, const Break& b) { return a.before < b.before; });
     std::size_t kept = 0;
     for (const Break& b : breaks) {
-      if (kept > 0 && b.before <= breaks[kept - 1].after) breaks[kept - 1].after = std::max(breaks[kept - 1].after, b.after);
-      else breaks[kept++] = b;
+      if (kept > 0 && b.before <= breaks[kept - 1].after)
+        breaks[kept - 1].after = std::max(breaks[kept - 1].after, b.after);
+      else
+        breaks[kept++] = b;
     }
     breaks.resize(kept);
   }
@@ -127,7 +141,8 @@ class Search {
       if (s.kind == SymbolKind::parameter) return RangeCode::Leaf::of(parameters_[s.index]);
       if (s.kind != SymbolKind::input) return RangeCode::Leaf{};
       const ClockInput& input = inputs_[s.index];
-      return input.expression ? RangeCode::Leaf::of_expression(*input.expression) : RangeCode::Leaf::of_variable(1 + s.index);
+      return input.expression ? RangeCode::Leaf::of_expression(*input.expression)
+                              : RangeCode::Leaf::of_variable(1 + s.index);
     });
   }
 
@@ -144,7 +159,8 @@ class Search {
 
   const std::vector<double>& at(double t, double within) {
     at_[0] = t;
-    for (std::size_t i = 0; i < inputs_.size(); ++i) at_[1 + i] = inputs_[i].expression ? 0 : (*inputs_[i].signal)(within, within);
+    for (std::size_t i = 0; i < inputs_.size(); ++i)
+      at_[1 + i] = inputs_[i].expression ? 0 : (*inputs_[i].signal)(within, within);
     return at_;
   }
   const std::vector<Sloped>& box(double a, double b) {
@@ -172,7 +188,8 @@ class Search {
     tidy(cuts_);
   }
 
-  void find_roots(RangeCode& code, std::size_t operands, double from, double to, std::vector<Break>& found, std::size_t& boxes) {
+  void find_roots(RangeCode& code, std::size_t operands, double from, double to, std::vector<Break>& found,
+                  std::size_t& boxes) {
     const double middle = (from + to) / 2;
     code.hold(at(middle, middle));
     const auto value = [&](double t) {
@@ -195,11 +212,15 @@ class Search {
       }
       if (!g.value.has(0)) continue;
       const double m = a + (b - a) / 2;
-      const bool last = b - a <= std::max(shortest * (t1_ - t0_), 8 * std::numeric_limits<double>::epsilon() * std::abs(b)) || !(m > a && m < b);
+      const bool last =
+          b - a <= std::max(shortest * (t1_ - t0_), 8 * std::numeric_limits<double>::epsilon() * std::abs(b)) ||
+          !(m > a && m < b);
       if (last || !g.slope.has(0)) {
         const double left = value(a), right = value(b);
-        if (left * right < 0) found.push_back(between(value, a, left, b));
-        else if (left == 0 && a > from) around(value, a, found);
+        if (left * right < 0)
+          found.push_back(between(value, a, left, b));
+        else if (left == 0 && a > from)
+          around(value, a, found);
         continue;
       }
       if (g.value.is(0)) continue;
@@ -218,8 +239,10 @@ class Search {
   template <class Value>
   static Break clear_of(const Value& value, double t) {
     Break b{t, t};
-    for (int i = 0; i < 64 && value(b.before) == 0; ++i) b.before = std::nextafter(b.before, -std::numeric_limits<double>::infinity());
-    for (int i = 0; i < 64 && value(b.after) == 0; ++i) b.after = std::nextafter(b.after, std::numeric_limits<double>::infinity());
+    for (int i = 0; i < 64 && value(b.before) == 0; ++i)
+      b.before = std::nextafter(b.before, -std::numeric_limits<double>::infinity());
+    for (int i = 0; i < 64 && value(b.after) == 0; ++i)
+      b.after = std::nextafter(b.after, std::numeric_limits<double>::infinity());
     return b;
   }
 
@@ -236,7 +259,8 @@ class Search {
   }
 
   void tell(double t) {
-    if (incomplete_.empty()) incomplete_ = fmt::format("a condition on time changes too often to be followed beyond t = {:.6g}", t);
+    if (incomplete_.empty())
+      incomplete_ = fmt::format("a condition on time changes too often to be followed beyond t = {:.6g}", t);
   }
 
   /// The largest expressions of time alone that something else uses, or that are part of the equations themselves.
@@ -246,7 +270,8 @@ class Search {
     for (const Ref r : dag_.reachable(roots)) {
       if (depends_(r) != 2) continue;
       const Node& node = dag_[r];
-      for (std::size_t k = 0; k < node.arity; ++k) wanted[node.args[k].id] = wanted[node.args[k].id] || depends_(node.args[k]) == 1;
+      for (std::size_t k = 0; k < node.arity; ++k)
+        wanted[node.args[k].id] = wanted[node.args[k].id] || depends_(node.args[k]) == 1;
     }
     std::vector<Ref> functions;
     for (const Ref r : depends_.seen()) {
@@ -257,11 +282,13 @@ class Search {
     for (const Ref f : functions) {
       for (const Ref term : terms(f)) bound(term);
     }
-    const auto narrow = std::min_element(bounds_.begin(), bounds_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
+    const auto narrow =
+        std::min_element(bounds_.begin(), bounds_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
     if (narrow == bounds_.end() || narrow->step >= (t1_ - t0_) / 2) bounds_.clear();
   }
 
-  /// What is added up is looked at term by term: a sum bounds its terms worse than these (sin^2 + cos^2), and a pulse beside a large constant is one.
+  /// What is added up is looked at term by term: a sum bounds its terms worse than these (sin^2 + cos^2), and a pulse
+  /// beside a large constant is one.
   std::vector<Ref> terms(Ref sum) {
     std::vector<Ref> open{sum}, result;
     while (!open.empty()) {
@@ -274,7 +301,8 @@ class Search {
         open.push_back(*inputs_[dag_.symbol_of(r).index].expression);
         continue;
       }
-      const bool scaled = (node.op == Op::mul && (depends_(node.args[0]) == 0 || depends_(node.args[1]) == 0)) || (node.op == Op::div && depends_(node.args[1]) == 0);
+      const bool scaled = (node.op == Op::mul && (depends_(node.args[0]) == 0 || depends_(node.args[1]) == 0)) ||
+                          (node.op == Op::div && depends_(node.args[1]) == 0);
       if (node.op != Op::add && node.op != Op::sub && node.op != Op::neg && !scaled) {
         result.push_back(r);
         continue;
@@ -328,7 +356,8 @@ class Search {
   }
 
   /// The lower of two bounds, everywhere.
-  static std::vector<eom::StepBound> lower_of(const std::vector<eom::StepBound>& a, const std::vector<eom::StepBound>& b) {
+  static std::vector<eom::StepBound> lower_of(const std::vector<eom::StepBound>& a,
+                                              const std::vector<eom::StepBound>& b) {
     if (a.empty() || b.empty()) return a.empty() ? b : a;
     std::vector<eom::StepBound> result;
     std::size_t i = 0, j = 0;
@@ -360,7 +389,8 @@ class Search {
 
 }  // namespace
 
-Clock look_at_time(const system::EquationSystem& system, const std::vector<double>& parameters, const std::vector<ClockInput>& inputs, double t0, double t1) {
+Clock look_at_time(const system::EquationSystem& system, const std::vector<double>& parameters,
+                   const std::vector<ClockInput>& inputs, double t0, double t1) {
   return Search(system, parameters, inputs, t0, t1).run();
 }
 

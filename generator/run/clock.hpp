@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What time alone does in a scene: functions of t, also through inputs, cost nothing to look at, and a pulse among them is shorter than the steps that the
-// motion before it allows. In: a system, numbers for its parameters and inputs, a span of time. Out: times at which a kink of such a function is crossed, and
-// bounds of steps that follow the smooth ones.
+// What time alone does in a scene: functions of t, also through inputs, cost nothing to look at, and a pulse among them
+// is shorter than the steps that the motion before it allows. In: a system, numbers for its parameters and inputs, a
+// span of time. Out: times at which a kink of such a function is crossed, and bounds of steps that follow the smooth
+// ones.
 #pragma once
 
 #include <eom/run_types.hpp>
@@ -13,15 +14,16 @@
 
 namespace eomgen::run {
 
-/// A kink of time alone is crossed between these two times, which differ by rounding; functions are on one side at either.
+/// A kink of time alone is crossed between these two times, which differ by rounding; functions are on one side at
+/// either.
 struct Break {
   double before = 0, after = 0;
 };
 
 struct Clock {
-  std::vector<Break> breaks;               // inside the span, ascending; without the jumps of tables
-  std::vector<eom::StepBound> bounds;      // none: nothing is narrow beside the span
-  std::string incomplete;                  // what could not be looked at to its end, as a sentence, or ""
+  std::vector<Break> breaks;           // inside the span, ascending; without the jumps of tables
+  std::vector<eom::StepBound> bounds;  // none: nothing is narrow beside the span
+  std::string incomplete;              // what could not be looked at to its end, as a sentence, or ""
 };
 
 /// An input of the scene: what it is as an expression, where it is one.
@@ -30,6 +32,7 @@ struct ClockInput {
   std::optional<symbolic::Ref> expression;  // none: a table
 };
 
-Clock look_at_time(const system::EquationSystem& system, const std::vector<double>& parameters, const std::vector<ClockInput>& inputs, double t0, double t1);
+Clock look_at_time(const system::EquationSystem& system, const std::vector<double>& parameters,
+                   const std::vector<ClockInput>& inputs, double t0, double t1);
 
 }  // namespace eomgen::run

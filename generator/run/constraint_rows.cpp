@@ -19,7 +19,8 @@ std::size_t index_of(const std::vector<std::string>& names, const std::string& n
   return static_cast<std::size_t>(found - names.begin());
 }
 
-ConstraintRows::ConstraintRows(const RunRequest& request) : request_(request), code_(&request.code), n_(request.code.free.size()) {
+ConstraintRows::ConstraintRows(const RunRequest& request)
+    : request_(request), code_(&request.code), n_(request.code.free.size()) {
   const Code& code = request.code;
   for (const bool positions : {true, false}) {
     for (std::size_t k = 0; k < code.active_constraints; ++k) {
@@ -35,7 +36,8 @@ ConstraintRows::ConstraintRows(const RunRequest& request) : request_(request), c
   for (std::size_t j = 0; j < request.contacts.size(); ++j) {
     for (std::size_t a = 0; a < request.contacts[j].slip.size() && code.contacts[j].sticks; ++a) {
       slips_.push_back({j, index_of(code.output_names, request.contacts[j].slip[a]), {}});
-      for (const std::string& slope : request.contacts[j].slopes[a]) slips_.back().slopes.push_back(index_of(code.output_names, slope));
+      for (const std::string& slope : request.contacts[j].slopes[a])
+        slips_.back().slopes.push_back(index_of(code.output_names, slope));
     }
   }
   clear_targets();
@@ -53,7 +55,8 @@ void ConstraintRows::start(double t, const double* x, const double* u) {
 
 bool ConstraintRows::is_apart(std::size_t k) const {
   for (std::size_t j = 0; j < request_.contacts.size(); ++j) {
-    if (request_.code.contacts[j].unilateral && request_.contacts[j].constraint == k) return eom::contact_leaf(mode_, 2 * j + 1) < 0;
+    if (request_.code.contacts[j].unilateral && request_.contacts[j].constraint == k)
+      return eom::contact_leaf(mode_, 2 * j + 1) < 0;
   }
   return false;
 }
@@ -64,7 +67,8 @@ std::size_t ConstraintRows::row_of(std::size_t contact) const {
 }
 
 std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
-  const auto found = std::find_if(slips_.begin(), slips_.end(), [=](const Slip& slip) { return slip.contact == contact; });
+  const auto found =
+      std::find_if(slips_.begin(), slips_.end(), [=](const Slip& slip) { return slip.contact == contact; });
   return order_.size() + integrals_.size() + static_cast<std::size_t>(found - slips_.begin());
 }
 
@@ -108,8 +112,8 @@ void ConstraintRows::fill_integrals(const double* x, double* psi, double* A, dou
       A[row + rows * i] = y_[integral.slopes[i]];
       finite = finite && std::isfinite(A[row + rows * i]);
     }
-    // Outside of its domain, or on another branch of an arc tangent, an integral says nothing, and its constraint goes on;
-    // the watch reports the drift. A true drift is far smaller than the coordinates.
+    // Outside of its domain, or on another branch of an arc tangent, an integral says nothing, and its constraint goes
+    // on; the watch reports the drift. A true drift is far smaller than the coordinates.
     double size = 0;
     for (std::size_t i = 0; i < n_; ++i) size += std::abs(A[row + rows * i]) * std::max(1.0, std::abs(x[i]));
     if (finite && std::abs(psi[row]) <= largest_drift * size) continue;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run projects its states onto: constraints on positions, then integrals of constraints on velocities with the
-// constants of the start, then constraints on velocities, then slip 0 of contacts that stick. Rows that the mode has let go are 0. In: the compiled code. Out: rows as eom::Projection takes them.
+// constants of the start, then constraints on velocities, then slip 0 of contacts that stick. Rows that the mode has
+// let go are 0. In: the compiled code. Out: rows as eom::Projection takes them.
 #pragma once
 
 #include "run/runner.hpp"
@@ -16,7 +17,8 @@ class ConstraintRows {
   /// Which of the active constraints a row is; their number for one of an integral or of slip.
   std::size_t constraint_of(std::size_t row) const {
     if (row < holonomic_) return order_[row];
-    return row < on_positions() || row - integrals_.size() >= order_.size() ? order_.size() : order_[row - integrals_.size()];
+    return row < on_positions() || row - integrals_.size() >= order_.size() ? order_.size()
+                                                                            : order_[row - integrals_.size()];
   }
 
   /// The state whose integrals are kept; u: the inputs there.

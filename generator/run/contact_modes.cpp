@@ -12,8 +12,9 @@ constexpr double most_restitution = 0.9;  // beyond it bounces go on for long
 
 }  // namespace
 
-ContactModes::ContactModes(const RunRequest& request, ConstraintRows& rows, std::size_t states, Inputs inputs, Function rhs,
-                           Function functions, std::function<void(double, std::span<const double>, std::span<const double>)> changed)
+ContactModes::ContactModes(const RunRequest& request, ConstraintRows& rows, std::size_t states, Inputs inputs,
+                           Function rhs, Function functions,
+                           std::function<void(double, std::span<const double>, std::span<const double>)> changed)
     : request_(request),
       rows_(rows),
       velocities_(request, rows),
@@ -23,7 +24,8 @@ ContactModes::ContactModes(const RunRequest& request, ConstraintRows& rows, std:
       functions_(std::move(functions)),
       rule_(request.code.contacts, states, rhs_, functions_, Motion{this}),
       g_(rule_.functions()) {
-  for (const eom::Contact& contact : request.code.contacts) two_directions_ = two_directions_ || contact.dimensions == 2;
+  for (const eom::Contact& contact : request.code.contacts)
+    two_directions_ = two_directions_ || contact.dimensions == 2;
 }
 
 int ContactModes::Motion::impact(double t, std::span<double> x, int mode, std::size_t j, double e) const {
@@ -83,7 +85,8 @@ std::vector<eom::ModeEvent> ContactModes::start(double t, std::span<double> x) {
   for (std::size_t j = 0; j < contacts.size(); ++j) {
     const int digit = eom::contact_digit(mode, j);
     const bool touches = !contacts[j].unilateral || digit < 3;
-    if (contacts[j].sticks && touches && digit % 3 != 0 && slip[j] <= velocities_.still()) told.push_back({t, "slip", contacts[j].name, 0, mode});
+    if (contacts[j].sticks && touches && digit % 3 != 0 && slip[j] <= velocities_.still())
+      told.push_back({t, "slip", contacts[j].name, 0, mode});
     if (!touches && !apart[j]) told.push_back({t, "lose_contact", contacts[j].name, 0, mode});
   }
   return told;
@@ -98,7 +101,9 @@ bool ContactModes::slow_slip(double t, const double* x, double h, bool now) {
   bool slow = false, moved = false;
   for (std::size_t j = 0; j < request_.code.contacts.size() && !slow; ++j) {
     const eom::Contact& contact = request_.code.contacts[j];
-    if (contact.dimensions != 2 || !contact.sticks || eom::contact_digit(mode(), j) % 3 == 0 || (contact.unilateral && eom::contact_digit(mode(), j) >= 3)) continue;
+    if (contact.dimensions != 2 || !contact.sticks || eom::contact_digit(mode(), j) % 3 == 0 ||
+        (contact.unilateral && eom::contact_digit(mode(), j) >= 3))
+      continue;
     if (!moved) {
       k_.resize(request_.code.free.size() * 2 + request_.code.integrals + (request_.watch_power ? 1 : 0));
       if (rhs_(t, x, mode(), k_.data()) != 0) return now;
@@ -113,10 +118,12 @@ bool ContactModes::slow_slip(double t, const double* x, double h, bool now) {
   return slow;
 }
 
-/// Where the slip of contact j vanishes, by the midpoint rule over the short time that is left: the slip along its direction is
-/// all but linear there.
+/// Where the slip of contact j vanishes, by the midpoint rule over the short time that is left: the slip along its
+/// direction is all but linear there.
 int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, std::size_t j) const {
-  const auto slip = [&](double at, const double* state) { return self->velocities_.slip(at, state, self->inputs_(at), mode, j); };
+  const auto slip = [&](double at, const double* state) {
+    return self->velocities_.slip(at, state, self->inputs_(at), mode, j);
+  };
   const std::array<double, 2> w = slip(t, x.data());
   const double speed = std::hypot(w[0], w[1]);
   if (!(speed > 0)) return 0;
@@ -146,13 +153,14 @@ void ContactModes::adjust(double* g) {
     const double* const value = g + eom::contact_values * j;
     const double slip = request_.code.contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
     if (request_.code.contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.see_slip(slip);
-    if (request_.code.contacts[j].unilateral && eom::contact_digit(mode(), j) >= 3 && std::isfinite(value[3])) largest_gap_ = std::max(largest_gap_, std::abs(value[3]));
+    if (request_.code.contacts[j].unilateral && eom::contact_digit(mode(), j) >= 3 && std::isfinite(value[3]))
+      largest_gap_ = std::max(largest_gap_, std::abs(value[3]));
   }
   rule_.shift(g);
 }
 
-/// Where the bounce that follows is lower than the gap is known, so are all after it: they are over after the sum of their times, in which the
-/// motion goes on as it begins, and the contact stays.
+/// Where the bounce that follows is lower than the gap is known, so are all after it: they are over after the sum of
+/// their times, in which the motion goes on as it begins, and the contact stays.
 void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
   const Motion motion{this};
   const double e = restitution_[j], up = -e * motion.approach(t, x, j);
@@ -162,7 +170,9 @@ void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
   for (std::size_t i = 0; i < x.size(); ++i) middle_[i] = x[i] + h * k_[i];
   const double falls = (motion.approach(t, x, j) - motion.approach(t + h, middle_, j)) / h;
   if (!(falls > 0) || up * up / (2 * falls) > known_gap * largest_gap_) return;
-  if (motion.impact(t, x, eom::with_contact_digit(mode(), j, 0), j, e) != 0 || rhs_(t, x.data(), mode(), k_.data()) != 0) return;
+  if (motion.impact(t, x, eom::with_contact_digit(mode(), j, 0), j, e) != 0 ||
+      rhs_(t, x.data(), mode(), k_.data()) != 0)
+    return;
   const double time = 2 * up / (falls * (1 - e));
   const std::size_t n = request_.code.free.size();
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * (k_[i] + (i < n ? time / 2 * k_[n + i] : 0));
@@ -170,10 +180,12 @@ void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
   rule_.restitution(j, 0);
 }
 
-eom::AtEvent ContactModes::take(double& t, std::span<double> x, const eom::Crossing& crossing, std::span<eom::EventFunction> functions) {
+eom::AtEvent ContactModes::take(double& t, std::span<double> x, const eom::Crossing& crossing,
+                                std::span<eom::EventFunction> functions) {
   const std::size_t before = switch_->events.size();
   const std::size_t j = crossing.function / eom::contact_values;
-  const bool hits = crossing.function % eom::contact_values == 3 && request_.code.contacts[j].unilateral && eom::contact_digit(mode(), j) >= 3;
+  const bool hits = crossing.function % eom::contact_values == 3 && request_.code.contacts[j].unilateral &&
+                    eom::contact_digit(mode(), j) >= 3;
   const double e = hits ? restitution_[j] : 0;
   if (e > 0 && e < most_restitution) end_bounces(t, x, j);
   const eom::AtEvent answer = switch_->take(t, x, crossing, functions);

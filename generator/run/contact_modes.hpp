@@ -16,7 +16,8 @@ class ContactModes {
   using Function = std::function<int(double, const double*, int, double*)>;
 
   /// `states`: entries of dx; `changed`: told where velocities change, with the state before and after.
-  ContactModes(const RunRequest& request, ConstraintRows& rows, std::size_t states, Inputs inputs, Function rhs, Function functions,
+  ContactModes(const RunRequest& request, ConstraintRows& rows, std::size_t states, Inputs inputs, Function rhs,
+               Function functions,
                std::function<void(double, std::span<const double> before, std::span<const double> after)> changed);
 
   std::size_t functions() const { return rule_.functions(); }
@@ -29,11 +30,12 @@ class ContactModes {
   /// A step begins at (t, x).
   void hold(double t, const double* x);
   void tolerances(double rtol, double atol) { velocities_.tolerances(rtol, atol); }
-  /// Whether slip in two directions changes in a step h by so much beside its speed that the step follows neither its direction nor its end.
-  /// `now`: the answer before, so that it does not go to and fro.
+  /// Whether slip in two directions changes in a step h by so much beside its speed that the step follows neither its
+  /// direction nor its end. `now`: the answer before, so that it does not go to and fro.
   bool slow_slip(double t, const double* x, double h, bool now);
   /// A crossing of one of the functions; what is to be told of it.
-  eom::AtEvent take(double& t, std::span<double> x, const eom::Crossing& crossing, std::span<eom::EventFunction> functions);
+  eom::AtEvent take(double& t, std::span<double> x, const eom::Crossing& crossing,
+                    std::span<eom::EventFunction> functions);
   const eom::ModeEvent* told() const { return told_ ? &*told_ : nullptr; }
   /// Where the run was ended by a contact.
   std::optional<eom::Outcome> ended() const;
@@ -57,9 +59,9 @@ class ContactModes {
   const RunRequest& request_;
   ConstraintRows& rows_;
   ContactVelocities velocities_;
-  bool two_directions_ = false;  // some contact slides in two
+  bool two_directions_ = false;      // some contact slides in two
   std::vector<double> restitution_;  // of each contact, at the start
-  double largest_gap_ = 0;       // of contacts that are apart
+  double largest_gap_ = 0;           // of contacts that are apart
   Inputs inputs_;
   std::function<void(double, std::span<const double>, std::span<const double>)> changed_;
   Function rhs_, functions_;

@@ -6,8 +6,12 @@
 namespace eomgen::run {
 
 ContactVelocities::ContactVelocities(const RunRequest& request, ConstraintRows& rows)
-    : request_(request), rows_(rows), projection_(request.code.free.size(), rows.size(), 0), y_(request.code.output_names.size()),
-      rtol_(request.scene.rtol), atol_(request.scene.atol) {
+    : request_(request),
+      rows_(rows),
+      projection_(request.code.free.size(), rows.size(), 0),
+      y_(request.code.output_names.size()),
+      rtol_(request.scene.rtol),
+      atol_(request.scene.atol) {
   const auto all = [&](const std::vector<std::string>& names) {
     std::vector<std::size_t> result;
     for (const std::string& name : names) result.push_back(index_of(request.code.output_names, name));
@@ -57,7 +61,8 @@ void ContactVelocities::hold(double t, const double* x, const double* u, int mod
   }
 }
 
-std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, int mode, std::size_t contact) {
+std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, int mode,
+                                              std::size_t contact) {
   std::array<double, 2> w{};
   if (request_.code.outputs(t, x, request_.scene.parameters.data(), u, mode, y_.data()) != 0) return w;
   for (std::size_t a = 0; a < 2; ++a) w[a] = y_[places_[contact].slip[a]];
@@ -67,9 +72,12 @@ std::array<double, 2> ContactVelocities::slip(double t, const double* x, const d
 int ContactVelocities::move(double t, std::span<double> x, const double* u) {
   const Code& code = request_.code;
   const double* p = request_.scene.parameters.data();
-  return projection_(t, x.data(),
-                     [&](double at, const double* state, double* psi, double* A, double* b) { return rows_(at, state, u, psi, A, b); },
-                     [&](double at, const double* state, double* M, double* h) { return code.mass(at, state, p, M, h); })
+  return projection_(
+             t, x.data(),
+             [&](double at, const double* state, double* psi, double* A, double* b) {
+               return rows_(at, state, u, psi, A, b);
+             },
+             [&](double at, const double* state, double* M, double* h) { return code.mass(at, state, p, M, h); })
       .code;
 }
 
@@ -78,7 +86,8 @@ double ContactVelocities::approach(double t, std::span<const double> x, const do
 }
 
 // Contacts that touch and would be driven into one another by the impulse take part in it; others are left alone.
-int ContactVelocities::impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution) {
+int ContactVelocities::impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact,
+                              double restitution) {
   const std::vector<double> before(x.begin(), x.end());
   const double after = -restitution * approach(t, x, u, contact);
   int part = mode;
@@ -116,14 +125,17 @@ int ContactVelocities::stick(double t, std::span<double> x, const double* u, int
 
 // Sliding starts against the friction that held. Where none held, along the tangents' sum: any direction is as good.
 int ContactVelocities::slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact) {
-  if (const int code = request_.code.outputs(t, x.data(), request_.scene.parameters.data(), u, mode, y_.data()); code != 0) return code;
+  if (const int code = request_.code.outputs(t, x.data(), request_.scene.parameters.data(), u, mode, y_.data());
+      code != 0)
+    return code;
   std::vector<double> direction;
   double length = 0;
   for (const std::size_t phi : places_[contact].phi) direction.push_back(-y_[phi]);
   for (const double d : direction) length = std::hypot(length, d);
   if (!(length > 0)) direction.assign(direction.size(), length = 1);
   rows_.mode(mode);
-  for (std::size_t a = 0; a < direction.size(); ++a) rows_.target(rows_.slip_row_of(contact) + a, 2 * least_slip(contact) * direction[a] / length);
+  for (std::size_t a = 0; a < direction.size(); ++a)
+    rows_.target(rows_.slip_row_of(contact) + a, 2 * least_slip(contact) * direction[a] / length);
   const int code = move(t, x, u);
   rows_.clear_targets();
   return code;

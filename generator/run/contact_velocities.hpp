@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What happens to velocities where a contact changes its mode: impacts, sliding in two directions that starts or ends. In: the
-// compiled code. Out: the state with the velocities that are nearest in the metric of M, which is what an impulse along the
-// constraints gives.
+// What happens to velocities where a contact changes its mode: impacts, sliding in two directions that starts or ends.
+// In: the compiled code. Out: the state with the velocities that are nearest in the metric of M, which is what an
+// impulse along the constraints gives.
 #pragma once
 
 #include <array>

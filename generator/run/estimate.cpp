@@ -27,7 +27,8 @@ constexpr double worth_a_note = 1e-3;  // of a velocity
 void align(const RunRequest& request, const std::vector<double>& first, std::vector<double>& other) {
   constexpr double turn = 2 * std::numbers::pi;
   for (const ExchangedChart& chart : request.charts) {
-    for (const std::size_t angle : chart.angles) other[angle] += turn * std::round((first[angle] - other[angle]) / turn);
+    for (const std::size_t angle : chart.angles)
+      other[angle] += turn * std::round((first[angle] - other[angle]) / turn);
   }
 }
 
@@ -41,23 +42,30 @@ void tell_unresolved(const Resolution& resolution, RunResult& result) {
     all = std::max(all, estimate);
   }
   if (!result.estimate_note.empty()) return;
-  result.estimate_note = fmt::format("steps of this size do not resolve the motion: halving them moves states on the way by {:.2g} of their size; take shorter ones, or a solver "
-                                     "that chooses its steps", resolution.largest());
+  result.estimate_note = fmt::format(
+      "steps of this size do not resolve the motion: halving them moves states on the way by {:.2g} of their size; "
+      "take shorter ones, or a solver "
+      "that chooses its steps",
+      resolution.largest());
 }
 
 /// Of fixed steps: what the last digits of the start do to the end.
-void see_rounding(const RunRequest& request, const std::string& solver, const eom::Result& first, eom::Options options, eom::ErrorEstimate& estimate, RunResult& result) {
+void see_rounding(const RunRequest& request, const std::string& solver, const eom::Result& first, eom::Options options,
+                  eom::ErrorEstimate& estimate, RunResult& result) {
   eom::Result other = from_rounded_start(request, solver, options);
   ++estimate.runs;
   estimate.statistics += other.statistics;
   if (other.outcome != first.outcome) {
-    result.estimate_note = fmt::format("from a start that differs in its last digits the run ends with '{}'; the estimate is not to be trusted", eom::name(other.outcome));
+    result.estimate_note = fmt::format(
+        "from a start that differs in its last digits the run ends with '{}'; the estimate is not to be trusted",
+        eom::name(other.outcome));
     return;
   }
   align(request, first.x, other.x);
   for (std::size_t i = 0; i < first.x.size(); ++i) {
     const double difference = std::abs(first.x[i] - other.x[i]);
-    estimate.x[i] = std::max(estimate.x[i], std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference);
+    estimate.x[i] =
+        std::max(estimate.x[i], std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference);
   }
 }
 
@@ -69,7 +77,8 @@ void see_rounding_of_rates(const RunRequest& request, const eom::Result& first, 
   }
 }
 
-/// Steps so short that positions move in their last digits only: constraints on positions are then met by rounding, and rates follow from that.
+/// Steps so short that positions move in their last digits only: constraints on positions are then met by rounding, and
+/// rates follow from that.
 void tell_frozen(const RunRequest& request, const eom::Result& first, const eom::Options& options, RunResult& result) {
   constexpr double digits = 100 * std::numeric_limits<double>::epsilon();
   const std::size_t n = request.code.free.size();
@@ -78,12 +87,17 @@ void tell_frozen(const RunRequest& request, const eom::Result& first, const eom:
     position = std::max(position, std::abs(first.x[i]));
     rate = std::max(rate, std::abs(first.x[n + i]));
   }
-  if (request.code.active_constraints == 0 || !(rate > 0) || options.fixed_step * rate >= digits * position || !result.estimate_note.empty()) return;
-  result.estimate_note = fmt::format("steps of {:.3g} move the positions by less than their last digits, so that the constraints say nothing about rates; the estimate is not to be trusted",
-                                     options.fixed_step);
+  if (request.code.active_constraints == 0 || !(rate > 0) || options.fixed_step * rate >= digits * position ||
+      !result.estimate_note.empty())
+    return;
+  result.estimate_note = fmt::format(
+      "steps of {:.3g} move the positions by less than their last digits, so that the constraints say nothing about "
+      "rates; the estimate is not to be trusted",
+      options.fixed_step);
 }
 
-/// Where a force turns within one step, what it changes the velocity by in the wrong place is in the end, and not in the differences of ends.
+/// Where a force turns within one step, what it changes the velocity by in the wrong place is in the end, and not in
+/// the differences of ends.
 void tell_kick(const Kicks& kicks, std::span<const double> end, RunResult& result) {
   double at = 0;
   const double part = 2 * kicks.largest(at);  // seen in steps of half the size
@@ -95,13 +109,17 @@ void tell_kick(const Kicks& kicks, std::span<const double> end, RunResult& resul
     all = std::max(all, estimate);
   }
   if (!result.estimate_note.empty() || part < worth_a_note) return;
-  result.estimate_note = fmt::format("near t = {:.6g} a force turns within one step, which changes the velocity by up to {:.2g} of its size in the wrong place; take shorter steps, or a "
-                                     "solver that chooses its steps", at, part);
+  result.estimate_note = fmt::format(
+      "near t = {:.6g} a force turns within one step, which changes the velocity by up to {:.2g} of its size in the "
+      "wrong place; take shorter steps, or a "
+      "solver that chooses its steps",
+      at, part);
 }
 
 }  // namespace
 
-void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result) {
+void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first,
+                    const eom::Options& options, Resolution* resolution, RunResult& result) {
   const Stopwatch::time_point start = Stopwatch::now();
   const int order = method_named(solver).order;
   Integration again(request, solver);
@@ -137,16 +155,20 @@ void estimate_error(const RunRequest& request, const std::string& solver, const 
   result.error_estimate.emplace_back("max", largest);
   result.estimate_rhs_evaluations = estimate.statistics.rhs_evaluations + kicks.evaluations();
   if (estimate.outcome != eom::Outcome::done) {
-    result.estimate_note = fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(estimate.outcome));
+    result.estimate_note =
+        fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(estimate.outcome));
   }
   if (!same_end && result.estimate_note.empty()) {
-    result.estimate_note = "a tighter run did not stop at the event: the ends that are compared are not of the same time";
+    result.estimate_note =
+        "a tighter run did not stop at the event: the ends that are compared are not of the same time";
   }
   if (resolution != nullptr) tell_unresolved(*resolution, result);
   kicks.finish();
   tell_kick(kicks, first.x, result);
   if (!estimate.converging && result.estimate_note.empty()) {
-    result.estimate_note = "steps of this size are too long for the method's order to show: shorter ones change the end by as much again; the estimate is not to be trusted";
+    result.estimate_note =
+        "steps of this size are too long for the method's order to show: shorter ones change the end by as much again; "
+        "the estimate is not to be trusted";
   }
   if (method_named(solver).variational) tell_frozen(request, first, options, result);
   result.seconds_estimate = std::chrono::duration<double>(Stopwatch::now() - start).count();

@@ -10,8 +10,9 @@
 
 namespace eomgen::run {
 
-/// Fills the estimates of `result`, and a note where they are not to be trusted. `first`: the run, in the model's own charts;
-/// resolution: of fixed steps, else null.
-void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first, const eom::Options& options, Resolution* resolution, RunResult& result);
+/// Fills the estimates of `result`, and a note where they are not to be trusted. `first`: the run, in the model's own
+/// charts; resolution: of fixed steps, else null.
+void estimate_error(const RunRequest& request, const std::string& solver, const eom::Result& first,
+                    const eom::Options& options, Resolution* resolution, RunResult& result);
 
 }  // namespace eomgen::run

@@ -12,7 +12,8 @@ constexpr double shortest = 1e-7;        // of the step
 
 }  // namespace
 
-EventRanges::EventRanges(const system::EquationSystem& s, const std::vector<std::optional<symbolic::Ref>>& functions, const std::vector<double>& parameters)
+EventRanges::EventRanges(const system::EquationSystem& s, const std::vector<std::optional<symbolic::Ref>>& functions,
+                         const std::vector<double>& parameters)
     : boxes_(s, parameters) {
   for (const std::optional<symbolic::Ref>& function : functions) {
     codes_.push_back(function ? boxes_.code(*function) : std::nullopt);
@@ -20,7 +21,9 @@ EventRanges::EventRanges(const system::EquationSystem& s, const std::vector<std:
   }
 }
 
-std::optional<std::pair<double, double>> EventRanges::first(const eom::StepView& step, std::size_t i, int side, double from, double to, const StepBoxes::Inputs& inputs) const {
+std::optional<std::pair<double, double>> EventRanges::first(const eom::StepView& step, std::size_t i, int side,
+                                                            double from, double to,
+                                                            const StepBoxes::Inputs& inputs) const {
   if (i >= codes_.size() || !codes_[i] || !(to > from)) return std::nullopt;
   const RangeCode& code = *codes_[i];
   const auto inward = [&](const StepPlace& place) { return side * code.value(place.variables); };
@@ -35,7 +38,8 @@ std::optional<std::pair<double, double>> EventRanges::first(const eom::StepView&
     boxes_.place(step, inputs, m);
     Sloped g = code.range(boxes_.box(a, m, b));
     const double middle = code.value(m.variables);
-    if (std::isfinite(g.slope.width())) g.value = common(g.value, Interval{middle, middle} + g.slope * Interval{-0.5, 0.5});
+    if (std::isfinite(g.slope.width()))
+      g.value = common(g.value, Interval{middle, middle} + g.slope * Interval{-0.5, 0.5});
     if (side < 0) g = {-g.value, -g.slope};
     if (g.value.low > 0) continue;
     const bool start = a.s == from, rises = g.slope.low > 0;

@@ -46,10 +46,14 @@ Integration::Integration(const RunRequest& request, std::string solver)
   const auto in_mode = [this](int contacts) { return (mode_ & ~eom::contact_bits) | contacts; };
   contacts_ = std::make_unique<ContactModes>(
       request, rows_, initial_state().size(), [this](double t) { return inputs(t); },
-      [this, in_mode](double t, const double* x, int contacts, double* dx) { return motion(t, x, inputs(t), in_mode(contacts), dx); },
+      [this, in_mode](double t, const double* x, int contacts, double* dx) {
+        return motion(t, x, inputs(t), in_mode(contacts), dx);
+      },
       [this, in_mode](double t, const double* x, int contacts, double* g) {
-        const int code = compiled().events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
-        std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()), g_.begin() + static_cast<std::ptrdiff_t>(first_jump()), g);
+        const int code =
+            compiled().events(t, x, request_.scene.parameters.data(), inputs(t), in_mode(contacts), g_.data());
+        std::copy(g_.begin() + static_cast<std::ptrdiff_t>(first_contact()),
+                  g_.begin() + static_cast<std::ptrdiff_t>(first_jump()), g);
         return code != 0 ? code : contact_code(g);
       },
       [this](double t, std::span<const double> before, std::span<const double> after) {
@@ -150,12 +154,14 @@ int Integration::momenta(double t, const double* x, double* p, double* rate) {
 int Integration::mass(double t, const double* x, double* M) {
   const double* p = request_.scene.parameters.data();
   h_.resize(n_);
-  return charts_.second() != 0 ? compiled().mass_in(t, x, p, mode_, M, h_.data()) : compiled().mass(t, x, p, M, h_.data());
+  return charts_.second() != 0 ? compiled().mass_in(t, x, p, mode_, M, h_.data())
+                               : compiled().mass(t, x, p, M, h_.data());
 }
 
 int Integration::motion(double t, const double* x, const double* u, int mode, double* dx) {
   const double* p = request_.scene.parameters.data();
-  const int code = w_.empty() ? compiled().rhs(t, x, p, u, mode, dx) : compiled().rhs_prepared(t, x, p, w_.data(), u, mode, dx);
+  const int code =
+      w_.empty() ? compiled().rhs(t, x, p, u, mode, dx) : compiled().rhs_prepared(t, x, p, w_.data(), u, mode, dx);
   if (code != 0 || !request_.watch_power) return code;
   const int watched = compiled().outputs(t, x, p, u, mode, y_.data());
   dx[2 * n_ + compiled().integrals] = y_[power_];
@@ -178,13 +184,16 @@ void Integration::own_values(double t, const double* x, std::span<double> y) con
   }
   if (charts_.own_outputs().empty()) return;
   own_y_.resize(y.size());
-  const int code = compiled().outputs(t, own_x_.data(), request_.scene.parameters.data(), inputs(t), mode_ & ~eom::chart_bits, own_y_.data());
+  const int code = compiled().outputs(t, own_x_.data(), request_.scene.parameters.data(), inputs(t),
+                                      mode_ & ~eom::chart_bits, own_y_.data());
   for (const std::uint32_t i : charts_.own_outputs()) y[i] = code == 0 ? own_y_[i] : std::nan("");
 }
 
 int Integration::events(double t, const double* x, double* g) {
-  const int code = compiled().events == nullptr ? 0 : compiled().events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
-  if (code == 0 && g_.size() > first_jump()) request_.scene.jumps->values({t, {x, start_.size()}, inputs(t)}, g + first_jump());
+  const int code =
+      compiled().events == nullptr ? 0 : compiled().events(t, x, request_.scene.parameters.data(), inputs(t), mode_, g);
+  if (code == 0 && g_.size() > first_jump())
+    request_.scene.jumps->values({t, {x, start_.size()}, inputs(t)}, g + first_jump());
   if (code != 0 || !contacts_) return code;
   if (const int bad = contact_code(g + first_contact()); bad != 0) return bad;
   contacts_->adjust(g + first_contact());
@@ -211,7 +220,8 @@ void Integration::hold_sides(double t, const double* x, bool anew) {
   if (compiled().kinks.empty()) return;
   if (anew) mode_ &= eom::contact_bits | eom::chart_bits;
   bool all = !anew;
-  for (std::size_t k = 0; k < compiled().kinks.size(); ++k) all = all && (mode_ >> (compiled().first_kink_bit + 2 * k) & 3) != 0;
+  for (std::size_t k = 0; k < compiled().kinks.size(); ++k)
+    all = all && (mode_ >> (compiled().first_kink_bit + 2 * k) & 3) != 0;
   if (all || events(t, x, g_.data()) != 0) return;
   for (std::size_t k = 0; k < compiled().kinks.size(); ++k) {
     const double g = g_[request_.events.size() + k];
@@ -251,16 +261,19 @@ void Integration::cross_kink(const eom::EventPoint& point, std::size_t k) {
 eom::AtEvent Integration::change_contact(const eom::EventPoint& point, const OnEvent& event) {
   eom::Crossing crossing = point.crossing;
   crossing.function -= first_contact();
-  const eom::AtEvent answer = contacts_->take(point.t, point.x, crossing, point.functions.subspan(first_contact(), first_jump() - first_contact()));
+  const eom::AtEvent answer = contacts_->take(point.t, point.x, crossing,
+                                              point.functions.subspan(first_contact(), first_jump() - first_contact()));
   mode_ = (mode_ & ~eom::contact_bits) | contacts_->mode();
-  if (const eom::ModeEvent* told = contacts_->told(); told != nullptr && event) event({told->t, told->kind, told->name}, point.x);
+  if (const eom::ModeEvent* told = contacts_->told(); told != nullptr && event)
+    event({told->t, told->kind, told->name}, point.x);
   if (answer != eom::AtEvent::restart) return answer;
   hold_sides(point.t, point.x.data(), true);
   steps_due_ = steps_due_ || steps_due(point.t, point.x.data());
   return steps_due_ ? eom::AtEvent::stop : answer;
 }
 
-/// Whether the steps are to be others from (t, x) on: chosen ones where fixed ones would not follow the direction of slip, or its end.
+/// Whether the steps are to be others from (t, x) on: chosen ones where fixed ones would not follow the direction of
+/// slip, or its end.
 bool Integration::steps_due(double t, const double* x) {
   return fixed_step_ > 0 && contacts_ && contacts_->slow_slip(t, x, fixed_step_, finer_) != finer_;
 }
@@ -279,7 +292,8 @@ eom::Options Integration::finer(const eom::Options& piece) {
 
 /// Of an accepted step: the work of its projection; others were made on trial.
 void Integration::accept(const eom::StepView& step) {
-  const auto made = std::find_if(projected_.rbegin(), projected_.rend(), [&](const auto& p) { return p.first == step.t1; });
+  const auto made =
+      std::find_if(projected_.rbegin(), projected_.rend(), [&](const auto& p) { return p.first == step.t1; });
   if (made != projected_.rend()) work += made->second;
   projected_.clear();
 }
@@ -311,15 +325,19 @@ void Integration::tell_friction(eom::Result& end) {
   for (std::size_t j = 1; j < compiled().contacts.size(); ++j) {
     if (margin(j) < margin(worst)) worst = j;
   }
-  end.detail = fmt::format("just after t = {:.17g} the law of friction at '{}' has {}: friction changes its own normal force by more than that force (Painleve)",
-                           end.t, compiled().contacts[worst].name, none ? "no solution" : "several solutions");
+  end.detail = fmt::format(
+      "just after t = {:.17g} the law of friction at '{}' has {}: friction changes its own normal force by more than "
+      "that force (Painleve)",
+      end.t, compiled().contacts[worst].name, none ? "no solution" : "several solutions");
 }
 
 /// Of a step of the method: infinity, unless a force that is narrow in the state lies in it unseen.
 double Integration::longest_step(const eom::StepView& step) {
   if (charts_.second() != 0) return std::numeric_limits<double>::infinity();
-  const double longest = request_.narrow.longest(step, {[this](double t) { return inputs(t); }, [this](double t, const double* x, double* dx) { return rhs(t, x, dx); },
-                                                        request_.scene.rtol, request_.scene.atol, method_named(solver_).series});
+  const double longest =
+      request_.narrow.longest(step, {[this](double t) { return inputs(t); },
+                                     [this](double t, const double* x, double* dx) { return rhs(t, x, dx); },
+                                     request_.scene.rtol, request_.scene.atol, method_named(solver_).series});
   if (fixed_step_ > 0 && !finer_ && !passed_over_ && longest < step.t1 - step.t0) passed_over_ = step.t0;
   return longest;
 }
@@ -328,8 +346,10 @@ double Integration::longest_step(const eom::StepView& step) {
 void Integration::explain(eom::Result& end) {
   if (end.outcome == eom::Outcome::step_too_small && kink_at_ == end.t) {
     end.detail = fmt::format(
-        "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction use "
-        "a constraint with friction, or a smooth law", compiled().kinks[kink_], end.t);
+        "the motion slides along a surface of {}: on both sides it leads back to it, at t = {:.17g}; for dry friction "
+        "use "
+        "a constraint with friction, or a smooth law",
+        compiled().kinks[kink_], end.t);
   }
   if (!jump_.empty()) {
     end.outcome = eom::Outcome::jump_undetermined;
@@ -340,7 +360,8 @@ void Integration::explain(eom::Result& end) {
     end.detail = contacts_->detail();
   }
   if (end.outcome == eom::Outcome::chart_left && charts_.any()) {
-    end.detail = fmt::format("a step just after t = {:.17g} leads past where the coordinates fail: choose a shorter one", end.t);
+    end.detail =
+        fmt::format("a step just after t = {:.17g} leads past where the coordinates fail: choose a shorter one", end.t);
   }
   tell_friction(end);
 }
@@ -353,7 +374,9 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   stopped_ = finer_ = steps_due_ = false;
   jump_.clear();
   fixed_step_ = options.fixed_step;
-  if (contacts_) contacts_->tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol, fixed_step_ > 0 ? slow_slip_atol : options.atol);
+  if (contacts_)
+    contacts_->tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
+                          fixed_step_ > 0 ? slow_slip_atol : options.atol);
   choice = finer_choice_ = {};
   eom::Options piece = options;
   piece.choice = &choice;
@@ -372,7 +395,8 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   for (const eom::ModeEvent& told : start_contacts(total.t, total.x)) {
     if (event) event({told.t, told.kind, told.name}, total.x);
   }
-  if (method_named(solver_).constrained && project(total.t, total.x.data()) != 0) {  // it has to begin on the constraints, to rounding
+  if (method_named(solver_).constrained &&
+      project(total.t, total.x.data()) != 0) {  // it has to begin on the constraints, to rounding
     total.outcome = eom::Outcome::inconsistent_start;
     total.detail = "the start cannot be moved onto the constraints";
     return total;
@@ -383,8 +407,10 @@ eom::Result Integration::run(const eom::Options& options, const Observer& observ
   for (std::size_t k = 0; k < all.size(); ++k) {
     if (k > 0) begin_piece(all[k - 1], total, event);
     side_ = (total.t + all[k].end) / 2;
-    piece.max_steps = options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
-    if (options.fixed_step > 0 && request_.scene.step > 0) piece.fixed_step = options.fixed_step * all[k].step / request_.scene.step;
+    piece.max_steps =
+        options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
+    if (options.fixed_step > 0 && request_.scene.step > 0)
+      piece.fixed_step = options.fixed_step * all[k].step / request_.scene.step;
     if (jump_.empty()) integrate_until(all[k].end, piece, observer, event, total);
     explain(total);
     if (total.outcome != eom::Outcome::done) break;

@@ -26,8 +26,8 @@ class Integration {
 
   /// observer(step, u_side): called after each accepted step; may be empty.
   using Observer = std::function<bool(const eom::StepView&)>;
-  /// One of the model: a recorded one before the observer sees the step that it lies in, a stop after it; or a change of
-  /// mode of a contact, after the step that ends there.
+  /// One of the model: a recorded one before the observer sees the step that it lies in, a stop after it; or a change
+  /// of mode of a contact, after the step that ends there.
   using OnEvent = std::function<void(const RunEvent& event, std::span<const double> x)>;
   eom::Result run(const eom::Options& options, const Observer& observer, const OnEvent& event = {});
 
@@ -47,8 +47,8 @@ class Integration {
   /// Where fixed steps first went over a force that is narrow in the state.
   std::optional<double> passed_over() const { return passed_over_; }
 
-  eom::Choice choice;  // of the solver auto, and its changes in the run
-  std::vector<std::size_t> kink_crossings;  // of the run, per kink
+  eom::Choice choice;                                                 // of the solver auto, and its changes in the run
+  std::vector<std::size_t> kink_crossings;                            // of the run, per kink
   double position_correction = 0, velocity_correction = 0, work = 0;  // of projections, summed or largest
   double contact_work = 0;  // of impacts, and where sliding in two directions starts or ends
 
@@ -83,8 +83,10 @@ class Integration {
   void begin_piece(const Piece& before, eom::Result& total, const OnEvent& event);
   bool any_contact_touches() const;
   void cross_jump(const Piece& before, eom::Result& total, const OnEvent& event);
-  std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from, double to) const;
-  void integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total);
+  std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from,
+                                                  double to) const;
+  void integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event,
+                       eom::Result& total);
   bool passable(const eom::Result& from, double length, const eom::Options& piece);
   std::string name_of_row(std::size_t row) const;
   void tell_passage(const eom::StepView& step, const OnEvent& event);
@@ -108,13 +110,15 @@ class Integration {
   std::size_t power_ = 0, energy_ = 0;
   std::size_t kink_ = 0;  // crossed last, and when
   double kink_at_ = 0;
-  int mode_ = 0;     // of the step that is being made: contacts, sides of kinks
-  std::vector<double> g_, g_size_;  // event functions; largest |g| seen of each kink
+  int mode_ = 0;                                      // of the step that is being made: contacts, sides of kinks
+  std::vector<double> g_, g_size_;                    // event functions; largest |g| seen of each kink
   std::vector<std::pair<double, double>> projected_;  // time, work of projections since the last accepted step
   bool stopped_ = false, exchange_due_ = false;
   std::optional<double> passed_over_;
-  double fixed_step_ = 0;       // of the run
-  bool finer_ = false, steps_due_ = false;  // steps that are chosen in place of fixed ones, where slip in two directions is slow; to be changed
+  double fixed_step_ = 0;  // of the run
+  bool finer_ = false,
+       steps_due_ =
+           false;  // steps that are chosen in place of fixed ones, where slip in two directions is slow; to be changed
   eom::Choice finer_choice_;
   double last_step_ = 0;
   std::vector<double> start_;
@@ -127,7 +131,7 @@ class Integration {
   std::vector<double> psi_, b_;
   ConstraintRows rows_;
   eom::Projection projection_;
-  std::unique_ptr<ContactModes> contacts_;  // where there are any
+  std::unique_ptr<ContactModes> contacts_;    // where there are any
   std::unique_ptr<SingularPassage> passage_;  // where constraints without contacts may lose their rank
   std::size_t passage_evaluations_ = 0;       // of trials
 };

@@ -16,7 +16,9 @@ double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
 Interval valid(Interval a) { return std::isnan(a.low) || std::isnan(a.high) ? Interval::all() : a; }
 
 template <class F>
-Interval rising(F f, Interval a) { return valid({f(a.low), f(a.high)}); }
+Interval rising(F f, Interval a) {
+  return valid({f(a.low), f(a.high)});
+}
 
 Interval whole_power(Interval a, int n) {
   const double low = std::pow(a.low, n), high = std::pow(a.high, n);
@@ -29,7 +31,9 @@ Interval sine(Interval a) {
   constexpr double pi = std::numbers::pi;
   if (!(a.width() < 2 * pi)) return {-1, 1};
   // A maximum at pi/2 + 2 pi k, a minimum half a turn later.
-  const auto contains = [&](double place) { return std::ceil((a.low - place) / (2 * pi)) <= std::floor((a.high - place) / (2 * pi)); };
+  const auto contains = [&](double place) {
+    return std::ceil((a.low - place) / (2 * pi)) <= std::floor((a.high - place) / (2 * pi));
+  };
   const double at_low = std::sin(a.low), at_high = std::sin(a.high);
   return {contains(-pi / 2) ? -1 : std::min(at_low, at_high), contains(pi / 2) ? 1 : std::max(at_low, at_high)};
 }
@@ -92,7 +96,8 @@ Sloped cos(const Sloped& a) {
 
 Sloped tan(const Sloped& a) {
   constexpr double pi = std::numbers::pi;
-  const bool pole = !(a.value.width() < pi) || std::ceil((a.value.low - pi / 2) / pi) <= std::floor((a.value.high - pi / 2) / pi);
+  const bool pole =
+      !(a.value.width() < pi) || std::ceil((a.value.low - pi / 2) / pi) <= std::floor((a.value.high - pi / 2) / pi);
   if (pole) return {Interval::all(), Interval::all()};
   const Interval value = rising([](double x) { return std::tan(x); }, a.value);
   return {value, (Interval{1, 1} + square(value)) * a.slope};
@@ -110,7 +115,9 @@ Interval within_one(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::cla
 
 }  // namespace
 
-Sloped asin(const Sloped& a) { return {rising([](double x) { return std::asin(x); }, within_one(a.value)), slope_of_arcs(a)}; }
+Sloped asin(const Sloped& a) {
+  return {rising([](double x) { return std::asin(x); }, within_one(a.value)), slope_of_arcs(a)};
+}
 Sloped acos(const Sloped& a) {
   const Interval value = within_one(a.value);
   return {{std::acos(value.high), std::acos(value.low)}, -slope_of_arcs(a)};
@@ -134,7 +141,8 @@ Sloped sinh(const Sloped& a) {
 }
 Sloped cosh(const Sloped& a) {
   const double low = std::cosh(a.value.low), high = std::cosh(a.value.high);
-  return {{a.value.has(0) ? 1 : std::min(low, high), std::max(low, high)}, rising([](double x) { return std::sinh(x); }, a.value) * a.slope};
+  return {{a.value.has(0) ? 1 : std::min(low, high), std::max(low, high)},
+          rising([](double x) { return std::sinh(x); }, a.value) * a.slope};
 }
 Sloped tanh(const Sloped& a) {
   const Interval value = rising([](double x) { return std::tanh(x); }, a.value);

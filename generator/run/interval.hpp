@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Intervals of values with intervals of slopes: where a function of one variable can be between two of its values. In: operands. Out: bounds of
-// the result and of its derivative, as wide as rounding is small beside them: they serve to look closer, not to prove.
+// Intervals of values with intervals of slopes: where a function of one variable can be between two of its values. In:
+// operands. Out: bounds of the result and of its derivative, as wide as rounding is small beside them: they serve to
+// look closer, not to prove.
 #pragma once
 
 #include <limits>
@@ -10,7 +11,9 @@ namespace eomgen::run {
 struct Interval {
   double low = 0, high = 0;
 
-  static constexpr Interval all() { return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()}; }
+  static constexpr Interval all() {
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
   bool has(double value) const { return low <= value && value <= high; }
   bool is(double value) const { return low == value && high == value; }
   double width() const { return high - low; }

@@ -49,7 +49,8 @@ RangeCode::Lookup symbols_of(const system::EquationSystem& s, const std::vector<
 
 }  // namespace
 
-Jumps::Jumps(const mechanics::Mechanics& m, const system::EquationSystem& s, const std::vector<double>& parameters, const Clock& clock)
+Jumps::Jumps(const mechanics::Mechanics& m, const system::EquationSystem& s, const std::vector<double>& parameters,
+             const Clock& clock)
     : n_(s.free.size()), inputs_(m.model->inputs.size()), integrals_(s.integrals.size()) {
   symbolic::Dag& dag = *s.dag;
   const auto lookup = symbols_of(s, parameters);
@@ -65,7 +66,8 @@ Jumps::Jumps(const mechanics::Mechanics& m, const system::EquationSystem& s, con
   for (const Ref r : s.A) add(r, What::row);
   for (const Ref r : s.b) add(r, What::rate);
   for (const system::Output& output : s.outputs) {
-    const bool coordinate = std::any_of(m.model->coordinates.begin(), m.model->coordinates.end(), [&](const auto& c) { return c.name == output.name; });
+    const bool coordinate = std::any_of(m.model->coordinates.begin(), m.model->coordinates.end(),
+                                        [&](const auto& c) { return c.name == output.name; });
     if (coordinate || is_position(output.name)) add(output.value, What::place, output.name);
     if (is_velocity(output.name)) add(output.value, What::velocity, output.name);
   }
@@ -73,7 +75,8 @@ Jumps::Jumps(const mechanics::Mechanics& m, const system::EquationSystem& s, con
   energies.insert(energies.end(), roots.begin(), roots.end());
   if (!dag.has_kinks(energies)) return;
   const Ref lagrangian = dag.sub(s.kinetic, s.potential);
-  for (const std::uint32_t q : s.free) add(symbolic::partial(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
+  for (const std::uint32_t q : s.free)
+    add(symbolic::partial(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
   code_ = RangeCode(dag, roots, lookup);
   if (!code_.complete()) {
     code_ = {};
@@ -85,7 +88,8 @@ Jumps::Jumps(const mechanics::Mechanics& m, const system::EquationSystem& s, con
       continue;
     }
     if (!code_.jumps(k)) continue;
-    const bool known = std::any_of(surfaces_.begin(), surfaces_.end(), [&](std::size_t other) { return code_.same_surface(k, other); });
+    const bool known = std::any_of(surfaces_.begin(), surfaces_.end(),
+                                   [&](std::size_t other) { return code_.same_surface(k, other); });
     if (!known) surfaces_.push_back(k);
   }
   if (by_time_) mass_ = RangeCode(dag, s.M, lookup);
@@ -109,8 +113,10 @@ std::string Jumps::name(std::size_t root) const {
   }
 }
 
-/// Of each kind beside what its values are made of: a potential beside the kinetic energy, a constraint beside the coordinates and rates.
-std::array<double, Jumps::kinds> Jumps::sizes(const std::vector<double>& one, const std::vector<double>& other, std::span<const double> x) const {
+/// Of each kind beside what its values are made of: a potential beside the kinetic energy, a constraint beside the
+/// coordinates and rates.
+std::array<double, Jumps::kinds> Jumps::sizes(const std::vector<double>& one, const std::vector<double>& other,
+                                              std::span<const double> x) const {
   std::array<double, kinds> size{};
   const auto of = [&](What what) -> double& { return size[static_cast<std::size_t>(what)]; };
   double energy = 0, position = 0, rate = 0;
@@ -144,7 +150,8 @@ Jumps::Told Jumps::cross(const At& before, double after, const double* u_after, 
   };
   const auto jumps = [](const auto& values, std::size_t i, double size) {
     const double change = std::abs(values[1][i] - values[0][i]), on = std::abs(values[2][i] - values[1][i]);
-    return change > std::max(rounding * size, part_of_far * on) && change > 1e-14 * std::max(std::abs(values[0][i]), std::abs(values[1][i]));
+    return change > std::max(rounding * size, part_of_far * on) &&
+           change > 1e-14 * std::max(std::abs(values[0][i]), std::abs(values[1][i]));
   };
   const auto values = three(code_);
   const std::array<double, kinds> size = sizes(values[0], values[1], before.x);
@@ -162,14 +169,17 @@ Jumps::Told Jumps::cross(const At& before, double after, const double* u_after, 
     told.velocities = told.velocities || what_[i] != What::potential;
     if (what_[i] == What::velocity && told.what.empty()) told.what = names_[i];
     if (what_[i] != What::psi && what_[i] != What::place) continue;
-    told.undetermined = fmt::format("{} jumps at t = {:.15g} by {:.6g}, with an unbounded velocity: make it a motion that takes some time", name(i), after, values[1][i] - values[0][i]);
+    told.undetermined = fmt::format(
+        "{} jumps at t = {:.15g} by {:.6g}, with an unbounded velocity: make it a motion that takes some time", name(i),
+        after, values[1][i] - values[0][i]);
     return told;
   }
   if (!momentum) return told;
   std::vector<double> M(n_ * n_);
   mass_.values(at(after, u_after), M);
   const auto n = static_cast<Eigen::Index>(n_);
-  const Eigen::VectorXd moved = Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n).completeOrthogonalDecomposition().solve(change);
+  const Eigen::VectorXd moved =
+      Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n).completeOrthogonalDecomposition().solve(change);
   for (std::size_t i = 0; i < n_; ++i) x[n_ + i] += moved(static_cast<Eigen::Index>(i));
   return told;
 }
@@ -194,8 +204,11 @@ std::string Jumps::cross(const At& at, std::size_t surface) {
   for (std::size_t i = 0; i < what_.size(); ++i) {
     const double change = sides[1][i] - sides[0][i];
     if (!(std::abs(change) > rounding * size[static_cast<std::size_t>(what_[i])])) continue;
-    return fmt::format("{} jumps by {:.6g} at t = {:.15g}, where a branch of `if` or `sign` changes: the equations do not say what the impulse does there; make it a steep but "
-                       "smooth step, tanh((x - a)/w) say, or a constraint with unilateral = true", name(i), change, at.t);
+    return fmt::format(
+        "{} jumps by {:.6g} at t = {:.15g}, where a branch of `if` or `sign` changes: the equations do not say what "
+        "the impulse does there; make it a steep but "
+        "smooth step, tanh((x - a)/w) say, or a constraint with unilateral = true",
+        name(i), change, at.t);
   }
   return "";
 }

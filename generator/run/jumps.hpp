@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where energies, momenta or constraints jump: the velocity of a support at a kink of its motion, a step of a potential. In: a system and numbers for its
-// parameters. Out: at a kink of time, velocities without the impulses of constraints: the momenta dL/dqdot are the same before and after; at a kink of the
-// state, what jumps there, which the equations leave open.
+// Where energies, momenta or constraints jump: the velocity of a support at a kink of its motion, a step of a
+// potential. In: a system and numbers for its parameters. Out: at a kink of time, velocities without the impulses of
+// constraints: the momenta dL/dqdot are the same before and after; at a kink of the state, what jumps there, which the
+// equations leave open.
 #pragma once
 
 #include <array>
@@ -18,7 +19,8 @@ namespace eomgen::run {
 
 class Jumps {
  public:
-  Jumps(const mechanics::Mechanics& mechanics, const system::EquationSystem& system, const std::vector<double>& parameters, const Clock& clock);
+  Jumps(const mechanics::Mechanics& mechanics, const system::EquationSystem& system,
+        const std::vector<double>& parameters, const Clock& clock);
 
   /// Nothing jumps anywhere, whatever the motion.
   bool none() const { return !by_time_ && surfaces_.empty(); }
@@ -30,12 +32,13 @@ class Jumps {
     const double* u;
   };
   struct Told {
-    bool velocities = false;   // they may have to jump: those of x did, and constraints move otherwise
+    bool velocities = false;  // they may have to jump: those of x did, and constraints move otherwise
     bool potential = false;
     std::string what;          // the velocity of a place that jumps, or ""
     std::string undetermined;  // a sentence: what jumps that no equation says the consequences of
   };
-  /// From just before a kink of time to just after it: changes velocities in `x` to what they are without impulses of constraints.
+  /// From just before a kink of time to just after it: changes velocities in `x` to what they are without impulses of
+  /// constraints.
   Told cross(const At& before, double after, const double* u_after, std::span<double> x) const;
 
   /// Surfaces in the state where something may jump: above 0 on one side.
@@ -48,7 +51,8 @@ class Jumps {
   enum class What { potential, momentum, psi, row, rate, place, velocity };
   static constexpr std::size_t kinds = 7;
   const std::vector<double>& variables(const At& at) const;
-  std::array<double, kinds> sizes(const std::vector<double>& one, const std::vector<double>& other, std::span<const double> x) const;
+  std::array<double, kinds> sizes(const std::vector<double>& one, const std::vector<double>& other,
+                                  std::span<const double> x) const;
   std::string name(std::size_t root) const;
 
   std::size_t n_ = 0, inputs_ = 0, integrals_ = 0;

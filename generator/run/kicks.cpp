@@ -7,9 +7,9 @@
 namespace eomgen::run {
 namespace {
 
-constexpr double inside = 1e-3;       // of the step: at its ends another branch or mode may begin
-constexpr double stands_out = 8;      // times as large as around
-constexpr double at_rest = 1e-6;      // of the largest velocity: what stays below moves by rounding
+constexpr double inside = 1e-3;   // of the step: at its ends another branch or mode may begin
+constexpr double stands_out = 8;  // times as large as around
+constexpr double at_rest = 1e-6;  // of the largest velocity: what stays below moves by rounding
 
 }  // namespace
 
@@ -34,15 +34,19 @@ void Kicks::see(const eom::StepView& step, const Derivative& f) {
     velocity_[i] = std::max({velocity_[i], std::abs(step.x0[k]), std::abs(step.x1[k])});
   }
   ++seen_;
-  if (seen_ >= steps_.size()) look(around, &steps_.front(), &steps_.back());
-  else if (seen_ > around) look(steps_.size() - 1 - around, nullptr, &steps_.back());  // one of the first: none before it
+  if (seen_ >= steps_.size())
+    look(around, &steps_.front(), &steps_.back());
+  else if (seen_ > around)
+    look(steps_.size() - 1 - around, nullptr, &steps_.back());  // one of the first: none before it
 }
 
 /// The step at `place` among the last ones.
 void Kicks::look(std::size_t place, const Step* before, const Step* after) {
   const Step& here = steps_[place];
   for (std::size_t i = 0; i < kick_.size(); ++i) {
-    const auto second = [&](const Step* step) { return step == nullptr ? 0 : step->difference[i] / (step->h * step->h); };
+    const auto second = [&](const Step* step) {
+      return step == nullptr ? 0 : step->difference[i] / (step->h * step->h);
+    };
     if (!(second(&here) > stands_out * std::max(second(before), second(after)))) continue;
     if (const double size = here.h * here.difference[i]; size > kick_[i].size) kick_[i] = {size, here.t};
   }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces that turn within one step: a particle that passes a centre at a small distance gets most of its kick in a time that fixed
-// steps leap over. Their ends depend on where in the step the passage falls, and may agree by chance whatever their number. In: the
-// steps of a run and its right-hand side. Out: the largest such kick, relative to the velocity that it changes.
+// Forces that turn within one step: a particle that passes a centre at a small distance gets most of its kick in a time
+// that fixed steps leap over. Their ends depend on where in the step the passage falls, and may agree by chance
+// whatever their number. In: the steps of a run and its right-hand side. Out: the largest such kick, relative to the
+// velocity that it changes.
 //
-// The second difference of the acceleration over a step, divided by h^2, is its second derivative where steps resolve the motion, and
-// changes little over two steps. Where it stands out among the second steps before and after, something happened within that step.
+// The second difference of the acceleration over a step, divided by h^2, is its second derivative where steps resolve
+// the motion, and changes little over two steps. Where it stands out among the second steps before and after, something
+// happened within that step.
 #pragma once
 
 #include <array>

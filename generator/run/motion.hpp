@@ -10,13 +10,17 @@ struct MotionOf {
   Integration& of;
   int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) const { return of.jacobian(t, x, dfdx, dfdt); }
-  int taylor(double t, const double* x, int order, double* coefficients) const { return of.taylor(t, x, order, coefficients); }
+  int taylor(double t, const double* x, int order, double* coefficients) const {
+    return of.taylor(t, x, order, coefficients);
+  }
   std::size_t coordinates() const { return of.keeps_constraints_ ? of.n_ : 0; }
   std::size_t constraints() const { return of.rows_.size(); }
   std::size_t position_constraints() const { return of.rows_.on_positions(); }
   int momenta(double t, const double* x, double* p, double* rate) const { return of.momenta(t, x, p, rate); }
   int mass(double t, const double* x, double* M) const { return of.mass(t, x, M); }
-  int constrain(double t, const double* x, double* psi, double* A, double* b) const { return of.rows_(t, x, of.inputs(t), psi, A, b); }
+  int constrain(double t, const double* x, double* psi, double* A, double* b) const {
+    return of.rows_(t, x, of.inputs(t), psi, A, b);
+  }
   int taylor_order() const { return of.compiled().taylor_order; }
   std::size_t taylor_states() const { return 2 * of.n_ + of.compiled().integrals; }
 };
@@ -25,7 +29,8 @@ struct MotionOf {
 struct EventsOf {
   Integration& of;
   int operator()(double t, const double* x, double* g) const { return of.events(t, x, g); }
-  std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from, double to) const {
+  std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from,
+                                                  double to) const {
     return of.hidden(step, i, side, from, to);
   }
 };

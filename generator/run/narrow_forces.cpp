@@ -9,17 +9,18 @@ namespace {
 
 using symbolic::Op;
 
-constexpr std::size_t most_boxes = 200;   // of a function in a step
-constexpr double shortest = 1e-9;         // of the step
-constexpr double nothing = 1e-100;        // in the units of the function
+constexpr std::size_t most_boxes = 200;  // of a function in a step
+constexpr double shortest = 1e-9;        // of the step
+constexpr double nothing = 1e-100;       // in the units of the function
 constexpr double everything = 1e100;
-constexpr double of_values = 1e-3;        // beyond the samples: what smooth functions do between them
-constexpr double of_tolerance = 30;        // a path between the ends of a step is less accurate than these
-constexpr double difference = 1e-3;       // of a width, for slopes of the path
-constexpr double nearest = 1e-3;          // of a box
+constexpr double of_values = 1e-3;   // beyond the samples: what smooth functions do between them
+constexpr double of_tolerance = 30;  // a path between the ends of a step is less accurate than these
+constexpr double difference = 1e-3;  // of a width, for slopes of the path
+constexpr double nearest = 1e-3;     // of a box
 constexpr int high_power = 20;
 
-/// What is a bump of a function without tails, as itself, its slope or its inverse are; nothing of functions whose tails the error control sees.
+/// What is a bump of a function without tails, as itself, its slope or its inverse are; nothing of functions whose
+/// tails the error control sees.
 std::vector<symbolic::Ref> bumps(symbolic::Dag& dag, symbolic::Ref r) {
   const symbolic::Node node = dag[r];
   switch (node.op) {
@@ -35,12 +36,14 @@ std::vector<symbolic::Ref> bumps(symbolic::Dag& dag, symbolic::Ref r) {
 
 }  // namespace
 
-NarrowForces::NarrowForces(const system::EquationSystem& s, const std::vector<double>& parameters) : n_(s.free.size()), boxes_(s, parameters) {
+NarrowForces::NarrowForces(const system::EquationSystem& s, const std::vector<double>& parameters)
+    : n_(s.free.size()), boxes_(s, parameters) {
   std::vector<symbolic::Ref> roots;
   for (const auto* part : {&s.M, &s.f, &s.A, &s.b, &s.gamma}) roots.insert(roots.end(), part->begin(), part->end());
   const auto of_state = [&s](symbolic::Ref r) {
     const std::vector<symbolic::Symbol> symbols = s.dag->symbols({r});
-    return std::any_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& symbol) { return symbol.kind == symbolic::SymbolKind::coordinate; });
+    return std::any_of(symbols.begin(), symbols.end(),
+                       [](const symbolic::Symbol& symbol) { return symbol.kind == symbolic::SymbolKind::coordinate; });
   };
   for (const symbolic::Ref r : s.dag->reachable(roots)) {
     const std::vector<symbolic::Ref> found = bumps(*s.dag, r);
@@ -61,7 +64,8 @@ double NarrowForces::longest(const eom::StepView& step, const Setting& setting) 
 }
 
 /// Where a function has a value that no sample of the step has, and the equations are not satisfied.
-std::optional<double> NarrowForces::hidden(const RangeCode& code, const eom::StepView& step, const Setting& setting) const {
+std::optional<double> NarrowForces::hidden(const RangeCode& code, const eom::StepView& step,
+                                           const Setting& setting) const {
   const auto bounded = [](double v) { return std::clamp(v, -everything, everything); };
   const auto value = [&](const StepPlace& at) { return bounded(code.value(at.variables)); };
   std::vector<std::pair<StepPlace, StepPlace>> open(1);
@@ -76,16 +80,19 @@ std::optional<double> NarrowForces::hidden(const RangeCode& code, const eom::Ste
     boxes_.place(step, setting.inputs, m);
     const double middle = value(m), width = b.s - a.s;
     Sloped range = code.range(boxes_.box(a, m, b));
-    if (std::isfinite(range.slope.width())) range.value = common(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
+    if (std::isfinite(range.slope.width()))
+      range.value = common(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
     range.value = {bounded(range.value.low), bounded(range.value.high)};
-    const double room = std::max({seen.width(), of_values * std::max(std::abs(seen.low), std::abs(seen.high)), nothing});
+    const double room =
+        std::max({seen.width(), of_values * std::max(std::abs(seen.low), std::abs(seen.high)), nothing});
     const auto shown = [&](double v) { return v >= seen.low - room && v <= seen.high + room; };
     if (shown(range.value.low) && shown(range.value.high)) continue;
     if (!shown(middle)) {
       if (unsatisfied(step, setting, m.s, width)) return m.s;
       // A bump has no slope at its top: its sides, however steep they are.
       for (double beside = width / 4; beside > width * nearest; beside /= 4) {
-        if (unsatisfied(step, setting, m.s - beside, beside) || unsatisfied(step, setting, m.s + beside, beside)) return m.s - beside;
+        if (unsatisfied(step, setting, m.s - beside, beside) || unsatisfied(step, setting, m.s + beside, beside))
+          return m.s - beside;
       }
       seen = hull(seen, {middle, middle});
     }
@@ -97,13 +104,17 @@ std::optional<double> NarrowForces::hidden(const RangeCode& code, const eom::Ste
   return std::nullopt;
 }
 
-/// Whether the accelerations of the step's path at s differ from those of the equations by more than tolerances allow, if they do so for `width` of the step.
+/// Whether the accelerations of the step's path at s differ from those of the equations by more than tolerances allow,
+/// if they do so for `width` of the step.
 bool NarrowForces::unsatisfied(const eom::StepView& step, const Setting& setting, double s, double width) const {
-  const double h = step.t1 - step.t0, reach = difference * width, from = std::max(0.0, s - reach), to = std::min(1.0, s + reach);
+  const double h = step.t1 - step.t0, reach = difference * width, from = std::max(0.0, s - reach),
+               to = std::min(1.0, s + reach);
   for (std::vector<double>* x : {&x_, &before_, &after_, &dx_}) x->resize(step.x0.size());
   const auto state = [&](double at, std::vector<double>& x) {
-    if (at >= 1) x.assign(step.x1.begin(), step.x1.end());
-    else step.interpolate(step.t0 + at * h, x);
+    if (at >= 1)
+      x.assign(step.x1.begin(), step.x1.end());
+    else
+      step.interpolate(step.t0 + at * h, x);
   };
   state(s, x_);
   state(from, before_);
@@ -114,7 +125,8 @@ bool NarrowForces::unsatisfied(const eom::StepView& step, const Setting& setting
     // Of a one-sided difference the path's own curvature is taken for a part of it.
     const double size = std::max(std::abs(step.x0[i]), std::abs(step.x1[i]));
     const double bend = from < s && to > s ? 0 : difference * std::abs(step.x1[i] - step.x0[i]);
-    if (!(std::abs(dx_[i] - slope) * width * std::abs(h) <= of_tolerance * (setting.atol + setting.rtol * size) + bend)) return true;
+    if (!(std::abs(dx_[i] - slope) * width * std::abs(h) <= of_tolerance * (setting.atol + setting.rtol * size) + bend))
+      return true;
   }
   return false;
 }

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces that are narrow in the state: a barrier exp(-(x/w)^2) far below a step lies between the places at which the step sees the equations, and its tails
-// are below any tolerance. In: the functions of a system without tails, a step with its dense output, the right-hand side. Out: a shorter step, where bounds of
-// such a function leave room for values that no sample has, and the path of the step does not satisfy the equations at one.
+// Forces that are narrow in the state: a barrier exp(-(x/w)^2) far below a step lies between the places at which the
+// step sees the equations, and its tails are below any tolerance. In: the functions of a system without tails, a step
+// with its dense output, the right-hand side. Out: a shorter step, where bounds of such a function leave room for
+// values that no sample has, and the path of the step does not satisfy the equations at one.
 #pragma once
 
 #include <functional>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integration from one jump of the inputs to the next: charts are exchanged on the way, and places stepped over where constraints lose rank.
+// Integration from one jump of the inputs to the next: charts are exchanged on the way, and places stepped over where
+// constraints lose rank.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -10,7 +11,8 @@
 
 namespace eomgen::run {
 
-/// Whether one step over the place of lost rank and two, whose stages lie otherwise, agree within the tolerances and rounding.
+/// Whether one step over the place of lost rank and two, whose stages lie otherwise, agree within the tolerances and
+/// rounding.
 bool Integration::passable(const eom::Result& from, double length, const eom::Options& piece) {
   const MotionOf f{*this};
   const auto after = [this](double t, double* x) { return project(t, x); };
@@ -21,17 +23,20 @@ bool Integration::passable(const eom::Result& from, double length, const eom::Op
     return eom::integrate(SingularPassage::solver, f, t, x, t_end, one, eom::NoObserver{}, after);
   };
   const double position = position_correction, velocity = velocity_correction;
-  const double t_end = from.t + length, middle = from.t + length * SingularPassage::place / SingularPassage::place_of_check;
+  const double t_end = from.t + length,
+               middle = from.t + length * SingularPassage::place / SingularPassage::place_of_check;
   const eom::Result whole = step(from.t, from.x, t_end), half = step(from.t, from.x, middle);
   const eom::Result other = half.outcome == eom::Outcome::done ? step(half.t, half.x, t_end) : half;
   position_correction = position, velocity_correction = velocity;  // of steps that are made
   projected_.clear();
-  passage_evaluations_ = whole.statistics.rhs_evaluations + half.statistics.rhs_evaluations + other.statistics.rhs_evaluations;
+  passage_evaluations_ =
+      whole.statistics.rhs_evaluations + half.statistics.rhs_evaluations + other.statistics.rhs_evaluations;
   if (whole.outcome != eom::Outcome::done || other.outcome != eom::Outcome::done) return false;
   double largest = 0, sum = 0;
   for (std::size_t i = 0; i < 2 * n_; ++i) largest = std::max(largest, std::abs(whole.x[i]));
   for (std::size_t i = 0; i < 2 * n_; ++i) {
-    const double part = (whole.x[i] - other.x[i]) / (piece.atol + piece.rtol * std::abs(whole.x[i]) + passage_->rounding() * largest);
+    const double part =
+        (whole.x[i] - other.x[i]) / (piece.atol + piece.rtol * std::abs(whole.x[i]) + passage_->rounding() * largest);
     sum += whole.x[i] == other.x[i] ? 0 : part * part;
   }
   return sum <= static_cast<double>(2 * n_);
@@ -58,7 +63,8 @@ static void go_on_from(const eom::Result& part, eom::Result& total) {
 }
 
 /// One piece of the inputs: its end, or why the run ends before.
-void Integration::integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event, eom::Result& total) {
+void Integration::integrate_until(double end, eom::Options piece, const Observer& observer, const OnEvent& event,
+                                  eom::Result& total) {
   const MotionOf f{*this};
   bool passing = false;
   double due = 0;  // length of a step over a place of lost rank
@@ -72,12 +78,16 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
     if (passing) tell_passage(step, event);
     exchange_due_ = exchange_due_ && go_on;
     steps_due_ = go_on && steps_due(step.t1, step.x1.data());
-    due = passage_ && !passing && go_on && !exchange_due_ && piece.fixed_step <= 0 ? std::copysign(passage_->due(step), last_step_) : 0;
+    due = passage_ && !passing && go_on && !exchange_due_ && piece.fixed_step <= 0
+              ? std::copysign(passage_->due(step), last_step_)
+              : 0;
     return go_on && !exchange_due_ && !steps_due_ && due == 0;
   };
   const EventsOf g{*this};
   const auto at = [&](const eom::EventPoint& point) { return at_event(point, event); };
-  const auto after = [this](double t, double* x) { return rows_.size() == 0 || keeps_constraints_ ? 0 : project(t, x); };
+  const auto after = [this](double t, double* x) {
+    return rows_.size() == 0 || keeps_constraints_ ? 0 : project(t, x);
+  };
   int idle = 0;
   while (true) {
     hold_sides(total.t, total.x.data(), true);
@@ -93,7 +103,8 @@ void Integration::integrate_until(double end, eom::Options piece, const Observer
     eom::Options options = finer_ ? finer(piece) : piece;
     if (passing) options.fixed_step = std::abs(length);
     const std::string method = passing ? SingularPassage::solver : finer_ ? std::string(eom::Automatic::name) : solver_;
-    const eom::Result part = eom::integrate_events(method, f, total.t, total.x, passing ? total.t + length : end, options, g, watched(), at, watch, after);
+    const eom::Result part = eom::integrate_events(method, f, total.t, total.x, passing ? total.t + length : end,
+                                                   options, g, watched(), at, watch, after);
     go_on_from(part, total);
     const bool passed = passing && part.outcome == eom::Outcome::done;
     const bool paused = (exchange_due_ || steps_due_ || due != 0) && part.outcome == eom::Outcome::stopped_by_event;

@@ -67,7 +67,8 @@ void RangeCode::values(std::span<const double> variables, std::span<double> out)
     const auto arg = [&](std::size_t k) { return work_[step.args[k]]; };
     double& result = work_[i];
     switch (step.op) {
-      case Op::constant: case Op::pi: result = constants_[static_cast<std::size_t>(step.payload)]; break;
+      case Op::constant:
+      case Op::pi: result = constants_[static_cast<std::size_t>(step.payload)]; break;
       case Op::symbol: result = variables[static_cast<std::size_t>(step.payload)]; break;
       case Op::add: result = arg(0) + arg(1); break;
       case Op::sub: result = arg(0) - arg(1); break;
@@ -151,7 +152,8 @@ Sloped RangeCode::range(std::span<const Sloped> variables, std::size_t root) con
       return {hull(a.value, b.value), jumps ? Interval::all() : hull(a.slope, b.slope)};
     };
     switch (step.op) {
-      case Op::constant: case Op::pi: {
+      case Op::constant:
+      case Op::pi: {
         const double c = constants_[static_cast<std::size_t>(step.payload)];
         result = {{c, c}, {0, 0}};
         break;
@@ -159,7 +161,9 @@ Sloped RangeCode::range(std::span<const Sloped> variables, std::size_t root) con
       case Op::symbol: result = variables[static_cast<std::size_t>(step.payload)]; break;
       case Op::add: result = {arg(0).value + arg(1).value, arg(0).slope + arg(1).slope}; break;
       case Op::sub: result = {arg(0).value - arg(1).value, arg(0).slope - arg(1).slope}; break;
-      case Op::mul: result = step.args[0] == step.args[1] ? sloped::power(arg(0), 2) : sloped::product(arg(0), arg(1)); break;
+      case Op::mul:
+        result = step.args[0] == step.args[1] ? sloped::power(arg(0), 2) : sloped::product(arg(0), arg(1));
+        break;
       case Op::div: result = sloped::quotient(arg(0), arg(1)); break;
       case Op::neg: result = {-arg(0).value, -arg(0).slope}; break;
       case Op::power: result = sloped::power(arg(0), step.payload); break;
@@ -180,9 +184,12 @@ Sloped RangeCode::range(std::span<const Sloped> variables, std::size_t root) con
       case Op::abs: {
         const Sloped negative{-arg(0).value, -arg(0).slope};
         const int side = of_surface();
-        if (side > 0) result = arg(0);
-        else if (side < 0) result = negative;
-        else result = {{0, std::max(-arg(0).value.low, arg(0).value.high)}, hull(arg(0).slope, negative.slope)};
+        if (side > 0)
+          result = arg(0);
+        else if (side < 0)
+          result = negative;
+        else
+          result = {{0, std::max(-arg(0).value.low, arg(0).value.high)}, hull(arg(0).slope, negative.slope)};
         break;
       }
       case Op::sign: {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Expressions as code that is evaluated in numbers, or in intervals along one variable. In: expressions on a Dag and what their symbols are. Out: values at a
-// place; bounds of values and slopes between two places. Branches of kinks (abs, sign, min, max, if) can be held.
+// Expressions as code that is evaluated in numbers, or in intervals along one variable. In: expressions on a Dag and
+// what their symbols are. Out: values at a place; bounds of values and slopes between two places. Branches of kinks
+// (abs, sign, min, max, if) can be held.
 #pragma once
 
 #include <functional>
@@ -66,7 +67,9 @@ class RangeCode {
     bool moves;  // with another variable than the first
   };
   void add(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots, const Lookup& lookup);
-  int side(const Step& step, double above) const { return held_[step.kink] != 0 ? held_[step.kink] : above > 0 ? 1 : above < 0 ? -1 : 0; }
+  int side(const Step& step, double above) const {
+    return held_[step.kink] != 0 ? held_[step.kink] : above > 0 ? 1 : above < 0 ? -1 : 0;
+  }
 
   bool complete_ = true;
   std::vector<std::uint32_t> place_;  // of nodes of the Dag, plus one

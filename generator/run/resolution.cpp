@@ -9,7 +9,8 @@ namespace eomgen::run {
 void Resolution::see(const eom::StepView& step) {
   size_.resize(step.x1.size());
   difference_.resize(step.x1.size());
-  for (std::size_t i = 0; i < step.x1.size(); ++i) size_[i] = std::max({size_[i], std::abs(step.x0[i]), std::abs(step.x1[i])});
+  for (std::size_t i = 0; i < step.x1.size(); ++i)
+    size_[i] = std::max({size_[i], std::abs(step.x0[i]), std::abs(step.x1[i])});
   if (++steps_ % stride_ != 0) return;
   seen_.push_back({step.t1, {step.x1.begin(), step.x1.end()}});
   if (seen_.size() < most) return;
@@ -24,8 +25,10 @@ void Resolution::compare(const eom::StepView& step, const Align& align) {
     const Seen& seen = seen_[next_];
     if (seen.t < step.t0) continue;
     x_.resize(step.x1.size());
-    if (seen.t == step.t1) x_.assign(step.x1.begin(), step.x1.end());
-    else step.interpolate(seen.t, x_);
+    if (seen.t == step.t1)
+      x_.assign(step.x1.begin(), step.x1.end());
+    else
+      step.interpolate(seen.t, x_);
     align(seen.x, x_);
     before_.resize(x_.size());
     for (std::size_t i = 0; i < x_.size(); ++i) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Whether steps of a fixed size resolve a motion. Where they do not, runs with different steps may still end alike: a method that damps
-// what it cannot follow damps it in all of them. So the states on the way are compared, not the ends alone.
+// Whether steps of a fixed size resolve a motion. Where they do not, runs with different steps may still end alike: a
+// method that damps what it cannot follow damps it in all of them. So the states on the way are compared, not the ends
+// alone.
 #pragma once
 
 #include <eom/run_types.hpp>
@@ -11,7 +12,8 @@ namespace eomgen::run {
 
 class Resolution {
  public:
-  /// impacts: differences count as far as two states in a row have them, since one alone may lie between two times of the same impact.
+  /// impacts: differences count as far as two states in a row have them, since one alone may lie between two times of
+  /// the same impact.
   explicit Resolution(bool impacts) : impacts_(impacts) {}
 
   /// Of the run itself: some of its states.

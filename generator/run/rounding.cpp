@@ -25,16 +25,26 @@ std::vector<double> inputs(const RunRequest& request, double t) {
 class Momenta {
  public:
   Momenta(const RunRequest& request, double t, const std::vector<double>& x)
-      : request_(request), t_(t), u_(inputs(request, t)), n_(static_cast<Eigen::Index>(request.code.free.size())), p_(Eigen::VectorXd::Zero(n_)), scratch_(Eigen::VectorXd::Zero(n_)), M_(n_, n_) {
-    valid_ = request.code.mass(t, x.data(), request.scene.parameters.data(), M_.data(), scratch_.data()) == 0 && M_.allFinite() && at(x, p_);
+      : request_(request),
+        t_(t),
+        u_(inputs(request, t)),
+        n_(static_cast<Eigen::Index>(request.code.free.size())),
+        p_(Eigen::VectorXd::Zero(n_)),
+        scratch_(Eigen::VectorXd::Zero(n_)),
+        M_(n_, n_) {
+    valid_ = request.code.mass(t, x.data(), request.scene.parameters.data(), M_.data(), scratch_.data()) == 0 &&
+             M_.allFinite() && at(x, p_);
     force_ = scratch_;
     if (!valid_) return;
-    size_ = M_.diagonal().unaryExpr([](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // of one coordinate beside another says nothing
+    size_ = M_.diagonal().unaryExpr(
+        [](double m) { return m > 0 ? 1 / std::sqrt(m) : 1; });  // of one coordinate beside another says nothing
     solver_.compute(size_.asDiagonal() * M_ * size_.asDiagonal());
   }
 
   bool at(const std::vector<double>& x, Eigen::VectorXd& p) {
-    return request_.code.momenta(t_, x.data(), request_.scene.parameters.data(), u_.data(), 0, p.data(), scratch_.data()) == 0 && p.allFinite();
+    return request_.code.momenta(t_, x.data(), request_.scene.parameters.data(), u_.data(), 0, p.data(),
+                                 scratch_.data()) == 0 &&
+           p.allFinite();
   }
   const Eigen::VectorXd& value() const { return p_; }
   const Eigen::VectorXd& force() const { return force_; }  // dL/dq
@@ -61,13 +71,15 @@ Scene rounded(const RunRequest& request, const std::string& solver, const std::v
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
   if (method_named(solver).variational) {
     const Momenta momenta(request, request.scene.t0, x);
-    for (std::size_t i = 0; i < n; ++i) rates(static_cast<Eigen::Index>(i)) = sign(i) * unit * std::abs(momenta.value()(static_cast<Eigen::Index>(i)));
+    for (std::size_t i = 0; i < n; ++i)
+      rates(static_cast<Eigen::Index>(i)) = sign(i) * unit * std::abs(momenta.value()(static_cast<Eigen::Index>(i)));
     rates = momenta.rates(rates);
   }
   Scene scene = request.scene;
   for (std::size_t i = 0; i < n; ++i) {
     scene.q[request.code.free[i]] = x[i] + sign(i) * unit * std::abs(x[i]);
-    scene.qdot[request.code.free[i]] = x[n + i] - sign(i) * unit * std::abs(x[n + i]) + rates(static_cast<Eigen::Index>(i));
+    scene.qdot[request.code.free[i]] =
+        x[n + i] - sign(i) * unit * std::abs(x[n + i]) + rates(static_cast<Eigen::Index>(i));
   }
   return scene;
 }
@@ -76,13 +88,29 @@ Scene rounded(const RunRequest& request, const std::string& solver, const std::v
 
 eom::Result from_rounded_start(const RunRequest& request, const std::string& solver, const eom::Options& options) {
   const Scene scene = rounded(request, solver, Integration(request, solver).initial_state());
-  RunRequest moved{.code = request.code, .scene = scene, .state_names = request.state_names, .conserved = request.conserved, .events = request.events,
-                   .watch_power = request.watch_power, .estimate = false, .row = {}, .progress = {}, .interrupt = request.interrupt,
-                   .integrals = request.integrals, .contacts = request.contacts, .magnitudes = request.magnitudes, .charts = request.charts,
-                   .in_charts = request.in_charts, .ranges = request.ranges, .narrow = request.narrow, .constraint_names = request.constraint_names, .max_steps = request.max_steps};
+  RunRequest moved{.code = request.code,
+                   .scene = scene,
+                   .state_names = request.state_names,
+                   .conserved = request.conserved,
+                   .events = request.events,
+                   .watch_power = request.watch_power,
+                   .estimate = false,
+                   .row = {},
+                   .progress = {},
+                   .interrupt = request.interrupt,
+                   .integrals = request.integrals,
+                   .contacts = request.contacts,
+                   .magnitudes = request.magnitudes,
+                   .charts = request.charts,
+                   .in_charts = request.in_charts,
+                   .ranges = request.ranges,
+                   .narrow = request.narrow,
+                   .constraint_names = request.constraint_names,
+                   .max_steps = request.max_steps};
   Integration integration(moved, solver);
   eom::Result end = integration.run(options, {});
-  if (end.outcome == eom::Outcome::done || end.outcome == eom::Outcome::stopped_by_event) end.x = integration.own_state(end);
+  if (end.outcome == eom::Outcome::done || end.outcome == eom::Outcome::stopped_by_event)
+    end.x = integration.own_state(end);
   return end;
 }
 

@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <eom/watch/drift.hpp>
 #include <limits>
@@ -23,7 +23,9 @@ namespace {
 
 using Stopwatch = std::chrono::steady_clock;
 
-double seconds_since(Stopwatch::time_point start) { return std::chrono::duration<double>(Stopwatch::now() - start).count(); }
+double seconds_since(Stopwatch::time_point start) {
+  return std::chrono::duration<double>(Stopwatch::now() - start).count();
+}
 
 /// What is looked at after every step: invariants, power balance, constraints; and the rows in between.
 class Watch {
@@ -38,7 +40,8 @@ class Watch {
       conserved_.push_back(index_of(names, name));
       drifts_.emplace_back(name);
     }
-    for (const std::string& name : request.magnitudes) magnitudes_.push_back(name.empty() ? no_output : index_of(names, name));
+    for (const std::string& name : request.magnitudes)
+      magnitudes_.push_back(name.empty() ? no_output : index_of(names, name));
     magnitudes_.resize(conserved_.size(), no_output);
     last_.resize(conserved_.size());
     shift_.resize(conserved_.size());
@@ -55,9 +58,11 @@ class Watch {
     see(view.t1, view.x1.data());
     if (left_chart(view)) {
       // Nothing of this step is a result: the chart's equations stop holding somewhere inside it.
-      chart_detail_ = fmt::format("{} leaves its range ({}, {}) between t = {} and {}: give it a wider one in [coordinates] if the equations hold beyond it, or take coordinates "
-                                  "that do not end there (Cartesian ones, Euler parameters, an angle of another sequence)",
-                                  left_, lower_, upper_, view.t0, view.t1);
+      chart_detail_ = fmt::format(
+          "{} leaves its range ({}, {}) between t = {} and {}: give it a wider one in [coordinates] if the equations "
+          "hold beyond it, or take coordinates "
+          "that do not end there (Cartesian ones, Euler parameters, an angle of another sequence)",
+          left_, lower_, upper_, view.t0, view.t1);
       last_t_ = view.t0;
       last_x_.assign(view.x0.begin(), view.x0.end());
       return false;
@@ -73,11 +78,12 @@ class Watch {
   void event(const RunEvent& event, std::span<const double> x) {
     events_.push_back(event);
     if (event.kind == "impulse") shift_invariants(event.t, x.data());
-    if (request_.every > 0 && event.kind == "custom") pending_.emplace_back(event.t, std::vector<double>(x.begin(), x.end()));
+    if (request_.every > 0 && event.kind == "custom")
+      pending_.emplace_back(event.t, std::vector<double>(x.begin(), x.end()));
   }
 
-  /// Where a coordinate left its range, the run ends with the step before; tells what happened. Where it was interrupted
-  /// between two rows it ends with the last one.
+  /// Where a coordinate left its range, the run ends with the step before; tells what happened. Where it was
+  /// interrupted between two rows it ends with the last one.
   void cut(eom::Result& end) const {
     if (interrupted_) {
       end.outcome = eom::Outcome::interrupted;
@@ -144,7 +150,8 @@ class Watch {
       if (integration_.charts().has_exchanged(static_cast<std::uint32_t>(i))) continue;
       if (q > scene.lower[i] && q < scene.upper[i]) continue;
       if (std::find(beyond_.begin(), beyond_.end(), i) != beyond_.end()) continue;
-      if (request_.beyond_range && integration_.charts().second() == 0 && request_.beyond_range(static_cast<std::uint32_t>(i), view.t1, view.x1)) {
+      if (request_.beyond_range && integration_.charts().second() == 0 &&
+          request_.beyond_range(static_cast<std::uint32_t>(i), view.t1, view.x1)) {
         beyond_.push_back(i);
         continue;
       }
@@ -207,7 +214,7 @@ class Watch {
   double defect_ = 0;
   std::string left_, chart_detail_;
   std::vector<std::size_t> beyond_;  // coordinates whose range the equations do not need
-  double lower_ = 0, upper_ = 0;  // of its range
+  double lower_ = 0, upper_ = 0;     // of its range
   double last_t_ = 0;
   std::vector<double> last_x_;
   std::vector<RunEvent> events_;
@@ -217,10 +224,12 @@ class Watch {
   bool interrupted_ = false;
 };
 
-/// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is false then).
+/// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is
+/// false then).
 void tell_parameters(const Scene& scene, RunResult& result) {
   if (result.outcome != eom::Outcome::done && result.outcome != eom::Outcome::stopped_by_event) return;
-  if (std::all_of(scene.parameters.begin(), scene.parameters.end(), [](double value) { return std::isfinite(value); })) return;
+  if (std::all_of(scene.parameters.begin(), scene.parameters.end(), [](double value) { return std::isfinite(value); }))
+    return;
   result.outcome = eom::Outcome::not_finite;
   result.detail = "a parameter is infinite or not a number";
 }
@@ -256,7 +265,8 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
                     "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
       }
       if (const std::string why = unfit(asked, scene); !why.empty()) {
-        throw Error("run", {}, fmt::format("solver '{}' cannot integrate this scene: {}", asked, why), "take dop853 or auto");
+        throw Error("run", {}, fmt::format("solver '{}' cannot integrate this scene: {}", asked, why),
+                    "take dop853 or auto");
       }
       return {asked, "as asked for"};
     }
@@ -271,8 +281,9 @@ std::pair<std::string, std::string> choose_solver(const std::string& asked, cons
                 (hint.empty() ? "" : hint + " ") + "choose from: " + names + "auto");
   }
   if (scene.step > 0) return {"rk4", "a fixed step is given"};
-  return {eom::Automatic::name, scene.rtol > 1e-6 ? "rtol is above 1e-6, where order 5 needs the fewest evaluations"
-                                                  : "rtol is 1e-6 or below, where order 8 needs the fewest evaluations"};
+  return {eom::Automatic::name, scene.rtol > 1e-6
+                                    ? "rtol is above 1e-6, where order 5 needs the fewest evaluations"
+                                    : "rtol is 1e-6 or below, where order 8 needs the fewest evaluations"};
 }
 
 /// What `auto` did: the method that it ended with, the changes, where df/dx came from.
@@ -283,32 +294,43 @@ static void tell_choice(const RunRequest& request, const eom::Choice& choice, Ru
   }
   if (choice.changes.empty()) return;
   const eom::MethodChange& first = choice.changes.front();
-  result.reason = fmt::format("{} until t = {:.6g}, since {}; then {}: {}", first.from, first.t, result.reason, first.to, first.why);
+  result.reason = fmt::format("{} until t = {:.6g}, since {}; then {}: {}", first.from, first.t, result.reason,
+                              first.to, first.why);
   if (choice.changes.size() > 1) result.reason += fmt::format("; {} changes in all", choice.changes.size());
   if (result.statistics.jacobians == 0) return;
-  result.reason += request.code.jac != nullptr ? "; df/dx from the equations" : "; df/dx by differences, since it was not compiled (solver radau5 has it compiled)";
+  result.reason += request.code.jac != nullptr
+                       ? "; df/dx from the equations"
+                       : "; df/dx by differences, since it was not compiled (solver radau5 has it compiled)";
 }
 
 RunResult integrate_scene(const RunRequest& request) {
   RunResult result;
   std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
   if (method_named(result.solver).implicit)
-    result.reason += request.code.jac != nullptr ? ", df/dx from the equations" : ", df/dx by differences, since it was not compiled";
+    result.reason += request.code.jac != nullptr ? ", df/dx from the equations"
+                                                 : ", df/dx by differences, since it was not compiled";
   if (method_named(result.solver).series) {
-    if (request.code.taylor == nullptr) throw Error("run", {}, "the code was compiled without its Taylor series", "choose the solver taylor when the code is made");
+    if (request.code.taylor == nullptr)
+      throw Error("run", {}, "the code was compiled without its Taylor series",
+                  "choose the solver taylor when the code is made");
     result.reason += ", series from the equations";
   }
   if (const std::string why = unfit(result.solver, request.code); !why.empty()) {
-    throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", result.solver, why), instead_of(result.solver));
+    throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", result.solver, why),
+                instead_of(result.solver));
   }
-  if (method_named(result.solver).constrained) result.reason += "; constraints on positions and velocities are equations of each step, so that nothing is projected";
+  if (method_named(result.solver).constrained)
+    result.reason +=
+        "; constraints on positions and velocities are equations of each step, so that nothing is projected";
   if (method_named(result.solver).variational) {
     result.reason += ", momenta from the equations";
-    if (request.watch_power) result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";
+    if (request.watch_power)
+      result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";
   }
   if (request.scene.step > 0) {
     if (const std::vector<FinerSteps> finer = finer_steps(request.scene); !finer.empty())
-      result.reason += fmt::format("; shorter steps from t = {:.6g} on where a function of time changes within one", finer.front().begin);
+      result.reason += fmt::format("; shorter steps from t = {:.6g} on where a function of time changes within one",
+                                   finer.front().begin);
   }
   if (!request.scene.clock.incomplete.empty()) result.reason += "; " + request.scene.clock.incomplete;
   const eom::Options options = options_of(request);
@@ -317,15 +339,18 @@ RunResult integrate_scene(const RunRequest& request) {
   const Stopwatch::time_point start = Stopwatch::now();
   std::optional<Resolution> resolution;
   const auto& contacts = request.code.contacts;
-  const bool impacts = std::any_of(contacts.begin(), contacts.end(), [](const eom::Contact& contact) { return contact.unilateral; });
+  const bool impacts =
+      std::any_of(contacts.begin(), contacts.end(), [](const eom::Contact& contact) { return contact.unilateral; });
   if (request.estimate && options.fixed_step > 0) resolution.emplace(impacts);
   const auto see = [&](const eom::StepView& view) {
     if (resolution && integration.charts().second() == 0) resolution->see(view);
     return watch.step(view);
   };
   const bool moves = request.scene.t1 != request.scene.t0;
-  eom::Result end = moves ? integration.run(options, see, [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); })
-                          : eom::Result{eom::Outcome::done, request.scene.t0, integration.initial_state(), {}, ""};
+  eom::Result end =
+      moves ? integration.run(options, see,
+                              [&](const RunEvent& event, std::span<const double> x) { watch.event(event, x); })
+            : eom::Result{eom::Outcome::done, request.scene.t0, integration.initial_state(), {}, ""};
   result.seconds_integrate = seconds_since(start);
   if (!moves && result.solver == eom::Automatic::name) {
     result.solver = "dop853";
@@ -358,11 +383,16 @@ RunResult integrate_scene(const RunRequest& request) {
   result.state = integration.own_state(end);
   tell_parameters(request.scene, result);
   if (integration.passed_over()) {
-    result.estimate_note = fmt::format("a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate says nothing; give a shorter --step, or leave it out",
-                                       *integration.passed_over());
+    result.estimate_note = fmt::format(
+        "a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate "
+        "says nothing; give a shorter --step, or leave it out",
+        *integration.passed_over());
   }
   if (const std::optional<double> from = request.narrow.unsure()) {
-    result.reason += fmt::format("; whether a force that is narrow in the state lies in a step could not be told from t = {:.6g} on (--max-step makes steps shorter)", *from);
+    result.reason += fmt::format(
+        "; whether a force that is narrow in the state lies in a step could not be told from t = {:.6g} on (--max-step "
+        "makes steps shorter)",
+        *from);
   }
   const bool ended = result.outcome == eom::Outcome::done || result.outcome == eom::Outcome::stopped_by_event;
   if (request.estimate && ended && moves) {

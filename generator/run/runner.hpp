@@ -42,11 +42,11 @@ struct Code {
   std::vector<std::uint32_t> free;        // coordinates that are state, with their rates
   std::size_t integrals = 0;              // states after them: 0 at the start, never projected
   std::size_t active_constraints = 0;
-  std::vector<bool> holonomic = {};       // per active constraint: false where it binds velocities only
-  std::vector<std::string> kinks = {};    // "abs", "max": their surfaces follow the model's events in g
+  std::vector<bool> holonomic = {};             // per active constraint: false where it binds velocities only
+  std::vector<std::string> kinks = {};          // "abs", "max": their surfaces follow the model's events in g
   std::vector<symbolic::Ref> kink_values = {};  // as expressions
-  std::vector<eom::Contact> contacts = {};  // after them, eom::contact_values of each
-  std::size_t first_kink_bit = 0;         // of mode: two for each kink, above and below its surface
+  std::vector<eom::Contact> contacts = {};      // after them, eom::contact_values of each
+  std::size_t first_kink_bit = 0;               // of mode: two for each kink, above and below its surface
   // Only where the solver taylor was asked for, up to its highest order.
   int (*taylor)(double, const double*, const double*, const double*, int, int, double*) = nullptr;
   int taylor_order = 0;
@@ -57,7 +57,8 @@ struct Code {
   int (*mass_in)(double, const double*, const double*, int, double*, double*) = nullptr;
   int (*constraints_in)(double, const double*, const double*, int, double*, double*, double*) = nullptr;
   std::vector<OwnOutputs> own_outputs = {};
-  int (*jac_p)(double, const double*, const double*, const double*, int, double*) = nullptr;  // only where sensitivities were asked for
+  int (*jac_p)(double, const double*, const double*, const double*, int,
+               double*) = nullptr;  // only where sensitivities were asked for
 };
 
 struct Invariant {
@@ -88,7 +89,7 @@ struct SolverChange {
 };
 
 struct RunResult {
-  std::string solver, reason;             // the method that ended the run, and why it was taken
+  std::string solver, reason;  // the method that ended the run, and why it was taken
   std::vector<SolverChange> solver_changes;
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail;
@@ -96,13 +97,13 @@ struct RunResult {
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;
   std::vector<std::pair<std::string, double>> final;
-  std::vector<double> state;                                   // at the end, in the model's own charts: also what is no output
+  std::vector<double> state;  // at the end, in the model's own charts: also what is no output
   std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not asked for
   std::size_t estimate_rhs_evaluations = 0;
   std::string estimate_note;  // where the estimate itself could not be made as told
   std::vector<Invariant> invariants;
-  double power_balance = 0;      // largest |E - E(0) - W| relative to the energies exchanged
-  double constraint_drift = 0;   // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
+  double power_balance = 0;     // largest |E - E(0) - W| relative to the energies exchanged
+  double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step
   double projection_position = 0, projection_velocity = 0, projection_work = 0;
   double contact_work = 0;  // of impacts
   std::vector<RunEvent> events;
@@ -115,21 +116,22 @@ struct IntegralOutputs {
   std::vector<std::string> slopes;
 };
 
-/// The outputs of a contact: along each tangent the slip, its slopes by the rates of the free coordinates, the friction.
+/// The outputs of a contact: along each tangent the slip, its slopes by the rates of the free coordinates, the
+/// friction.
 struct ContactOutputs {
   std::vector<std::string> slip;
   std::vector<std::vector<std::string>> slopes;
   std::vector<std::string> phi;
-  std::size_t constraint = 0;   // active, of one that can be left
-  std::string restitution;      // of one that can be left
+  std::size_t constraint = 0;  // active, of one that can be left
+  std::string restitution;     // of one that can be left
 };
 
 /// A chart that the run leaves near where it fails, and comes back to.
 struct ExchangedChart {
   std::string of;
-  std::vector<std::size_t> angles;  // places in the state
-  std::vector<std::uint32_t> coordinates;  // of the model
-  std::size_t guarded = 0;          // which of them tells how far the chart is from failing
+  std::vector<std::size_t> angles;             // places in the state
+  std::vector<std::uint32_t> coordinates;      // of the model
+  std::size_t guarded = 0;                     // which of them tells how far the chart is from failing
   bool at_sine = true, second_at_sine = true;  // by its sine or cosine, in the own and in the second chart
 };
 
@@ -141,21 +143,23 @@ struct RunRequest {
   std::vector<WatchedEvent> events = {};  // of the model, all
   bool watch_power = false;               // power is not identically zero: its work is integrated alongside
   bool estimate = true;
-  double every = 0;                       // interval of rows; 0: no rows
+  double every = 0;  // interval of rows; 0: no rows
   std::function<void(double t, std::span<const double> y)> row;
   std::function<void(double fraction)> progress;
   const std::atomic<bool>* interrupt = nullptr;
   std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
-  std::vector<std::string> magnitudes = {};  // per invariant: the output that tells the size of its terms, or ""
-  std::vector<ExchangedChart> charts = {};   // none: the run keeps to the coordinates that it has
-  std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those asked for before
+  std::vector<std::string> magnitudes = {};     // per invariant: the output that tells the size of its terms, or ""
+  std::vector<ExchangedChart> charts = {};      // none: the run keeps to the coordinates that it has
+  std::function<const Code&(unsigned charts)> in_charts =
+      {};                   // code that knows these second charts, and those asked for before
   EventRanges ranges = {};  // of event functions
   NarrowForces narrow = {};
   /// Whether the equations hold where a coordinate has left its range; none: they do not.
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints
-  std::size_t max_steps = 0;  // accepted and rejected together; 0: those of eom::Options, and no bound on fixed steps, whose number is known
+  std::size_t max_steps = 0;  // accepted and rejected together; 0: those of eom::Options, and no bound on fixed steps,
+                              // whose number is known
 
   std::size_t steps_allowed(bool fixed) const {
     if (max_steps > 0) return max_steps;
@@ -184,7 +188,8 @@ std::string not_variational(const Code& code);
 /// Why ggl is not for a model with such parts, or "".
 std::string not_constrained(bool contacts, bool constraints);
 
-/// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the way.
+/// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the
+/// way.
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);
 
 }  // namespace eomgen::run

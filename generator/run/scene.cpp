@@ -32,9 +32,10 @@ constexpr int digits = 40;
 // The equations were simplified on the strength of it.
 void require_sign(const model::Parameter& p, const cln::cl_R& value, const model::Model& model) {
   if (!p.positive || cln::plusp(value)) return;
-  throw Error("scene", model.where(p.span),
-              fmt::format("parameter '{}' is declared positive, and its value is {}", p.name, cln::double_approx(value)),
-              "give it a positive value, or leave `positive` out of the model");
+  throw Error(
+      "scene", model.where(p.span),
+      fmt::format("parameter '{}' is declared positive, and its value is {}", p.name, cln::double_approx(value)),
+      "give it a positive value, or leave `positive` out of the model");
 }
 
 std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
@@ -55,7 +56,8 @@ std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, con
     }
     const auto index = static_cast<std::size_t>(found - m.model->parameters.begin());
     if (index == m.model->start_time) {
-      throw Error("scene", {}, fmt::format("'{}' is the start of the run, from which integrals count: it cannot be set", name),
+      throw Error("scene", {},
+                  fmt::format("'{}' is the start of the run, from which integrals count: it cannot be set", name),
                   "state it in the scene: t = [t0, t1]");
     }
     if (found->start_of) {
@@ -76,14 +78,16 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const std::vector<Ref>& fo
     for (std::size_t i = 0; i < n; ++i) {
       if (known[i]) continue;
       bool ready = true;
-      for (const Symbol& s : m.dag->symbols({formula[i]})) ready = ready && s.kind == SymbolKind::parameter && known[s.index];
+      for (const Symbol& s : m.dag->symbols({formula[i]}))
+        ready = ready && s.kind == SymbolKind::parameter && known[s.index];
       if (!ready) continue;
       const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
       try {
         values[i] = symbolic::evaluate(*m.dag, {formula[i]}, lookup, wanted_digits)[0];
       } catch (const std::exception& error) {
         const model::Parameter& p = m.model->parameters[i];
-        throw Error("scene", m.model->where(p.span), fmt::format("parameter '{}' has no value: {}", p.name, error.what()),
+        throw Error("scene", m.model->where(p.span),
+                    fmt::format("parameter '{}' has no value: {}", p.name, error.what()),
                     "check the numbers that it is computed from");
       }
       known[i] = true;
@@ -101,19 +105,22 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
     model::Span span;
   };
   std::vector<Heavy> all;
-  for (const model::Particle& particle : m.model->particles) all.push_back({particle.place, particle.mass, particle.span});
+  for (const model::Particle& particle : m.model->particles)
+    all.push_back({particle.place, particle.mass, particle.span});
   for (const model::Body& body : m.model->bodies) all.push_back({body.place, body.mass, body.span});
   for (const Heavy& particle : all) {
     const Ref mass = mechanics::lower_scalar(m, particle.mass);
     const std::vector<Symbol> symbols = m.dag->symbols({mass});
-    const bool of_parameters = std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
+    const bool of_parameters =
+        std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
     if (!of_parameters) continue;
     const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
     const cln::cl_R value = symbolic::evaluate(*m.dag, {mass}, lookup, digits)[0];
     if (cln::plusp(value)) continue;
-    throw Error("scene", m.model->where(particle.span),
-                fmt::format("the mass of '{}' is {} here", m.model->places[particle.place].name, cln::double_approx(value)),
-                "a mass is greater than 0");
+    throw Error(
+        "scene", m.model->where(particle.span),
+        fmt::format("the mass of '{}' is {} here", m.model->places[particle.place].name, cln::double_approx(value)),
+        "a mass is greater than 0");
   }
 }
 
@@ -121,16 +128,19 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
 void require_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
   for (const mechanics::Contact& contact : m.contacts) {
     if (contact.dimensions() == 0) continue;
-    const std::vector<Ref> both{contact.width ? contact.dynamic_coefficient : contact.static_coefficient, contact.dynamic_coefficient};
+    const std::vector<Ref> both{contact.width ? contact.dynamic_coefficient : contact.static_coefficient,
+                                contact.dynamic_coefficient};
     const std::vector<Symbol> symbols = m.dag->symbols(both);
-    if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; })) continue;
+    if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; }))
+      continue;
     const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
     const std::vector<cln::cl_R> mu = symbolic::evaluate(*m.dag, both, lookup, digits);
     const bool negative = cln::minusp(mu[0]) || cln::minusp(mu[1]);
     if (!negative && mu[0] >= mu[1]) continue;
     throw Error("scene", m.model->where(scene.span),
                 negative ? fmt::format("a coefficient of friction of '{}' is negative here", contact.name)
-                         : fmt::format("the static coefficient of friction of '{}' is less than the dynamic one here", contact.name),
+                         : fmt::format("the static coefficient of friction of '{}' is less than the dynamic one here",
+                                       contact.name),
                 negative ? "friction opposes slip: give coefficients of 0 or more" : "give static >= dynamic");
   }
 }
@@ -187,24 +197,29 @@ class SceneEvaluator {
   std::map<Symbol, cln::cl_R> given_;
 };
 
-std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value, Scene& result) {
+std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene& scene, SceneEvaluator& value,
+                                               Scene& result) {
   std::vector<std::optional<Ref>> expressions;
   symbolic::Substitution written = derive::write_out(m);
   for (std::uint32_t i = 0; i < m.model->inputs.size(); ++i) {
-    const auto given = std::find_if(scene.inputs.begin(), scene.inputs.end(), [&](const auto& s) { return s.input == i; });
-    const model::InputTable* table = given == scene.inputs.end() ? nullptr : std::get_if<model::InputTable>(&given->signal);
+    const auto given =
+        std::find_if(scene.inputs.begin(), scene.inputs.end(), [&](const auto& s) { return s.input == i; });
+    const model::InputTable* table =
+        given == scene.inputs.end() ? nullptr : std::get_if<model::InputTable>(&given->signal);
     if (table != nullptr) {
       std::vector<double> t, v;
       for (const model::NodeId id : table->t) t.push_back(value.number(id, "a time of an input table"));
       for (const model::NodeId id : table->value) v.push_back(value.number(id, "a value of an input table"));
       if (!std::is_sorted(t.begin(), t.end(), std::less_equal<>())) {
-        throw Error("scene", m.model->where(given->span), "the times of an input table must increase", "sort the table by time");
+        throw Error("scene", m.model->where(given->span), "the times of an input table must increase",
+                    "sort the table by time");
       }
       result.inputs.emplace_back(std::move(t), std::move(v));
       expressions.emplace_back();
       continue;
     }
-    const model::NodeId id = given == scene.inputs.end() ? m.model->inputs[i].fallback : std::get<model::NodeId>(given->signal);
+    const model::NodeId id =
+        given == scene.inputs.end() ? m.model->inputs[i].fallback : std::get<model::NodeId>(given->signal);
     const Ref signal = written(mechanics::lower_scalar(m, id));
     for (const Symbol& symbol : m.dag->symbols({signal})) {
       if (symbol.kind != SymbolKind::integral) continue;
@@ -219,7 +234,8 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
 }
 
 // What time alone does, and where that makes something jump.
-void resolve_clock(const Mechanics& m, const system::EquationSystem& system, const std::vector<std::optional<Ref>>& expressions, Scene& result) {
+void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
+                   const std::vector<std::optional<Ref>>& expressions, Scene& result) {
   std::vector<ClockInput> inputs;
   for (std::size_t i = 0; i < expressions.size(); ++i) inputs.push_back({&result.inputs[i], expressions[i]});
   result.clock = look_at_time(system, result.parameters, inputs, result.t0, result.t1);
@@ -243,7 +259,8 @@ void require_ranges(const Mechanics& m, const model::Scene& scene, const Scene& 
     const auto given = std::find_if(scene.initial.begin(), scene.initial.end(),
                                     [&](const model::InitialValue& v) { return v.coordinate == i && v.order == 0; });
     throw Error("scene", m.model->where(given == scene.initial.end() ? scene.span : given->span),
-                fmt::format("the start has {} = {}, outside its range ({}, {})", c.name, result.q[i], result.lower[i], result.upper[i]),
+                fmt::format("the start has {} = {}, outside its range ({}, {})", c.name, result.q[i], result.lower[i],
+                            result.upper[i]),
                 fmt::format("start inside the range, or give {} another one in [coordinates]", c.name));
   }
 }
@@ -252,15 +269,18 @@ void require_span(const Mechanics& m, const model::Scene& scene, const Scene& re
   const auto fail = [&](const char* what, const char* remedy) {
     throw Error("scene", m.model->where(scene.span), what, remedy);
   };
-  if (!(result.t1 > result.t0) && !at_start) fail("the end of the scene must come after its start", "t = [t0, t1] with t1 > t0");
+  if (!(result.t1 > result.t0) && !at_start)
+    fail("the end of the scene must come after its start", "t = [t0, t1] with t1 > t0");
   if (!(result.rtol >= 0 && result.atol >= 0 && result.rtol + result.atol > 0)) {
     fail("tolerances must not be negative, nor both zero", "give rtol = 1e-9 and atol = 1e-12, say");
   }
-  if (result.step < 0 || result.max_step < 0 || result.every < 0) fail("step, max_step and every must be positive", "leave them out for the defaults");
+  if (result.step < 0 || result.max_step < 0 || result.every < 0)
+    fail("step, max_step and every must be positive", "leave them out for the defaults");
 }
 
 // Coordinates fail where M has no inverse; with multipliers it may have none as long as the constraints mend that.
-void require_regular(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene, const Scene& start) {
+void require_regular(const Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
+                     const Scene& start) {
   constexpr double smallest_pivot = 1e-14;  // of M scaled to a unit diagonal; rounding leaves 1e-16 per operation
   if (!system.active.empty()) return;
   const auto n = static_cast<Eigen::Index>(system.free.size());
@@ -288,8 +308,8 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
 
 }  // namespace
 
-std::vector<cln::cl_R> exact_parameters(Mechanics& m, const model::Scene& scene, const Overrides& overrides, int wanted_digits,
-                                        std::optional<std::uint64_t> moved) {
+std::vector<cln::cl_R> exact_parameters(Mechanics& m, const model::Scene& scene, const Overrides& overrides,
+                                        int wanted_digits, std::optional<std::uint64_t> moved) {
   std::vector<Ref> formula = parameter_formulas(m, scene, overrides);
   for (std::uint32_t i = 0; moved && i < formula.size(); ++i) {
     if (!m.dag->is_constant(formula[i])) continue;
@@ -331,9 +351,11 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.solver = overrides.solver.value_or(scene.solver);
   const bool at_start = overrides.at_start && overrides.t_end && result.t1 == result.t0;
   if (overrides.t_end && !(result.t1 > result.t0) && !at_start) {
-    throw Error("scene", {}, fmt::format("the run would end at t = {}, {} its start{}", result.t1, result.t1 < result.t0 ? "before" : "at",
-                            result.t1 < result.t0 ? fmt::format(" at t = {}", result.t0) : ""),
-                "give a later --t-end");
+    throw Error(
+        "scene", {},
+        fmt::format("the run would end at t = {}, {} its start{}", result.t1, result.t1 < result.t0 ? "before" : "at",
+                    result.t1 < result.t0 ? fmt::format(" at t = {}", result.t0) : ""),
+        "give a later --t-end");
   }
   require_span(m, scene, result, at_start);
   const std::vector<std::optional<Ref>> inputs = resolve_inputs(m, scene, value, result);
@@ -352,12 +374,15 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (const model::InitialValue& guess : scene.guess) {
     problem.guess[{guess.coordinate, guess.order}] = value.number(guess.value, "a guess");
   }
-  for (std::size_t i = 0; i < result.parameters.size(); ++i) {  // initial(q): what is known of q before the constraints are met
+  for (std::size_t i = 0; i < result.parameters.size();
+       ++i) {  // initial(q): what is known of q before the constraints are met
     const auto& start_of = m.model->parameters[i].start_of;
     if (!start_of) continue;
     const auto given = problem.given.find({*start_of, 0});
     const auto guess = problem.guess.find({*start_of, 0});
-    result.parameters[i] = given != problem.given.end() ? given->second.value : guess != problem.guess.end() ? guess->second : 0;
+    result.parameters[i] = given != problem.given.end()   ? given->second.value
+                           : guess != problem.guess.end() ? guess->second
+                                                          : 0;
   }
   solve_start(problem);
   for (std::size_t i = 0; i < result.parameters.size(); ++i) {
@@ -370,7 +395,9 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   require_ranges(m, scene, result);
   result.solved = problem.solved;
   if (scene.initial.empty() && scene.rotations.empty()) {
-    result.solved.insert(result.solved.begin(), "no initial values: all coordinates and rates start at 0" + std::string(problem.solved.empty() ? "" : ", but for those that follow"));
+    result.solved.insert(result.solved.begin(),
+                         "no initial values: all coordinates and rates start at 0" +
+                             std::string(problem.solved.empty() ? "" : ", but for those that follow"));
   }
   result.apart = problem.apart;
   for (const model::Event& event : m.model->events) result.stops.push_back(event.stop);
@@ -385,7 +412,8 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   result.outputs = expand_outputs(m, system, wanted);
   return result;
 } catch (const cln::runtime_exception& error) {
-  throw Error("scene", m.model->where(scene.span), fmt::format("a number of scene '{}' is beyond what floating point holds: {}", scene.name, error.what()),
+  throw Error("scene", m.model->where(scene.span),
+              fmt::format("a number of scene '{}' is beyond what floating point holds: {}", scene.name, error.what()),
               "choose parameters from which its start can be computed");
 }
 
@@ -395,10 +423,13 @@ namespace {
 void refuse_undetermined(const Mechanics& m, const model::Named& want) {
   for (const mechanics::Constraint& c : m.constraints) {
     const std::string label = "reaction." + c.label;
-    const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(), [&](const model::Joint& j) { return j.name == c.name; });
+    const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(),
+                                   [&](const model::Joint& j) { return j.name == c.name; });
     if (c.determined || joint || (want.name != label && want.name != "reaction." + c.name)) continue;
-    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{}, fmt::format("the motion does not determine '{}'", label),
-                "other constraints hold the same, or nothing moves against it (`check` lists such constraints): ask for the force of another, or give the bodies coordinates that it binds");
+    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
+                fmt::format("the motion does not determine '{}'", label),
+                "other constraints hold the same, or nothing moves against it (`check` lists such constraints): ask "
+                "for the force of another, or give the bodies coordinates that it binds");
   }
   for (std::size_t i = 0; i < m.joints.size(); ++i) {
     const std::string name = "reaction." + m.model->joints[i].name;
@@ -408,9 +439,12 @@ void refuse_undetermined(const Mechanics& m, const model::Named& want) {
       if (m.joints[i].determined[j]) known += fmt::format("{}{}.{}", known.empty() ? "" : ", ", name, j + 1);
     }
     if (want.name.size() != name.size() + 2 || want.name.back() < '1' || want.name.back() > '6') return;
-    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{}, fmt::format("the motion does not determine '{}'", want.name),
-                fmt::format("it is left open by equations of the joint that hold identically or repeat others (`check` lists them): give the bodies coordinates "
-                            "that this equation binds, or a joint that leaves the motion free{}", known.empty() ? "" : "; determined are " + known));
+    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
+                fmt::format("the motion does not determine '{}'", want.name),
+                fmt::format("it is left open by equations of the joint that hold identically or repeat others (`check` "
+                            "lists them): give the bodies coordinates "
+                            "that this equation binds, or a joint that leaves the motion free{}",
+                            known.empty() ? "" : "; determined are " + known));
   }
 }
 
@@ -432,8 +466,9 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     bool found = coordinates.contains(want.name);
     for (const system::Output& output : system.outputs) {
       const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      const bool table = !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix) &&
-                         !output.name.starts_with(system::contact_prefix) && !output.name.starts_with(system::watched_prefix);
+      const bool table =
+          !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix) &&
+          !output.name.starts_with(system::contact_prefix) && !output.name.starts_with(system::watched_prefix);
       const bool of_all = want.name == "all" && table;
       if (!of_all && output.name != want.name && !part) continue;
       take(output.name);
@@ -443,7 +478,8 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
       refuse_undetermined(m, want);
       std::string names;
       for (const system::Output& output : system.outputs) {
-        const bool hidden = output.name.starts_with(derive::magnitude_prefix) || output.name.starts_with(system::contact_prefix) ||
+        const bool hidden = output.name.starts_with(derive::magnitude_prefix) ||
+                            output.name.starts_with(system::contact_prefix) ||
                             output.name.starts_with(system::watched_prefix);
         if (!coordinates.contains(output.name) && !hidden) names += (names.empty() ? "" : ", ") + output.name;
       }

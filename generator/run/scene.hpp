@@ -34,15 +34,15 @@ struct Scene {
   std::string name;
   std::vector<double> parameters;  // all of the model, in order; dependent ones computed
   double t0 = 0, t1 = 0;
-  std::vector<double> q, qdot;     // all coordinates of the model
+  std::vector<double> q, qdot;       // all coordinates of the model
   std::vector<double> lower, upper;  // open range of each coordinate; infinite where there is none
-  std::string solver;              // as asked for; may be "auto"
+  std::string solver;                // as asked for; may be "auto"
   double rtol = 1e-9, atol = 1e-12;
-  double step = 0, every = 0;      // 0: not given
-  double max_step = 0;             // of chosen steps; 0: not bounded
-  std::vector<Signal> inputs;      // one per input of the model
-  Clock clock;                     // what time alone does
-  std::shared_ptr<Jumps> jumps;    // where something may jump, or null
+  double step = 0, every = 0;        // 0: not given
+  double max_step = 0;               // of chosen steps; 0: not bounded
+  std::vector<Signal> inputs;        // one per input of the model
+  Clock clock;                       // what time alone does
+  std::shared_ptr<Jumps> jumps;      // where something may jump, or null
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
   std::vector<bool> stops;           // per event of the model: whether it ends the run
   std::vector<bool> apart;           // per contact: whether it does not touch at the start
@@ -55,10 +55,11 @@ inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 Scene resolve_scene(mechanics::Mechanics& mechanics, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides);
 
-/// Parameters of a scene in many digits. `moved`: those that are plain numbers are each multiplied by a number near 1 that it
-/// chooses (what is 0 stays 0), and those that are computed from them follow.
-std::vector<cln::cl_R> exact_parameters(mechanics::Mechanics& mechanics, const model::Scene& scene, const Overrides& overrides,
-                                        int digits, std::optional<std::uint64_t> moved = {});
+/// Parameters of a scene in many digits. `moved`: those that are plain numbers are each multiplied by a number near 1
+/// that it chooses (what is 0 stays 0), and those that are computed from them follow.
+std::vector<cln::cl_R> exact_parameters(mechanics::Mechanics& mechanics, const model::Scene& scene,
+                                        const Overrides& overrides, int digits,
+                                        std::optional<std::uint64_t> moved = {});
 
 /// Names of all outputs that can be asked for: those of the system, vectors and reactions by their parts.
 std::vector<std::string> expand_outputs(const mechanics::Mechanics& mechanics, const system::EquationSystem& system,

@@ -15,9 +15,15 @@ namespace {
 class Variational {
  public:
   Variational(const RunRequest& request, const std::vector<Direction>& directions)
-      : code_(request.code), scene_(request.scene), directions_(directions), n_(request.state_names.size()),
-        w_(code_.prepare != nullptr ? code_.prepared : 0), u_(std::max<std::size_t>(1, scene_.inputs.size())),
-        dfdx_(n_ * n_), dfdt_(n_), dfdp_(n_ * scene_.parameters.size()) {
+      : code_(request.code),
+        scene_(request.scene),
+        directions_(directions),
+        n_(request.state_names.size()),
+        w_(code_.prepare != nullptr ? code_.prepared : 0),
+        u_(std::max<std::size_t>(1, scene_.inputs.size())),
+        dfdx_(n_ * n_),
+        dfdt_(n_),
+        dfdp_(n_ * scene_.parameters.size()) {
     prepared_ = code_.prepare != nullptr && code_.prepare(scene_.parameters.data(), w_.data()) == 0;
   }
 
@@ -51,7 +57,8 @@ class Variational {
         for (std::size_t i = 0; i < n_; ++i) slope[i] += dfdp_[i + n_ * k] * change;
       }
     }
-    const int code = prepared_ ? code_.rhs_prepared(t, x, p, w_.data(), u_.data(), 0, dx) : code_.rhs(t, x, p, u_.data(), 0, dx);
+    const int code =
+        prepared_ ? code_.rhs_prepared(t, x, p, w_.data(), u_.data(), 0, dx) : code_.rhs(t, x, p, u_.data(), 0, dx);
     if (code == 0) std::copy(slopes_.begin(), slopes_.end(), dx + n_);
     return code;
   }
@@ -77,16 +84,19 @@ std::vector<Break> pieces(const Scene& scene, double t_end) {
     }
   }
   for (const Break& b : scene.clock.breaks) {
-    if ((b.before - scene.t0) * direction > 0 && (t_end - b.after) * direction > 0) ends.push_back(direction > 0 ? b : Break{b.after, b.before});
+    if ((b.before - scene.t0) * direction > 0 && (t_end - b.after) * direction > 0)
+      ends.push_back(direction > 0 ? b : Break{b.after, b.before});
   }
-  std::sort(ends.begin(), ends.end(), [direction](const Break& a, const Break& b) { return a.before * direction < b.before * direction; });
-  ends.erase(std::unique(ends.begin(), ends.end(), [](const Break& a, const Break& b) { return a.before == b.before; }), ends.end());
+  std::sort(ends.begin(), ends.end(),
+            [direction](const Break& a, const Break& b) { return a.before * direction < b.before * direction; });
+  ends.erase(std::unique(ends.begin(), ends.end(), [](const Break& a, const Break& b) { return a.before == b.before; }),
+             ends.end());
   ends.push_back({t_end, t_end});
   return ends;
 }
 
-eom::Result run(const RunRequest& request, const std::string& solver, double t_end, const std::vector<Direction>& directions,
-                const eom::Options& options) {
+eom::Result run(const RunRequest& request, const std::string& solver, double t_end,
+                const std::vector<Direction>& directions, const eom::Options& options) {
   Variational f(request, directions);
   eom::Result total;
   total.t = request.scene.t0;
@@ -136,16 +146,19 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const std::stri
   const std::size_t n = request.state_names.size();
   for (std::size_t d = 0; d < directions.size(); ++d) {
     result.list.push_back({directions[d].name, {}, {}});
-    for (std::size_t i = 0; i < n; ++i) result.list.back().value.push_back(end.x[(d + 1) * n + i] / directions[d].scale);
+    for (std::size_t i = 0; i < n; ++i)
+      result.list.back().value.push_back(end.x[(d + 1) * n + i] / directions[d].scale);
   }
   if (!estimate || end.outcome != eom::Outcome::done) return result;
-  const eom::ErrorEstimate error = eom::estimate_error(method_named(result.solver).order, request.scene.t0, end, options,
+  const eom::ErrorEstimate error = eom::estimate_error(
+      method_named(result.solver).order, request.scene.t0, end, options,
       [&](const eom::Options& tighter) { return run(request, result.solver, t_end, directions, tighter); });
   for (std::size_t d = 0; d < directions.size(); ++d) {
     for (std::size_t i = 0; i < n; ++i) result.list[d].error.push_back(error.x[(d + 1) * n + i] / directions[d].scale);
   }
   if (error.outcome != eom::Outcome::done)
-    result.estimate_note = fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(error.outcome));
+    result.estimate_note =
+        fmt::format("a tighter run ended with '{}'; the estimate is not to be trusted", eom::name(error.outcome));
   return result;
 }
 

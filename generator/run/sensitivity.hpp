@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Derivatives of the end state of a run by parameters and by values of the start: the variational equations
 //   s' = df/dx s + df/dp dp,   s(t0) = dx0
-// are integrated together with x' = f (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section I.14), with
-// df/dx and df/dp of the emitted code, under the same error control.
+// are integrated together with x' = f (Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section
+// I.14), with df/dx and df/dp of the emitted code, under the same error control.
 #pragma once
 
 #include "run/runner.hpp"
@@ -18,9 +18,9 @@ struct Direction {
 };
 
 struct Sensitivity {
-  std::string of;                // the direction
-  std::vector<double> value;     // per state at the end
-  std::vector<double> error;     // estimates; empty where none was asked for
+  std::string of;             // the direction
+  std::vector<double> value;  // per state at the end
+  std::vector<double> error;  // estimates; empty where none was asked for
 };
 
 struct Sensitivities {
@@ -32,8 +32,8 @@ struct Sensitivities {
   std::string estimate_note;
 };
 
-/// At the time `t_end` that the run has reached. Of `request.code` jac and jac_p are needed. Throws Error{stage "run"} where the
-/// equations change on the way (contacts): the derivative jumps there.
+/// At the time `t_end` that the run has reached. Of `request.code` jac and jac_p are needed. Throws Error{stage "run"}
+/// where the equations change on the way (contacts): the derivative jumps there.
 Sensitivities integrate_sensitivities(const RunRequest& request, const std::string& solver, double t_end,
                                       const std::vector<Direction>& directions, bool estimate);
 

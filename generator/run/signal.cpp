@@ -41,7 +41,8 @@ Signal::Signal(const symbolic::Dag& dag, symbolic::Ref expression, const std::ve
   work_.resize(code_.size());
 }
 
-Signal::Signal(std::vector<double> time, std::vector<double> value) : time_(std::move(time)), value_(std::move(value)) {}
+Signal::Signal(std::vector<double> time, std::vector<double> value)
+    : time_(std::move(time)), value_(std::move(value)) {}
 
 double Signal::operator()(double t, double side_of) const {
   if (time_.empty()) return code_.empty() ? 0.0 : evaluate(t);
@@ -51,7 +52,8 @@ double Signal::operator()(double t, double side_of) const {
 }
 
 bool Signal::moves() const {
-  return time_.empty() && std::any_of(code_.begin(), code_.end(), [](const Step& step) { return step.op == Op::symbol; });
+  return time_.empty() &&
+         std::any_of(code_.begin(), code_.end(), [](const Step& step) { return step.op == Op::symbol; });
 }
 
 double Signal::evaluate(double t) const {
@@ -60,7 +62,8 @@ double Signal::evaluate(double t) const {
     const auto arg = [&](std::size_t k) { return work_[step.args[k]]; };
     double& result = work_[i];
     switch (step.op) {
-      case Op::constant: case Op::pi: result = constants_[static_cast<std::size_t>(step.payload)]; break;
+      case Op::constant:
+      case Op::pi: result = constants_[static_cast<std::size_t>(step.payload)]; break;
       case Op::symbol: result = t; break;
       case Op::add: result = arg(0) + arg(1); break;
       case Op::sub: result = arg(0) - arg(1); break;

@@ -13,8 +13,9 @@ constexpr double near = 0.1;        // of the measure: rank is lost soon, and it
 constexpr double soon = 0.3;        // from here on it is looked at after every step
 constexpr int look_every = 8;       // steps, else
 constexpr double redundant = 1e-9;  // below it rows follow from others all the time
-constexpr double shorter = 0.7;     // than the longest step so far: the solver has met something, and it is looked at at once
-constexpr double look_ahead = 1e-3; // of the step, for the slope of the measure
+constexpr double shorter =
+    0.7;  // than the longest step so far: the solver has met something, and it is looked at at once
+constexpr double look_ahead = 1e-3;  // of the step, for the slope of the measure
 
 }  // namespace
 
@@ -27,7 +28,8 @@ SingularPassage::SingularPassage(std::size_t n, std::size_t rows, Rows evaluate)
       longest_row_(Eigen::VectorXd::Zero(A_.rows())) {}
 
 double SingularPassage::rank_measure(double t, const double* x) {
-  if (A_.rows() == 0 || A_.rows() > A_.cols() || evaluate_(t, x, A_.data()) != 0 || !A_.allFinite()) return std::numeric_limits<double>::quiet_NaN();
+  if (A_.rows() == 0 || A_.rows() > A_.cols() || evaluate_(t, x, A_.data()) != 0 || !A_.allFinite())
+    return std::numeric_limits<double>::quiet_NaN();
   for (Eigen::Index i = 0; i < A_.rows(); ++i) {
     longest_row_(i) = std::max(longest_row_(i), A_.row(i).norm());  // a row may vanish, as where bars lie flat
     transposed_.col(i) = A_.row(i).transpose() / (longest_row_(i) > 0 ? longest_row_(i) : 1);

@@ -31,7 +31,8 @@ constexpr double rank_tolerance = 1e-10;
 
 class StartSolver {
  public:
-  explicit StartSolver(StartProblem& problem) : p_(problem), s_(problem.system), n_(s_.free.size()), m_(s_.active.size()) {
+  explicit StartSolver(StartProblem& problem)
+      : p_(problem), s_(problem.system), n_(s_.free.size()), m_(s_.active.size()) {
     for (std::size_t k = 0; k < m_; ++k) {
       if (s_.holonomic[k]) rows_[0].push_back(k);
       rows_[1].push_back(k);
@@ -76,7 +77,8 @@ class StartSolver {
   }
 
  private:
-  // A contact that can be left is left where all that its gap depends on is given, and the gap is open (order 0) or opening (1).
+  // A contact that can be left is left where all that its gap depends on is given, and the gap is open (order 0) or
+  // opening (1).
   void leave(std::uint8_t order) {
     p_.apart.resize(s_.contacts.size(), false);
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
@@ -98,13 +100,16 @@ class StartSolver {
     }
   }
 
-  // Of rolling with friction the rates that are not given follow from rolling, if those that are given allow it: slip 0 as more rows.
+  // Of rolling with friction the rates that are not given follow from rolling, if those that are given allow it: slip 0
+  // as more rows.
   bool add_rolling() {
     const std::size_t before = rows_[1].size();
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
       const std::optional<std::uint32_t> touch = p_.mechanics.contacts[j].touch;
       if (!touch || !p_.mechanics.model->constraints[*touch].rolls_by_friction() || p_.apart[j]) continue;
-      if (s_.contacts[j].unilateral && std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end()) continue;
+      if (s_.contacts[j].unilateral &&
+          std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
+        continue;
       for (const Ref slip : s_.contacts[j].slip) add_rate(slip, 0);
     }
     return rows_[1].size() > before;
@@ -113,8 +118,9 @@ class StartSolver {
     while (!rows_[1].empty() && rows_[1].back() >= m_ + s_.redundant.size() + 3 * p_.turns.size()) rows_[1].pop_back();
   }
 
-  // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their rates that
-  // are not given are 0. So are those of bodies in joints, unless joints close a loop from which they follow.
+  // Of a body that rolls or slides the position follows from the attitude, not the other way round: angles and their
+  // rates that are not given are 0. So are those of bodies in joints, unless joints close a loop from which they
+  // follow.
   void hold_angles(std::set<StartProblem::Key>& held) const {
     const model::Model& model = *p_.mechanics.model;
     for (std::uint32_t f = 1; f < model.frames.size(); ++f) {
@@ -132,7 +138,8 @@ class StartSolver {
   // An angular velocity is linear in the rates: three more rows beside those of the constraints.
   void add_turn(const StartProblem::Turn& turn) {
     symbolic::Substitution imposed = derive::impose(p_.mechanics), written = derive::write_out(p_.mechanics);
-    for (std::size_t k = 0; k < 3; ++k) add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
+    for (std::size_t k = 0; k < 3; ++k)
+      add_rate(written(imposed(p_.mechanics.angular_velocity[turn.frame][k])), turn.value[k]);
   }
 
   // A row w = value, of w that is linear in the rates.
@@ -178,8 +185,8 @@ class StartSolver {
           const double off = std::abs(given->second.value - exact[order]);
           if (!(off <= start_tolerance * std::max(std::abs(exact[order]), std::abs(given->second.value)))) {
             throw Error("scene", p_.mechanics.model->where(given->second.span),
-                        fmt::format("{} = {} breaks constraint '{}', which fixes it at {} (off by {:.3g})",
-                                    label(key), given->second.value, constraint, exact[order], off),
+                        fmt::format("{} = {} breaks constraint '{}', which fixes it at {} (off by {:.3g})", label(key),
+                                    given->second.value, constraint, exact[order], off),
                         fmt::format("leave {} out: it follows from the constraint", label(key)));
           }
         }
@@ -197,7 +204,8 @@ class StartSolver {
     std::vector<std::size_t> result;
     for (std::size_t i = 0; i < n_; ++i) {
       const StartProblem::Key key{s_.free[i], order};
-      if ((!p_.given.contains(key) && !held_.contains(key) && !loose_.contains(key)) || may_move(key)) result.push_back(i);
+      if ((!p_.given.contains(key) && !held_.contains(key) && !loose_.contains(key)) || may_move(key))
+        result.push_back(i);
     }
     return result;
   }
@@ -226,7 +234,8 @@ class StartSolver {
   double relative(const VectorXd& residual, const MatrixXd& A, std::uint8_t order, Eigen::Index k) const {
     double terms = 0, slopes = 0, largest = 0;
     for (std::size_t i = 0; i < n_; ++i) {
-      const double x = order == 0 ? p_.q[s_.free[i]] : p_.qdot[s_.free[i]], slope = std::abs(A(k, static_cast<Eigen::Index>(i)));
+      const double x = order == 0 ? p_.q[s_.free[i]] : p_.qdot[s_.free[i]],
+                   slope = std::abs(A(k, static_cast<Eigen::Index>(i)));
       terms += std::abs(slope * x);
       slopes += slope;
       largest = std::max(largest, std::abs(x));
@@ -266,7 +275,8 @@ class StartSolver {
       newton(order, free);
       if (order == 0) hold_angles(loose_);
     }
-    if (order == 1 && worst(order) > start_tolerance && !held_.empty()) {  // the speed of a body that rolls is given in place of its spin
+    if (order == 1 && worst(order) > start_tolerance &&
+        !held_.empty()) {  // the speed of a body that rolls is given in place of its spin
       held_.clear();
       free = unknowns(order);
       newton(order, free);
@@ -276,8 +286,8 @@ class StartSolver {
     if (worst(order, &k) > start_tolerance) refuse(order, static_cast<std::size_t>(k), free);
   }
 
-  /// Where the constraints could be met in several ways, as by rolling that says nothing of the spin about the normal: those unknowns follow
-  /// that they feel most, and the others stay 0 (or their guess), which is told.
+  /// Where the constraints could be met in several ways, as by rolling that says nothing of the spin about the normal:
+  /// those unknowns follow that they feel most, and the others stay 0 (or their guess), which is told.
   void choose(std::uint8_t order, const std::vector<std::size_t>& free) {
     VectorXd residual;
     MatrixXd A;
@@ -294,12 +304,15 @@ class StartSolver {
     const std::vector<bool> felt = felt_most(columns, first, rank_tolerance);
     for (std::size_t i = 0; i < free.size(); ++i) {
       const StartProblem::Key key{s_.free[free[i]], order};
-      if (felt[i]) chosen.push_back(free[i]);
-      else if (columns.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > 0) open += fmt::format("{}{} = {}", open.empty() ? "" : ", ", label(key), value(key));
+      if (felt[i])
+        chosen.push_back(free[i]);
+      else if (columns.col(static_cast<Eigen::Index>(i)).cwiseAbs().maxCoeff() > 0)
+        open += fmt::format("{}{} = {}", open.empty() ? "" : ", ", label(key), value(key));
     }
     if (chosen.size() == free.size() || open.empty()) return;
     newton(order, chosen);
-    if (worst(order) <= start_tolerance) p_.solved.push_back(open + " (chosen: the constraints can be met in several ways)");
+    if (worst(order) <= start_tolerance)
+      p_.solved.push_back(open + " (chosen: the constraints can be met in several ways)");
   }
 
   // Tried from the guess (or 0), then from points beside it: at 0 a gradient may vanish (x^2 + y^2 - L^2).
@@ -356,13 +369,15 @@ class StartSolver {
     return worst(order) <= rounding;
   }
 
-  /// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how much it is off then.
+  /// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how
+  /// much it is off then.
   std::pair<std::size_t, double> first_broken(const std::vector<std::size_t>& free) const {
     VectorXd residual;
     MatrixXd A;
     linearise(1, residual, A);
     MatrixXd columns(A.rows(), static_cast<Eigen::Index>(free.size()));
-    for (std::size_t i = 0; i < free.size(); ++i) columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
+    for (std::size_t i = 0; i < free.size(); ++i)
+      columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(free[i]));
     const std::vector<std::size_t>& bound = rows_[1];
     const std::size_t turns = m_ + s_.redundant.size();
     std::vector<std::size_t> before;
@@ -390,7 +405,8 @@ class StartSolver {
       }
       const double off = residual(row) - columns.row(row).dot(move);
       const double size = std::abs(residual(row)) + columns.row(row).cwiseAbs().dot(move.cwiseAbs());
-      if (beside.norm() <= rank_tolerance * columns.row(row).norm() && std::abs(off) > start_tolerance * size) return {k, off};
+      if (beside.norm() <= rank_tolerance * columns.row(row).norm() && std::abs(off) > start_tolerance * size)
+        return {k, off};
       before.push_back(k);
     }
     return {bound.size(), 0};
@@ -398,8 +414,10 @@ class StartSolver {
 
   [[noreturn]] void refuse_turn(const StartProblem::Turn& turn, double off) const {
     throw Error("scene", p_.mechanics.model->where(turn.span),
-                fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}", p_.mechanics.model->frames[turn.frame].name, off),
-                "start away from the singular places of its angles, which `check` lists; leave rates that follow from it out; its constraints may not allow it");
+                fmt::format("no rates give '{}' this angular velocity: a component is off by {:.6g}",
+                            p_.mechanics.model->frames[turn.frame].name, off),
+                "start away from the singular places of its angles, which `check` lists; leave rates that follow from "
+                "it out; its constraints may not allow it");
   }
 
   [[noreturn]] void refuse(std::uint8_t order, std::size_t k, const std::vector<std::size_t>& free) const {
@@ -414,7 +432,8 @@ class StartSolver {
     const auto row = static_cast<Eigen::Index>(k);
     const std::size_t bound = rows_[order][k], turns = m_ + s_.redundant.size();
     if (bound >= turns) refuse_turn(p_.turns[(bound - turns) / 3], residual(row));
-    const mechanics::Constraint& constraint = p_.mechanics.constraints[bound < m_ ? s_.active[bound] : s_.redundant[bound - m_].constraint];
+    const mechanics::Constraint& constraint =
+        p_.mechanics.constraints[bound < m_ ? s_.active[bound] : s_.redundant[bound - m_].constraint];
     std::string given, open;
     model::Span span = p_.scene.span;
     for (std::size_t i = 0; i < n_; ++i) {
@@ -431,13 +450,16 @@ class StartSolver {
     const bool alone = open.find(',') == std::string::npos;  // one unknown or none: nothing else could fix it
     const std::string remedy =
         alone && !(open.empty() && !given.empty())
-            ? fmt::format("{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",
-                          open.empty() ? "its gradient vanishes there: it has no real solution, or only ones where it has no force"
-                                       : fmt::format("no value of {} was found that meets it: it may have no real solution", open),
-                          given.empty() ? "" : " and what is given")
+            ? fmt::format(
+                  "{}: check its signs{}, or start the search elsewhere with guess = {{ .. }}",
+                  open.empty()
+                      ? "its gradient vanishes there: it has no real solution, or only ones where it has no force"
+                      : fmt::format("no value of {} was found that meets it: it may have no real solution", open),
+                  given.empty() ? "" : " and what is given")
         : !given.empty() && open.empty()
             ? fmt::format("give consistent values, or name what may be moved: solve = [one of {}]", given)
-            : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve", open);
+            : fmt::format("the constraint does not fix {} by itself: give all but one of them, or name one in solve",
+                          open);
     throw Error("scene", p_.mechanics.model->where(span),
                 fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
                             constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", off,
@@ -453,7 +475,7 @@ class StartSolver {
   std::set<StartProblem::Key> held_;   // not given, and 0
   std::set<StartProblem::Key> loose_;  // not given, and 0 if the constraints hold so
   std::vector<Ref> A_, psi_, b_;  // of the active constraints, then of redundant ones, then of given angular velocities
-  std::vector<double> target_;  // what A qdot + b is to be
+  std::vector<double> target_;    // what A qdot + b is to be
   std::array<std::vector<std::size_t>, 2> rows_;  // constraints on positions (order 0), on velocities: all
 };
 

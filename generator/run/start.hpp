@@ -34,7 +34,7 @@ struct StartProblem {
   };
   std::vector<Turn> turns;
 
-  std::vector<double> q, qdot;  // out: all coordinates
+  std::vector<double> q, qdot;           // out: all coordinates
   std::vector<std::string> solved = {};  // out: a sentence for each value that followed
   std::vector<bool> apart = {};          // out: per contact, whether what can be left is left
 };

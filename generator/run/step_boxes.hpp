@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What variables are at places of one step, and between three of them. In: a system's states, inputs and parameters; a step with its dense output. Out:
-// numbers and boxes for RangeCode.
+// What variables are at places of one step, and between three of them. In: a system's states, inputs and parameters; a
+// step with its dense output. Out: numbers and boxes for RangeCode.
 #pragma once
 
 #include <eom/run_types.hpp>

@@ -16,8 +16,11 @@ std::string unfit(const std::string& solver, const Scene& scene) {
 }
 
 std::string not_variational(bool contacts, bool on_velocities, bool kinks, bool integrals) {
-  if (contacts) return "the model has contacts with friction, or that can be left, and no discrete Lagrangian has these";
-  if (on_velocities) return "a constraint on velocities does not follow from a Lagrangian; variational integrators take constraints on positions";
+  if (contacts)
+    return "the model has contacts with friction, or that can be left, and no discrete Lagrangian has these";
+  if (on_velocities)
+    return "a constraint on velocities does not follow from a Lagrangian; variational integrators take constraints on "
+           "positions";
   if (kinks) return "the equations have kinks (abs, sign, min, max), where the discrete Lagrangian has no derivative";
   if (integrals) return "an integral of a function of time is a state of this model, which has no momentum";
   return "";
@@ -25,13 +28,19 @@ std::string not_variational(bool contacts, bool on_velocities, bool kinks, bool 
 
 std::string not_variational(const Code& code) {
   const bool on_velocities = std::find(code.holonomic.begin(), code.holonomic.end(), false) != code.holonomic.end();
-  const std::string why = not_variational(!code.contacts.empty(), on_velocities, !code.kinks.empty(), code.integrals > 0);
-  return why.empty() && (code.momenta == nullptr || code.mass == nullptr) ? "the code was compiled without its momenta" : why;
+  const std::string why =
+      not_variational(!code.contacts.empty(), on_velocities, !code.kinks.empty(), code.integrals > 0);
+  return why.empty() && (code.momenta == nullptr || code.mass == nullptr) ? "the code was compiled without its momenta"
+                                                                          : why;
 }
 
 std::string not_constrained(bool contacts, bool constraints) {
-  if (contacts) return "the model has contacts with friction, or that can be left: which constraints hold changes on the way, and it keeps one set of them";
-  if (!constraints) return "its equations have no constraints with multipliers, which it would keep; radau5 is that method without constraints";
+  if (contacts)
+    return "the model has contacts with friction, or that can be left: which constraints hold changes on the way, and "
+           "it keeps one set of them";
+  if (!constraints)
+    return "its equations have no constraints with multipliers, which it would keep; radau5 is that method without "
+           "constraints";
   return "";
 }
 
@@ -40,12 +49,15 @@ std::string unfit(const std::string& solver, const Code& code) {
   if (method.variational) return not_variational(code);
   if (!method.constrained) return "";
   const std::string why = not_constrained(!code.contacts.empty(), code.active_constraints > 0);
-  return why.empty() && (code.constraints == nullptr || code.mass == nullptr) ? "the code was compiled without its constraints" : why;
+  return why.empty() && (code.constraints == nullptr || code.mass == nullptr)
+             ? "the code was compiled without its constraints"
+             : why;
 }
 
 std::string instead_of(const std::string& solver) {
-  return method_named(solver).variational ? "take midpoint, which is symplectic as well, dop853 or auto"
-                                          : "take radau5, which projects where there is something to keep, dop853 or auto";
+  return method_named(solver).variational
+             ? "take midpoint, which is symplectic as well, dop853 or auto"
+             : "take radau5, which projects where there is something to keep, dop853 or auto";
 }
 
 }  // namespace eomgen::run

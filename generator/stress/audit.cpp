@@ -20,8 +20,9 @@ namespace {
 constexpr int digits = 60;
 constexpr std::array<std::size_t, 3> places{0, 12, 32};  // of the samples of a motion
 constexpr std::size_t most_work = 20000;                 // instructions in many digits per case
-constexpr double smallest_scale = 1e-9;                  // of the largest acceleration: what is smaller is 0 to its rounding, and has no digits
-constexpr double all_digits = 15.65;                     // -log10 of the last one
+constexpr double smallest_scale =
+    1e-9;  // of the largest acceleration: what is smaller is 0 to its rounding, and has no digits
+constexpr double all_digits = 15.65;  // -log10 of the last one
 constexpr double last_digit = std::numeric_limits<double>::epsilon();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -44,7 +45,8 @@ std::vector<double> inputs(const run::Scene& scene, double t) {
 
 double condition(const Eigen::MatrixXd& M) {
   if (M.size() == 0 || !M.allFinite()) return infinity;
-  const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd values =
+      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues();
   const double smallest = values.minCoeff(), largest = values.maxCoeff();
   return smallest > 0 ? largest / smallest : infinity;
 }
@@ -65,7 +67,8 @@ Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& 
   }
 }
 
-void Auditor::see(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<Sample>& samples) {
+void Auditor::see(const std::string& test, const run::Scene& scene, const run::Code& code,
+                  const std::vector<Sample>& samples) {
   std::vector<const Sample*> taken;
   for (const std::size_t place : places) {
     if (place < samples.size() && all_finite(samples[place].x)) taken.push_back(&samples[place]);
@@ -81,7 +84,8 @@ void Auditor::see(const std::string& test, const run::Scene& scene, const run::C
 }
 
 /// On the null space of the constraints: M alone may be singular (Euler parameters).
-void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code, const Sample& sample) {
+void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code,
+                           const Sample& sample) {
   if (code.mass == nullptr) return;
   const auto n = static_cast<Eigen::Index>(code.free.size()), m = static_cast<Eigen::Index>(code.active_constraints);
   Eigen::MatrixXd M(n, n);
@@ -90,7 +94,9 @@ void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, con
   if (m > 0 && code.constraints != nullptr) {
     Eigen::MatrixXd A(m, n);
     Eigen::VectorXd psi(m), b(m);
-    if (code.constraints(sample.t, sample.x.data(), scene.parameters.data(), psi.data(), A.data(), b.data()) != 0 || !A.allFinite()) return;
+    if (code.constraints(sample.t, sample.x.data(), scene.parameters.data(), psi.data(), A.data(), b.data()) != 0 ||
+        !A.allFinite())
+      return;
     const Eigen::FullPivLU<Eigen::MatrixXd> lu(A);
     const Eigen::MatrixXd Z = lu.kernel();
     if (lu.rank() == n) return;
@@ -101,8 +107,10 @@ void Auditor::look_at_mass(const std::string& test, const run::Scene& scene, con
   if (d.allFinite()) raise(audit_.scaled_mass_condition, condition(d.asDiagonal() * M * d.asDiagonal()), test);
 }
 
-void Auditor::look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample, const std::vector<double>& u) {
-  const program::Values<double> values = program::interpret(divided_, {sample.t, sample.x, scene.parameters, u, {}, {}, sample.mode});
+void Auditor::look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
+                                   const std::vector<double>& u) {
+  const program::Values<double> values =
+      program::interpret(divided_, {sample.t, sample.x, scene.parameters, u, {}, {}, sample.mode});
   for (std::size_t i = 0; i < audit_.denominators.size(); ++i) {
     const double value = std::abs(values.results[0][i]);
     Denominator& d = audit_.denominators[i];
@@ -118,15 +126,18 @@ void Auditor::look_at_denominators(const std::string& test, const run::Scene& sc
 }
 
 /// Of each acceleration relative to the largest value that it has in the motion.
-void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<const Sample*>& samples) {
+void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
+                             const std::vector<const Sample*>& samples) {
   const std::size_t n = code.free.size();
   std::vector<double> scale(n, 0.0), off(n, 0.0);
   for (const Sample* sample : samples) {
     const std::vector<double> u = inputs(scene, sample->t);
     std::vector<double> dx(sample->x.size());
-    if (code.rhs(sample->t, sample->x.data(), scene.parameters.data(), u.data(), sample->mode, dx.data()) != 0) continue;
+    if (code.rhs(sample->t, sample->x.data(), scene.parameters.data(), u.data(), sample->mode, dx.data()) != 0)
+      continue;
     try {
-      const program::Values<cln::cl_R> values = program::interpret(rhs_, {exact(sample->t), exact(sample->x), exact(scene.parameters), exact(u), {}, {}, sample->mode}, digits);
+      const program::Values<cln::cl_R> values = program::interpret(
+          rhs_, {exact(sample->t), exact(sample->x), exact(scene.parameters), exact(u), {}, {}, sample->mode}, digits);
       for (std::size_t i = 0; i < n; ++i) {
         const cln::cl_R& right = values.results.front().at(n + i);
         off[i] = std::max(off[i], std::abs(cln::double_approx(right - exact(dx[n + i]))));
@@ -143,7 +154,8 @@ void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, c
   for (std::size_t i = 0; i < n && largest > 0 && std::isfinite(largest); ++i) {
     if (scale[i] < smallest_scale * largest) continue;
     const double relative = off[i] / scale[i];
-    raise(audit_.digits_lost, relative > last_digit ? std::min(all_digits, std::log10(relative / last_digit)) : 0, test);
+    raise(audit_.digits_lost, relative > last_digit ? std::min(all_digits, std::log10(relative / last_digit)) : 0,
+          test);
   }
 }
 

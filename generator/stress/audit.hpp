@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The denominator audit: what the right-hand side divides by and where that is zero, how close the motions came to it, the condition of
-// the mass matrix, and how many digits binary64 loses against the same program in 60 digits.
+// The denominator audit: what the right-hand side divides by and where that is zero, how close the motions came to it,
+// the condition of the mass matrix, and how many digits binary64 loses against the same program in 60 digits.
 #pragma once
 
 #include <string>
@@ -14,10 +14,10 @@ namespace eomgen::stress {
 inline constexpr double no_value = -1;
 
 struct Denominator {
-  std::string expression, zero;     // "r", "r = 0"
-  std::string test = {};            // of the emitted code: what it says where this vanishes
+  std::string expression, zero;             // "r", "r = 0"
+  std::string test = {};                    // of the emitted code: what it says where this vanishes
   double smallest = no_value, largest = 0;  // |value| at the states that were looked at
-  std::string at = {};              // the case of the smallest
+  std::string at = {};                      // the case of the smallest
 };
 
 /// A largest value, and in which case it was met.
@@ -46,8 +46,10 @@ class Auditor {
 
  private:
   void look_at_mass(const std::string& test, const run::Scene& scene, const run::Code& code, const Sample& sample);
-  void look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample, const std::vector<double>& u);
-  void look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code, const std::vector<const Sample*>& samples);
+  void look_at_denominators(const std::string& test, const run::Scene& scene, const Sample& sample,
+                            const std::vector<double>& u);
+  void look_at_digits(const std::string& test, const run::Scene& scene, const run::Code& code,
+                      const std::vector<const Sample*>& samples);
 
   const program::Function& rhs_;
   program::Function divided_;  // the same code; its one result are the denominators

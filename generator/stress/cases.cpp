@@ -27,17 +27,23 @@ class Cases {
     for (const double rtol : chosen({1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-15}, {1e-3, 1e-12})) {
       result_.push_back({.name = fmt::format("rtol {:g}", rtol), .rtol = rtol});
     }
-    for (const double part : chosen({0.5, 0.9, 1.1}, {0.9, 1.1})) result_.push_back({.name = fmt::format("{:g} of the stable step", part), .of_limit = part});
-    for (const double span : chosen({0.1, 10, 100, 1000}, {10})) result_.push_back({.name = fmt::format("span x {:g}", span), .span = span});
+    for (const double part : chosen({0.5, 0.9, 1.1}, {0.9, 1.1}))
+      result_.push_back({.name = fmt::format("{:g} of the stable step", part), .of_limit = part});
+    for (const double span : chosen({0.1, 10, 100, 1000}, {10}))
+      result_.push_back({.name = fmt::format("span x {:g}", span), .span = span});
     if (std::any_of(scene_.qdot.begin(), scene_.qdot.end(), [](double v) { return v != 0; })) slow();
     zeros();
     return std::move(result_);
   }
 
  private:
-  std::vector<double> chosen(std::vector<double> all, std::vector<double> few) const { return quick_ ? std::move(few) : std::move(all); }
+  std::vector<double> chosen(std::vector<double> all, std::vector<double> few) const {
+    return quick_ ? std::move(few) : std::move(all);
+  }
 
-  bool is_independent(std::uint32_t p) const { return m_.dag->is_constant(m_.parameter_value[p]) && !m_.model->parameters[p].start_of; }
+  bool is_independent(std::uint32_t p) const {
+    return m_.dag->is_constant(m_.parameter_value[p]) && !m_.model->parameters[p].start_of;
+  }
 
   void parameters() {
     for (std::uint32_t p = 0; p < m_.model->parameters.size(); ++p) {
@@ -51,16 +57,19 @@ class Cases {
         for (const double factor : chosen({1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9}, {1e-6, 1e6})) scaled(p, factor);
       }
       if (!parameter.used) continue;
-      if (!quick_) result_.push_back({.name = fmt::format("{} = {:g}", parameter.name, denormal), .value = {{p, denormal}}});
+      if (!quick_)
+        result_.push_back({.name = fmt::format("{} = {:g}", parameter.name, denormal), .value = {{p, denormal}}});
       const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
       for (const double value : chosen({nan, infinite, -infinite}, {nan})) {
-        result_.push_back({.name = fmt::format("{} = {}", parameter.name, value), .value = {{p, value}}, .without_value = true});
+        result_.push_back(
+            {.name = fmt::format("{} = {}", parameter.name, value), .value = {{p, value}}, .without_value = true});
       }
     }
   }
 
   void scaled(std::uint32_t p, double factor) {
-    result_.push_back({.name = fmt::format("{} x {:g}", m_.model->parameters[p].name, factor), .factor = {{p, factor}}});
+    result_.push_back(
+        {.name = fmt::format("{} x {:g}", m_.model->parameters[p].name, factor), .factor = {{p, factor}}});
   }
 
   static bool is(const model::Parameter& parameter, const Exponents& of) {
@@ -123,13 +132,16 @@ class Cases {
       const model::Node& node = m_.model->arena[frame.entries[1]];
       if (node.op != model::Op::coordinate || m_.is_eliminated(node.index)) continue;
       const double bound = frame.rotation.front() == frame.rotation.back() ? 0 : std::acos(0.0);
-      for (const double distance : chosen({1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15}, {1e-3, 1e-9})) near(node.index, bound, distance);
+      for (const double distance : chosen({1e-1, 1e-3, 1e-6, 1e-9, 1e-12, 1e-15}, {1e-3, 1e-9}))
+        near(node.index, bound, distance);
     }
   }
 
   void near(std::uint32_t i, double bound, double offset) {
-    result_.push_back({.name = fmt::format("{} at {:g} {} {:g}", m_.model->coordinates[i].name, bound, offset < 0 ? '-' : '+', std::abs(offset)),
-                       .start = {{i, bound + offset}}, .nearness = std::abs(offset)});
+    result_.push_back({.name = fmt::format("{} at {:g} {} {:g}", m_.model->coordinates[i].name, bound,
+                                           offset < 0 ? '-' : '+', std::abs(offset)),
+                       .start = {{i, bound + offset}},
+                       .nearness = std::abs(offset)});
   }
 
   const mechanics::Mechanics& m_;
@@ -140,7 +152,9 @@ class Cases {
 
 }  // namespace
 
-std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick) { return Cases(mechanics, scene, quick).all(); }
+std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick) {
+  return Cases(mechanics, scene, quick).all();
+}
 
 const char* name(Verdict verdict) {
   switch (verdict) {

@@ -76,7 +76,8 @@ class Text {
       text = call(function_.code[operand.index]);
       if (text.size() > longest) {
         const std::string& name = function_.code[operand.index].name;
-        text = name.empty() || name.find('{') != std::string::npos ? fmt::format("<value {}>", operand.index) : fmt::format("<{}>", name);
+        text = name.empty() || name.find('{') != std::string::npos ? fmt::format("<value {}>", operand.index)
+                                                                   : fmt::format("<{}>", name);
       }
     }
     return text;
@@ -85,7 +86,8 @@ class Text {
  private:
   static std::string number(const symbolic::Rational& value) {
     return cln::denominator(value) == 1 ? fmt::format("{:.17g}", cln::double_approx(value))
-                                        : fmt::format("{:.17g}/{:.17g}", cln::double_approx(cln::numerator(value)), cln::double_approx(cln::denominator(value)));
+                                        : fmt::format("{:.17g}/{:.17g}", cln::double_approx(cln::numerator(value)),
+                                                      cln::double_approx(cln::denominator(value)));
   }
 
   std::string state(std::uint32_t i) const {
@@ -102,7 +104,11 @@ class Text {
     std::string text;
     switch (i.op) {
       case Op::add:
-        for (const Operand& o : i.operands) text += (text.empty() ? (o.negated ? "-" : "") : o.negated ? " - " : " + ") + (o.negated ? in_brackets(magnitude(o)) : magnitude(o));
+        for (const Operand& o : i.operands)
+          text += (text.empty() ? (o.negated ? "-" : "")
+                   : o.negated  ? " - "
+                                : " + ") +
+                  (o.negated ? in_brackets(magnitude(o)) : magnitude(o));
         return text;
       case Op::mul:
         for (const Operand& o : i.operands) text += (text.empty() ? "" : "*") + in_brackets(of(o));
@@ -146,14 +152,16 @@ std::string test_of(const Function& function, const Operand& denominator) {
   for (const program::PivotTest& test : function.pivots) {
     if (!same(test.pivot, denominator)) continue;
     const bool absolute = test.scale.slot == Slot::constant && cln::zerop(function.constants[test.scale.index]);
-    return absolute ? "code 1 where it is 0" : fmt::format("code 1 below {:g} of what it is left of", program::pivot_tolerance);
+    return absolute ? "code 1 where it is 0"
+                    : fmt::format("code 1 below {:g} of what it is left of", program::pivot_tolerance);
   }
   return "code 5, since the accelerations are not finite";
 }
 
 }  // namespace
 
-std::vector<Divisor> divisors(const Function& function, const program::Program& program, const mechanics::Mechanics& mechanics) {
+std::vector<Divisor> divisors(const Function& function, const program::Program& program,
+                              const mechanics::Mechanics& mechanics) {
   std::vector<Operand> whole;
   for (const Instruction& i : function.code) {
     if (i.op == Op::div) whole.push_back(i.operands[1]);

@@ -13,8 +13,8 @@ namespace eomgen::stress {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
-constexpr double kept_within = 100;   // tolerances, times the condition of the end state
-constexpr double told_within = 10;    // estimates
+constexpr double kept_within = 100;  // tolerances, times the condition of the end state
+constexpr double told_within = 10;   // estimates
 constexpr std::size_t most_fixed_steps = 2000;
 constexpr double limit_of_rk4 = 2.8;  // 2.785 along the real axis, 2.828 along the imaginary one
 constexpr double fewest_stable = 4;   // such steps, or there is nothing to see
@@ -34,7 +34,9 @@ class Judgement {
     const run::RunResult result = made(scene_, solver, clock);
     row.seconds = clock.seconds();
     row.outcome = clock.was_late() ? "interrupted" : eom::name(result.outcome);
-    row.note = clock.was_late() ? "takes longer than the limit of time" : !result.detail.empty() ? result.detail : result.estimate_note;
+    row.note = clock.was_late()         ? "takes longer than the limit of time"
+               : !result.detail.empty() ? result.detail
+                                        : result.estimate_note;
     if (clock.was_late() || result.outcome != eom::Outcome::done) {
       row.error = row.estimate = infinity;
       row.verdict = Verdict::told;
@@ -51,7 +53,8 @@ class Judgement {
  private:
   double fixed_steps() const {
     const std::size_t usual = std::min(most_fixed_steps, std::max<std::size_t>(1, request_.steps_limit / 4));
-    return test_.of_limit ? std::ceil((scene_.t1 - scene_.t0) / (*test_.of_limit * stable_step_)) : static_cast<double>(usual);
+    return test_.of_limit ? std::ceil((scene_.t1 - scene_.t0) / (*test_.of_limit * stable_step_))
+                          : static_cast<double>(usual);
   }
 
   run::RunResult made(const run::Scene& given, const std::string& solver, Clock& clock) const {
@@ -70,20 +73,26 @@ class Judgement {
   }
 
   void compare(const run::RunResult& result, bool adaptive, Row& row) const {
-    const double condition = std::min(truth_->condition, most_condition), largest = *std::max_element(truth_->scale.begin(), truth_->scale.end());
+    const double condition = std::min(truth_->condition, most_condition),
+                 largest = *std::max_element(truth_->scale.begin(), truth_->scale.end());
     bool kept = true;
     for (std::size_t i = 0; i < truth_->x.size(); ++i) {
       const double scale = truth_->scale[i], error = std::abs(result.state[i] - truth_->x[i]) / scale;
       // The start is rounded to binary64, and so is every sum on the way, beside the largest component.
       double tolerance = unit * largest / scale;
-      if (adaptive) tolerance = std::max({tolerance, scene_.rtol, scene_.atol / scale});  // a fixed step promises what its estimate says
+      if (adaptive)
+        tolerance =
+            std::max({tolerance, scene_.rtol, scene_.atol / scale});  // a fixed step promises what its estimate says
       kept = kept && error <= kept_within * tolerance * condition;
       row.error = std::isnan(error) ? infinity : std::max(row.error, error);
       row.estimate = std::max(row.estimate, result.error_estimate[i].second / scale);
     }
-    if (kept) row.verdict = Verdict::kept;
-    else if (row.error - truth_->uncertainty <= told_within * row.estimate || !result.estimate_note.empty()) row.verdict = Verdict::told;
-    else row.verdict = Verdict::silent;
+    if (kept)
+      row.verdict = Verdict::kept;
+    else if (row.error - truth_->uncertainty <= told_within * row.estimate || !result.estimate_note.empty())
+      row.verdict = Verdict::told;
+    else
+      row.verdict = Verdict::silent;
   }
 
   const Case& test_;
@@ -93,7 +102,8 @@ class Judgement {
   double stable_step_;  // where fixed steps are to be near it
 };
 
-/// The longest at which rk4 does not amplify what the right-hand side's derivative at the start oscillates or decays by.
+/// The longest at which rk4 does not amplify what the right-hand side's derivative at the start oscillates or decays
+/// by.
 double stable_step(const run::Scene& scene, const Request& request) {
   run::RunRequest run = request.run(scene);
   run.watch_power = false;
@@ -111,7 +121,8 @@ double stable_step(const run::Scene& scene, const Request& request) {
     const int below = integration.derivative(scene.t0, moved.data(), low.data());
     moved[k] = x[k];
     if (above != 0 || below != 0) return 0;
-    for (Eigen::Index i = 0; i < n; ++i) J(i, j) = (high[static_cast<std::size_t>(i)] - low[static_cast<std::size_t>(i)]) / (2 * d);
+    for (Eigen::Index i = 0; i < n; ++i)
+      J(i, j) = (high[static_cast<std::size_t>(i)] - low[static_cast<std::size_t>(i)]) / (2 * d);
   }
   if (!J.allFinite()) return 0;
   const double fastest = Eigen::EigenSolver<Eigen::MatrixXd>(J, false).eigenvalues().cwiseAbs().maxCoeff();

@@ -11,7 +11,8 @@ namespace {
 
 class Start {
  public:
-  Start(const run::Scene& scene, const run::RunRequest& run) : run_(run), n_(run.code.free.size()), rows_(run), x_(run.state_names.size()) {
+  Start(const run::Scene& scene, const run::RunRequest& run)
+      : run_(run), n_(run.code.free.size()), rows_(run), x_(run.state_names.size()) {
     for (std::size_t i = 0; i < n_; ++i) {
       x_[i] = scene.q[run.code.free[i]];
       x_[n_ + i] = scene.qdot[run.code.free[i]];
@@ -27,7 +28,9 @@ class Start {
       if (found != run_.code.free.end()) still.push_back(static_cast<std::size_t>(found - run_.code.free.begin()));
     }
     eom::Projection projection(n_, rows_.size(), rows_.on_positions());
-    const auto constraints = [&](double t, const double* x, double* psi, double* A, double* b) { return bound(still, t, x, psi, A, b); };
+    const auto constraints = [&](double t, const double* x, double* psi, double* A, double* b) {
+      return bound(still, t, x, psi, A, b);
+    };
     const auto mass = [&](double t, const double* x, double* M, double* h) { return metric(still, t, x, M, h); };
     if (projection(scene.t0, x_.data(), constraints, mass).code != 0) return false;
     for (std::size_t i = 0; i < n_; ++i) {

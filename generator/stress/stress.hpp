@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stiff and extreme variations of a scene, and what each solver makes of them: kept, told, or silent, which is a defect.
+// Stiff and extreme variations of a scene, and what each solver makes of them: kept, told, or silent, which is a
+// defect.
 #pragma once
 
 #include <functional>
@@ -15,21 +16,22 @@ namespace eomgen::stress {
 
 /// How a scene is changed.
 struct Case {
-  std::string name;                                              // "k x 1e+06"
-  std::vector<std::pair<std::uint32_t, double>> factor = {};     // parameters times this
-  std::vector<std::pair<std::uint32_t, double>> value = {};      // parameters that take this value, finite or not
-  std::vector<std::pair<std::uint32_t, double>> start = {};      // coordinates at the start
-  double speed = 1;                                              // all start velocities times this; the span is divided by it
-  double span = 1;                                               // the span times this
-  std::optional<double> rtol = std::nullopt;                     // atol in proportion
-  std::optional<double> of_limit = std::nullopt;                 // fixed steps, of those at which rk4 stops being stable at the start
-  std::optional<double> zeros = std::nullopt;                    // what starts at 0 starts here
-  double nearness = 1;                                           // of the start to where coordinates fail
-  bool without_value = false;                                    // no motion exists: any number that is called done is wrong
+  std::string name;                                           // "k x 1e+06"
+  std::vector<std::pair<std::uint32_t, double>> factor = {};  // parameters times this
+  std::vector<std::pair<std::uint32_t, double>> value = {};   // parameters that take this value, finite or not
+  std::vector<std::pair<std::uint32_t, double>> start = {};   // coordinates at the start
+  double speed = 1;                               // all start velocities times this; the span is divided by it
+  double span = 1;                                // the span times this
+  std::optional<double> rtol = std::nullopt;      // atol in proportion
+  std::optional<double> of_limit = std::nullopt;  // fixed steps, of those at which rk4 stops being stable at the start
+  std::optional<double> zeros = std::nullopt;     // what starts at 0 starts here
+  double nearness = 1;                            // of the start to where coordinates fail
+  bool without_value = false;                     // no motion exists: any number that is called done is wrong
 };
 
-/// What fits this model and scene: stiffnesses, masses and inertias by factors; speeds; starts near the bounds of charts; tolerances;
-/// steps at the limit of stability; rest, and slip that all but vanishes; long spans; values that are no numbers, or denormal. `quick`: a few of each.
+/// What fits this model and scene: stiffnesses, masses and inertias by factors; speeds; starts near the bounds of
+/// charts; tolerances; steps at the limit of stability; rest, and slip that all but vanishes; long spans; values that
+/// are no numbers, or denormal. `quick`: a few of each.
 std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene& scene, bool quick);
 
 /// The scene with its constants and its start changed; nothing where the start would break a constraint.
@@ -56,8 +58,8 @@ struct Sample {
 struct Request {
   std::function<run::RunRequest(const run::Scene&)> run;  // of compiled code, for a scene that outlives it
   std::vector<std::string> solvers;
-  std::size_t steps_limit = 20000;                        // of one run, accepted and rejected: what verdicts depend on
-  double seconds_limit = 60;                              // a guard: a run that hits it is told, a tight one leaves its case unjudged
+  std::size_t steps_limit = 20000;  // of one run, accepted and rejected: what verdicts depend on
+  double seconds_limit = 60;        // a guard: a run that hits it is told, a tight one leaves its case unjudged
   std::function<void(const std::string&)> progress = {};
   const std::atomic<bool>* interrupt = nullptr;
   /// States of a motion that is known: its start, and 32 on the way.

@@ -15,15 +15,16 @@ struct TightSolver {
   const char* name;
   double rtol;
 };
-constexpr std::array<TightSolver, 4> tight_solvers{{{"dop853", 1e-14}, {"taylor", 1e-15}, {"radau5", 1e-12}, {"rodas", 1e-11}}};
+constexpr std::array<TightSolver, 4> tight_solvers{
+    {{"dop853", 1e-14}, {"taylor", 1e-15}, {"radau5", 1e-12}, {"rodas", 1e-11}}};
 
-constexpr double disturbance = 1e-7;  // of the start: large against rounding, small against what bends
+constexpr double disturbance = 1e-7;   // of the start: large against rounding, small against what bends
 constexpr double bends_within = 1e-2;  // of the way to where coordinates fail
 constexpr double disturbed_rtol = 1e-13;
 constexpr std::size_t sample_count = 32, early_samples = 2;
 constexpr double doubt = 3;  // each of two runs may be off by more than they differ
 constexpr double most_uncertain = 1e-6;
-constexpr double shorter = 0.5;       // than what could be followed
+constexpr double shorter = 0.5;          // than what could be followed
 constexpr double smallest_scale = 1e-9;  // of the largest component
 
 constexpr const char* by_the_clock = "not judged: a tight run takes longer than the limit of time";
@@ -45,7 +46,11 @@ double distance(const State& a, const State& b, const State& scale) {
 }
 
 Yardstick::Yardstick(const run::Scene& scene, double whole, double nearness, const Request& request)
-    : scene_(scene), whole_(whole), disturbance_(std::clamp(bends_within * nearness, 4 * unit, disturbance)), request_(request), run_(request.run(scene)) {
+    : scene_(scene),
+      whole_(whole),
+      disturbance_(std::clamp(bends_within * nearness, 4 * unit, disturbance)),
+      request_(request),
+      run_(request.run(scene)) {
   run_.estimate = false;
   run_.watch_power = false;
 }
@@ -95,7 +100,8 @@ std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
     truth.samples.insert(truth.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
     return truth;
   }
-  why = fmt::format("disturbances of the start grow by a factor of {:.1e}, and the end is known to {:.1e}", truth.growth, truth.uncertainty);
+  why = fmt::format("disturbances of the start grow by a factor of {:.1e}, and the end is known to {:.1e}",
+                    truth.growth, truth.uncertainty);
   return std::nullopt;
 }
 
@@ -114,7 +120,8 @@ Yardstick::Tight Yardstick::tight(const std::string& solver, double rtol, const 
   Tight result;
   const eom::Result end = integration.run(options, [&](const eom::StepView& view) {
     sample(view, integration.contact_mode(), result.samples);
-    for (std::size_t i = 0; scale != nullptr && i < view.x1.size(); ++i) (*scale)[i] = std::max((*scale)[i], std::abs(view.x1[i]));
+    for (std::size_t i = 0; scale != nullptr && i < view.x1.size(); ++i)
+      (*scale)[i] = std::max((*scale)[i], std::abs(view.x1[i]));
     return !clock.late();
   });
   result.late = clock.was_late();
@@ -140,7 +147,8 @@ void Yardstick::sample(const eom::StepView& view, int mode, std::vector<Sample>&
 void Yardstick::level(State& scale, const State& x0) const {
   scale.resize(run_.state_names.size());
   double largest = 0;
-  for (std::size_t i = 0; i < scale.size(); ++i) largest = std::max(largest, scale[i] = std::max(scale[i], std::abs(x0[i])));
+  for (std::size_t i = 0; i < scale.size(); ++i)
+    largest = std::max(largest, scale[i] = std::max(scale[i], std::abs(x0[i])));
   for (double& s : scale) s = std::max({s, smallest_scale * largest, std::numeric_limits<double>::min()});
   const std::size_t n = run_.code.free.size();
   for (std::size_t i = 0; i < n; ++i) scale[n + i] = std::max(scale[n + i], scale[i] / whole_);
@@ -176,7 +184,8 @@ bool Yardstick::moved(Truth& truth, const State& x0, int pattern, double sign) {
   late_ = late_ || end.late;
   if (end.x.empty() || end.samples.size() != truth.samples.size()) return false;
   double early = 1;
-  for (std::size_t k = 0; k < early_samples; ++k) early = std::max(early, distance(end.samples[k].x, truth.samples[k].x, truth.scale) / disturbance_);
+  for (std::size_t k = 0; k < early_samples; ++k)
+    early = std::max(early, distance(end.samples[k].x, truth.samples[k].x, truth.scale) / disturbance_);
   const double late = distance(end.x, truth.x, truth.scale) / disturbance_;
   truth.condition = std::max(truth.condition, late);
   truth.growth = std::max(truth.growth, late / early);

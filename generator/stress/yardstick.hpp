@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene's motion ends in, and how well that is known: tight runs by solvers that have nothing in common but the right-hand
-// side. All budgets are steps, so that a slower machine comes to the same verdict; the clock is a guard, and its hitting is told.
+// What a scene's motion ends in, and how well that is known: tight runs by solvers that have nothing in common but the
+// right-hand side. All budgets are steps, so that a slower machine comes to the same verdict; the clock is a guard, and
+// its hitting is told.
 #pragma once
 
 #include <chrono>
@@ -34,28 +35,32 @@ using State = std::vector<double>;
 
 struct Truth {
   State x;
-  State scale;             // largest value of each component along the motion; of rates no less than what turns the coordinate over in the whole span
-  double uncertainty = 0;  // relative to it
-  double condition = 1;    // by how much more than the start the end moves, both relative
-  double growth = 1;       // of a disturbance, from the first sixteenth of the span to its end
+  State scale;  // largest value of each component along the motion; of rates no less than what turns the coordinate
+                // over in the whole span
+  double uncertainty = 0;       // relative to it
+  double condition = 1;         // by how much more than the start the end moves, both relative
+  double growth = 1;            // of a disturbance, from the first sixteenth of the span to its end
   std::vector<Sample> samples;  // the start first
 };
 
 inline constexpr double unit = std::numeric_limits<double>::epsilon();
-inline constexpr double most_condition = 1.6e5;  // e^12: what grows by more, in twelve Lyapunov times, says nothing; and no run is kept by more
+inline constexpr double most_condition =
+    1.6e5;  // e^12: what grows by more, in twelve Lyapunov times, says nothing; and no run is kept by more
 
 class Yardstick {
  public:
-  /// whole: the span that was asked for, of which the scene may have a part; nearness: of the start to where coordinates fail.
+  /// whole: the span that was asked for, of which the scene may have a part; nearness: of the start to where
+  /// coordinates fail.
   Yardstick(const run::Scene& scene, double whole, double nearness, const Request& request);
 
-  /// Nothing where no two solvers come to the end, or not to the same; `why` says so, and the span to try next (0: none).
+  /// Nothing where no two solvers come to the end, or not to the same; `why` says so, and the span to try next (0:
+  /// none).
   std::optional<Truth> truth(std::string& why, double& next_span);
 
  private:
   struct Tight {
-    State x;                 // empty: the run did not come to the end
-    double reached = 0;      // the part of the span that it covered
+    State x;             // empty: the run did not come to the end
+    double reached = 0;  // the part of the span that it covered
     bool late = false;
     std::vector<Sample> samples;
   };
@@ -70,7 +75,7 @@ class Yardstick {
   double whole_, disturbance_;
   const Request& request_;
   run::RunRequest run_;
-  std::string solver_;   // of the first tight run
+  std::string solver_;  // of the first tight run
   double rtol_ = 0;
   bool late_ = false;
 };

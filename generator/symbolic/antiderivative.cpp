@@ -18,7 +18,8 @@ constexpr int deepest = 8;  // of integrations by parts and of halved angles
 
 class Integrator {
  public:
-  Integrator(Dag& dag, Symbol x, Logarithms logarithms) : dag_(dag), x_(x), d_(partial(dag, x)), logarithms_(logarithms) {}
+  Integrator(Dag& dag, Symbol x, Logarithms logarithms)
+      : dag_(dag), x_(x), d_(partial(dag, x)), logarithms_(logarithms) {}
 
   std::optional<Ref> sum(Ref e, int depth) {
     if (depth > deepest) return std::nullopt;
@@ -80,7 +81,8 @@ class Integrator {
       if (dag_.is_zero(du)) continue;
       const Ref h = dag_.div(g, du);
       const Ref dh = d_(h);
-      const std::vector<double> value = evaluate(dag_, {h, dh, u, du}, [](const Symbol& s) { return sample_double(s, 0); });
+      const std::vector<double> value =
+          evaluate(dag_, {h, dh, u, du}, [](const Symbol& s) { return sample_double(s, 0); });
       const double guess = value[1] * value[2] / (value[0] * value[3]);
       const double doubled = std::round(2 * guess);
       if (!std::isfinite(guess) || std::abs(doubled - 2 * guess) > 1e-9 || std::abs(doubled) > 24) continue;
@@ -109,12 +111,14 @@ class Integrator {
   /// 1/(x^2 + r^2) and 1/(r^2 + x^2): atan(x/r)/r.
   std::optional<Ref> arc_tangent(Ref g) {
     const Node node = dag_[g];
-    if (node.op != Op::div || depends_on(dag_, node.args[0], x_) || dag_[node.args[1]].op != Op::add) return std::nullopt;
+    if (node.op != Op::div || depends_on(dag_, node.args[0], x_) || dag_[node.args[1]].op != Op::add)
+      return std::nullopt;
     const Node below = dag_[node.args[1]];
     for (const std::size_t side : {std::size_t{0}, std::size_t{1}}) {
       const Ref square = below.args[1 - side];
       if (below.args[side] != dag_.power(dag_.symbol(x_), 2) || depends_on(dag_, square, x_)) continue;
-      const Ref root = dag_[square].op == Op::power && dag_[square].payload == 2 ? dag_[square].args[0] : dag_.call(Op::sqrt, square);
+      const Ref root = dag_[square].op == Op::power && dag_[square].payload == 2 ? dag_[square].args[0]
+                                                                                 : dag_.call(Op::sqrt, square);
       return dag_.mul(node.args[0], dag_.div(dag_.call(Op::atan, dag_.div(dag_.symbol(x_), root)), root));
     }
     return std::nullopt;
@@ -131,7 +135,8 @@ class Integrator {
     const Ref angle = dag_[wave].args[0], a = d_(dag_[e].args[0]), b = d_(angle);
     if (depends_on(dag_, a, x_) || depends_on(dag_, b, x_)) return std::nullopt;
     const Ref sine = dag_.call(Op::sin, angle), cosine = dag_.call(Op::cos, angle);
-    const Ref sum = op == Op::sin ? dag_.sub(dag_.mul(a, sine), dag_.mul(b, cosine)) : dag_.add(dag_.mul(a, cosine), dag_.mul(b, sine));
+    const Ref sum = op == Op::sin ? dag_.sub(dag_.mul(a, sine), dag_.mul(b, cosine))
+                                  : dag_.add(dag_.mul(a, cosine), dag_.mul(b, sine));
     return dag_.div(dag_.mul(e, sum), dag_.add(dag_.power(a, 2), dag_.power(b, 2)));
   }
 
@@ -159,8 +164,10 @@ class Integrator {
     Ref rest = dag_.one();
     long n = 0;
     for (const auto& [base, exponent] : factors_of(dag_, g)) {
-      if (base == x) n = exponent;
-      else rest = dag_.mul(rest, dag_.power(base, exponent));
+      if (base == x)
+        n = exponent;
+      else
+        rest = dag_.mul(rest, dag_.power(base, exponent));
     }
     if (n < 1 || rest == dag_.one()) return std::nullopt;
     const std::optional<Ref> S = by_substitution(rest);
@@ -205,7 +212,8 @@ std::optional<Ref> without(Dag& dag, Ref expression, Symbol x) {
   for (const long at : {0, 1, 2}) {
     const Ref value = Substitution(dag, {{x, dag.integer(at)}})(shorter);
     try {
-      evaluate(dag, {value}, [](const Symbol& s) -> cln::cl_R { return sample(s, 0); }, 30);
+      evaluate(
+          dag, {value}, [](const Symbol& s) -> cln::cl_R { return sample(s, 0); }, 30);
       return tidy(dag, value, term_budget);
     } catch (const std::exception&) {
       continue;  // a removable singularity, say
@@ -229,9 +237,12 @@ std::vector<std::pair<Ref, long>> factors_of(Dag& dag, Ref term) {
     } else if (node.op == Op::power) {
       open.emplace_back(node.args[0], exponent * node.payload);
     } else {
-      const auto known = std::find_if(result.begin(), result.end(), [&, base = r](const auto& f) { return f.first == base; });
-      if (known == result.end()) result.emplace_back(r, exponent);
-      else known->second += exponent;
+      const auto known =
+          std::find_if(result.begin(), result.end(), [&, base = r](const auto& f) { return f.first == base; });
+      if (known == result.end())
+        result.emplace_back(r, exponent);
+      else
+        known->second += exponent;
     }
   }
   std::erase_if(result, [](const auto& f) { return f.second == 0; });

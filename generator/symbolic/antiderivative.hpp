@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Integrals that can be seen: of sums of terms c u^n u' (with u a part of the term), of powers times such terms by parts,
-// of even powers of sines and cosines. What is found is differentiated again and proven; the rest is not found.
+// Integrals that can be seen: of sums of terms c u^n u' (with u a part of the term), of powers times such terms by
+// parts, of even powers of sines and cosines. What is found is differentiated again and proven; the rest is not found.
 #pragma once
 
 #include <optional>

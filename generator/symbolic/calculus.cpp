@@ -8,8 +8,8 @@ namespace eomgen::symbolic {
 
 Ref Derivation::operator()(Ref expression) {
   if (const auto found = memo_.find(expression.id); found != memo_.end()) return found->second;
-  // Operands have smaller ids than their users. Most of a large expression does not depend on the seeds: what does is found first, and
-  // the rest is not remembered, but for where the two meet.
+  // Operands have smaller ids than their users. Most of a large expression does not depend on the seeds: what does is
+  // found first, and the rest is not remembered, but for where the two meet.
   std::vector<bool> seen(dag_.size(), false), depends(dag_.size(), false);
   std::vector<Ref> open, stack{expression};
   while (!stack.empty()) {
@@ -83,8 +83,7 @@ Ref Derivation::of_node(Ref r) {
     case Op::neg: return (-dx).ref;
     case Op::mul: return (dx * y + x * dy).ref;
     case Op::div: return ((dx - self * dy) / y).ref;
-    case Op::power:
-      return (s(dag_.integer(node.payload)) * s(dag_.power(x.ref, node.payload - 1)) * dx).ref;
+    case Op::power: return (s(dag_.integer(node.payload)) * s(dag_.power(x.ref, node.payload - 1)) * dx).ref;
     case Op::pow: {
       // d(x^y) = x^(y-1) y dx + x^y log(x) dy
       Scalar result = s(dag_.pow(x.ref, (y - one).ref)) * y * dx;
@@ -109,7 +108,9 @@ Ref Derivation::of_node(Ref r) {
     case Op::min: return dag_.select(x.ref, y.ref, dx.ref, dy.ref);
     case Op::max: return dag_.select(x.ref, y.ref, dy.ref, dx.ref);
     case Op::select: return dag_.select(node.args[0], node.args[1], d[2], d[3]);
-    case Op::constant: case Op::pi: case Op::symbol: break;
+    case Op::constant:
+    case Op::pi:
+    case Op::symbol: break;
   }
   return dag_.zero();
 }
@@ -157,7 +158,9 @@ Ref rebuilt(Dag& dag, const Node& node, const std::array<Ref, 4>& a) {
     case Op::power: return dag.power(a[0], node.payload);
     case Op::pow: return dag.pow(a[0], a[1]);
     case Op::select: return dag.select(a[0], a[1], a[2], a[3]);
-    case Op::atan2: case Op::min: case Op::max: return dag.call(node.op, a[0], a[1]);
+    case Op::atan2:
+    case Op::min:
+    case Op::max: return dag.call(node.op, a[0], a[1]);
     default: return dag.call(node.op, a[0]);
   }
 }

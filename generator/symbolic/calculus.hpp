@@ -26,8 +26,9 @@ class Derivation {
 /// Partial derivative with respect to one symbol.
 Derivation partial(Dag& dag, Symbol symbol);
 
-/// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time, integrals -> their integrands. Third derivatives of coordinates
-/// do not exist here; `freeze_acceleration` seeds qdot with 0 in place of qddot (for bias terms).
+/// Total time derivative: t -> 1, q -> qdot -> qddot, f -> f' for functions of time, integrals -> their integrands.
+/// Third derivatives of coordinates do not exist here; `freeze_acceleration` seeds qdot with 0 in place of qddot (for
+/// bias terms).
 Derivation total_time(Dag& dag, std::size_t coordinates, std::size_t functions, bool freeze_acceleration = false);
 
 /// Partial time derivative at fixed coordinates and velocities: t -> 1, f -> f'.

@@ -72,11 +72,16 @@ bool Dag::is_positive(Ref r) const {
   const Node& node = nodes_[r.id];
   switch (node.op) {
     case Op::constant: return cln::plusp(value(r));
-    case Op::pi: case Op::exp: case Op::cosh: return true;
+    case Op::pi:
+    case Op::exp:
+    case Op::cosh: return true;
     case Op::symbol: return positive_.contains(symbol_of(r));
-    case Op::sqrt: case Op::power: return is_positive(node.args[0]);
+    case Op::sqrt:
+    case Op::power: return is_positive(node.args[0]);
     // One level of these is enough for lengths and radii, and keeps the cost constant.
-    case Op::add: case Op::mul: case Op::div: {
+    case Op::add:
+    case Op::mul:
+    case Op::div: {
       const auto leaf = [this](Ref x) { return nodes_[x.id].arity == 0 && is_positive(x); };
       return leaf(node.args[0]) && leaf(node.args[1]);
     }

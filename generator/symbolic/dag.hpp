@@ -25,13 +25,32 @@ using Rational = cln::cl_RA;
 enum class Op : std::uint8_t {
   constant,  // payload: index into the constants
   pi,
-  symbol,    // payload: index into the symbols
-  add, sub, mul, div, neg,
-  power,     // args[0] to the integer payload (>= 2; negative powers are 1/x^n as div)
-  pow,       // args[0] ^ args[1], general
-  sqrt, sin, cos, tan, asin, acos, atan, sinh, cosh, tanh, exp, log, abs, sign,
-  atan2, min, max,
-  select,    // args[0] < args[1] ? args[2] : args[3]
+  symbol,  // payload: index into the symbols
+  add,
+  sub,
+  mul,
+  div,
+  neg,
+  power,  // args[0] to the integer payload (>= 2; negative powers are 1/x^n as div)
+  pow,    // args[0] ^ args[1], general
+  sqrt,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  sinh,
+  cosh,
+  tanh,
+  exp,
+  log,
+  abs,
+  sign,
+  atan2,
+  min,
+  max,
+  select,  // args[0] < args[1] ? args[2] : args[3]
 };
 
 /// The value or the slope jumps where the operands say so: another expression on either side of that surface.
@@ -90,9 +109,9 @@ class Dag {
   Ref mul(Ref a, Ref b);
   Ref div(Ref a, Ref b);
   Ref neg(Ref a);
-  Ref power(Ref a, long exponent);  // any sign
-  Ref pow(Ref a, Ref b);            // folds to power or sqrt where the exponent is such a constant
-  Ref call(Op function, Ref a);     // sqrt ... sign
+  Ref power(Ref a, long exponent);      // any sign
+  Ref pow(Ref a, Ref b);                // folds to power or sqrt where the exponent is such a constant
+  Ref call(Op function, Ref a);         // sqrt ... sign
   Ref call(Op function, Ref a, Ref b);  // atan2, min, max
   Ref select(Ref a, Ref b, Ref x, Ref y);
 

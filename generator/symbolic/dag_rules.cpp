@@ -166,7 +166,8 @@ std::optional<Ref> Dag::exact_root(Ref a) {
     if (!cln::minusp(value(a)) && cln::sqrtp(value(a), &root)) return constant(root);
     return std::nullopt;
   }
-  if (node.op == Op::power && node.payload % 2 == 0 && is_positive(node.args[0])) return power(node.args[0], node.payload / 2);
+  if (node.op == Op::power && node.payload % 2 == 0 && is_positive(node.args[0]))
+    return power(node.args[0], node.payload / 2);
   if (node.op != Op::mul && node.op != Op::div) return std::nullopt;
   const std::optional<Ref> first = exact_root(node.args[0]);
   const std::optional<Ref> second = first ? exact_root(node.args[1]) : std::nullopt;
@@ -177,11 +178,18 @@ std::optional<Ref> Dag::exact_root(Ref a) {
 Ref Dag::call(Op function, Ref a) {
   if (is_zero(a)) {
     switch (function) {
-      case Op::sqrt: case Op::sin: case Op::tan: case Op::asin: case Op::atan: case Op::sinh: case Op::tanh:
-      case Op::abs: case Op::sign:
-        return zero_;
-      case Op::cos: case Op::cosh: case Op::exp:
-        return one_;
+      case Op::sqrt:
+      case Op::sin:
+      case Op::tan:
+      case Op::asin:
+      case Op::atan:
+      case Op::sinh:
+      case Op::tanh:
+      case Op::abs:
+      case Op::sign: return zero_;
+      case Op::cos:
+      case Op::cosh:
+      case Op::exp: return one_;
       default: break;
     }
   }
@@ -190,16 +198,22 @@ Ref Dag::call(Op function, Ref a) {
   if (negative) {
     const Ref positive = neg(a);
     switch (function) {
-      case Op::sin: case Op::tan: case Op::asin: case Op::atan: case Op::sinh: case Op::tanh: case Op::sign:
-        return neg(call(function, positive));
-      case Op::cos: case Op::cosh: case Op::abs:
-        return call(function, positive);
+      case Op::sin:
+      case Op::tan:
+      case Op::asin:
+      case Op::atan:
+      case Op::sinh:
+      case Op::tanh:
+      case Op::sign: return neg(call(function, positive));
+      case Op::cos:
+      case Op::cosh:
+      case Op::abs: return call(function, positive);
       default: break;
     }
   }
   if (is_one(a) && function == Op::log) return zero_;
   if (is_constant(a)) {
-    if (function == Op::abs) return a;   // negative ones went above
+    if (function == Op::abs) return a;  // negative ones went above
     if (function == Op::sign) return one_;
   }
   if (function == Op::sqrt) {

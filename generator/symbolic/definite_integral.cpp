@@ -60,7 +60,8 @@ class Rules {
     Ref sum = dag_.zero();
     Rational falling = 1;
     for (long k = 0; k <= term.n; ++k) {
-      const Ref part = dag_.div(dag_.mul(dag_.constant(falling), dag_.power(t_, term.n - k)), dag_.power(term.growth->a, k + 1));
+      const Ref part =
+          dag_.div(dag_.mul(dag_.constant(falling), dag_.power(t_, term.n - k)), dag_.power(term.growth->a, k + 1));
       sum = dag_.add(sum, part);
       falling = -falling * Rational(term.n - k);
     }
@@ -91,7 +92,8 @@ class Rules {
     const Ref a = term.growth->a, w = term.phase.a;
     const Ref below = dag_.add(dag_.mul(a, a), dag_.mul(w, w));
     const auto combine = [&](Ref C, Ref S) {
-      const Ref above = wave == Wave::cos ? dag_.add(dag_.mul(a, C), dag_.mul(w, S)) : dag_.sub(dag_.mul(a, S), dag_.mul(w, C));
+      const Ref above =
+          wave == Wave::cos ? dag_.add(dag_.mul(a, C), dag_.mul(w, S)) : dag_.sub(dag_.mul(a, S), dag_.mul(w, C));
       return dag_.div(above, below);
     };
     const Ref size = dag_.call(Op::exp, at(*term.growth, t_)), y = at(term.phase, t_);
@@ -106,7 +108,8 @@ class Rules {
   Ref t_, from_;
 };
 
-/// F(t) - F(from) of a proven antiderivative. Only where F is continuous and has a value wherever the integrand has one.
+/// F(t) - F(from) of a proven antiderivative. Only where F is continuous and has a value wherever the integrand has
+/// one.
 std::optional<Ref> by_antiderivative(Dag& dag, Ref integrand, Symbol time, Ref from) {
   const std::vector<Ref> given = dag.reachable({integrand});
   const auto may_jump = [&](Ref r) { return is_kink(dag[r].op) || dag[r].op == Op::atan2; };

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "symbolic/evaluate.hpp"
 
-#include "work.hpp"
-
 #include <cln/float.h>
 #include <cln/integer.h>
 
@@ -11,6 +9,8 @@
 #include <map>
 #include <stdexcept>
 #include <string>
+
+#include "work.hpp"
 
 namespace eomgen::symbolic {
 namespace {
@@ -103,13 +103,15 @@ struct Binary64 {
 template <class Real>
 class Values {
  public:
-  Values(const std::vector<Ref>& nodes, std::size_t all) : nodes_(nodes), few_(nodes.size() < all / 16), values_(few_ ? nodes.size() : all) {}
+  Values(const std::vector<Ref>& nodes, std::size_t all)
+      : nodes_(nodes), few_(nodes.size() < all / 16), values_(few_ ? nodes.size() : all) {}
   Real& operator[](std::uint32_t id) { return values_[place(id)]; }
   const Real& operator[](std::uint32_t id) const { return values_[place(id)]; }
 
  private:
   std::size_t place(std::uint32_t id) const {
-    return few_ ? static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), Ref{id}) - nodes_.begin()) : id;
+    return few_ ? static_cast<std::size_t>(std::lower_bound(nodes_.begin(), nodes_.end(), Ref{id}) - nodes_.begin())
+                : id;
   }
   const std::vector<Ref>& nodes_;
   bool few_;

@@ -16,7 +16,8 @@ Factorisation::Factorisation(Dag& dag, std::vector<Ref> matrix, std::size_t n, T
     // Minimum degree: the row whose elimination touches the fewest others, so that zeros stay zeros.
     std::size_t k = n;
     for (std::size_t i = 0; i < n; ++i) {
-      if (!done[i] && (k == n || degrees[i] < degrees[k] || (degrees[i] == degrees[k] && ties == Ties::descending))) k = i;
+      if (!done[i] && (k == n || degrees[i] < degrees[k] || (degrees[i] == degrees[k] && ties == Ties::descending)))
+        k = i;
     }
     done[k] = true;
     order_.push_back(k);

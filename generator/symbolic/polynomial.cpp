@@ -70,8 +70,10 @@ Expander::Maybe Expander::expand_node(Ref r) {
       if (dag_.is_zero(r)) p.clear();
       return p;
     }
-    case Op::pi: case Op::symbol: return atom(r);
-    case Op::add: case Op::sub: {
+    case Op::pi:
+    case Op::symbol: return atom(r);
+    case Op::add:
+    case Op::sub: {
       if (!arg(0) || !arg(1)) return std::nullopt;
       if (effort_ != nullptr && !effort_->take(arg(0)->size() + arg(1)->size())) return std::nullopt;
       Polynomial sum = *arg(0);
@@ -150,7 +152,9 @@ Polynomial Expander::with_simpler_arguments(Ref r) {
     case Op::power: result = dag_.power(a[0], node.payload); break;
     case Op::pow: result = dag_.pow(a[0], a[1]); break;
     case Op::select: result = dag_.select(a[0], a[1], a[2], a[3]); break;
-    case Op::atan2: case Op::min: case Op::max: result = dag_.call(node.op, a[0], a[1]); break;
+    case Op::atan2:
+    case Op::min:
+    case Op::max: result = dag_.call(node.op, a[0], a[1]); break;
     default: result = dag_.call(node.op, a[0]); break;
   }
   if (dag_.is_zero(result)) return {};

@@ -32,7 +32,8 @@ struct Effort {
 class Expander {
  public:
   /// Nothing is expanded to more than `term_budget` terms, and nothing more once `effort` is used up.
-  explicit Expander(Dag& dag, std::size_t term_budget = 400, Effort* effort = nullptr) : dag_(dag), budget_(term_budget), effort_(effort) {}
+  explicit Expander(Dag& dag, std::size_t term_budget = 400, Effort* effort = nullptr)
+      : dag_(dag), budget_(term_budget), effort_(effort) {}
 
   /// The expanded and reduced form; nothing where the budget does not suffice.
   std::optional<Ref> operator()(Ref expression);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values for symbols where numbers guide a search: inside the charts of coordinates and the domains of most functions. What
-// is found with them is proven, or decided in many digits at several points.
+// Values for symbols where numbers guide a search: inside the charts of coordinates and the domains of most functions.
+// What is found with them is proven, or decided in many digits at several points.
 #pragma once
 
 #include "symbolic/dag.hpp"

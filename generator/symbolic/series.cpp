@@ -9,7 +9,8 @@ namespace eomgen::symbolic {
 
 using cln::cl_R;
 
-PowerSeries::PowerSeries(Dag& dag, std::vector<Ref> roots, int digits) : dag_(dag), roots_(std::move(roots)), digits_(digits) {
+PowerSeries::PowerSeries(Dag& dag, std::vector<Ref> roots, int digits)
+    : dag_(dag), roots_(std::move(roots)), digits_(digits) {
   // The slopes of functions have series too, with functions of their own, until nothing new comes.
   for (std::vector<Ref> open = roots_; !open.empty();) {
     std::vector<Ref> found;
@@ -25,7 +26,14 @@ PowerSeries::PowerSeries(Dag& dag, std::vector<Ref> roots, int digits) : dag_(da
 
 bool PowerSeries::is_function(const Node& node) const {
   switch (node.op) {
-    case Op::constant: case Op::pi: case Op::symbol: case Op::add: case Op::sub: case Op::neg: case Op::mul: case Op::div: return false;
+    case Op::constant:
+    case Op::pi:
+    case Op::symbol:
+    case Op::add:
+    case Op::sub:
+    case Op::neg:
+    case Op::mul:
+    case Op::div: return false;
     default: return !is_kink(node.op);
   }
 }
@@ -62,7 +70,8 @@ void PowerSeries::extend(const Lookup& lookup) {
   if (order_ == 0) {
     std::vector<Ref> all;
     for (const auto& entry : series_) all.push_back(entry.first);
-    const std::vector<cl_R> values = evaluate(dag_, all, [&](const Symbol& s) { return lookup(s, 0); }, digits_);
+    const std::vector<cl_R> values = evaluate(
+        dag_, all, [&](const Symbol& s) { return lookup(s, 0); }, digits_);
     std::size_t i = 0;
     for (auto& entry : series_) entry.second.c.push_back(values[i++]);
   } else {
@@ -77,7 +86,9 @@ cl_R PowerSeries::next(Ref r, const Lookup& lookup) const {
   const auto arg = [&](std::size_t i) -> const std::vector<cl_R>& { return of(node.args[i]); };
   cl_R sum = 0;
   switch (node.op) {
-    case Op::constant: case Op::pi: case Op::sign: return 0;
+    case Op::constant:
+    case Op::pi:
+    case Op::sign: return 0;
     case Op::symbol: return lookup(dag_.symbol_of(r), k);
     case Op::add: return arg(0)[k] + arg(1)[k];
     case Op::sub: return arg(0)[k] - arg(1)[k];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Power series of expressions along a curve, in many digits: coefficient after coefficient, so that the curve may be the solution of an
-// equation in which the expressions stand.
+// Power series of expressions along a curve, in many digits: coefficient after coefficient, so that the curve may be
+// the solution of an equation in which the expressions stand.
 #pragma once
 
 #include <cln/real.h>
@@ -21,8 +21,8 @@ class PowerSeries {
   /// Adds derivatives of functions to the Dag.
   PowerSeries(Dag& dag, std::vector<Ref> roots, int digits);
 
-  /// Coefficient k of every root, k = 0, 1, 2, .. from call to call; `lookup` gives coefficient k of a symbol. Throws std::domain_error
-  /// where a function leaves its domain.
+  /// Coefficient k of every root, k = 0, 1, 2, .. from call to call; `lookup` gives coefficient k of a symbol. Throws
+  /// std::domain_error where a function leaves its domain.
   void extend(const Lookup& lookup);
   const std::vector<cln::cl_R>& operator[](std::size_t root) const { return series_.at(roots_[root]).c; }
 
@@ -39,7 +39,7 @@ class PowerSeries {
   Dag& dag_;
   std::vector<Ref> roots_;
   int digits_;
-  std::size_t order_ = 0;  // coefficients that are there
+  std::size_t order_ = 0;         // coefficients that are there
   std::map<Ref, Series> series_;  // operands before users
 };
 

@@ -19,9 +19,7 @@ bool TimeTerms::is_free(Ref expression) const {
 }
 
 // Also of 2 w - (w + w): a frequency that is divided by must not be such a zero.
-bool TimeTerms::vanishes(Ref constant) {
-  return dag_.is_zero(tidy(dag_, constant));
-}
+bool TimeTerms::vanishes(Ref constant) { return dag_.is_zero(tidy(dag_, constant)); }
 
 TimeTerm TimeTerms::constant(Ref factor) const {
   TimeTerm term;
@@ -65,7 +63,8 @@ TimeTerms::Terms TimeTerms::of_node(Ref r) {
     case Op::exp: return exponential(x, dag_.one());
     case Op::sin: return wave(x, TimeTerm::Wave::sin);
     case Op::cos: return wave(x, TimeTerm::Wave::cos);
-    case Op::sinh: case Op::cosh: {
+    case Op::sinh:
+    case Op::cosh: {
       const Ref half = dag_.constant(Rational(1) / 2);
       Terms up = exponential(x, half), down = exponential(dag_.neg(x), node.op == Op::cosh ? half : dag_.neg(half));
       if (!up || !down) return std::nullopt;
@@ -104,8 +103,10 @@ bool TimeTerms::multiply(const TimeTerm& a, const TimeTerm& b, std::vector<TimeT
   if (!multiply_bases(a, b, term)) return false;
   if (a.growth && b.growth) {
     const Linear both{dag_.add(a.growth->a, b.growth->a), dag_.add(a.growth->b, b.growth->b)};
-    if (vanishes(both.a)) term.factor = dag_.mul(term.factor, dag_.call(Op::exp, both.b));
-    else term.growth = both;
+    if (vanishes(both.a))
+      term.factor = dag_.mul(term.factor, dag_.call(Op::exp, both.b));
+    else
+      term.growth = both;
   } else {
     term.growth = a.growth ? a.growth : b.growth;
   }
@@ -122,7 +123,8 @@ bool TimeTerms::multiply_bases(const TimeTerm& a, const TimeTerm& b, TimeTerm& r
 }
 
 // sin x sin y = (cos(x - y) - cos(x + y))/2, and so on.
-void TimeTerms::multiply_waves(const TimeTerm& a, const TimeTerm& b, const TimeTerm& rest, std::vector<TimeTerm>& result) {
+void TimeTerms::multiply_waves(const TimeTerm& a, const TimeTerm& b, const TimeTerm& rest,
+                               std::vector<TimeTerm>& result) {
   using Wave = TimeTerm::Wave;
   if (a.wave == Wave::none || b.wave == Wave::none) {
     TimeTerm term = rest;

@@ -19,13 +19,13 @@ struct Linear {
 
 struct TimeTerm {
   enum class Wave { none, sin, cos };
-  Ref factor;                   // free of t
-  long n = 0;                   // t^n, n >= 0
-  std::optional<Linear> base;   // (a t + b)^exponent
+  Ref factor;                  // free of t
+  long n = 0;                  // t^n, n >= 0
+  std::optional<Linear> base;  // (a t + b)^exponent
   Rational exponent = 0;
-  std::optional<Linear> growth; // exp(a t + b)
+  std::optional<Linear> growth;  // exp(a t + b)
   Wave wave = Wave::none;
-  Linear phase;                 // of the wave
+  Linear phase;  // of the wave
 };
 
 class TimeTerms {

@@ -7,7 +7,8 @@ namespace eomgen::symbolic {
 namespace {
 
 /// The entry at the row i and column k of the matrix is C[i * row + k * column].
-std::vector<Ref> product(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x, std::size_t row, std::size_t column) {
+std::vector<Ref> product(Dag& dag, const std::vector<Rational>& C, const std::vector<Ref>& x, std::size_t row,
+                         std::size_t column) {
   const std::size_t n = x.size();
   std::vector<Ref> result(n, dag.zero());
   for (std::size_t i = 0; i < n; ++i) {
@@ -25,11 +26,17 @@ bool is_zero(const Dag& dag, const Vec3& a) {
   return std::all_of(a.begin(), a.end(), [&dag](Ref r) { return dag.is_zero(r); });
 }
 
-Vec3 add(Dag& dag, const Vec3& a, const Vec3& b) { return {dag.add(a[0], b[0]), dag.add(a[1], b[1]), dag.add(a[2], b[2])}; }
+Vec3 add(Dag& dag, const Vec3& a, const Vec3& b) {
+  return {dag.add(a[0], b[0]), dag.add(a[1], b[1]), dag.add(a[2], b[2])};
+}
 
-Vec3 subtract(Dag& dag, const Vec3& a, const Vec3& b) { return {dag.sub(a[0], b[0]), dag.sub(a[1], b[1]), dag.sub(a[2], b[2])}; }
+Vec3 subtract(Dag& dag, const Vec3& a, const Vec3& b) {
+  return {dag.sub(a[0], b[0]), dag.sub(a[1], b[1]), dag.sub(a[2], b[2])};
+}
 
-Vec3 scale(Dag& dag, Ref factor, const Vec3& a) { return {dag.mul(factor, a[0]), dag.mul(factor, a[1]), dag.mul(factor, a[2])}; }
+Vec3 scale(Dag& dag, Ref factor, const Vec3& a) {
+  return {dag.mul(factor, a[0]), dag.mul(factor, a[1]), dag.mul(factor, a[2])};
+}
 
 Ref dot(Dag& dag, const Vec3& a, const Vec3& b) {
   Ref sum = dag.mul(a[0], b[0]);

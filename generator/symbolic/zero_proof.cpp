@@ -116,7 +116,8 @@ class RationalForm {
         return product(s, reciprocal(c));
       }
       case Op::exp: return whole(fresh(node.args[0], exponentials_));
-      case Op::sinh: case Op::cosh: {
+      case Op::sinh:
+      case Op::cosh: {
         const Ref e = fresh(node.args[0], exponentials_), square = dag_.power(e, 2);
         const Ref num = node.op == Op::sinh ? dag_.sub(square, dag_.one()) : dag_.add(square, dag_.one());
         return {num, {{dag_.mul(dag_.integer(2), e), 1}}};

@@ -7,12 +7,11 @@
 
 #include <array>
 #include <cstdint>
+#include <eom/modes/contact_state.hpp>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
-
-#include <eom/modes/contact_state.hpp>
 
 #include "symbolic/factorisation.hpp"
 
@@ -24,8 +23,8 @@ using symbolic::Ref;
 enum class Approach { one, two };
 const char* name(Approach approach);  // "I", "II"
 
-/// How the equations are solved where constraints keep multipliers: by the Schur complement A M^-1 A^T, on a null space of
-/// A, or with the dependent velocities solved for.
+/// How the equations are solved where constraints keep multipliers: by the Schur complement A M^-1 A^T, on a null space
+/// of A, or with the dependent velocities solved for.
 enum class Form { multipliers, nullspace, chaplygin };
 const char* name(Form form);  // "multipliers", "nullspace", "chaplygin"
 
@@ -67,8 +66,9 @@ struct Event {
   Ref value;  // the event is where it changes its sign; may use qddot of free coordinates and multipliers
 };
 
-/// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters f and the reactions
-/// with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends on the mode.
+/// A contact with friction or that can be left (docs/theory.md, "Friction"). The friction force sum_a phi_a t_a enters
+/// f and the reactions with the symbols phi_a = {SymbolKind::friction, first + a}; the law that determines them depends
+/// on the mode.
 struct Contact {
   std::string name;
   std::uint32_t first = 0;               // index of the first phi
@@ -78,24 +78,25 @@ struct Contact {
   std::vector<Ref> slip, slip_rate;      // per tangent; the rate may use qddot
   std::vector<std::array<Ref, 3>> directions;  // t_a; none where a coordinate rubs
   Ref static_coefficient, dynamic_coefficient;
-  std::optional<Ref> width;                    // of the smooth law, which has no static coefficient
-  std::optional<std::uint32_t> unilateral;     // which of the active constraints can be left
-  Ref restitution;                             // of impacts then
-  bool rolls = false;                          // sticking is rolling
+  std::optional<Ref> width;                 // of the smooth law, which has no static coefficient
+  std::optional<std::uint32_t> unilateral;  // which of the active constraints can be left
+  Ref restitution;                          // of impacts then
+  bool rolls = false;                       // sticking is rolling
 
   bool sticks() const { return !slip.empty() && !width; }
   eom::ContactShape shape() const {
-    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), sticks(), rolls};
+    return {slip.size(), reactions.size() == 1 && !unilateral && !slip.empty(), unilateral.has_value(), sticks(),
+            rolls};
   }
 };
 
-/// Symbols of the mode of a contact: 1, -1, 0 as it slides along its tangent, against it, sticks; 1, -1 as it presses, or as
-/// a unilateral one touches, is apart.
+/// Symbols of the mode of a contact: 1, -1, 0 as it slides along its tangent, against it, sticks; 1, -1 as it presses,
+/// or as a unilateral one touches, is apart.
 inline symbolic::Symbol slides_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 0}; }
 inline symbolic::Symbol presses_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 1}; }
 
-/// Outputs that a run needs of a contact, and nobody asks for by name: the slope of slip.NAME by the rate of a coordinate, phi
-/// along the tangent, the coefficient of restitution.
+/// Outputs that a run needs of a contact, and nobody asks for by name: the slope of slip.NAME by the rate of a
+/// coordinate, phi along the tangent, the coefficient of restitution.
 inline constexpr const char* contact_prefix = "contact.";
 std::string slip_slope_output(const std::string& slip, const std::string& coordinate);
 std::string phi_output(const std::string& slip);
@@ -121,13 +122,13 @@ struct EquationSystem {
   std::vector<std::uint32_t> active;  // m constraints with multipliers
 
   std::vector<IntegralState> integrals;
-  std::vector<Ref> M;      // n x n, row-major, symmetric
-  std::vector<Ref> f;      // n
+  std::vector<Ref> M;           // n x n, row-major, symmetric
+  std::vector<Ref> f;           // n
   std::vector<bool> holonomic;  // m: false of constraints on velocities, whose psi is 0
-  std::vector<Ref> psi;    // m
-  std::vector<Ref> A;      // m x n, row-major
-  std::vector<Ref> b;      // m: A qdot + b = 0
-  std::vector<Ref> gamma;  // m: A qddot + gamma = 0
+  std::vector<Ref> psi;         // m
+  std::vector<Ref> A;           // m x n, row-major
+  std::vector<Ref> b;           // m: A qdot + b = 0
+  std::vector<Ref> gamma;       // m: A qddot + gamma = 0
   std::vector<Watched> redundant;
   std::vector<Ref> apart;  // m, or none: 1 where the mode has left a constraint, whose row of A and gamma is 0 then
 
@@ -136,9 +137,9 @@ struct EquationSystem {
 
   std::vector<Contact> contacts;
 
-  std::vector<Reaction> reactions;  // all constraints, in model order
-  std::vector<Output> outputs;      // everything that can be asked for, in the order of docs/model-format.md
-  std::vector<Event> events;        // of the model, in its order
+  std::vector<Reaction> reactions;        // all constraints, in model order
+  std::vector<Output> outputs;            // everything that can be asked for, in the order of docs/model-format.md
+  std::vector<Event> events;              // of the model, in its order
   Ref energy, kinetic, potential, power;  // power: what dE/dt must be; may use multipliers and qddot
 };
 

@@ -41,7 +41,8 @@ void for_each_expression(System& system, Visit&& visit) {
     all(contact.slip_rate, Part::contact);
     all(contact.gram, Part::contact);
     for (auto& direction : contact.directions) all(direction, Part::contact);
-    for (auto* r : {&contact.normal, &contact.static_coefficient, &contact.dynamic_coefficient, &contact.restitution}) visit(*r, Part::contact);
+    for (auto* r : {&contact.normal, &contact.static_coefficient, &contact.dynamic_coefficient, &contact.restitution})
+      visit(*r, Part::contact);
     if (contact.width) visit(*contact.width, Part::contact);
   }
   for (auto* list : {&system.psi, &system.b}) all(*list, Part::constraints);

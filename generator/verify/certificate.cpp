@@ -44,7 +44,8 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
   int mode = 0;
   for (std::size_t j = 0; j < mechanics.contacts.size(); ++j) {
     const mechanics::Contact& contact = mechanics.contacts[j];
-    if (contact.unilateral && state.apart.contains(contact.constraints[0])) mode = eom::with_contact_digit(mode, j, eom::contact_states / 2);
+    if (contact.unilateral && state.apart.contains(contact.constraints[0]))
+      mode = eom::with_contact_digit(mode, j, eom::contact_states / 2);
   }
   return mode;
 }
@@ -52,12 +53,13 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
 }  // namespace
 
 int digits_of_range(const mechanics::Mechanics& mechanics) {
-  constexpr double decimals = 0.30103;  // of a binary digit
+  constexpr double decimals = 0.30103;   // of a binary digit
   constexpr int usual = 30, most = 700;  // of binary64 and their squares
   double largest = 0;
   for (const symbolic::Ref value : mechanics.parameter_value) {
     if (!mechanics.dag->is_constant(value) || mechanics.dag->is_zero(value)) continue;
-    const auto exponent = cln::float_exponent(cln::cl_float(cln::abs(mechanics.dag->value(value)), cln::float_format(20)));
+    const auto exponent =
+        cln::float_exponent(cln::cl_float(cln::abs(mechanics.dag->value(value)), cln::float_format(20)));
     largest = std::max(largest, decimals * std::abs(static_cast<double>(exponent)));
   }
   return largest < usual ? 0 : std::min(most, static_cast<int>(2 * largest));
@@ -90,8 +92,11 @@ std::vector<std::string> Certificate::agreeing() const {
   std::vector<std::string> names;
   for (const Comparison& c : comparisons) {
     if (c.b != judge_name || c.a.find(" of ") != std::string::npos) continue;
-    const auto its_own = [&](const Comparison& row) { return row.b == judge_name && (row.a == c.a || row.a.ends_with(" of " + c.a)); };
-    const bool all = std::all_of(comparisons.begin(), comparisons.end(), [&](const Comparison& row) { return row.pass || !its_own(row); });
+    const auto its_own = [&](const Comparison& row) {
+      return row.b == judge_name && (row.a == c.a || row.a.ends_with(" of " + c.a));
+    };
+    const bool all = std::all_of(comparisons.begin(), comparisons.end(),
+                                 [&](const Comparison& row) { return row.pass || !its_own(row); });
     if (all) names.push_back(c.a);
   }
   return names;
@@ -105,8 +110,11 @@ std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, 
       // With nothing to eliminate the approaches are one: a large system is not looked at twice.
       if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
       derive::Outcome outcome = derive::derive_where_worth(route, mechanics, approach);
-      if (outcome.system) systems.push_back(std::move(*outcome.system));
-      else if (left_out != nullptr) left_out->push_back({fmt::format("{} {}", route.name, system::name(approach)), std::move(outcome.why), outcome.over_budget});
+      if (outcome.system)
+        systems.push_back(std::move(*outcome.system));
+      else if (left_out != nullptr)
+        left_out->push_back(
+            {fmt::format("{} {}", route.name, system::name(approach)), std::move(outcome.why), outcome.over_budget});
     }
   return systems;
 }
@@ -119,7 +127,8 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
     if (!mechanics.holds(k)) judge.imply(k);
   }
-  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed, leavable(mechanics));
+  Points points(judge, options.seed, rejections_at_least + rejections_per_point * options.points, options.fixed,
+                leavable(mechanics));
   Tally tally(options.digits);
   bool interrupted = false;
   while (tally.points() < options.points) {

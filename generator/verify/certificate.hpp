@@ -27,8 +27,8 @@ struct Options {
 };
 
 /// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,
-/// inputs and the multipliers of all constraints, on the Dag of the Mechanics. None of them: the form claims nothing (it
-/// was too long to be read) and is left out.
+/// inputs and the multipliers of all constraints, on the Dag of the Mechanics. None of them: the form claims nothing
+/// (it was too long to be read) and is left out.
 struct ReadingForm {
   std::string name;  // "reading form I"
   std::vector<symbolic::Ref> residuals;
@@ -43,12 +43,13 @@ struct At {
 /// The arrays that it writes.
 using Arrays = std::vector<std::vector<Real>>;
 
-/// The optimised program read in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u) in a mode; nothing
-/// where it says that the law of friction has no solution there, or several.
+/// The optimised program read in CLN arithmetic: dx = (qdot, qddot) of the free coordinates at (t, x, p, u) in a mode;
+/// nothing where it says that the law of friction has no solution there, or several.
 struct ProgramForm {
   std::string name;  // "program"
   std::function<std::vector<Real>(const Real& t, const std::vector<Real>& x, const std::vector<Real>& p,
-                                  const std::vector<Real>& u, int mode)> rhs;
+                                  const std::vector<Real>& u, int mode)>
+      rhs;
   // All functions of the ABI that it has, by name; left out: they are not compared.
   std::vector<std::string> functions = {};
   std::function<std::optional<Arrays>(const std::string& function, const At& at, int digits)> call = {};
@@ -56,7 +57,7 @@ struct ProgramForm {
   std::function<std::vector<std::vector<double>>(const std::string& function, const At& at)> bounds = {};
   std::string route = {};  // whose equations it is made of
   system::Approach approach = system::Approach::two;
-  std::vector<std::string> outputs = {};       // names of those of its function `outputs`
+  std::vector<std::string> outputs = {};  // names of those of its function `outputs`
   std::vector<Real> default_inputs = {};
 };
 
@@ -64,7 +65,8 @@ struct ProgramForm {
 struct CompiledForm {
   std::string name;  // "emitted code"
   std::function<std::optional<std::vector<double>>(double t, const std::vector<double>& x, const std::vector<double>& p,
-                                                   const std::vector<double>& u, int mode)> rhs;
+                                                   const std::vector<double>& u, int mode)>
+      rhs;
   std::function<std::optional<std::vector<std::vector<double>>>(const std::string& function, const At& at)> call = {};
 };
 
@@ -90,7 +92,7 @@ struct Certificate {
   std::vector<Comparison> comparisons;
   std::size_t points = 0;
   std::map<std::string, std::size_t> rejected;  // by reason
-  std::vector<work::LeftOut> left_out;  // routes and forms that were not compared
+  std::vector<work::LeftOut> left_out;          // routes and forms that were not compared
   bool pass = false;
   bool interrupted = false;  // before all points were compared
   const char* verdict() const { return pass ? "pass" : "fail"; }
@@ -101,13 +103,17 @@ struct Certificate {
   std::vector<std::string> agreeing() const;
 };
 
-/// Every route of derive::routes() by both approaches that applies within its budget; the others are told in `left_out`.
-std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics, std::vector<work::LeftOut>* left_out = nullptr);
+/// Every route of derive::routes() by both approaches that applies within its budget; the others are told in
+/// `left_out`.
+std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics,
+                                               std::vector<work::LeftOut>* left_out = nullptr);
 
-/// Digits beyond those of a comparison that parameters far from 1 take: beside a mass of 1e300 kg everything else would be lost. 0 for usual ones.
+/// Digits beyond those of a comparison that parameters far from 1 take: beside a mass of 1e300 kg everything else would
+/// be lost. 0 for usual ones.
 int digits_of_range(const mechanics::Mechanics& mechanics);
 
-/// Throws Error{Fault::check} if no states can be found at which to compare. An interruption leaves the points that were compared.
+/// Throws Error{Fault::check} if no states can be found at which to compare. An interruption leaves the points that
+/// were compared.
 Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subjects, const Options& options = {});
 
 /// certify of all routes.

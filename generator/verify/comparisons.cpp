@@ -25,7 +25,6 @@ namespace {
 using symbolic::Ref;
 using system::EquationSystem;
 
-
 // Points are rejected where the solve loses more than 8 digits; the guard digits and these make up for it.
 constexpr int digits_given_up = 5;
 // Binary64 has 16 digits; some thousand operations and terms that cancel leave 11 of them, relative to the terms.
@@ -50,8 +49,9 @@ double difference(const SystemValues& a, const SystemValues& b) {
   return largest;
 }
 
-/// What is nothing beside a motion, whatever the equation's units: rounding of an equation that holds by itself, whose slopes
-/// cancel to the last digit, has no other size. It is far above rounding in 20 digits and more, and far below any slope that says something.
+/// What is nothing beside a motion, whatever the equation's units: rounding of an equation that holds by itself, whose
+/// slopes cancel to the last digit, has no other size. It is far above rounding in 20 digits and more, and far below
+/// any slope that says something.
 Real nothing_beside(const State& state) {
   Real fastest = 0;
   for (std::size_t i = 0; i < state.qddot.size(); ++i) {
@@ -79,7 +79,8 @@ double motion_residual(const SystemValues& v) {
   return largest;
 }
 
-/// psi = 0, A = dpsi/dq (of velocities: their coefficients) and A qdot + b = 0 of the constraints that keep a multiplier.
+/// psi = 0, A = dpsi/dq (of velocities: their coefficients) and A qdot + b = 0 of the constraints that keep a
+/// multiplier.
 double constraint_residual(const EquationSystem& s, const SystemValues& v) {
   double largest = 0;
   const std::size_t n = s.free.size();
@@ -98,10 +99,12 @@ double constraint_residual(const EquationSystem& s, const SystemValues& v) {
       largest = std::max(largest, relative(v.A[k * n + i] - slope, length));
     }
     rate.add(v.b[k]);
-    rate.add(Real(0), length * fastest);  // a rate that is 0 but for the rounding of slopes that cancel has no size of its own
+    rate.add(Real(0),
+             length * fastest);  // a rate that is 0 but for the rounding of slopes that cancel has no size of its own
     largest = std::max({largest, relative(v.psi[k] - v.constraints.psi[s.active[k]], size + length),
                         relative(rate.value - v.constraints.psi_dot[s.active[k]], rate.scale)});
-    if (!v.state.apart.contains(s.active[k])) largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length)});
+    if (!v.state.apart.contains(s.active[k]))
+      largest = std::max({largest, rate.relative(), relative(v.psi[k], size + length)});
   }
   return largest;
 }
@@ -137,7 +140,8 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge
   for (std::uint32_t i = 1; i < m.places.size(); ++i) {
     const Vector r = later.place(i);
     Real length = 0, speed = 0;
-    for (const Jet& x : r) length = length + cln::abs(x.real()), speed = speed + cln::abs(x.slope(later.level(), 0).real());
+    for (const Jet& x : r)
+      length = length + cln::abs(x.real()), speed = speed + cln::abs(x.slope(later.level(), 0).real());
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string axis = std::to_string(k + 1);
       expect(m.places[i].name + ".position" + axis, r[k].real(), length);
@@ -147,7 +151,8 @@ void compare_outputs(const EquationSystem& s, const SystemValues& v, const Judge
   for (std::uint32_t f = 1; f < m.frames.size(); ++f) {
     const Vector w = now.angular_velocity(f);
     const Real size = cln::abs(w[0].real()) + cln::abs(w[1].real()) + cln::abs(w[2].real());
-    for (std::size_t k = 0; k < 3; ++k) expect(m.frames[f].name + ".omega" + std::to_string(k + 1), dot(w, now.axis(f, k)).real(), size);
+    for (std::size_t k = 0; k < 3; ++k)
+      expect(m.frames[f].name + ".omega" + std::to_string(k + 1), dot(w, now.axis(f, k)).real(), size);
   }
   for (const model::Definition& definition : m.definitions)
     if (!definition.vector) {
@@ -193,7 +198,9 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
     const Ref here = open.back();
     open.pop_back();
     switch (node.op) {
-      case symbolic::Op::add: case symbolic::Op::sub: case symbolic::Op::neg:
+      case symbolic::Op::add:
+      case symbolic::Op::sub:
+      case symbolic::Op::neg:
         for (std::size_t i = 0; i < node.arity; ++i) open.push_back(node.args[i]);
         break;
       default: terms.push_back(here);
@@ -201,10 +208,13 @@ void top_level_terms(const symbolic::Dag& dag, Ref r, std::vector<Ref>& terms) {
   }
 }
 
-/// The largest residual, each relative to the sum of the absolute values of its terms, at unknowns of the size of their scale.
-double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion, const Judge& judge) {
+/// The largest residual, each relative to the sum of the absolute values of its terms, at unknowns of the size of their
+/// scale.
+double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const Lookup& at, const Motion& motion,
+                        const Judge& judge) {
   Lookup sized = at;
-  for (std::size_t i = 0; i < sized.state.qddot.size(); ++i) sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
+  for (std::size_t i = 0; i < sized.state.qddot.size(); ++i)
+    sized.state.qddot[i] = cln::max(cln::abs(at.state.qddot[i]), motion.scale[i]);
   std::vector<Ref> roots;  // of each residual: itself, then its terms
   std::vector<std::size_t> first;
   for (const Ref residual : form.residuals) {
@@ -218,14 +228,17 @@ double largest_residual(const ReadingForm& form, const symbolic::Dag& dag, const
   double largest = 0;
   for (std::size_t r = 0; r + 1 < first.size(); ++r) {
     Real scale = 0;
-    for (std::size_t i = first[r] + 1; i < first[r + 1]; ++i) scale = scale + cln::max(cln::abs(value[i]), cln::abs(size[i]));
+    for (std::size_t i = first[r] + 1; i < first[r + 1]; ++i)
+      scale = scale + cln::max(cln::abs(value[i]), cln::abs(size[i]));
     largest = std::max(largest, relative(value[first[r]], scale));
   }
   return largest;
 }
 
-/// Whether an acceleration enters d'Alembert's principle; that of a coordinate without inertia follows from the constraints alone.
-bool has_inertia(const Judge& judge, State at, const std::vector<Real>& lambda, std::uint32_t coordinate, const Real& wrong) {
+/// Whether an acceleration enters d'Alembert's principle; that of a coordinate without inertia follows from the
+/// constraints alone.
+bool has_inertia(const Judge& judge, State at, const std::vector<Real>& lambda, std::uint32_t coordinate,
+                 const Real& wrong) {
   const std::vector<Residual> before = judge.dalembert(at, lambda);
   at.qddot[coordinate] = wrong;
   const std::vector<Residual> after = judge.dalembert(at, lambda);
@@ -255,8 +268,8 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
   return largest;
 }
 
-/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale; all of them
-/// by what rounding may do, where that is known.
+/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale; all of
+/// them by what rounding may do, where that is known.
 double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
                       const SystemValues& v, const std::vector<Real>& rounding = {}) {
   const std::size_t n = s.free.size();
@@ -273,7 +286,8 @@ double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, co
 constexpr const char* beyond_binary64 = "a value beyond what binary64 holds";
 
 double to_binary64(const Real& value) {
-  if (cln::abs(value) > cln::rational(Real(cln::cl_DF(std::numeric_limits<double>::max())))) throw std::domain_error(beyond_binary64);
+  if (cln::abs(value) > cln::rational(Real(cln::cl_DF(std::numeric_limits<double>::max()))))
+    throw std::domain_error(beyond_binary64);
   return cln::double_approx(value);
 }
 
@@ -315,13 +329,16 @@ bool overflows(const Subjects& subjects, const At& at) {
 }
 
 /// Code in binary64 against the system at the same binary64 numbers.
-double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v, const Judge& judge, int mode) {
+double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v,
+                           const Judge& judge, int mode) {
   const EquationSystem& s = subjects.systems.front();
   if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at);
   const std::vector<Real> reference = right_hand_side(s, judge, at);
   const At arguments = arguments_at(s, at, mode);
-  const auto dx = form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
-  const std::vector<Real> rounding = subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, judge);
+  const auto dx =
+      form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
+  const std::vector<Real> rounding =
+      subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, judge);
   const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });
   if (!finite) {
     // Where its bounds are not finite either, it is a value on the way that is too large.
@@ -344,14 +361,16 @@ void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& 
     if (told) continue;
     // An acceleration may be 0 because the terms of its form cancel: they are what it is compared with.
     const std::vector<Real> rounding = rounding_of_rhs(form, arguments, judge);
-    tally.note(form.name, name_of(first), true, rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));
+    tally.note(form.name, name_of(first), true,
+               rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));
   }
   if (told) return;
   compare_functions(subjects, v, judge, mode, tally);
   if (subjects.compiled.empty()) return;
   const State at = in_binary64(v.state, judge);
   for (const CompiledForm& form : subjects.compiled) {
-    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, judge, mode), Kind::binary64);
+    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, judge, mode),
+               Kind::binary64);
   }
   compare_compiled_functions(subjects, at, judge, mode, tally);
 }
@@ -395,7 +414,9 @@ std::vector<int> modes_of(const EquationSystem& s, const State& state) {
   std::vector<int> modes = eom::contact_modes(shapes, state.apart.empty() ? enough : 1000);
   std::erase_if(modes, [&](int mode) {
     for (std::size_t j = 0; j < shapes.size(); ++j) {
-      if (shapes[j].unilateral && eom::contact_leaf(state.mode, 2 * j + 1) < 0 && eom::contact_leaf(mode, 2 * j + 1) > 0) return true;
+      if (shapes[j].unilateral && eom::contact_leaf(state.mode, 2 * j + 1) < 0 &&
+          eom::contact_leaf(mode, 2 * j + 1) > 0)
+        return true;
     }
     return false;
   });
@@ -428,7 +449,8 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
   for (std::size_t i = 0; i < values.size(); ++i) {
     const EquationSystem& s = subjects.systems[i];
     tally.note(name_of(s), judge_name, false, motion_residual(values[i]));
-    if (!s.active.empty()) tally.note("constraints of " + name_of(s), judge_name, false, constraint_residual(s, values[i]));
+    if (!s.active.empty())
+      tally.note("constraints of " + name_of(s), judge_name, false, constraint_residual(s, values[i]));
     compare_energies(s, values[i], judge, tally);
     compare_outputs(s, values[i], judge, tally);
     for (std::size_t k = 0; k < i; ++k)
@@ -438,8 +460,7 @@ void compare_at(const mechanics::Mechanics& mechanics, const Subjects& subjects,
     const Motion motion = motion_at(judge, state);
     for (const ReadingForm& form : subjects.reading)
       if (!form.residuals.empty())
-        tally.note(form.name, judge_name, false,
-                   reading_residual(form, mechanics, motion, judge, tally.points() == 0));
+        tally.note(form.name, judge_name, false, reading_residual(form, mechanics, motion, judge, tally.points() == 0));
   }
   if (values.empty()) return;
   const EquationSystem& first = subjects.systems.front();

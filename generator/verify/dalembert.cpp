@@ -117,7 +117,8 @@ void Judge::add_functions(Environment& environment, const std::vector<Real>& int
     for (std::size_t i = 0; i < integrals.size(); ++i) {
       if (!environment.integrals[i].empty()) continue;
       add(model_.integrals[i].integrand, environment.integrals[i]);  // its rate and further derivatives
-      if (!environment.integrals[i].empty()) environment.integrals[i].insert(environment.integrals[i].begin(), Jet(integrals[i]));
+      if (!environment.integrals[i].empty())
+        environment.integrals[i].insert(environment.integrals[i].begin(), Jet(integrals[i]));
     }
   }
 }
@@ -197,12 +198,13 @@ Judge::~Judge() = default;
 namespace {
 
 bool same(const std::vector<Real>& a, const std::vector<Real>& b) {
-  return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Real& x, const Real& y) { return cln::equal(x, y); });
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const Real& x, const Real& y) { return cln::equal(x, y); });
 }
 
 bool same_place(const State& a, const State& b) {
-  return cln::equal(a.t, b.t) && same(a.q, b.q) && same(a.qdot, b.qdot) && same(a.parameters, b.parameters) && same(a.inputs, b.inputs) &&
-         same(a.integrals, b.integrals);
+  return cln::equal(a.t, b.t) && same(a.q, b.q) && same(a.qdot, b.qdot) && same(a.parameters, b.parameters) &&
+         same(a.inputs, b.inputs) && same(a.integrals, b.integrals);
 }
 
 }  // namespace
@@ -217,7 +219,8 @@ std::vector<Residual> Judge::dalembert(const State& state, const std::vector<Rea
   std::vector<Residual> sums = at.inertia().at(state.qddot);
   for (std::size_t i = 0; i < sums.size(); ++i) sums[i].add(at.rest()[i].value, at.rest()[i].scale);
   subtract_friction(state, at.now(), sums);
-  // A joint may keep a body from turning that nothing turns: then every term of an equation is rounding, which is 0 beside the others.
+  // A joint may keep a body from turning that nothing turns: then every term of an equation is rounding, which is 0
+  // beside the others.
   Real least = 0;
   if (!model_.joints.empty())
     for (const Real& force : lambda) least = cln::max(least, cln::abs(force) / 10000000000u);
@@ -250,9 +253,10 @@ void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<
   }
 }
 
-// A force where a body is touched: at its centre of mass, with its moment about that, F . dr/dq_i + (p x F) . dw/dqdot_i; what it
-// touches bears the opposite.
-void Judge::subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now, std::vector<Residual>& sums) const {
+// A force where a body is touched: at its centre of mass, with its moment about that, F . dr/dq_i + (p x F) .
+// dw/dqdot_i; what it touches bears the opposite.
+void Judge::subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now,
+                             std::vector<Residual>& sums) const {
   Interpreter& by_q = now.by_coordinates(false);
   const auto act = [&](std::uint32_t place, std::uint32_t frame, model::NodeId arm, int sign) {
     const Vector F{Jet(sign * force[0]), Jet(sign * force[1]), Jet(sign * force[2])};

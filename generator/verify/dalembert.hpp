@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The independent judge. In: a Model and a state with accelerations and multipliers. Out: by how much d'Alembert's
 // principle fails there, per coordinate,
-//   sum_masses (d(m v)/dt - F) . dr/dq_i + sum_bodies (dH/dt - M) . dw/dqdot_i - Q_i - sum_k lambda_k f_ki      ((2.74), (2.163), (2.31), (2.50), (3.20)),
+//   sum_masses (d(m v)/dt - F) . dr/dq_i + sum_bodies (dH/dt - M) . dw/dqdot_i - Q_i - sum_k lambda_k f_ki ((2.74),
+//   (2.163), (2.31), (2.50), (3.20)),
 // f_ki = dpsi_k/dq_i, or de_k/dqdot_i of a constraint e_k = 0 on velocities,
 // with the Euler-Lagrange residual d/dt(dT/dqdot_i) - dT/dq_i + dU/dq_i of energies that are given as such; the
 // constraints and their rates; and the energies with theirs.
 //
-// Forces are plain forces read from the Model. It may include the Model and jets only: no graph, no computer algebra, no
-// mechanics. That is what makes its agreement mean something (docs/verification.md).
+// Forces are plain forces read from the Model. It may include the Model and jets only: no graph, no computer algebra,
+// no mechanics. That is what makes its agreement mean something (docs/verification.md).
 #pragma once
 
 #include <array>
@@ -25,9 +26,9 @@ namespace eomgen::verify {
 
 /// A friction force of any size: the equations must take it up whatever the law says of it.
 struct FrictionForce {
-  std::uint32_t place = 0;       // of the particle; 0 where a coordinate rubs
-  std::uint32_t coordinate = 0;  // that rubs
-  std::array<Real, 3> force{};   // on the particle; force[0] on the coordinate
+  std::uint32_t place = 0;                  // of the particle; 0 where a coordinate rubs
+  std::uint32_t coordinate = 0;             // that rubs
+  std::array<Real, 3> force{};              // on the particle; force[0] on the coordinate
   std::optional<std::uint32_t> touch = {};  // on a body where this constraint of the model says that it touches
 };
 
@@ -35,11 +36,11 @@ struct State {
   Real t = 0;
   std::vector<Real> q, qdot, qddot;  // every coordinate of the model
   std::vector<Real> parameters, inputs;
-  std::vector<Real> integrals;       // of functions of time, from the start of the run; empty: not computed yet
-  std::vector<Real> phi;  // components of friction along the tangents, and what they amount to
+  std::vector<Real> integrals;  // of functions of time, from the start of the run; empty: not computed yet
+  std::vector<Real> phi;        // components of friction along the tangents, and what they amount to
   std::vector<FrictionForce> friction;
-  int mode = 0;                      // of the contacts (eom/modes/contact_state.hpp)
-  std::set<std::size_t> apart;       // scalar constraints that are open here: they bind nothing and have no force
+  int mode = 0;                 // of the contacts (eom/modes/contact_state.hpp)
+  std::set<std::size_t> apart;  // scalar constraints that are open here: they bind nothing and have no force
 };
 
 /// A sum that should vanish, and the sum of the sizes of its terms, from which its rounding comes.
@@ -106,7 +107,8 @@ class Judge {
   bool needs_derivatives(model::NodeId expression) const;
   Real integral_value(std::uint32_t integral, const State& state) const;
   void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;
-  void subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now, std::vector<Residual>& sums) const;
+  void subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now,
+                        std::vector<Residual>& sums) const;
   /// What does not depend on accelerations and constraint forces, kept for the last state that was asked about.
   Standing& standing(const State& state) const;
 

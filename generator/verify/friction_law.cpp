@@ -52,10 +52,14 @@ class Law {
       if (slip.empty()) continue;
       const Real normal = normal_force(j, gram, given, lambda);
       for (std::size_t a = 0; a < slip.size(); ++a) {
-        if (c.unilateral && presses(j) < 0) result.push_back(phi[c.first + a]);
-        else if (c.width) result.push_back(phi[c.first + a] + mu * normal * slip[a] / length(slip, width));
-        else if (slides(j) == 0) result.push_back(rate[a]);
-        else result.push_back(phi[c.first + a] + mu * normal * heading(j, slip, a));
+        if (c.unilateral && presses(j) < 0)
+          result.push_back(phi[c.first + a]);
+        else if (c.width)
+          result.push_back(phi[c.first + a] + mu * normal * slip[a] / length(slip, width));
+        else if (slides(j) == 0)
+          result.push_back(rate[a]);
+        else
+          result.push_back(phi[c.first + a] + mu * normal * heading(j, slip, a));
       }
     }
     return result;
@@ -66,7 +70,8 @@ class Law {
   int presses(std::size_t j) const { return eom::contact_leaf(state_.mode, 2 * j + 1); }
   Real root(const Real& x) const { return cln::realpart(cln::sqrt(judge_.precision().round(x))); }
 
-  Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given, const std::vector<Real>& lambda) const {
+  Real normal_force(std::size_t j, const std::vector<Real>& gram, const Real& given,
+                    const std::vector<Real>& lambda) const {
     if (lambda.empty()) return cln::abs(given);
     if (lambda.size() == 1) return presses(j) * root(gram[0]) * lambda[0];
     Real square = 0;
@@ -102,7 +107,8 @@ void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& stat
     for (std::size_t a = 0; a < contact.directions.size(); ++a) {
       const mechanics::Vec3& t = contact.directions[a];
       const std::vector<Real> direction = symbolic::evaluate(*m.dag, {t[0], t[1], t[2]}, lookup, judge.digits());
-      for (std::size_t k = 0; k < 3; ++k) friction.force[k] = friction.force[k] + state.phi[contact.first + a] * direction[k];
+      for (std::size_t k = 0; k < 3; ++k)
+        friction.force[k] = friction.force[k] + state.phi[contact.first + a] * direction[k];
     }
     state.friction.push_back(friction);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction forces at a state: of any size, for what the equations make of them; and those that Coulomb's law asks for, found by
-// Newton's iteration on the law as it stands, without the closed forms of the program.
+// Friction forces at a state: of any size, for what the equations make of them; and those that Coulomb's law asks for,
+// found by Newton's iteration on the law as it stands, without the closed forms of the program.
 #pragma once
 
 #include "verify/system_values.hpp"

@@ -29,13 +29,15 @@ At with_digits(const At& at, const Precision& precision) {
   return result;
 }
 
-/// In sums of more digits a float of fewer takes them away. What is as faint as exp(-1e11) has no fraction, and digits enough.
+/// In sums of more digits a float of fewer takes them away. What is as faint as exp(-1e11) has no fraction, and digits
+/// enough.
 Real exactly(const Real& value) {
   constexpr std::intptr_t faint = 1 << 20;
   constexpr int plenty = 1500;  // digits, more than any sum here has
   if (cln::zerop(value)) return 0;
   const std::intptr_t exponent = cln::float_exponent(cln::cl_float(value, cln::float_format(20)));
-  return std::abs(exponent) < faint ? Real(cln::rational(value)) : Real(cln::cl_float(value, cln::float_format(plenty)));
+  return std::abs(exponent) < faint ? Real(cln::rational(value))
+                                    : Real(cln::cl_float(value, cln::float_format(plenty)));
 }
 
 /// A direction without zeros, the same everywhere.
@@ -44,8 +46,13 @@ Real component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j 
 class Functions {
  public:
   Functions(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally)
-      : program_(subjects.programs.front()), v_(v), judge_(judge), tally_(tally), s_(system_of(subjects)),
-        at_(arguments_at(subjects.systems.front(), v.state, mode)), lookup_(judge, v.state) {
+      : program_(subjects.programs.front()),
+        v_(v),
+        judge_(judge),
+        tally_(tally),
+        s_(system_of(subjects)),
+        at_(arguments_at(subjects.systems.front(), v.state, mode)),
+        lookup_(judge, v.state) {
     lookup_.lambda = v.lambda;
   }
 
@@ -99,17 +106,19 @@ class Functions {
     return symbolic::evaluate(*s_.dag, roots, lookup, judge_.digits());
   }
 
-  /// Values of the system's expressions, each with the size of what is summed in it: by what its last digits lose, and by what accelerations,
-  /// multipliers and friction of the size of their scales would make of it. Friction that holds something is what the other forces leave,
-  /// which may be nothing: it has the scale of these.
+  /// Values of the system's expressions, each with the size of what is summed in it: by what its last digits lose, and
+  /// by what accelerations, multipliers and friction of the size of their scales would make of it. Friction that holds
+  /// something is what the other forces leave, which may be nothing: it has the scale of these.
   struct Sized {
     std::vector<Real> values, sizes;
   };
   Sized sized(const std::vector<Ref>& roots, const Lookup& lookup) const {
     constexpr int more = 20, caution = 3;  // digits
     Lookup large = lookup;
-    for (std::size_t i = 0; i < large.state.qddot.size(); ++i) large.state.qddot[i] = cln::abs(large.state.qddot[i]) + v_.scale[i];
-    for (std::size_t k = 0; k < large.lambda.size(); ++k) large.lambda[k] = cln::abs(large.lambda[k]) + v_.scale[large.state.qddot.size() + k];
+    for (std::size_t i = 0; i < large.state.qddot.size(); ++i)
+      large.state.qddot[i] = cln::abs(large.state.qddot[i]) + v_.scale[i];
+    for (std::size_t k = 0; k < large.lambda.size(); ++k)
+      large.lambda[k] = cln::abs(large.lambda[k]) + v_.scale[large.state.qddot.size() + k];
     Real forces = 0;
     for (const Residual& row : v_.rows) forces = cln::max(forces, row.scale);
     for (Real& phi : large.state.phi) phi = cln::abs(phi) + forces;
@@ -118,7 +127,8 @@ class Functions {
     Sized result{evaluate(roots, lookup), {}};
     for (std::size_t i = 0; i < roots.size(); ++i) {
       const Real& value = result.values[i];
-      result.sizes.push_back(cln::abs(value) + cln::abs(largest[i]) + cln::abs(value - precise[i]) * ten_to(judge_.digits() + caution));
+      result.sizes.push_back(cln::abs(value) + cln::abs(largest[i]) +
+                             cln::abs(value - precise[i]) * ten_to(judge_.digits() + caution));
     }
     return result;
   }
@@ -133,8 +143,9 @@ class Functions {
     return largest;
   }
 
-  /// [f(at + h) - f(at - h)]/2h, and what it may be off by: h times the curvature [f(at + h) - 2 f(at) + f(at - h)]/h^2, which is all there is
-  /// of a body that is held fast. `shift` moves the arguments by a multiple of the direction.
+  /// [f(at + h) - f(at - h)]/2h, and what it may be off by: h times the curvature [f(at + h) - 2 f(at) + f(at -
+  /// h)]/h^2, which is all there is of a body that is held fast. `shift` moves the arguments by a multiple of the
+  /// direction.
   struct Slope {
     Arrays values, errors;
   };
@@ -147,7 +158,8 @@ class Functions {
     At above = here, below = here;
     shift(above, h);
     shift(below, -h);
-    const std::optional<Arrays> high = program_.call(function, above, more), low = program_.call(function, below, more), middle = program_.call(function, here, more);
+    const std::optional<Arrays> high = program_.call(function, above, more), low = program_.call(function, below, more),
+                                middle = program_.call(function, here, more);
     if (!high || !low || !middle) return std::nullopt;
     Slope result{*high, *high};
     for (std::size_t r = 0; r < high->size(); ++r) {
@@ -174,12 +186,14 @@ class Functions {
     const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
     if (!rhs) return;
     double largest = 0;
-    for (std::size_t i = 0; i < values[0].size(); ++i) largest = std::max(largest, relative(values[0][i] - (*rhs)[0][i], sizes_[0][i]));
+    for (std::size_t i = 0; i < values[0].size(); ++i)
+      largest = std::max(largest, relative(values[0][i] - (*rhs)[0][i], sizes_[0][i]));
     note("rhs_prepared", "its rhs", largest);
   }
 
   /// Columns of array `r`, each times its component of the direction, against the slope along it.
-  void along(const std::string& function, const Arrays& values, std::size_t r, const std::vector<Real>& direction, const std::optional<Slope>& slope) {
+  void along(const std::string& function, const Arrays& values, std::size_t r, const std::vector<Real>& direction,
+             const std::optional<Slope>& slope) {
     const std::vector<Real> lost = noise("rhs");
     if (!slope || lost.empty()) return;
     const std::size_t rows = lost.size();
@@ -206,7 +220,8 @@ class Functions {
 
   void parameters(const Arrays& values) {
     std::vector<Real> direction;
-    for (std::size_t j = 0; j < at_.p.size(); ++j) direction.push_back(cln::zerop(at_.p[j]) ? component(j) : component(j) * cln::rational(at_.p[j]));
+    for (std::size_t j = 0; j < at_.p.size(); ++j)
+      direction.push_back(cln::zerop(at_.p[j]) ? component(j) : component(j) * cln::rational(at_.p[j]));
     along("jac_p", values, 0, direction, slope("rhs", [&](At& at, const Real& h) {
             for (std::size_t j = 0; j < direction.size(); ++j) at.p[j] = at.p[j] + h * direction[j];
           }));
@@ -237,7 +252,9 @@ class Functions {
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t k = 0; k < m; ++k) A.push_back(s_.A[k * n + j]);
     const Lookup lookup = without_mode();
-    note("constraints", name(), std::max({against(values, 0, s_.psi, lookup), against(values, 1, A, lookup), against(values, 2, s_.b, lookup)}));
+    note("constraints", name(),
+         std::max(
+             {against(values, 0, s_.psi, lookup), against(values, 1, A, lookup), against(values, 2, s_.b, lookup)}));
   }
 
   void reactions(const Arrays& values) {
@@ -251,7 +268,8 @@ class Functions {
     std::vector<Ref> roots;
     std::vector<std::size_t> places;
     for (std::size_t i = 0; i < program_.outputs.size(); ++i) {
-      const auto found = std::find_if(s_.outputs.begin(), s_.outputs.end(), [&](const system::Output& o) { return o.name == program_.outputs[i]; });
+      const auto found = std::find_if(s_.outputs.begin(), s_.outputs.end(),
+                                      [&](const system::Output& o) { return o.name == program_.outputs[i]; });
       if (found == s_.outputs.end()) continue;
       roots.push_back(found->value);
       places.push_back(i);
@@ -259,7 +277,8 @@ class Functions {
     const Sized expected = sized(roots, lookup_);
     double largest = 0;
     for (std::size_t i = 0; i < roots.size(); ++i) {
-      largest = std::max(largest, relative(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
+      largest = std::max(
+          largest, relative(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
     }
     if (!roots.empty()) note("outputs", name(), largest);
   }
@@ -270,7 +289,8 @@ class Functions {
     if (!roots.empty()) note("events", name(), against(values, 0, roots, lookup_));
   }
 
-  /// dL/dqdot along a direction of the rates; and their rates along the path, where the constraints and friction have their part.
+  /// dL/dqdot along a direction of the rates; and their rates along the path, where the constraints and friction have
+  /// their part.
   void momenta(const Arrays& values) {
     const std::size_t n = s_.free.size();
     const int digits = tally_.digits(), more = 3 * digits + 10;
@@ -302,29 +322,35 @@ class Functions {
     if (!slopes || lost.empty()) return;
     Lookup frictionless = lookup_;
     std::fill(frictionless.state.phi.begin(), frictionless.state.phi.end(), Real(0));
-    const std::vector<Real> with = evaluate(s_.f, lookup_), without = evaluate(s_.f, frictionless), A = evaluate(s_.A, lookup_), M = evaluate(s_.M, lookup_);
+    const std::vector<Real> with = evaluate(s_.f, lookup_), without = evaluate(s_.f, frictionless),
+                            A = evaluate(s_.A, lookup_), M = evaluate(s_.M, lookup_);
     std::vector<Residual> expected;
     Real most = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      expected.push_back({values[1][i] + with[i] - without[i], sizes_[1][i] + lost[i] + slopes->errors[0][i] + cln::abs(with[i]) + cln::abs(without[i])});
+      expected.push_back({values[1][i] + with[i] - without[i],
+                          sizes_[1][i] + lost[i] + slopes->errors[0][i] + cln::abs(with[i]) + cln::abs(without[i])});
       for (std::size_t k = 0; k < s_.active.size(); ++k) {
         const Real& slope = A[k * n + i];
-        expected.back().add(slope * v_.lambda[s_.active[k]], cln::abs(slope) * v_.scale[v_.state.qddot.size() + s_.active[k]]);
+        expected.back().add(slope * v_.lambda[s_.active[k]],
+                            cln::abs(slope) * v_.scale[v_.state.qddot.size() + s_.active[k]]);
       }
       // A momentum that is conserved changes by M qddot, whose terms may cancel to nothing.
-      for (std::size_t j = 0; j < n; ++j) expected.back().scale = expected.back().scale + cln::abs(M[i * n + j] * (*rhs)[0][n + j]);
+      for (std::size_t j = 0; j < n; ++j)
+        expected.back().scale = expected.back().scale + cln::abs(M[i * n + j] * (*rhs)[0][n + j]);
       most = cln::max(most, expected.back().scale);
     }
     // Friction that slides along one direction leaves nothing of the others but roundings of its size.
     constexpr int digits_of_none = 20;
     double largest = 0;
     for (std::size_t i = 0; i < n; ++i) {
-      largest = std::max(largest, relative(slopes->values[0][i] - expected[i].value, expected[i].scale + most * ten_to(-digits_of_none)));
+      largest = std::max(largest, relative(slopes->values[0][i] - expected[i].value,
+                                           expected[i].scale + most * ten_to(-digits_of_none)));
     }
     note("rates of momenta", "momenta along the path", largest);
   }
 
-  /// The polynomial X of order K obeys X' = f(X) but for terms of h^K: h is so small that these are beyond the digits compared.
+  /// The polynomial X of order K obeys X' = f(X) but for terms of h^K: h is so small that these are beyond the digits
+  /// compared.
   void taylor() {
     constexpr int order = 4, beyond = 20;
     const int exponent = tally_.digits() + beyond, more = order * exponent + 60;
@@ -383,12 +409,14 @@ At arguments_at(const EquationSystem& s, const State& state, int mode) {
   return at;
 }
 
-void compare_functions(const Subjects& subjects, const SystemValues& values, const Judge& judge, int mode, Tally& tally) {
+void compare_functions(const Subjects& subjects, const SystemValues& values, const Judge& judge, int mode,
+                       Tally& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   Functions(subjects, values, judge, mode, tally)();
 }
 
-void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Judge& judge, int mode, Tally& tally) {
+void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Judge& judge, int mode,
+                                Tally& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   const ProgramForm& program = subjects.programs.front();
   const At at = arguments_at(subjects.systems.front(), rounded, mode);
@@ -416,7 +444,8 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
           largest = std::max(largest, relative(cln::rational(Real(cln::cl_DF(entry))) - value, size));
         }
       }
-      if (known) tally.note(function + " of " + form.name, function + " of " + program.name, true, largest, Kind::binary64);
+      if (known)
+        tally.note(function + " of " + form.name, function + " of " + program.name, true, largest, Kind::binary64);
     }
   }
 }

@@ -95,7 +95,8 @@ Interpreter& Interpreter::by_leaf(const Node& node) {
       vary(seeded.t);
       for (auto* group : {&seeded.functions, &seeded.integrals})
         for (std::vector<Jet>& orders : *group) {
-          for (std::size_t k = 0; k + 1 < orders.size(); ++k) orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
+          for (std::size_t k = 0; k + 1 < orders.size(); ++k)
+            orders[k] = Jet::on_level(level, orders[k], {orders[k + 1]});
           if (!orders.empty()) orders.pop_back();  // a function whose own formula this is has none yet
         }
       break;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // In: the expressions of a Model and an environment (time, coordinates and their rates, parameters, inputs as jets).
-// Out: values as jets. ddt(e) re-reads e with time on a new level, q -> q + qdot eps, qdot -> qdot + qddot eps; diff(e, x)
-// and the basis vectors a_i = dr/dq_i (1.20) re-read theirs with x on a new level. Nothing is differentiated as a
+// Out: values as jets. ddt(e) re-reads e with time on a new level, q -> q + qdot eps, qdot -> qdot + qddot eps; diff(e,
+// x) and the basis vectors a_i = dr/dq_i (1.20) re-read theirs with x on a new level. Nothing is differentiated as a
 // formula, and nothing here is shared with mechanics, derive or the reading form.
 #pragma once
 
@@ -50,9 +50,10 @@ class Interpreter {
 
   Jet scalar(model::NodeId id);
   Vector vector(model::NodeId id);
-  Vector place(std::uint32_t index);  // position of Model::places[index]
+  Vector place(std::uint32_t index);                // position of Model::places[index]
   Vector axis(std::uint32_t frame, std::size_t k);  // e_(k+1) of Model::frames[frame]
-  /// Axial vector of dQ Q^T, eq. (5.26): how the axes of a frame turn along the path, or with a coordinate (by_coordinates(false)).
+  /// Axial vector of dQ Q^T, eq. (5.26): how the axes of a frame turn along the path, or with a coordinate
+  /// (by_coordinates(false)).
   Vector angular_velocity(std::uint32_t frame);
   Vector virtual_rotation(std::uint32_t frame, std::size_t coordinate);
   /// |b - a| - length of the spring that Op::extension means here.

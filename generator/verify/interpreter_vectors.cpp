@@ -124,8 +124,8 @@ Vector Interpreter::tangent(std::uint32_t index, const Node& coordinate, bool re
   return map_slope(r, near.level());
 }
 
-/// a^i = grad q_i (1.22): a^i . a_k = delta_ik over the coordinates that the place's chart names; with fewer than three,
-/// within the surface or along the line that they span.
+/// a^i = grad q_i (1.22): a^i . a_k = delta_ik over the coordinates that the place's chart names; with fewer than
+/// three, within the surface or along the line that they span.
 Vector Interpreter::dual(std::uint32_t index, const Node& coordinate) {
   const Vector own = tangent(index, coordinate, false);
   std::vector<Vector> others;

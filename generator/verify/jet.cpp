@@ -22,7 +22,7 @@ const Jet& zero_jet() {
   return zero;
 }
 
-bool is_integer(const Real& x) { return cln::instanceof(x, cln::cl_I_ring); }
+bool is_integer(const Real& x) { return cln:: instanceof (x, cln::cl_I_ring); }
 
 void require(bool ok, const char* why) {
   if (!ok) throw Singular(why);
@@ -59,7 +59,8 @@ const Jet::Slopes& Jet::slopes(unsigned level) const {
 
 const Jet& Jet::slope(unsigned level, std::size_t direction) const {
   const Slopes& all = slopes(level);
-  const auto found = std::lower_bound(all.begin(), all.end(), direction, [](const auto& slope, std::size_t wanted) { return slope.first < wanted; });
+  const auto found = std::lower_bound(all.begin(), all.end(), direction,
+                                      [](const auto& slope, std::size_t wanted) { return slope.first < wanted; });
   return found == all.end() || found->first != direction ? zero_jet() : found->second;
 }
 
@@ -75,9 +76,7 @@ const Real& Jet::real() const {
   return jet->real_;
 }
 
-bool Jet::exactly_zero() const {
-  return !dual_ && cln::zerop(real_) && cln::instanceof(real_, cln::cl_RA_ring);
-}
+bool Jet::exactly_zero() const { return !dual_ && cln::zerop(real_) && cln:: instanceof (real_, cln::cl_RA_ring); }
 
 Jet::Slopes Jet::combine(const Jet& a, const Jet* ka, const Jet& b, const Jet* kb, unsigned level) {
   const Slopes &left = a.slopes(level), &right = b.slopes(level);

@@ -7,7 +7,8 @@
 // coefficient that is read off; no formula is ever differentiated. Levels are tags: a jet of a lower level is constant
 // for the higher ones, so nested derivatives cannot be confused with one another.
 //
-// Exact rationals stay exact, and what is exactly 0 costs nothing: slopes are kept by direction, those that are exactly 0 are not kept.
+// Exact rationals stay exact, and what is exactly 0 costs nothing: slopes are kept by direction, those that are exactly
+// 0 are not kept.
 #pragma once
 
 #include <cln/float.h>
@@ -48,9 +49,9 @@ class Jet {
   static Jet variable(unsigned level, Jet value, std::size_t direction);
 
   unsigned level() const { return level_; }
-  const Jet& value(unsigned level) const;                    // without the eps of `level`
+  const Jet& value(unsigned level) const;  // without the eps of `level`
   const Jet& slope(unsigned level, std::size_t direction) const;
-  const Real& real() const;                                  // without any eps
+  const Real& real() const;  // without any eps
   /// The directions of `level` along which it has a slope, ascending.
   std::vector<std::size_t> directions(unsigned level) const;
   bool exactly_zero() const;

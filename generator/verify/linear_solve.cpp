@@ -133,8 +133,10 @@ std::vector<Part> parts(const std::vector<Real>& A, std::size_t n) {
       at = result.size();
       result.emplace_back();
     }
-    if (i < n) result[at].rows.push_back(i);
-    else result[at].columns.push_back(i - n);
+    if (i < n)
+      result[at].rows.push_back(i);
+    else
+      result[at].columns.push_back(i - n);
   }
   return result;
 }
@@ -143,7 +145,7 @@ std::vector<Part> parts(const std::vector<Real>& A, std::size_t n) {
 std::optional<cln::float_format_t> format_of(const std::vector<Real>& numbers) {
   std::optional<cln::float_format_t> widest;
   for (const Real& number : numbers) {
-    if (cln::instanceof(number, cln::cl_RA_ring)) continue;
+    if (cln:: instanceof (number, cln::cl_RA_ring)) continue;
     const auto own = static_cast<cln::float_format_t>(cln::float_digits(cln::the<cln::cl_F>(number)));
     if (!widest || own > *widest) widest = own;
   }
@@ -157,7 +159,8 @@ Real largest_of(const std::vector<Real>& v) {
 }
 
 /// A x = b from the factors of A in binary64; nothing where they do not suffice.
-std::optional<std::vector<Real>> refined(const std::vector<Real>& A, const std::vector<Real>& b, const Elimination<double>& rough) {
+std::optional<std::vector<Real>> refined(const std::vector<Real>& A, const std::vector<Real>& b,
+                                         const Elimination<double>& rough) {
   const std::size_t n = b.size();
   const auto format = format_of(A);
   if (!format) return std::nullopt;
@@ -225,7 +228,8 @@ PartSolution solve_part(std::vector<Real> A, const std::vector<Real>& b, bool wi
     Elimination<double> rough(n, rounded(A));
     if (rough.factor() && rough.largest < worst * rough.smallest) {
       if (auto x = refined(A, b, rough)) {
-        return {std::move(*x), with_inverse ? inverse_of(rough) : std::vector<std::vector<double>>{}, rough.largest, rough.smallest};
+        return {std::move(*x), with_inverse ? inverse_of(rough) : std::vector<std::vector<double>>{}, rough.largest,
+                rough.smallest};
       }
     }
   }
@@ -281,11 +285,13 @@ Solution solve(std::vector<Real> A, std::vector<Real> b, bool with_inverse) {
     if (found.x.empty()) return singular();
     largest = std::max(largest, found.largest);
     smallest = std::min(smallest, found.smallest);
-    for (std::size_t k = 0; k < part.columns.size(); ++k) solution.unknowns[part.columns[k]] = found.x[k] * column_scale[part.columns[k]];
+    for (std::size_t k = 0; k < part.columns.size(); ++k)
+      solution.unknowns[part.columns[k]] = found.x[k] * column_scale[part.columns[k]];
     for (std::size_t i = 0; i < found.inverse.size(); ++i) {
       const double from = cln::double_approx(row_scale[part.rows[i]]);
       for (std::size_t k = 0; k < part.columns.size(); ++k)
-        solution.inverse[part.rows[i]][part.columns[k]] = std::fabs(found.inverse[i][k]) * from * cln::double_approx(column_scale[part.columns[k]]);
+        solution.inverse[part.rows[i]][part.columns[k]] =
+            std::fabs(found.inverse[i][k]) * from * cln::double_approx(column_scale[part.columns[k]]);
     }
   }
   if (n > 0) solution.condition = largest / smallest;

@@ -23,9 +23,10 @@ struct Solution {
 /// A power of two near |x| (sign 1) or 1/|x| (sign -1), x != 0, at the precision of x: scaling by it rounds nothing.
 Real power_of_two_near(const Real& x, int sign);
 
-/// A x = b with A n x n, row-major; parts that do not hang together each alone, by Gaussian elimination with complete pivoting of the
-/// scaled matrix. Large parts are eliminated in binary64 and refined: each residual, in all digits, takes off as many digits as binary64
-/// has beyond the condition; where that does not converge, elimination in all digits it is.
+/// A x = b with A n x n, row-major; parts that do not hang together each alone, by Gaussian elimination with complete
+/// pivoting of the scaled matrix. Large parts are eliminated in binary64 and refined: each residual, in all digits,
+/// takes off as many digits as binary64 has beyond the condition; where that does not converge, elimination in all
+/// digits it is.
 Solution solve(std::vector<Real> A, std::vector<Real> b, bool with_inverse = false);
 
 }  // namespace eomgen::verify

@@ -47,7 +47,8 @@ Motion motion_at(const Judge& judge, const State& at) {
   const Solution solution = solve(matrix, std::move(right), true);
   if (!solution.exists()) throw Singular("the mass matrix is nearly singular");
   for (std::size_t i = 0; i < size; ++i)  // terms of the solution may cancel to nothing
-    for (std::size_t k = 0; k < size; ++k) row_scale[i] = row_scale[i] + cln::abs(matrix[i * size + k] * solution.x()[k]);
+    for (std::size_t k = 0; k < size; ++k)
+      row_scale[i] = row_scale[i] + cln::abs(matrix[i * size + k] * solution.x()[k]);
   for (std::size_t i = 0; i < n; ++i) s.qddot[i] = solution.x()[i];
   motion.lambda = no_forces;
   for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];

@@ -100,8 +100,7 @@ class Forces {
   }
   void operator()(const model::Dry&) {}  // with the contacts (State::friction)
   void operator()(const model::Generalized& generalized) {
-    for (const auto& [coordinate, force] : generalized.components)
-      sums_[coordinate].add(-now_.scalar(force).real());
+    for (const auto& [coordinate, force] : generalized.components) sums_[coordinate].add(-now_.scalar(force).real());
   }
 
  private:
@@ -118,7 +117,9 @@ class Forces {
   }
   /// M . dw/dqdot_i
   void turn(const Vector& moment, std::uint32_t frame) {
-    const auto size = [](const Vector& v) { return Real(cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real())); };
+    const auto size = [](const Vector& v) {
+      return Real(cln::abs(v[0].real()) + cln::abs(v[1].real()) + cln::abs(v[2].real()));
+    };
     std::vector<const Jet*> components;
     std::array<Vector, 3> axes;
     for (std::size_t k = 0; k < 3; ++k) axes[k] = by_q_.axis(frame, k);
@@ -183,8 +184,7 @@ struct Potentials {
     };
     if (uses(model, gravity.acceleration, moves)) return;  // not a uniform field
     const Vector g = at.vector(gravity.acceleration);
-    for (const Mass& p : masses(model))
-      terms.push_back(-(at.scalar(p.mass) * dot(g, at.place(p.place))));
+    for (const Mass& p : masses(model)) terms.push_back(-(at.scalar(p.mass) * dot(g, at.place(p.place))));
   }
   void operator()(const model::CentralGravity& gravity) {
     for (const Mass& p : masses(model)) {
@@ -246,7 +246,8 @@ Vector inertia_times(const model::Body& body, Interpreter& at, const Vector& v) 
   Vector sum;
   for (std::size_t i = 0; i < 3; ++i) {
     Jet component;
-    for (std::size_t k = 0; k < 3; ++k) component = component + at.scalar(body.inertia[i][k]) * dot(at.axis(body.frame, k), v);
+    for (std::size_t k = 0; k < 3; ++k)
+      component = component + at.scalar(body.inertia[i][k]) * dot(at.axis(body.frame, k), v);
     sum = sum + component * at.axis(body.frame, i);
   }
   return sum;

@@ -24,14 +24,14 @@ struct Unclosed : Unfit {
 };
 
 // How far random values go from the defaults and starts, before anything is rejected.
-constexpr double parameter_spread = 0.25;   // relative
-constexpr double coordinate_spread = 0.5;   // of the scale of its unit
-constexpr double angle_spread = 1.2;        // rad
-constexpr double range_margin = 0.05;       // of a chart's range, at either end: charts are singular there
-constexpr double longest_span = 100;        // s; later times test nothing more
-constexpr double kink_margin = 1e-6;        // so that rounding to binary64 cannot change the branch
+constexpr double parameter_spread = 0.25;  // relative
+constexpr double coordinate_spread = 0.5;  // of the scale of its unit
+constexpr double angle_spread = 1.2;       // rad
+constexpr double range_margin = 0.05;      // of a chart's range, at either end: charts are singular there
+constexpr double longest_span = 100;       // s; later times test nothing more
+constexpr double kink_margin = 1e-6;       // so that rounding to binary64 cannot change the branch
 constexpr double singular_constraints = 1e10;
-constexpr std::size_t patience = 12;        // tries to close the same contacts before one of them is left open
+constexpr std::size_t patience = 12;  // tries to close the same contacts before one of them is left open
 
 bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text == "1"; }
 
@@ -82,7 +82,8 @@ void Points::read_scene() {
           target[value.coordinate] = judge_.value(value.value, start);
           if (values == &scene->initial && value.order == 0) given[value.coordinate] = true;
         } catch (const std::domain_error&) {
-          continue;  // a start that needs values which only the constraints give, or a time at which a function has no rate, as t^1.5 at 0
+          continue;  // a start that needs values which only the constraints give, or a time at which a function has no
+                     // rate, as t^1.5 at 0
         }
       }
   read_ranges(start);
@@ -90,7 +91,8 @@ void Points::read_scene() {
   settle(std::move(start), given);
 }
 
-/// What the scene leaves to the constraints is where they put it: neither its guess nor a zero says where the system lives, or how large it is.
+/// What the scene leaves to the constraints is where they put it: neither its guess nor a zero says where the system
+/// lives, or how large it is.
 void Points::settle(State start, const std::vector<bool>& given) {
   const bool holonomic = [&] {
     for (std::size_t k = 0; k < judge_.constraints().size(); ++k)
@@ -143,8 +145,10 @@ void Points::read_scales() {
     c.rate_scale = rate > 0 ? rate : 1;
     const bool below = c.has_lower && c.center <= c.lower, above = c.has_upper && c.center >= c.upper;
     if (below || above) {  // not given: it follows from a constraint
-      if (c.has_lower && c.has_upper) c.center = (c.lower + c.upper) / 2;
-      else c.center = below ? c.lower + c.scale : c.upper - c.scale;
+      if (c.has_lower && c.has_upper)
+        c.center = (c.lower + c.upper) / 2;
+      else
+        c.center = below ? c.lower + c.scale : c.upper - c.scale;
     }
   }
 }
@@ -202,7 +206,8 @@ std::vector<Real> Points::correction(const State& state, bool rates, const std::
   const std::size_t n = choices_.size();
   std::vector<Real> defect = rates ? c.psi_dot : c.psi;
   for (std::size_t k = c.gradient.size(); k-- > 0;) {
-    if ((rates || judge_.holonomic(k)) && !judge_.implied(k) && !state.apart.contains(k)) continue;  // else: binds no position, follows, is open
+    if ((rates || judge_.holonomic(k)) && !judge_.implied(k) && !state.apart.contains(k))
+      continue;  // else: binds no position, follows, is open
     c.gradient.erase(c.gradient.begin() + static_cast<std::ptrdiff_t>(k));
     defect.erase(defect.begin() + static_cast<std::ptrdiff_t>(k));
   }
@@ -247,7 +252,8 @@ void Points::project_positions(State& s, const std::vector<bool>* held) const {
       s.q[i] = s.q[i] + step[i];
       size = cln::max(size, cln::abs(step[i]) / exact(choices_[i].scale));
     }
-    // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a scale.
+    // The first step may be as long as a prescribed motion is far away: a radius of a planet, where no start gives a
+    // scale.
     if (iteration > 0 && size > 1000) break;
     if (size >= small) continue;
     // A coordinate far below its scale, as a height of 1 beside a width of 1e300, has digits of its own to come.
@@ -265,7 +271,8 @@ void Points::project_velocities(State& s) const {
   // Linear; a second time for the digits of what is nearly at rest. What is left where nothing can move is 0.
   const Real small = cln::expt(cln::cl_RA(1) / 10, cln::cl_I(judge_.digits() - 6));
   std::vector<Real> size;
-  for (std::size_t i = 0; i < choices_.size(); ++i) size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
+  for (std::size_t i = 0; i < choices_.size(); ++i)
+    size.push_back(cln::max(cln::abs(s.qdot[i]), exact(choices_[i].rate_scale)) * small);
   for (int round = 0; round < 2; ++round) {
     const std::vector<Real> change = correction(s, true, nullptr);
     for (std::size_t i = 0; i < change.size(); ++i) s.qdot[i] = s.qdot[i] + change[i];
@@ -287,7 +294,8 @@ void Points::require_implied(const State& s) const {
       size = size + cln::abs(c.gradient[k][i] * s.q[i]);
       rate = rate + cln::abs(c.gradient[k][i] * s.qdot[i]);
     }
-    if (cln::abs(c.psi[k]) > small * size || cln::abs(c.psi_dot[k]) > small * rate) throw Unfit("a joint closes in another way");
+    if (cln::abs(c.psi[k]) > small * size || cln::abs(c.psi_dot[k]) > small * rate)
+      throw Unfit("a joint closes in another way");
   }
 }
 
@@ -320,7 +328,9 @@ bool Points::give_up_closing(Choosing& choosing) {
     more.open = open;
     more.open.insert(j);
     // What is open in another one is open in this one too: that one closes more.
-    const auto closes_more = [&](const Choosing& other) { return std::includes(more.open.begin(), more.open.end(), other.open.begin(), other.open.end()); };
+    const auto closes_more = [&](const Choosing& other) {
+      return std::includes(more.open.begin(), more.open.end(), other.open.begin(), other.open.end());
+    };
     if (std::none_of(choosings_.begin(), choosings_.end(), closes_more)) choosings_.push_back(std::move(more));
   }
   return true;
@@ -359,7 +369,8 @@ void Points::reject(const std::string& why) {
     reasons += (reasons.empty() ? "" : ", ") + reason + " (" + std::to_string(count) + ")";
   throw Error("verify", Where{judge_.model().file, 0, 0, 1, ""},
               "no states were found at which the equations can be checked: " + reasons,
-              "look at the ranges of the coordinates, the constraints and the start of the default scene", Fault::check);
+              "look at the ranges of the coordinates, the constraints and the start of the default scene",
+              Fault::check);
 }
 
 }  // namespace eomgen::verify

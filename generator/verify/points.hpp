@@ -19,9 +19,9 @@ namespace eomgen::verify {
 
 class Points {
  public:
-  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the constraints;
-  /// implied ones have to hold there by themselves. Scalar constraints in `leavable` are closed, all of them or,
-  /// where that cannot be, as many as can be, other ones at other points; the others are State::apart.
+  /// At most `cap` rejections in all. Parameters in `fixed` have that value at every point. States are moved onto the
+  /// constraints; implied ones have to hold there by themselves. Scalar constraints in `leavable` are closed, all of
+  /// them or, where that cannot be, as many as can be, other ones at other points; the others are State::apart.
   Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed = {},
          std::vector<std::size_t> leavable = {});
 
@@ -44,9 +44,9 @@ class Points {
     bool reached = false;
   };
   bool give_up_closing(Choosing& choosing);
-  double uniform();                 // in (0, 1)
-  double symmetric();               // in (-1, 1)
-  Real exact(double value) const;   // the same number at full precision
+  double uniform();                // in (0, 1)
+  double symmetric();              // in (-1, 1)
+  Real exact(double value) const;  // the same number at full precision
   void read_scene();
   void read_ranges(const State& start);
   void read_scales();
@@ -67,13 +67,13 @@ class Points {
   std::size_t cap_;
   std::map<std::uint32_t, cln::cl_RA> fixed_;
   std::vector<std::size_t> leavable_;
-  std::vector<Choosing> choosings_;   // taken in turn
+  std::vector<Choosing> choosings_;  // taken in turn
   std::size_t turn_ = 0;
-  std::vector<Choice> choices_;       // per coordinate
-  std::vector<Real> defaults_;        // of the parameters
+  std::vector<Choice> choices_;  // per coordinate
+  std::vector<Real> defaults_;   // of the parameters
   std::vector<double> input_defaults_;
   double t0_ = 0, t1_ = 1;
-  double spread_ = 1;                 // narrows about the defaults as points are rejected
+  double spread_ = 1;  // narrows about the defaults as points are rejected
   std::size_t rejections_ = 0;
   std::map<std::string, std::size_t> rejected_;
 };

@@ -33,9 +33,10 @@ State without_accelerations(State state) {
 
 }  // namespace
 
-// In curvilinear coordinates the rate of a momentum is itself a sum that may cancel (of a free particle, to nothing), so that the size of
-// a term is that of its factors: |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all the rest|).
-void Inertia::add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent, const std::vector<Vector>& momentum) {
+// In curvilinear coordinates the rate of a momentum is itself a sum that may cancel (of a free particle, to nothing),
+// so that the size of a term is that of its factors: |dr/dq_i| (sum_k |m dr/dq_k qddot_k| + |all the rest|).
+void Inertia::add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent,
+                  const std::vector<Vector>& momentum) {
   std::vector<Real> longest, size;
   for (const Vector& t : tangent) longest.push_back(length(t));
   for (const Vector& p : momentum) size.push_back(length(p));
@@ -67,8 +68,13 @@ std::vector<Residual> Inertia::at(const std::vector<Real>& qddot) const {
 }
 
 Standing::Standing(const Judge& judge, const State& at)
-    : state(without_accelerations(at)), judge_(judge), model_(judge.model()), now_(judge.interpreter(state, &margin_)),
-      row_(judge.constraints().size()), along_(judge.constraints().size()), second_(judge.constraints().size()) {}
+    : state(without_accelerations(at)),
+      judge_(judge),
+      model_(judge.model()),
+      now_(judge.interpreter(state, &margin_)),
+      row_(judge.constraints().size()),
+      along_(judge.constraints().size()),
+      second_(judge.constraints().size()) {}
 
 const Inertia& Standing::inertia() {
   look();
@@ -110,7 +116,8 @@ void Standing::add_particles() {
     }
     inertia_->add(along, tangent, momentum);
     const Real size = length(rate);
-    for (std::size_t i = 0; i < along.size(); ++i) rest_[along[i]].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
+    for (std::size_t i = 0; i < along.size(); ++i)
+      rest_[along[i]].add(dot(rate, tangent[i]).real(), size * length(tangent[i]));
   }
 }
 
@@ -121,7 +128,8 @@ void Standing::add_rotations() {
   for (const model::Body& body : model_.bodies) {
     const Vector H = inertia_times(body, later, later.angular_velocity(body.frame));
     const Vector rate = slope(H, later.level(), 0);
-    const std::vector<std::size_t> along = directions({by_q.axis(body.frame, 0), by_q.axis(body.frame, 1), by_q.axis(body.frame, 2)}, by_q.level());
+    const std::vector<std::size_t> along =
+        directions({by_q.axis(body.frame, 0), by_q.axis(body.frame, 1), by_q.axis(body.frame, 2)}, by_q.level());
     std::array<Vector, 3> J;  // its columns in space
     for (std::size_t k = 0; k < 3; ++k) {
       Vector unit;
@@ -136,7 +144,8 @@ void Standing::add_rotations() {
     inertia_->add(along, turn, momentum);
     // The axes turn: what cancels in dH/dt is of the size of w x H, also where nothing is left of it.
     const Real size = length(rate) + length(H) * length(now_.angular_velocity(body.frame));
-    for (std::size_t i = 0; i < along.size(); ++i) rest_[along[i]].add(dot(rate, turn[i]).real(), size * length(turn[i]));
+    for (std::size_t i = 0; i < along.size(); ++i)
+      rest_[along[i]].add(dot(rate, turn[i]).real(), size * length(turn[i]));
   }
 }
 
@@ -154,7 +163,8 @@ void Standing::add_energies() {
     const Jet T = twice.scalar(model_.energy.kinetic);
     for (const std::size_t i : T.directions(twice.level())) {
       const Jet& p = T.slope(twice.level(), i);
-      for (const std::size_t k : p.directions(once.level())) inertia_->add_energy(i, k, p.slope(once.level(), k).real());
+      for (const std::size_t k : p.directions(once.level()))
+        inertia_->add_energy(i, k, p.slope(once.level(), k).real());
     }
     Interpreter& by_q = now_.by_coordinates(false);
     const Jet at = by_q.scalar(model_.energy.kinetic);
@@ -195,7 +205,8 @@ const Real& Standing::second(std::size_t constraint) {
   if (second_[constraint]) return *second_[constraint];
   Interpreter& later = now_.along_time();
   const model::NodeId expression = judge_.constraints()[constraint];
-  if (!judge_.holonomic(constraint)) return second_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
+  if (!judge_.holonomic(constraint))
+    return second_[constraint].emplace(later.scalar(expression).slope(later.level(), 0).real());
   Interpreter& twice = later.along_time();
   return second_[constraint].emplace(twice.scalar(expression).slope(twice.level(), 0).slope(later.level(), 0).real());
 }

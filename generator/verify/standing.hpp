@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the judge finds at one state whatever the accelerations and the constraint forces are: d'Alembert's residuals are affine in
-// them, so that each further question at this state costs products of numbers only. In: a Judge and a State. Out: the residuals without
-// accelerations, what accelerations add, rows of the constraints.
+// What the judge finds at one state whatever the accelerations and the constraint forces are: d'Alembert's residuals
+// are affine in them, so that each further question at this state costs products of numbers only. In: a Judge and a
+// State. Out: the residuals without accelerations, what accelerations add, rows of the constraints.
 #pragma once
 
 #include <map>
@@ -16,8 +16,10 @@ namespace eomgen::verify {
 class Inertia {
  public:
   explicit Inertia(std::size_t n) : rows_(n) {}
-  /// A mass or a body whose displacements along the coordinates `along` are `tangent`, and what those make of its momentum.
-  void add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent, const std::vector<Vector>& momentum);
+  /// A mass or a body whose displacements along the coordinates `along` are `tangent`, and what those make of its
+  /// momentum.
+  void add(const std::vector<std::size_t>& along, const std::vector<Vector>& tangent,
+           const std::vector<Vector>& momentum);
   /// Of energies that are given as such: their sizes are those of the sums.
   void add_energy(std::size_t i, std::size_t k, const Real& entry);
   std::vector<Residual> at(const std::vector<Real>& qddot) const;

@@ -27,7 +27,8 @@ struct Solved {
   std::vector<Real> qddot, lambda;
   std::vector<Real> psi, A, b, gamma;
   std::vector<Real> M;
-  std::vector<Real> lost;  // of each row: terms that cancel in the route's own expressions, by what their last digits leave
+  std::vector<Real>
+      lost;  // of each row: terms that cancel in the route's own expressions, by what their last digits leave
   double condition = 1;
 };
 
@@ -42,14 +43,17 @@ bool may_have_cancelled(const std::vector<Real>& values) {
   Real largest = 0;
   for (const Real& value : values) largest = cln::max(largest, cln::abs(value));
   const Real small = largest / cln::expt(cln::cl_RA(10), cln::cl_I(8));
-  return std::any_of(values.begin(), values.end(), [&](const Real& value) { return !cln::zerop(value) && cln::abs(value) < small; });
+  return std::any_of(values.begin(), values.end(),
+                     [&](const Real& value) { return !cln::zerop(value) && cln::abs(value) < small; });
 }
 
 /// A force that is 0 because terms cancel leaves their last digits: the same with more digits tells how large they are.
-std::vector<Real> lost_in_rows(const EquationSystem& s, const Lookup& lookup, int digits, const std::vector<Real>& value, const Solved& out) {
+std::vector<Real> lost_in_rows(const EquationSystem& s, const Lookup& lookup, int digits,
+                               const std::vector<Real>& value, const Solved& out) {
   constexpr int more = 20;
   const std::size_t n = s.free.size(), m = s.active.size();
-  const std::vector<Real> precise = symbolic::evaluate(*s.dag, concatenate({&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma}), lookup, digits + more);
+  const std::vector<Real> precise =
+      symbolic::evaluate(*s.dag, concatenate({&s.M, &s.f, &s.psi, &s.A, &s.b, &s.gamma}), lookup, digits + more);
   const Real size = cln::expt(cln::cl_RA(10), cln::cl_I(digits));
   const auto lost = [&](std::size_t at) { return Real(cln::abs(value[at] - precise[at]) * size); };
   const std::size_t f = n * n, A = f + n + m, gamma = A + m * n + m;
@@ -113,7 +117,8 @@ Solved solve_system(const EquationSystem& s, const Lookup& lookup, int digits, b
     out.lambda = symbolic::evaluate(*s.dag, s.solution->lambda, lookup, digits);
   }
   out.inverse = std::move(solution.inverse);
-  if (with_inverse && (may_have_cancelled(f) || may_have_cancelled(out.M) || may_have_cancelled(out.A) || may_have_cancelled(out.gamma))) {
+  if (with_inverse && (may_have_cancelled(f) || may_have_cancelled(out.M) || may_have_cancelled(out.A) ||
+                       may_have_cancelled(out.gamma))) {
     out.lost = lost_in_rows(s, lookup, digits, value, out);
   }
   return out;
@@ -139,12 +144,13 @@ void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& 
 std::vector<Real> propagate(const Solved& solved, const std::vector<Real>& row_scale) {
   std::vector<Real> scale(row_scale.size(), Real(0));
   for (std::size_t k = 0; k < scale.size(); ++k)
-    for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = scale[i] + cln::rational(Real(solved.inverse[k][i])) * row_scale[k];
+    for (std::size_t i = 0; i < scale.size(); ++i)
+      scale[i] = scale[i] + cln::rational(Real(solved.inverse[k][i])) * row_scale[k];
   return scale;
 }
 
-/// A joint may keep a body from turning that nothing turns: accelerations and multipliers that are 0 up to rounding are so beside the
-/// largest ones.
+/// A joint may keep a body from turning that nothing turns: accelerations and multipliers that are 0 up to rounding are
+/// so beside the largest ones.
 void raise_least(std::vector<Real>& scale, std::size_t accelerations) {
   const Real share = cln::cl_RA(1) / 10000;
   const auto raise = [&](auto begin, auto end) {
@@ -158,8 +164,8 @@ void raise_least(std::vector<Real>& scale, std::size_t accelerations) {
 }
 
 /// The terms of each equation, those of the unknowns among them: sum_k |M_ik qddot_k| may cancel to nothing.
-std::vector<Real> sizes_of_rows(const EquationSystem& s, const Solved& solved, const SystemValues& v, const std::vector<Real>& qddot,
-                                const std::vector<Real>& lambda) {
+std::vector<Real> sizes_of_rows(const EquationSystem& s, const Solved& solved, const SystemValues& v,
+                                const std::vector<Real>& qddot, const std::vector<Real>& lambda) {
   const std::size_t n = s.free.size(), m = s.active.size();
   std::vector<Real> sizes;
   for (std::size_t i = 0; i < n; ++i) {
@@ -197,7 +203,8 @@ void add_scales(const EquationSystem& s, const mechanics::Mechanics& mechanics, 
     const std::vector<Real>& gradient = v.constraints.gradient[fixed.constraint];
     const Real slope = cln::abs(gradient[fixed.coordinate]);
     Real sum = 0;  // of psi_ddot
-    for (std::size_t i = 0; i < all; ++i) sum = sum + cln::abs(gradient[i]) * cln::max(cln::abs(v.state.qddot[i]), v.scale[i]);
+    for (std::size_t i = 0; i < all; ++i)
+      sum = sum + cln::abs(gradient[i]) * cln::max(cln::abs(v.state.qddot[i]), v.scale[i]);
     v.scale[fixed.coordinate] = sum / slope;
     v.scale[all + fixed.constraint] = v.rows[fixed.coordinate].scale / slope;
   }
@@ -281,14 +288,16 @@ std::vector<Real> integral_rates(const EquationSystem& s, const Lookup& lookup, 
 }
 
 Real energy_rate(const EquationSystem& s, const Judge& judge, const SystemValues& v, int digits) {
-  // At 3 d digits a step of 10^-d leaves 10^-2d of the truncation and of the rounding alike. What is fast takes a shorter
-  // step, and as many digits more.
+  // At 3 d digits a step of 10^-d leaves 10^-2d of the truncation and of the rounding alike. What is fast takes a
+  // shorter step, and as many digits more.
   Real fastest = 1;
-  for (const std::uint32_t i : s.free) fastest = cln::max(fastest, cln::max(cln::abs(v.state.qdot[i]), cln::abs(v.state.qddot[i])));
+  for (const std::uint32_t i : s.free)
+    fastest = cln::max(fastest, cln::max(cln::abs(v.state.qdot[i]), cln::abs(v.state.qddot[i])));
   const auto bits = cln::float_exponent(cln::cl_float(fastest, cln::float_format(20)));
   const int more = 3 * digits + 10 + static_cast<int>(bits * 3 / 10);
   const Precision precision(more);
-  const Real h = precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)) / cln::expt(cln::cl_RA(2), cln::cl_I(bits)));
+  const Real h =
+      precision.round(cln::expt(cln::cl_RA(1) / 10, cln::cl_I(digits)) / cln::expt(cln::cl_RA(2), cln::cl_I(bits)));
   const std::vector<Real> rates = integral_rates(s, Lookup(judge, v.state), more);
   const auto energy_at = [&](const Real& step) {
     Lookup lookup(judge, v.state);

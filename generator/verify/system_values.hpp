@@ -22,16 +22,16 @@ struct Lookup {
 };
 
 struct SystemValues {
-  State state;                    // with the accelerations of all coordinates
-  std::vector<Real> lambda;       // per scalar constraint of the model
-  std::vector<Real> psi, A, b;    // as in EquationSystem
+  State state;                  // with the accelerations of all coordinates
+  std::vector<Real> lambda;     // per scalar constraint of the model
+  std::vector<Real> psi, A, b;  // as in EquationSystem
   Real kinetic = 0, potential = 0, energy = 0, power = 0;
   std::vector<Real> outputs;
   double condition = 1;
-  std::vector<Residual> rows;     // d'Alembert's, per coordinate; their sizes with unknowns as large as their scales
-  ConstraintValues constraints;   // the judge's, with these accelerations
-  std::vector<Real> scale;        // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
-                                  // terms of every equation can change in them
+  std::vector<Residual> rows;    // d'Alembert's, per coordinate; their sizes with unknowns as large as their scales
+  ConstraintValues constraints;  // the judge's, with these accelerations
+  std::vector<Real> scale;       // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
+                                 // terms of every equation can change in them
 };
 
 /// Throws std::domain_error where there is no value, Singular where the system cannot be solved well.

@@ -18,13 +18,17 @@ bool uses(const model::Model& model, model::NodeId expression, const std::functi
     open.insert(open.end(), node.args.begin(), node.args.end());
     switch (node.op) {
       case Op::definition: open.push_back(model.definitions[node.index].is); break;
-      case Op::place: case Op::place_velocity: case Op::place_acceleration:
-      case Op::unit_basis: case Op::covariant_basis: case Op::contravariant_basis:
-        open.push_back(model.places[node.index].position);
-        break;
+      case Op::place:
+      case Op::place_velocity:
+      case Op::place_acceleration:
+      case Op::unit_basis:
+      case Op::covariant_basis:
+      case Op::contravariant_basis: open.push_back(model.places[node.index].position); break;
       case Op::axis: open.push_back(model.frames[node.index].stages[node.order / 3].e[node.order % 3]); break;
       case Op::angular_velocity:
-        if (node.index > 0) open.insert(open.end(), model.frames[node.index].stages.back().e.begin(), model.frames[node.index].stages.back().e.end());
+        if (node.index > 0)
+          open.insert(open.end(), model.frames[node.index].stages.back().e.begin(),
+                      model.frames[node.index].stages.back().e.end());
         break;
       default: break;
     }

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The method `auto`: dopri5 for rtol above 1e-6, else dop853; radau5 where the motion turns out to be stiff, and back where it
-// no longer is. What was chosen, when and why is in Options::choice.
+// The method `auto`: dopri5 for rtol above 1e-6, else dop853; radau5 where the motion turns out to be stiff, and back
+// where it no longer is. What was chosen, when and why is in Options::choice.
 //
-// Explicit methods: after each step |h lambda| of what the stages stir up, from the last stage and the end, both at t1 (Hairer,
-// Wanner, Solving Ordinary Differential Equations II, section IV.2), averaged. Beyond the limit of stability in 15 steps, with no six
-// in a row below it: stiff. That of dop853 is 5.96 along vibrations and 6.39 along decay; that of dopri5 3.3 along decay but 1.0 along
-// vibrations: 50 steps in a row near it lead to dop853 first.
-// Where tolerances are tight, rounding keeps the fast part of a stiff motion alive, and steps end below the limit: 50 of dop853 in a
-// row with three times the |h lambda| that it would have if the motion itself were that fast are a reason too.
-// radau5: h rho(df/dx) by power iteration; 15 steps in a row with half of that lead back. Where that happens soon, twice as many
+// Explicit methods: after each step |h lambda| of what the stages stir up, from the last stage and the end, both at t1
+// (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.2), averaged. Beyond the limit of stability
+// in 15 steps, with no six in a row below it: stiff. That of dop853 is 5.96 along vibrations and 6.39 along decay; that
+// of dopri5 3.3 along decay but 1.0 along vibrations: 50 steps in a row near it lead to dop853 first. Where tolerances
+// are tight, rounding keeps the fast part of a stiff motion alive, and steps end below the limit: 50 of dop853 in a row
+// with three times the |h lambda| that it would have if the motion itself were that fast are a reason too. radau5: h
+// rho(df/dx) by power iteration; 15 steps in a row with half of that lead back. Where that happens soon, twice as many
 // stiff steps are asked for before the next change.
 // With fixed steps the method stays what it is.
 #pragma once
@@ -47,23 +47,42 @@ class Automatic {
   static constexpr int order = 5;  // at least
 
   Automatic(implicit::Problem& problem, std::span<const double> x, const Options& options)
-      : problem_(problem), options_(options), choice_(options.choice != nullptr ? *options.choice : own_), direction_(x.size()) {
+      : problem_(problem),
+        options_(options),
+        choice_(options.choice != nullptr ? *options.choice : own_),
+        direction_(x.size()) {
     if (choice_.method == nullptr) choice_.method = explicit_name();
-    active_ = choice_.method == std::string_view(implicit::Radau5::name)          ? Active::radau5
+    active_ = choice_.method == std::string_view(implicit::Radau5::name)      ? Active::radau5
               : choice_.method == std::string_view(explicit_rk::Dopri5::name) ? Active::dopri5
-                                                                                    : Active::dop853;
+                                                                              : Active::dop853;
     make(x);
   }
 
   std::size_t size() const { return direction_.size(); }
-  double* x0() { return with([](auto& m) { return m.x0(); }); }
-  double* x1() { return with([](auto& m) { return m.x1(); }); }
-  const double* derivative0() { return with([](auto& m) { return m.derivative0(); }); }
-  const double* derivative1() { return with([](auto& m) { return m.derivative1(); }); }
-  double* scratch() { return with([](auto& m) { return m.scratch(); }); }
-  int evaluate(double t, const double* x, double* dx) { return with([&](auto& m) { return m.evaluate(t, x, dx); }); }
-  int evaluate_start(double t) { return with([&](auto& m) { return m.evaluate_start(t); }); }
-  int evaluate_end() { return with([](auto& m) { return m.evaluate_end(); }); }
+  double* x0() {
+    return with([](auto& m) { return m.x0(); });
+  }
+  double* x1() {
+    return with([](auto& m) { return m.x1(); });
+  }
+  const double* derivative0() {
+    return with([](auto& m) { return m.derivative0(); });
+  }
+  const double* derivative1() {
+    return with([](auto& m) { return m.derivative1(); });
+  }
+  double* scratch() {
+    return with([](auto& m) { return m.scratch(); });
+  }
+  int evaluate(double t, const double* x, double* dx) {
+    return with([&](auto& m) { return m.evaluate(t, x, dx); });
+  }
+  int evaluate_start(double t) {
+    return with([&](auto& m) { return m.evaluate_start(t); });
+  }
+  int evaluate_end() {
+    return with([](auto& m) { return m.evaluate_end(); });
+  }
   bool end_known() const { return active_ == Active::dopri5; }
   int starting_order() const { return active_ == Active::dop853 ? explicit_rk::Dop853::order : order; }
 
@@ -71,9 +90,15 @@ class Automatic {
     t1_ = t1;
     return with([&](auto& m) { return m.attempt(t0, t1); });
   }
-  double error_norm(double rtol, double atol) { return with([&](auto& m) { return m.error_norm(rtol, atol); }); }
-  double after_rejected(double h, double error) { return with([&](auto& m) { return m.after_rejected(h, error); }); }
-  double after_failed(double h) { return with([&](auto& m) { return m.after_failed(h); }); }
+  double error_norm(double rtol, double atol) {
+    return with([&](auto& m) { return m.error_norm(rtol, atol); });
+  }
+  double after_rejected(double h, double error) {
+    return with([&](auto& m) { return m.after_rejected(h, error); });
+  }
+  double after_failed(double h) {
+    return with([&](auto& m) { return m.after_failed(h); });
+  }
 
   double after_accepted(double h, double error) {
     const double next = with([&](auto& m) { return m.after_accepted(h, error); });
@@ -106,12 +131,15 @@ class Automatic {
   static constexpr double limit_of_dopri5 = 3.25, limit_of_dop853 = 5.7;
   static constexpr double vibration_from = 0.75;  // of dopri5
   static constexpr int in_a_row = 50;
-  static constexpr double smoothing = 0.2;  // of the logarithm: along a vibration the estimate goes as the tangent of its phase
-  static constexpr int calm = 6;            // steps in a row that are not stiff: those before do not count
+  static constexpr double smoothing =
+      0.2;                        // of the logarithm: along a vibration the estimate goes as the tangent of its phase
+  static constexpr int calm = 6;  // steps in a row that are not stiff: those before do not count
   static constexpr int patience = Choice::least_patience;
   static constexpr int soon = 4 * patience;
 
-  const char* explicit_name() const { return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name; }
+  const char* explicit_name() const {
+    return options_.rtol > rtol_of_dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
+  }
   /// |h lambda| at which it is worth to go back, well below what leads to radau5.
   double explicit_limit() const { return options_.rtol > rtol_of_dopri5 ? vibration_from : 0.5 * far_beyond(); }
 
@@ -124,9 +152,11 @@ class Automatic {
   }
 
   double tolerance() const { return std::max(options_.rtol, options_.atol); }
-  /// The same for dopri5: about 4 tol^(1/5). Half more near the limit along vibrations is worth dop853, which has a wider one.
+  /// The same for dopri5: about 4 tol^(1/5). Half more near the limit along vibrations is worth dop853, which has a
+  /// wider one.
   double vibrates_beyond() const { return std::max(vibration_from, 1.5 * 4 * std::pow(tolerance(), 0.2)); }
-  /// A motion that is as fast as lambda says, and of the size of the state, is followed by dop853 with |h lambda| about 6 tol^(1/8).
+  /// A motion that is as fast as lambda says, and of the size of the state, is followed by dop853 with |h lambda| about
+  /// 6 tol^(1/8).
   double far_beyond() const { return std::min(limit_of_dop853, 3 * 6 * std::pow(tolerance(), 0.125)); }
 
   void look_for_stiffness() {
@@ -138,16 +168,22 @@ class Automatic {
     if (value > limit) {
       calm_ = 0;
       if (++stiff_ >= choice_.patience)
-        plan(Active::radau5, "|h lambda| was beyond %.1f in %.0f steps, the limit of stability of %s: stiff", limit, stiff_, choice_.method);
+        plan(Active::radau5, "|h lambda| was beyond %.1f in %.0f steps, the limit of stability of %s: stiff", limit,
+             stiff_, choice_.method);
     } else if (++calm_ == calm) {
       stiff_ = 0;
     }
     far_ = !fifth && value > far_beyond() ? far_ + 1 : 0;
     if (far_ >= in_a_row * choice_.patience / patience && !next_.has_value())
-      plan(Active::radau5, "|h lambda| was above %.1f in %.0f steps in a row, which a motion that fast would not allow %s for its accuracy: stiff", far_beyond(), far_, choice_.method);
+      plan(Active::radau5,
+           "|h lambda| was above %.1f in %.0f steps in a row, which a motion that fast would not allow %s for its "
+           "accuracy: stiff",
+           far_beyond(), far_, choice_.method);
     vibrates_ = fifth && value > vibrates_beyond() ? vibrates_ + 1 : 0;
     if (vibrates_ >= in_a_row && !next_.has_value())
-      plan(Active::dop853, "|h lambda| was above %.1f in %.0f steps in a row, near the limit of stability of %s along vibrations", vibrates_beyond(), vibrates_, choice_.method);
+      plan(Active::dop853,
+           "|h lambda| was above %.1f in %.0f steps in a row, near the limit of stability of %s along vibrations",
+           vibrates_beyond(), vibrates_, choice_.method);
   }
 
   void look_back() {
@@ -157,10 +193,12 @@ class Automatic {
     if (calm_ < patience) return;
     choice_.patience = implicit_steps_ < soon ? 2 * choice_.patience : patience;
     plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853,
-         "h rho(df/dx) was below %.1f for %.0f steps in a row, which %s can take: no longer stiff", explicit_limit(), calm_, explicit_name());
+         "h rho(df/dx) was below %.1f for %.0f steps in a row, which %s can take: no longer stiff", explicit_limit(),
+         calm_, explicit_name());
   }
 
-  /// sqrt(|J J v| / |v|), which is right at once where J J v = -omega^2 v; v turns towards the fastest motion from step to step.
+  /// sqrt(|J J v| / |v|), which is right at once where J J v = -omega^2 v; v turns towards the fastest motion from step
+  /// to step.
   double spectral_radius() {
     const implicit::Jacobian& J = radau5_->jacobian();
     const std::size_t m = size() - options_.quadratures;
@@ -188,7 +226,8 @@ class Automatic {
 
   void start_direction() {
     const std::size_t m = size() - options_.quadratures;
-    for (std::size_t i = 0; i < m; ++i) direction_[i] = (1 + 0.5 * static_cast<double>(i % 3)) / std::sqrt(static_cast<double>(m));
+    for (std::size_t i = 0; i < m; ++i)
+      direction_[i] = (1 + 0.5 * static_cast<double>(i % 3)) / std::sqrt(static_cast<double>(m));
   }
 
   void plan(Active next, const char* why, double limit, int steps, const char* method) {
@@ -204,7 +243,9 @@ class Automatic {
     const char* const before = choice_.method;
     active_ = *next_;
     next_.reset();
-    choice_.method = active_ == Active::radau5 ? implicit::Radau5::name : active_ == Active::dopri5 ? explicit_rk::Dopri5::name : explicit_rk::Dop853::name;
+    choice_.method = active_ == Active::radau5   ? implicit::Radau5::name
+                     : active_ == Active::dopri5 ? explicit_rk::Dopri5::name
+                                                 : explicit_rk::Dop853::name;
     make(x);
     with([&](auto& m) { m.start_with_derivative(f.data()); });
     choice_.changes.push_back({t1_, before, choice_.method, why_});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A run of a one-step method from t0 to t1, whatever its family. In: the method with its start, options, an observer and
-// an after_step. Out: Result. Steps are chosen by the error estimate, or fixed where Options::fixed_step says so.
+// A run of a one-step method from t0 to t1, whatever its family. In: the method with its start, options, an observer
+// and an after_step. Out: Result. Steps are chosen by the error estimate, or fixed where Options::fixed_step says so.
 //
 // A Method has the static members order, adaptive, error_uses_end and interpolate, and
 //   size(), x0(), x1(), derivative0(), derivative1(), scratch()   its arrays
@@ -54,8 +54,9 @@ class Run {
   /// Derivative and step size at the start; false: the run ends here.
   bool start() {
     const int code = stepper_.evaluate_start(t_);
-    if (code != 0) return end(outcome_of_abi_code(code), "the right-hand side returned code " + std::to_string(code) +
-                                                             " at the start");
+    if (code != 0)
+      return end(outcome_of_abi_code(code),
+                 "the right-hand side returned code " + std::to_string(code) + " at the start");
     if (!all_finite(stepper_.x0()) || !all_finite(stepper_.derivative0()))
       return end(Outcome::not_finite, "the state or its derivative is not finite at the start");
     if (options_.fixed_step > 0) return plan_fixed_steps();
@@ -78,7 +79,8 @@ class Run {
     if (options_.interrupt != nullptr && options_.interrupt->load(std::memory_order_relaxed))
       return end(Outcome::interrupted, "stopped from outside");
     if (steps_ + rejected_ >= options_.max_steps)
-      return end(Outcome::max_steps, "all " + std::to_string(options_.max_steps) + " steps of max_steps were made before t = " + printed(t_end_));
+      return end(Outcome::max_steps, "all " + std::to_string(options_.max_steps) +
+                                         " steps of max_steps were made before t = " + printed(t_end_));
     const double t_next = next_time();
     bool moved = false;
     const int code = stepper_.attempt(t_, t_next);
@@ -93,7 +95,12 @@ class Run {
   }
 
   StepView view(double t_next) {
-    return {t_, t_next, {stepper_.x0(), stepper_.size()}, {stepper_.x1(), stepper_.size()}, &stepper_, &Method::interpolate};
+    return {t_,
+            t_next,
+            {stepper_.x0(), stepper_.size()},
+            {stepper_.x1(), stepper_.size()},
+            &stepper_,
+            &Method::interpolate};
   }
 
   /// Options::admit; the smallest step is always taken.
@@ -135,7 +142,8 @@ class Run {
   /// A step of at most h that is nowhere longer than the bounds along it allow; it may end where a bound begins.
   double bounded(double h) const {
     const auto bounds = options_.step_bounds;
-    auto bound = std::upper_bound(bounds.begin(), bounds.end(), t_, [](double t, const StepBound& b) { return t < b.t; });
+    auto bound =
+        std::upper_bound(bounds.begin(), bounds.end(), t_, [](double t, const StepBound& b) { return t < b.t; });
     if (bound != bounds.begin()) --bound;
     for (; bound != bounds.end() && bound->t < t_ + h; ++bound) {
       const double until = bound->t - t_;
@@ -178,8 +186,8 @@ class Run {
     ++rejected_;
     h_ = stepper_.after_rejected(std::abs(h), error);
     if (h_ >= smallest_step(t_)) return true;
-    return end(Outcome::step_too_small, "the error estimate asks for a step below 16 units in the last place of t = " +
-                                            printed(t_));
+    return end(Outcome::step_too_small,
+               "the error estimate asks for a step below 16 units in the last place of t = " + printed(t_));
   }
 
   /// After a code (or a value that is not finite): a shorter step, down to the smallest; a fixed step ends at once.
@@ -187,10 +195,11 @@ class Run {
     ++rejected_;
     h_ = stepper_.after_failed(adaptive() ? std::min(h_, std::abs(t_end_ - t_)) : 0);
     if (adaptive() && h_ >= smallest_step(t_)) return true;
-    const std::string what = code == code_not_finite       ? "a value that is not finite"
-                             : code == code_no_convergence ? "the iteration of the implicit step does not converge, or its matrix is singular,"
+    const std::string what = code == code_not_finite ? "a value that is not finite"
+                             : code == code_no_convergence
+                                 ? "the iteration of the implicit step does not converge, or its matrix is singular,"
                              : code == code_jump ? "the right-hand side jumps"
-                                                           : "code " + std::to_string(code);
+                                                 : "code " + std::to_string(code);
     return end(outcome_of_abi_code(code), what + " just after t = " + printed(t_));
   }
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// How far off the end state of a run is. In: the run and its options. Out: an estimate per component, from further runs.
+// How far off the end state of a run is. In: the run and its options. Out: an estimate per component, from further
+// runs.
 //
-// The second run is tighter: tolerances a hundredth, not below rtol 1e-14, but at most a half; or half the fixed step. With the
-// error proportional to the tolerance (to step^order) the difference of the end states is the first run's error times
-// 1 - ratio (1 - 2^-order), by which it is divided. Where the two agree so well that rounding may be what they differ
-// by, or happen to agree in, a third run with another sequence of steps is made and the largest difference is taken. Of fixed steps, which
-// nothing controls, the third run is always made: where it differs from the second by half as much as that one from the first the steps are
-// too long for the order to show, and no difference says much.
+// The second run is tighter: tolerances a hundredth, not below rtol 1e-14, but at most a half; or half the fixed step.
+// With the error proportional to the tolerance (to step^order) the difference of the end states is the first run's
+// error times 1 - ratio (1 - 2^-order), by which it is divided. Where the two agree so well that rounding may be what
+// they differ by, or happen to agree in, a third run with another sequence of steps is made and the largest difference
+// is taken. Of fixed steps, which nothing controls, the third run is always made: where it differs from the second by
+// half as much as that one from the first the steps are too long for the order to show, and no difference says much.
 // Never below a unit in the last place of the component. What all runs get wrong alike (the model, t0, x0, the
 // representation of the parameters, a discontinuity that no step sees) is not in it.
 #pragma once
@@ -25,12 +26,12 @@
 namespace eom {
 
 struct ErrorEstimate {
-  std::vector<double> x;           // per component of the end state, absolute; infinite where a further run failed
-  double max = 0;                  // the largest of them
-  Outcome outcome = Outcome::done; // of the further runs: the first that did not end as the run itself did
-  bool converging = true;          // false: shorter fixed steps change the end by as much again
-  std::size_t runs = 0;            // further runs made
-  Statistics statistics;           // and what they cost
+  std::vector<double> x;            // per component of the end state, absolute; infinite where a further run failed
+  double max = 0;                   // the largest of them
+  Outcome outcome = Outcome::done;  // of the further runs: the first that did not end as the run itself did
+  bool converging = true;           // false: shorter fixed steps change the end by as much again
+  std::size_t runs = 0;             // further runs made
+  Statistics statistics;            // and what they cost
 };
 
 namespace detail {
@@ -118,7 +119,8 @@ ErrorEstimate estimate_error(int order, double t0, const Result& first, const Op
       before = std::max(before, std::abs(first.x[i] - second[i]));
       after = std::max(after, std::abs(second[i] - again.x[i]));
     }
-    if (fixed && after > std::max(detail::still_converging * before, detail::rounding_suspected * size_x)) estimate.converging = false;
+    if (fixed && after > std::max(detail::still_converging * before, detail::rounding_suspected * size_x))
+      estimate.converging = false;
   }
   return estimate;
 }
@@ -129,7 +131,8 @@ ErrorEstimate estimate_error(int order, const Result& first, const Options& opti
   return estimate_error(order, 0.0, first, options, std::forward<Run>(run));
 }
 
-/// The estimate for a run of integrate(method, rhs, t0, x0, t1, options, ...) that gave `first`, at the time it reached.
+/// The estimate for a run of integrate(method, rhs, t0, x0, t1, options, ...) that gave `first`, at the time it
+/// reached.
 template <class F, class AfterStep = NoProjection>
 ErrorEstimate estimate_error(std::string_view method, F&& rhs, double t0, std::span<const double> x0,
                              const Result& first, const Options& options, AfterStep&& after_step = {}) {

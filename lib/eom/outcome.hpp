@@ -51,7 +51,8 @@ inline constexpr int code_not_finite = 5;
 /// What the step of an implicit method returns where its iteration does not converge: a shorter step may do.
 inline constexpr int code_no_convergence = std::numeric_limits<int>::min();
 
-/// What a Taylor step returns whose series ends with another derivative than the right-hand side has there: it jumps within the step.
+/// What a Taylor step returns whose series ends with another derivative than the right-hand side has there: it jumps
+/// within the step.
 inline constexpr int code_jump = code_no_convergence + 1;
 
 /// The outcome that a return code of the C ABI stands for; 0 is done. A code outside the ABI (a projection that did

@@ -28,8 +28,8 @@ struct MethodChange {
 /// What `auto` (automatic.hpp) integrates with, and how it came to that.
 struct Choice {
   static constexpr int least_patience = 15;
-  const char* method = nullptr;     // null: not chosen yet
-  int patience = least_patience;    // so many stiff steps are asked for before the next change
+  const char* method = nullptr;   // null: not chosen yet
+  int patience = least_patience;  // so many stiff steps are asked for before the next change
   std::vector<MethodChange> changes;
 };
 
@@ -42,7 +42,7 @@ struct StepBound {
 struct StepView {
   double t0, t1;
   std::span<const double> x0, x1;
-  const void* interpolant = nullptr;                                       // the stepper, seen by evaluate only
+  const void* interpolant = nullptr;  // the stepper, seen by evaluate only
   void (*evaluate)(const void* interpolant, double t, double* x) = nullptr;
 
   /// The state at t between t0 and t1 (x: as long as x0), by the method's dense output.
@@ -50,32 +50,34 @@ struct StepView {
 };
 
 struct Options {
-  double rtol = 1e-9;       // error allowed per step and component: atol + rtol |x|
+  double rtol = 1e-9;  // error allowed per step and component: atol + rtol |x|
   double atol = 1e-12;
   double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
-  std::span<const StepBound> step_bounds = {};  // ascending in t, of chosen steps that go forward in time: what is known to happen there is not stepped over
-  /// Of a step whose error is within the tolerances: the longest that may be taken in its place, infinity where it may be taken. For what lies between the places
-  /// at which a method sees the equations. Of fixed steps it is asked, and not heeded.
+  std::span<const StepBound> step_bounds =
+      {};  // ascending in t, of chosen steps that go forward in time: what is known to happen there is not stepped over
+  /// Of a step whose error is within the tolerances: the longest that may be taken in its place, infinity where it may
+  /// be taken. For what lies between the places at which a method sees the equations. Of fixed steps it is asked, and
+  /// not heeded.
   std::function<double(const StepView&)> admit = {};
-  double fixed_step = 0;    // > 0: steps of this size without error control, whatever the method; rk4 needs it
+  double fixed_step = 0;        // > 0: steps of this size without error control, whatever the method; rk4 needs it
   std::size_t event_parts = 1;  // so many equal steps to a breaking event that ends a step, instead of one
-  int series_order = 0;     // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step
-  std::size_t max_steps = 50'000'000;               // accepted and rejected together
-  std::size_t quadratures = 0;                      // trailing components of x kept out of the error norm
-  const std::atomic<bool>* interrupt = nullptr;     // looked at once per step
-  Choice* choice = nullptr;                         // of `auto`: written, and what the next run begins with
+  int series_order = 0;         // of `taylor`, and of `radau` (5, 9, 13); 0: chosen, and changed from step to step
+  std::size_t max_steps = 50'000'000;            // accepted and rejected together
+  std::size_t quadratures = 0;                   // trailing components of x kept out of the error norm
+  const std::atomic<bool>* interrupt = nullptr;  // looked at once per step
+  Choice* choice = nullptr;                      // of `auto`: written, and what the next run begins with
 };
 
 struct Statistics {
-  std::size_t steps = 0;            // accepted
+  std::size_t steps = 0;  // accepted
   std::size_t rejected = 0;
   std::size_t rhs_evaluations = 0;
   std::size_t dense_fallbacks = 0;  // steps whose dense output fell back to the cubic, since an added stage failed
   // of implicit methods
-  std::size_t jacobians = 0;        // df/dx evaluated, by the right-hand side's own function or by differences
+  std::size_t jacobians = 0;               // df/dx evaluated, by the right-hand side's own function or by differences
   std::size_t difference_evaluations = 0;  // of rhs_evaluations: for differences; 0 where the function was given
-  std::size_t factorisations = 0;   // of the matrices of the implicit step
+  std::size_t factorisations = 0;          // of the matrices of the implicit step
   std::size_t newton_iterations = 0;
   std::size_t newton_failures = 0;  // iterations given up; the step is then tried with a new df/dx or made shorter
 
@@ -95,10 +97,10 @@ struct Statistics {
 
 struct Result {
   Outcome outcome = Outcome::done;
-  double t = 0;                     // the time reached: t1 exactly when the outcome is done
-  std::vector<double> x;            // the state at t, the last accepted one
+  double t = 0;           // the time reached: t1 exactly when the outcome is done
+  std::vector<double> x;  // the state at t, the last accepted one
   Statistics statistics;
-  std::string detail;               // one sentence when the outcome is not done, else empty
+  std::string detail;  // one sentence when the outcome is not done, else empty
 };
 
 /// What the registry tells of a method. The dense output's error within one step is O(h^(dense_order + 1)).
@@ -106,11 +108,11 @@ struct MethodInfo {
   const char* name;
   int order;
   int dense_order;
-  bool adaptive;                    // false: needs Options::fixed_step
-  bool implicit = false;            // uses df/dx: for stiff systems
-  bool series = false;              // needs a right-hand side with a Taylor series (taylor/problem.hpp)
-  bool variational = false;         // needs one with momenta (variational/problem.hpp)
-  bool constrained = false;         // needs one with constraints (constrained/problem.hpp), and keeps them itself
+  bool adaptive;             // false: needs Options::fixed_step
+  bool implicit = false;     // uses df/dx: for stiff systems
+  bool series = false;       // needs a right-hand side with a Taylor series (taylor/problem.hpp)
+  bool variational = false;  // needs one with momenta (variational/problem.hpp)
+  bool constrained = false;  // needs one with constraints (constrained/problem.hpp), and keeps them itself
 };
 
 /// The observer that looks at nothing.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A right-hand side that knows its derivatives, for the implicit methods. Any callable f(t, x, dx) with a member
-// jacobian(t, x, dfdx, dfdt) -> code is one: dfdx[i + m j] is the derivative of dx[i] by x[j], m the length of x without
-// Options::quadratures (the layout of NAME_jac of the C ABI). With modes: jacobian(t, x, mode, dfdx, dfdt).
+// jacobian(t, x, dfdx, dfdt) -> code is one: dfdx[i + m j] is the derivative of dx[i] by x[j], m the length of x
+// without Options::quadratures (the layout of NAME_jac of the C ABI). With modes: jacobian(t, x, mode, dfdx, dfdt).
 #pragma once
 
 namespace eom {

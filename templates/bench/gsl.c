@@ -6,15 +6,13 @@
 
 #include "task.h"
 
-static int rhs(double t, const double x[], double dx[], void* data)
-{
+static int rhs(double t, const double x[], double dx[], void* data) {
   const struct eomgen_task* task = data;
   return task->rhs(t, x, dx, task->data) == 0 ? GSL_SUCCESS : GSL_EBADFUNC;
 }
 
 /* GSL stores by rows. */
-static int jacobian(double t, const double x[], double* dfdx, double dfdt[], void* data)
-{
+static int jacobian(double t, const double x[], double* dfdx, double dfdt[], void* data) {
   const struct eomgen_task* task = data;
   if (task->jac(t, x, dfdx, dfdt, task->data) != 0) return GSL_EBADFUNC;
   for (int i = 0; i < task->n; ++i) {
@@ -27,12 +25,12 @@ static int jacobian(double t, const double x[], double* dfdx, double dfdt[], voi
   return GSL_SUCCESS;
 }
 
-static int run(const struct eomgen_task* task, const gsl_odeiv2_step_type* type, double* x, long* steps)
-{
+static int run(const struct eomgen_task* task, const gsl_odeiv2_step_type* type, double* x, long* steps) {
   struct eomgen_task copy = *task;
   gsl_odeiv2_system system = {rhs, task->jac ? jacobian : NULL, (size_t)task->n, &copy};
   gsl_set_error_handler_off();
-  gsl_odeiv2_driver* driver = gsl_odeiv2_driver_alloc_y_new(&system, type, (task->t1 - task->t0) * 1e-3, task->atol, task->rtol);
+  gsl_odeiv2_driver* driver =
+      gsl_odeiv2_driver_alloc_y_new(&system, type, (task->t1 - task->t0) * 1e-3, task->atol, task->rtol);
   if (!driver) return GSL_ENOMEM;
   memcpy(x, task->x0, (size_t)task->n * sizeof *x);
   double t = task->t0;
@@ -42,9 +40,10 @@ static int run(const struct eomgen_task* task, const gsl_odeiv2_step_type* type,
   return status;
 }
 
-int eomgen_gsl_rk8pd(const struct eomgen_task* task, double* x, long* steps) { return run(task, gsl_odeiv2_step_rk8pd, x, steps); }
+int eomgen_gsl_rk8pd(const struct eomgen_task* task, double* x, long* steps) {
+  return run(task, gsl_odeiv2_step_rk8pd, x, steps);
+}
 
-int eomgen_gsl_msbdf(const struct eomgen_task* task, double* x, long* steps)
-{
+int eomgen_gsl_msbdf(const struct eomgen_task* task, double* x, long* steps) {
   return task->jac ? run(task, gsl_odeiv2_step_msbdf, x, steps) : -1;
 }

@@ -19,7 +19,8 @@ int run(const eomgen_task* task, Stepper stepper, double* x, long* steps) {
     if (task->rhs(t, at.data(), dx.data(), task->data) != 0) throw Stopped{};
   };
   try {
-    *steps = static_cast<long>(odeint::integrate_adaptive(stepper, rhs, state, task->t0, task->t1, (task->t1 - task->t0) * 1e-3));
+    *steps = static_cast<long>(
+        odeint::integrate_adaptive(stepper, rhs, state, task->t0, task->t1, (task->t1 - task->t0) * 1e-3));
   } catch (const Stopped&) {
     return 1;
   } catch (const std::exception&) {

@@ -13,28 +13,27 @@
 
 enum { most_steps = 100000000 };
 
-static int rhs(realtype t, N_Vector x, N_Vector dx, void* data)
-{
+static int rhs(realtype t, N_Vector x, N_Vector dx, void* data) {
   const struct eomgen_task* task = data;
   return task->rhs(t, N_VGetArrayPointer(x), N_VGetArrayPointer(dx), task->data) == 0 ? 0 : -1;
 }
 
-static int jacobian(realtype t, N_Vector x, N_Vector dx, SUNMatrix J, void* data, N_Vector dfdt, N_Vector b, N_Vector c)
-{
+static int jacobian(realtype t, N_Vector x, N_Vector dx, SUNMatrix J, void* data, N_Vector dfdt, N_Vector b,
+                    N_Vector c) {
   const struct eomgen_task* task = data;
   (void)dx, (void)b, (void)c;
-  return task->jac(t, N_VGetArrayPointer(x), SUNDenseMatrix_Data(J), N_VGetArrayPointer(dfdt), task->data) == 0 ? 0 : -1;
+  return task->jac(t, N_VGetArrayPointer(x), SUNDenseMatrix_Data(J), N_VGetArrayPointer(dfdt), task->data) == 0 ? 0
+                                                                                                                : -1;
 }
 
-static int residual(realtype t, N_Vector x, N_Vector xdot, N_Vector r, void* data)
-{
+static int residual(realtype t, N_Vector x, N_Vector xdot, N_Vector r, void* data) {
   if (rhs(t, x, r, data) != 0) return -1;
   N_VLinearSum(1, xdot, -1, r, r);
   return 0;
 }
 
-static int residual_jacobian(realtype t, realtype c, N_Vector x, N_Vector xdot, N_Vector r, SUNMatrix J, void* data, N_Vector dfdt, N_Vector u, N_Vector v)
-{
+static int residual_jacobian(realtype t, realtype c, N_Vector x, N_Vector xdot, N_Vector r, SUNMatrix J, void* data,
+                             N_Vector dfdt, N_Vector u, N_Vector v) {
   const struct eomgen_task* task = data;
   double* const a = SUNDenseMatrix_Data(J);
   (void)xdot, (void)r, (void)u, (void)v;
@@ -44,8 +43,7 @@ static int residual_jacobian(realtype t, realtype c, N_Vector x, N_Vector xdot, 
   return 0;
 }
 
-static void silent(int code, const char* module, const char* function, char* message, void* data)
-{
+static void silent(int code, const char* module, const char* function, char* message, void* data) {
   (void)code, (void)module, (void)function, (void)message, (void)data;
 }
 
@@ -57,8 +55,7 @@ struct workplace {
   SUNLinearSolver solver;
 };
 
-static int open_workplace(struct workplace* w, const struct eomgen_task* task)
-{
+static int open_workplace(struct workplace* w, const struct eomgen_task* task) {
   memset(w, 0, sizeof *w);
   if (SUNContext_Create(NULL, &w->context) != 0) return 1;
   w->x = N_VNew_Serial(task->n, w->context);
@@ -69,8 +66,7 @@ static int open_workplace(struct workplace* w, const struct eomgen_task* task)
   return 0;
 }
 
-static void close_workplace(struct workplace* w, const struct eomgen_task* task, double* x)
-{
+static void close_workplace(struct workplace* w, const struct eomgen_task* task, double* x) {
   memcpy(x, N_VGetArrayPointer(w->x), (size_t)task->n * sizeof *x);
   SUNLinSolFree(w->solver);
   SUNMatDestroy(w->J);
@@ -79,8 +75,7 @@ static void close_workplace(struct workplace* w, const struct eomgen_task* task,
   SUNContext_Free(&w->context);
 }
 
-static int cvode(const struct eomgen_task* task, int method, double* x, long* steps)
-{
+static int cvode(const struct eomgen_task* task, int method, double* x, long* steps) {
   struct workplace w;
   if (!task->jac && method == CV_BDF) return -1;
   if (open_workplace(&w, task) != 0) return 1;
@@ -103,10 +98,11 @@ static int cvode(const struct eomgen_task* task, int method, double* x, long* st
 }
 
 int eomgen_cvode_bdf(const struct eomgen_task* task, double* x, long* steps) { return cvode(task, CV_BDF, x, steps); }
-int eomgen_cvode_adams(const struct eomgen_task* task, double* x, long* steps) { return cvode(task, CV_ADAMS, x, steps); }
+int eomgen_cvode_adams(const struct eomgen_task* task, double* x, long* steps) {
+  return cvode(task, CV_ADAMS, x, steps);
+}
 
-int eomgen_arkode_erk8(const struct eomgen_task* task, double* x, long* steps)
-{
+int eomgen_arkode_erk8(const struct eomgen_task* task, double* x, long* steps) {
   struct workplace w;
   if (open_workplace(&w, task) != 0) return 1;
   struct eomgen_task copy = *task;
@@ -125,8 +121,7 @@ int eomgen_arkode_erk8(const struct eomgen_task* task, double* x, long* steps)
   return status < 0 ? status : 0;
 }
 
-int eomgen_arkode_dirk5(const struct eomgen_task* task, double* x, long* steps)
-{
+int eomgen_arkode_dirk5(const struct eomgen_task* task, double* x, long* steps) {
   struct workplace w;
   if (!task->jac) return -1;
   if (open_workplace(&w, task) != 0) return 1;
@@ -148,8 +143,7 @@ int eomgen_arkode_dirk5(const struct eomgen_task* task, double* x, long* steps)
   return status < 0 ? status : 0;
 }
 
-int eomgen_ida(const struct eomgen_task* task, double* x, long* steps)
-{
+int eomgen_ida(const struct eomgen_task* task, double* x, long* steps) {
   struct workplace w;
   if (!task->jac) return -1;
   if (open_workplace(&w, task) != 0) return 1;

@@ -1,13 +1,14 @@
 /* SPDX-License-Identifier: MIT */
-/* One integration that `eomgen bench` asks of another library: of the emitted right-hand side, to the end, for a tolerance. */
+/* One integration that `eomgen bench` asks of another library: of the emitted right-hand side, to the end, for a
+ * tolerance. */
 #pragma once
 
 struct eomgen_task {
   int n;
   double t0, t1, rtol, atol;
   const double* x0;
-  int (*rhs)(double t, const double* x, double* dx, void* data);                  /* not 0: stop */
-  int (*jac)(double t, const double* x, double* dfdx, double* dfdt, void* data);  /* by columns; null: there is none */
+  int (*rhs)(double t, const double* x, double* dx, void* data);                 /* not 0: stop */
+  int (*jac)(double t, const double* x, double* dfdx, double* dfdt, void* data); /* by columns; null: there is none */
   void* data;
 };
 

@@ -25,7 +25,7 @@ const fs::path root = eomgen::test::source_folder();
 const std::vector<std::pair<std::string, std::string>> products = {
     {"model", "model/expression.hpp"},        {"model", "model/model.hpp"},
     {"mechanics", "mechanics/mechanics.hpp"}, {"system", "system/equation_system.hpp"},
-    {"system", "system/expressions.hpp"},      {"system", "system/chart_change.hpp"},
+    {"system", "system/expressions.hpp"},     {"system", "system/chart_change.hpp"},
     {"program", "program/program.hpp"},
 };
 const std::vector<std::string> data_flow = {"model",  "coordinates", "symbolic", "mechanics", "derive",
@@ -112,7 +112,8 @@ TEST_CASE("a stage includes its own folder, the stages that its CMakeLists.txt n
         if (!include.quoted || first == "eom") continue;
         INFO(place(file, include));
         if (is_product(include.path) && comes_before(first, folder)) continue;
-        if (first == "skeletons" && (folder == "emit" || folder == "bench")) continue;  // made from templates/ while building
+        if (first == "skeletons" && (folder == "emit" || folder == "bench"))
+          continue;  // made from templates/ while building
         CHECK(allowed.count(first) == 1);
       }
     }
@@ -154,7 +155,8 @@ TEST_CASE("products include products and the graph, no stage's working") {
     for (const Include& include : parse_includes(read_text(file))) {
       if (!include.quoted) continue;
       INFO(place(file, include));
-      CHECK((is_product(include.path) || include.path.starts_with("symbolic/") || include.path == "error.hpp" || include.path == "work.hpp"));
+      CHECK((is_product(include.path) || include.path.starts_with("symbolic/") || include.path == "error.hpp" ||
+             include.path == "work.hpp"));
     }
   }
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Batches of shipped models, in every mode of their contacts and kinks: tests/emit/batch_harness.c compares each state with itself alone.
+// Batches of shipped models, in every mode of their contacts and kinks: tests/emit/batch_harness.c compares each state
+// with itself alone.
 #include <doctest/doctest.h>
 
 #include "program.hpp"
 
 using namespace eomgen::test;
 
-TEST_CASE("batch: states of shipped models have the bits and codes that they have alone, in all modes, with inputs, beside singular ones") {
+TEST_CASE(
+    "batch: states of shipped models have the bits and codes that they have alone, in all modes, with inputs, beside "
+    "singular ones") {
   const Folder folder;
   struct Case {
     const char *model, *modes;
@@ -14,19 +17,40 @@ TEST_CASE("batch: states of shipped models have the bits and codes that they hav
   std::string width = "2";
   Words flags;
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx512f")) flags = {"-mavx512f"}, width = "8";
-  else if (__builtin_cpu_supports("avx2")) flags = {"-mavx2"}, width = "4";
+  if (__builtin_cpu_supports("avx512f"))
+    flags = {"-mavx512f"}, width = "8";
+  else if (__builtin_cpu_supports("avx2"))
+    flags = {"-mavx2"}, width = "4";
 #endif
-  for (const Case& c : {Case{"P8_rough_helix", "1, 2, 3, 4, 5"}, Case{"stick_slip_belt", "1, 2"}, Case{"bilinear_oscillator", "256, 512"}, Case{"bouncing_ball", "1, 3"},
-                        Case{"cart_pendulum", "0"}, Case{"S5_spherical_double_pendulum", "0"}, Case{"R1_free_body_euler_parameters", "0"}, Case{"P14_kepler_spherical", "0"}}) {
+  for (const Case& c : {Case{"P8_rough_helix", "1, 2, 3, 4, 5"}, Case{"stick_slip_belt", "1, 2"},
+                        Case{"bilinear_oscillator", "256, 512"}, Case{"bouncing_ball", "1, 3"},
+                        Case{"cart_pendulum", "0"}, Case{"S5_spherical_double_pendulum", "0"},
+                        Case{"R1_free_body_euler_parameters", "0"}, Case{"P14_kepler_spherical", "0"}}) {
     const std::string name = c.model;
     CAPTURE(name);
     expect(0, folder, {"emit", name, "-o", ".", "--target", "batch", "--with", "events", "--output", "energy"});
     const std::string header = folder.read(name + "_batch.h");
-    Words words{"gcc", "-std=gnu11", "-O1", "-ffp-contract=off", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror", "-o", name, "-I.",
-                "-DNAME=" + name, "-DHEADER=\"" + name + "_batch.h\"", "-DWIDTH=" + width, "-DMODES=" + std::string(c.modes)};
+    Words words{"gcc",
+                "-std=gnu11",
+                "-O1",
+                "-ffp-contract=off",
+                "-Wall",
+                "-Wextra",
+                "-Wpedantic",
+                "-Wshadow",
+                "-Wconversion",
+                "-Werror",
+                "-o",
+                name,
+                "-I.",
+                "-DNAME=" + name,
+                "-DHEADER=\"" + name + "_batch.h\"",
+                "-DWIDTH=" + width,
+                "-DMODES=" + std::string(c.modes)};
     words.insert(words.end(), flags.begin(), flags.end());
-    for (const auto& [function, define] : {std::pair{"_prepare_batch(", "-DPREPARED"}, {"_outputs_batch(", "-DOUTPUTS"}, {"_events_batch(", "-DEVENTS"}}) {
+    for (const auto& [function, define] : {std::pair{"_prepare_batch(", "-DPREPARED"},
+                                           {"_outputs_batch(", "-DOUTPUTS"},
+                                           {"_events_batch(", "-DEVENTS"}}) {
       if (contains(header, name + function)) words.emplace_back(define);
     }
     words.insert(words.end(), {EOMGEN_TEST_HARNESS, name + ".c", name + "_batch.c", "-lm"});

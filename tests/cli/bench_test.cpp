@@ -13,7 +13,8 @@ using namespace eomgen::test;
 
 TEST_CASE("bench: every solver's error falls with its tolerance or step, and the document has all of them") {
   const Folder folder;
-  const Json found = document(folder, {"bench", "P2_planar_pendulum", "--t-end", "1", "--csv", "out.csv", "--svg", "out.svg"});
+  const Json found =
+      document(folder, {"bench", "P2_planar_pendulum", "--t-end", "1", "--csv", "out.csv", "--svg", "out.svg"});
   CHECK(found["reference"]["digits"].get<int>() >= 30);
   for (const Json& left : found["left_out"]) {  // none of this program's own
     CHECK(contains(left["why"].get<std::string>(), "not installed"));
@@ -35,7 +36,8 @@ TEST_CASE("bench: every solver's error falls with its tolerance or step, and the
     }
     REQUIRE(errors.size() >= 9);
     const double fall = errors.front() / errors.back();
-    CHECK(fall > (solver["order"].get<int>() == 2 ? 1e4 : 1e7));  // nine steps, each half the one before, of order 2: 4^8
+    CHECK(fall >
+          (solver["order"].get<int>() == 2 ? 1e4 : 1e7));  // nine steps, each half the one before, of order 2: 4^8
     if (solver["adaptive"].get<bool>()) CHECK(errors.back() < 1e-10);
   }
   CHECK(contains(folder.read("out.svg"), "</svg>"));
@@ -45,8 +47,10 @@ TEST_CASE("bench: every solver's error falls with its tolerance or step, and the
 TEST_CASE("bench: the error is the difference from the motion itself") {
   const Folder folder;
   const Json found = document(folder, {"bench", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5"});
-  const Json run = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5", "--rtol", "1e-5", "--atol", "1e-8", "--no-error-estimate"});
-  const Json sharp = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "taylor", "--rtol", "1e-14", "--atol", "1e-15", "--no-error-estimate"});
+  const Json run = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "dopri5", "--rtol",
+                                     "1e-5", "--atol", "1e-8", "--no-error-estimate"});
+  const Json sharp = document(folder, {"run", "P2_planar_pendulum", "--t-end", "2", "--solver", "taylor", "--rtol",
+                                       "1e-14", "--atol", "1e-15", "--no-error-estimate"});
   for (const Json& row : found["rows"]) {
     if (std::abs(row["rtol"].get<double>() / 1e-5 - 1) > 1e-9) continue;
     const double difference = std::abs(run["final"]["theta"].get<double>() - sharp["final"]["theta"].get<double>());
@@ -61,7 +65,8 @@ TEST_CASE("bench: other libraries reach the same motion on the same right-hand s
            {"Odeint", {"Odeint dopri5", "Odeint rkf78", "Odeint bulirsch_stoer"}},
            {"GSL", {"GSL rk8pd", "GSL msbdf"}},
            {"SUNDIALS", {"CVODE BDF", "CVODE Adams", "ARKODE ERK 8", "ARKODE DIRK 5", "IDA"}}}) {
-    const bool is_missing = std::any_of(found["left_out"].begin(), found["left_out"].end(), [&name = library](const Json& left) { return left["solver"] == name; });
+    const bool is_missing = std::any_of(found["left_out"].begin(), found["left_out"].end(),
+                                        [&name = library](const Json& left) { return left["solver"] == name; });
     for (const std::string& name : names) {
       CAPTURE(name);
       double least = 1, evaluations = 0;
@@ -74,7 +79,8 @@ TEST_CASE("bench: other libraries reach the same motion on the same right-hand s
       CHECK((evaluations > 50) != is_missing);
     }
   }
-  for (const Json& row : document(folder, {"bench", "P2_planar_pendulum", "--t-end", "1", "--no-libraries"})["rows"]) CHECK_FALSE(contains(row["solver"].get<std::string>(), " "));
+  for (const Json& row : document(folder, {"bench", "P2_planar_pendulum", "--t-end", "1", "--no-libraries"})["rows"])
+    CHECK_FALSE(contains(row["solver"].get<std::string>(), " "));
 }
 
 TEST_CASE("bench: what has no reference is told, and so is a solver that does not exist") {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bodies in any coordinates: what the program answers to models of which some formulas are too long, and of which none is.
+// Bodies in any coordinates: what the program answers to models of which some formulas are too long, and of which none
+// is.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -28,7 +29,8 @@ mass = "m"
 inertia = { principal = ["J1", "J2", "J3"] }
 position = { cartesian = ["x", "y", "z"] }
 rotation = { euler_parameters = ["e0", "e1", "e2", "e3"] }
-)toml" + rest + "[scene.default]\nt = [0, 1]\n" + scene + "\n";
+)toml" + rest +
+         "[scene.default]\nt = [0, 1]\n" + scene + "\n";
 }
 
 const std::string loaded = R"toml([[force]]
@@ -41,8 +43,12 @@ spring = { between = ["B + a*B.e1", "origin"], stiffness = "k", length = "a" }
 )toml";
 
 std::string turning(const std::string& axis) {
-  return "format = 1\n[parameters]\nm = \"1 kg\"\nJ = \"0.5 kg*m^2\"\nl = \"1 m\"\ng = \"9.81 m/s^2\"\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = \"J\"\n"
-         "position = \"l*B.e1\"\nrotation = { axis = \"" + axis + "\", angle = \"psi\" }\n[[force]]\ngravity = \"-g*E2\"\n[scene.default]\nt = [0, 1]\ninitial = { psi = 0.5 }\n";
+  return "format = 1\n[parameters]\nm = \"1 kg\"\nJ = \"0.5 kg*m^2\"\nl = \"1 m\"\ng = \"9.81 m/s^2\"\n[[body]]\nname "
+         "= \"B\"\nmass = \"m\"\ninertia = \"J\"\n"
+         "position = \"l*B.e1\"\nrotation = { axis = \"" +
+         axis +
+         "\", angle = \"psi\" }\n[[force]]\ngravity = \"-g*E2\"\n[scene.default]\nt = [0, 1]\ninitial = { psi = 0.5 "
+         "}\n";
 }
 
 /// An ellipsoid that rolls, its centre of mass and its axes of inertia anywhere: nothing of it fits on a page.
@@ -82,36 +88,45 @@ initial = { "B.omega" = [0.5, 0.3, 2] }
 
 bool left_out(const Json& document, const std::string& what) {
   const auto& list = document["left_out"];
-  return std::any_of(list.begin(), list.end(), [&](const Json& l) { return contains(l["what"], what) && !l["why"].get<std::string>().empty(); });
+  return std::any_of(list.begin(), list.end(),
+                     [&](const Json& l) { return contains(l["what"], what) && !l["why"].get<std::string>().empty(); });
 }
 
 }  // namespace
 
-TEST_CASE("bodies in Euler parameters with a position: free, with forces, and with omega . e3 = 0, every route agrees") {
+TEST_CASE(
+    "bodies in Euler parameters with a position: free, with forces, and with omega . e3 = 0, every route agrees") {
   const Folder folder;
   folder.write("free.toml", tumbling("", "initial = { \"B.omega\" = [0.2, 0.1, 1], x_dot = 1 }"));
   folder.write("loaded.toml", tumbling(loaded, "initial = { \"B.omega\" = [0.2, 0.1, 1], x = 1 }"));
-  folder.write("suslov.toml", tumbling("[[constraint]]\nname = \"s\"\nvelocity = \"dot(omega(B), B.e3)\"\n", "initial = { \"B.omega\" = [0.2, 0.1, 0], x_dot = 1 }"));
+  folder.write("suslov.toml", tumbling("[[constraint]]\nname = \"s\"\nvelocity = \"dot(omega(B), B.e3)\"\n",
+                                       "initial = { \"B.omega\" = [0.2, 0.1, 0], x_dot = 1 }"));
   for (const char* name : {"free.toml", "loaded.toml", "suslov.toml"}) {
     CAPTURE(name);
     CHECK(document(folder, {"verify", name, "--points", "2", "--no-compile"})["verdict"] == "pass");
   }
 }
 
-TEST_CASE("a coordinate without inertia that a constraint fixes: the reading form that is printed is held to be right") {
+TEST_CASE(
+    "a coordinate without inertia that a constraint fixes: the reading form that is printed is held to be right") {
   const Folder folder;
-  folder.write("a.toml", "format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"1/2*x_dot^2\"\npotential = \"x^2\"\n[[constraint]]\nname = \"c\"\nholonomic = \"x - sin(y)\"\n"
-                         "[scene.default]\ninitial = { y = 0.3 }\n");
-  folder.write("b.toml", "format = 1\n[parameters]\nJ = 0.1\nm = 1\nr = 0.2\nl = 0.5\n[coordinates]\na = {}\nb = {}\nx = {}\n[energy]\nkinetic = \"1/2*J*a_dot^2 + 1/2*m*x_dot^2\"\n"
-                         "[[constraint]]\nname = \"loop\"\nholonomic = [\"r*cos(a) + l*cos(b) - x\", \"r*sin(a) - l*sin(b)\"]\n"
-                         "[scene.default]\ninitial = { a = 0.3, a_dot = 3 }\nguess = { b = 0.1, x = 0.7 }\n");
+  folder.write("a.toml",
+               "format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"1/2*x_dot^2\"\npotential = "
+               "\"x^2\"\n[[constraint]]\nname = \"c\"\nholonomic = \"x - sin(y)\"\n"
+               "[scene.default]\ninitial = { y = 0.3 }\n");
+  folder.write("b.toml",
+               "format = 1\n[parameters]\nJ = 0.1\nm = 1\nr = 0.2\nl = 0.5\n[coordinates]\na = {}\nb = {}\nx = "
+               "{}\n[energy]\nkinetic = \"1/2*J*a_dot^2 + 1/2*m*x_dot^2\"\n"
+               "[[constraint]]\nname = \"loop\"\nholonomic = [\"r*cos(a) + l*cos(b) - x\", \"r*sin(a) - l*sin(b)\"]\n"
+               "[scene.default]\ninitial = { a = 0.3, a_dot = 3 }\nguess = { b = 0.1, x = 0.7 }\n");
   for (const char* name : {"a.toml", "b.toml"}) {
     CAPTURE(name);
     CHECK(document(folder, {"verify", name, "--points", "2", "--no-compile"})["verdict"] == "pass");
   }
 }
 
-TEST_CASE("one moment of inertia does for a turn about any fixed axis: -E3, 2*E3, E1 + E2, an axis of a frame that stays") {
+TEST_CASE(
+    "one moment of inertia does for a turn about any fixed axis: -E3, 2*E3, E1 + E2, an axis of a frame that stays") {
   const Folder folder;
   const auto period = [&](const std::string& text) {
     folder.write("a.toml", text);
@@ -123,12 +138,15 @@ TEST_CASE("one moment of inertia does for a turn about any fixed axis: -E3, 2*E3
   period(turning("-E3"));
   period(turning("E1 + E2"));
   std::string tilted = turning("F.e3");
-  tilted.replace(tilted.find("[[body]]"), 8, "[[frame]]\nname = \"F\"\nrotation = { axis = \"E1\", angle = \"0.3\" }\n[[body]]");
+  tilted.replace(tilted.find("[[body]]"), 8,
+                 "[[frame]]\nname = \"F\"\nrotation = { axis = \"E1\", angle = \"0.3\" }\n[[body]]");
   tilted.replace(tilted.find("rotation = { axis = \"F.e3\""), 0, "relative_to = \"F\"\n");
   period(tilted);
 }
 
-TEST_CASE("what is too long to be written out ends no command: a rattleback in Euler parameters, five bodies on ball joints") {
+TEST_CASE(
+    "what is too long to be written out ends no command: a rattleback in Euler parameters, five bodies on ball "
+    "joints") {
   const Folder folder;
   folder.write("rattleback.toml", R"toml(format = 1
 title = "Rattleback: an ellipsoid that rolls, its inertia turned against its axes"
@@ -167,11 +185,14 @@ guess = { e3 = 0.03 }
   std::string chain = "format = 1\n";
   for (int i = 1; i <= 5; ++i) {
     const std::string k = std::to_string(i), before = std::to_string(i - 1);
-    const std::string e = "\"a" + k + "\", \"b" + k + "\", \"c" + k + "\", \"d" + k + "\"", r = "\"x" + k + "\", \"y" + k + "\", \"z" + k + "\"";
-    chain += "[[body]]\nname = \"B" + k + "\"\nmass = 1\ninertia = { principal = [0.1, 0.12, 0.02] }\nposition = { cartesian = [" + r +
-             "] }\nrotation = { euler_parameters = [" + e + "] }\n[[joint]]\nname = \"j" + k + "\"\ntype = \"ball\"\nbodies = [\"" +
-             (i == 1 ? "ground" : "B" + before) + "\", \"B" + k + "\"]\nat = [" + (i == 1 ? "\"origin\"" : "\"B" + before + " - 0.5*B" + before + ".e3\"") + ", \"B" + k + " + 0.5*B" +
-             k + ".e3\"]\n";
+    const std::string e = "\"a" + k + "\", \"b" + k + "\", \"c" + k + "\", \"d" + k + "\"",
+                      r = "\"x" + k + "\", \"y" + k + "\", \"z" + k + "\"";
+    chain += "[[body]]\nname = \"B" + k +
+             "\"\nmass = 1\ninertia = { principal = [0.1, 0.12, 0.02] }\nposition = { cartesian = [" + r +
+             "] }\nrotation = { euler_parameters = [" + e + "] }\n[[joint]]\nname = \"j" + k +
+             "\"\ntype = \"ball\"\nbodies = [\"" + (i == 1 ? "ground" : "B" + before) + "\", \"B" + k + "\"]\nat = [" +
+             (i == 1 ? "\"origin\"" : "\"B" + before + " - 0.5*B" + before + ".e3\"") + ", \"B" + k + " + 0.5*B" + k +
+             ".e3\"]\n";
   }
   folder.write("chain.toml", chain + "[[force]]\ngravity = \"-9.81*E3\"\n");
   for (const char* name : {"rattleback.toml", "chain.toml"}) {
@@ -183,7 +204,9 @@ guess = { e3 = 0.03 }
   }
 }
 
-TEST_CASE("formulas beyond their budget are left out by name, and nothing else fails: a rolling ellipsoid of any inertia in Euler parameters") {
+TEST_CASE(
+    "formulas beyond their budget are left out by name, and nothing else fails: a rolling ellipsoid of any inertia in "
+    "Euler parameters") {
   const Folder folder;
   folder.write("e.toml", ellipsoid);
   CHECK(document(folder, {"check", "e.toml"})["dof"] == 3);
@@ -197,27 +220,36 @@ TEST_CASE("formulas beyond their budget are left out by name, and nothing else f
   CHECK(left_out(verified, "articulated"));
 }
 
-TEST_CASE("in a plane E3 is the axis of every body, relative ones too, and a body that does not turn takes any moment of inertia") {
+TEST_CASE(
+    "in a plane E3 is the axis of every body, relative ones too, and a body that does not turn takes any moment of "
+    "inertia") {
   const Folder folder;
   const auto end = [&](const std::string& axis, const std::string& moment) {
-    folder.write("a.toml", "format = 1\n[[body]]\nname = \"cart\"\nmass = 1\ninertia = " + moment +
-                               "\nrotation = { fixed = true }\nposition = { cartesian = [\"s\", \"0\"] }\n"
-                               "[[body]]\nname = \"a\"\nmass = 1\ninertia = 0.2\nrotation = { axis = \"E3\", angle = \"f\" }\nposition = \"cart + 0.5*a.e1\"\n"
-                               "[[body]]\nname = \"b\"\nmass = 1\ninertia = 0.3\nrelative_to = \"a\"\nrotation = { axis = \"" + axis +
-                               "\", angle = \"g\" }\nposition = \"cart + a.e1 + 0.5*b.e1\"\n[[force]]\ngravity = \"-9.81*E2\"\n"
-                               "[scene.default]\nt = [0, 1]\ninitial = { f = 0.3, g = 0.5 }\n");
+    folder.write("a.toml",
+                 "format = 1\n[[body]]\nname = \"cart\"\nmass = 1\ninertia = " + moment +
+                     "\nrotation = { fixed = true }\nposition = { cartesian = [\"s\", \"0\"] }\n"
+                     "[[body]]\nname = \"a\"\nmass = 1\ninertia = 0.2\nrotation = { axis = \"E3\", angle = \"f\" "
+                     "}\nposition = \"cart + 0.5*a.e1\"\n"
+                     "[[body]]\nname = \"b\"\nmass = 1\ninertia = 0.3\nrelative_to = \"a\"\nrotation = { axis = \"" +
+                     axis +
+                     "\", angle = \"g\" }\nposition = \"cart + a.e1 + 0.5*b.e1\"\n[[force]]\ngravity = \"-9.81*E2\"\n"
+                     "[scene.default]\nt = [0, 1]\ninitial = { f = 0.3, g = 0.5 }\n");
     CHECK(document(folder, {"verify", "a.toml", "--points", "2", "--no-compile"})["verdict"] == "pass");
     return document(folder, {"run", "a.toml"})["final"];
   };
   const Json own = end("-a.e3", "{ principal = [1, 1, 1] }"), common = end("-2*E3", "0.1");
-  for (const char* name : {"s", "f", "g"}) CHECK(common[name].get<double>() == doctest::Approx(own[name].get<double>()).epsilon(1e-12));
+  for (const char* name : {"s", "f", "g"})
+    CHECK(common[name].get<double>() == doctest::Approx(own[name].get<double>()).epsilon(1e-12));
   // An axis across the plane turns with the body, and so does that of a body on a tilted frame.
   std::string text = folder.read("a.toml");
   text.replace(text.find("-2*E3"), 5, "E1");
   folder.write("b.toml", text);
   CHECK(contains(expect(2, folder, {"check", "b.toml"}).err, "this axis is not fixed in the parent"));
-  folder.write("c.toml", "format = 1\n[[frame]]\nname = \"F\"\nrotation = { axis = \"E1\", angle = \"0.3\" }\n"
-                         "[[body]]\nname = \"a\"\nmass = 1\ninertia = 0.2\nrelative_to = \"F\"\nrotation = { axis = \"F.e3\", angle = \"f\" }\nposition = \"a.e1\"\n"
-                         "[[body]]\nname = \"b\"\nmass = 1\ninertia = { sphere = 1 }\nrelative_to = \"a\"\nrotation = { axis = \"E3\", angle = \"g\" }\nposition = \"a.e1 + b.e1\"\n");
+  folder.write("c.toml",
+               "format = 1\n[[frame]]\nname = \"F\"\nrotation = { axis = \"E1\", angle = \"0.3\" }\n"
+               "[[body]]\nname = \"a\"\nmass = 1\ninertia = 0.2\nrelative_to = \"F\"\nrotation = { axis = \"F.e3\", "
+               "angle = \"f\" }\nposition = \"a.e1\"\n"
+               "[[body]]\nname = \"b\"\nmass = 1\ninertia = { sphere = 1 }\nrelative_to = \"a\"\nrotation = { axis = "
+               "\"E3\", angle = \"g\" }\nposition = \"a.e1 + b.e1\"\n");
   CHECK(contains(expect(2, folder, {"check", "c.toml"}).err, "this axis is not fixed in the parent"));
 }

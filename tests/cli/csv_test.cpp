@@ -72,7 +72,9 @@ TEST_CASE("rows: from t0 to t1 every DT, the end also where it is off the grid")
 
 TEST_CASE("rows between steps are as exact as those at their ends, and on the constraint") {
   const Folder folder;
-  folder.write("rod.toml", pendulum_text("[scene.default]\nt = [0, 4]\ninitial = { x = 1, y = 0, x_dot = 0 }\noutputs = [\"energy\"]\n"));
+  folder.write(
+      "rod.toml",
+      pendulum_text("[scene.default]\nt = [0, 4]\ninitial = { x = 1, y = 0, x_dot = 0 }\noutputs = [\"energy\"]\n"));
   expect(0, folder, {"run", "rod.toml", "--out", "a.csv", "--every", "0.01"});
   const Table table = read_table(folder.read("a.csv"));
   CHECK(table.rows.size() == 401);

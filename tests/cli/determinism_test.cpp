@@ -33,7 +33,8 @@ std::vector<Files> emit_repeatedly(const Words& words) {
       ChildCommand call = command(*folders.back(), words);
       // Moves the stack, and the hashes of a program that would seed them from its environment.
       call.environment["EOMGEN_TEST_PADDING"] = std::string(static_cast<std::size_t>(1 + 977 * i), 'x');
-      call.environment["EOMGEN_CACHE_DIR"] = *folders.back() / "cache";  // a certificate that one keeps is not the other's
+      call.environment["EOMGEN_CACHE_DIR"] =
+          *folders.back() / "cache";  // a certificate that one keeps is not the other's
       call.environment["LC_ALL"] = i % 2 == 0 ? "C" : "C.UTF-8";
       children.push_back(std::make_unique<Child>(call));
     }

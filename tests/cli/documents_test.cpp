@@ -17,7 +17,8 @@ void has_keys(const Json& document, const Words& keys) {
   }
 }
 
-const Words models{"P7_moving_sphere", "P2_planar_pendulum", "S5_double_pendulum_cartesian", "cart_pendulum", "G1_spherical"};
+const Words models{"P7_moving_sphere", "P2_planar_pendulum", "S5_double_pendulum_cartesian", "cart_pendulum",
+                   "G1_spherical"};
 
 }  // namespace
 
@@ -38,7 +39,8 @@ TEST_CASE("check: every model's document") {
   for (const std::string& model : models) {
     CAPTURE(model);
     const Json found = document(folder, {"check", model});
-    has_keys(found, {"coordinates", "dof", "parameters", "constraints", "forces", "conserved", "singular", "units", "warnings"});
+    has_keys(found, {"coordinates", "dof", "parameters", "constraints", "forces", "conserved", "singular", "units",
+                     "warnings"});
     CHECK_FALSE(contains(expect(0, folder, {"check", model}).out, "{"));
   }
   const Json sphere = document(folder, {"check", "P7_moving_sphere"});
@@ -55,7 +57,8 @@ TEST_CASE("check: every model's document") {
   CHECK(sphere["constraints"][0]["integrable"] == "yes");
   // Each set once, with the approaches that fail there: R is no coordinate of Approach II, d(t) is none of Approach I.
   for (const Json& one : sphere["singular"]) {
-    CHECK(std::count_if(sphere["singular"].begin(), sphere["singular"].end(), [&](const Json& s) { return s["set"] == one["set"]; }) == 1);
+    CHECK(std::count_if(sphere["singular"].begin(), sphere["singular"].end(),
+                        [&](const Json& s) { return s["set"] == one["set"]; }) == 1);
   }
 }
 
@@ -70,7 +73,8 @@ TEST_CASE("derive: a key for each thing shown, in three formats") {
       CHECK_FALSE(shown["equations"].empty());
     }
   }
-  for (const char* key : {"basis", "metric", "christoffel", "line_element", "energies", "lagrangian", "constraints", "singular"}) {
+  for (const char* key :
+       {"basis", "metric", "christoffel", "line_element", "energies", "lagrangian", "constraints", "singular"}) {
     CAPTURE(key);
     const Json shown = document(folder, {"derive", "P7_moving_sphere", "--show", key});
     has_keys(shown, {key, "equations", "reactions"});
@@ -87,12 +91,16 @@ TEST_CASE("derive: a key for each thing shown, in three formats") {
   CHECK(contains(in_format("mathml"), "<math"));
 }
 
-TEST_CASE("derive --document: the derivation as LaTeX, beside what is printed, to the same bytes as emit --target latex") {
+TEST_CASE(
+    "derive --document: the derivation as LaTeX, beside what is printed, to the same bytes as emit --target latex") {
   const Folder folder;
   CHECK(contains(expect(0, folder, {"derive", "P9_paraboloid", "--document", "paper.tex"}).out, "wrote paper.tex"));
   const std::string text = folder.read("paper.tex");
-  for (const char* part : {"\\section{System}", "Approach II: constraints that fix a coordinate are built in", "\\section{Constraint forces}", "$\\theta$ is cyclic", "p_{\\theta} = m c^{2} u^{2} \\dot{\\theta}",
-                           "\\section{Routh's reduction}", "\\mathcal{R} = ", "\\textbf{steady motion}: ", "\\emph{stable}: ", "\\section{Where the equations fail}", "\\section{Certificate}", "pass at 5 random states in 50 digits"}) {
+  for (const char* part :
+       {"\\section{System}", "Approach II: constraints that fix a coordinate are built in",
+        "\\section{Constraint forces}", "$\\theta$ is cyclic", "p_{\\theta} = m c^{2} u^{2} \\dot{\\theta}",
+        "\\section{Routh's reduction}", "\\mathcal{R} = ", "\\textbf{steady motion}: ", "\\emph{stable}: ",
+        "\\section{Where the equations fail}", "\\section{Certificate}", "pass at 5 random states in 50 digits"}) {
     CAPTURE(part);
     CHECK(contains(text, part));
   }
@@ -115,7 +123,9 @@ TEST_CASE("derive --document: wrong places are refused before any work") {
   CHECK_FALSE(folder.has("paper.pdf"));
 }
 
-TEST_CASE("the document of hostile texts, of a model whose motion is prescribed, and of one without search says so and compiles") {
+TEST_CASE(
+    "the document of hostile texts, of a model whose motion is prescribed, and of one without search says so and "
+    "compiles") {
   const Folder folder;
   folder.write("hostile.toml", R"(format = 1
 title = 'a\input{/etc/passwd}$x$ & 100% #1 _b^c~'
@@ -147,7 +157,10 @@ force = "-k*write18*E1"
   }
   for (const char* name : {"hostile", "rocket", "chain"}) {
     CAPTURE(name);
-    const std::string command = "cd '" + folder.path() + "' && max_print_line=1000 pdflatex -no-shell-escape -interaction=nonstopmode -halt-on-error " + name + ".tex > out.txt 2>&1";
+    const std::string command =
+        "cd '" + folder.path() +
+        "' && max_print_line=1000 pdflatex -no-shell-escape -interaction=nonstopmode -halt-on-error " + name +
+        ".tex > out.txt 2>&1";
     CHECK(std::system(command.c_str()) == 0);
     CHECK_FALSE(contains(folder.read("out.txt"), "Overfull \\hbox"));
   }
@@ -155,9 +168,13 @@ force = "-k*write18*E1"
 
 TEST_CASE("derive: headings say what stands below them, and a legend tells which multiplier is which") {
   const Folder folder;
-  const std::string disk = expect(0, folder, {"derive", "R6_rolling_disk", "--show", "constraints,equations,reactions,singular"}).out;
-  for (const char* heading : {"\nconstraint 'contact.1', binds velocities, not integrable\n", "\nconstraint 'contact.3', its first time derivative\n", "\nequations of motion\n  d/dt(m x1_dot)",
-                              "\nequations of motion, written out\n", "\nconstraint force on 'disk'\n", "\nwhere both approaches fail\n", "\nwhich multiplier is which\n  lambda_1: of the constraint 'contact.1'\n"}) {
+  const std::string disk =
+      expect(0, folder, {"derive", "R6_rolling_disk", "--show", "constraints,equations,reactions,singular"}).out;
+  for (const char* heading :
+       {"\nconstraint 'contact.1', binds velocities, not integrable\n",
+        "\nconstraint 'contact.3', its first time derivative\n", "\nequations of motion\n  d/dt(m x1_dot)",
+        "\nequations of motion, written out\n", "\nconstraint force on 'disk'\n", "\nwhere both approaches fail\n",
+        "\nwhich multiplier is which\n  lambda_1: of the constraint 'contact.1'\n"}) {
     CAPTURE(heading);
     CHECK(contains(disk, heading));
   }
@@ -180,7 +197,8 @@ TEST_CASE("derive: headings say what stands below them, and a legend tells which
 
 TEST_CASE("derive: what does not apply is an empty list, not a missing key") {
   const Folder folder;
-  for (const char* key : {"basis", "metric", "christoffel", "line_element", "constraints", "conserved", "reactions", "singular"}) {
+  for (const char* key :
+       {"basis", "metric", "christoffel", "line_element", "constraints", "conserved", "reactions", "singular"}) {
     CAPTURE(key);
     has_keys(document(folder, {"derive", "cart_pendulum", "--show", key}), {key});
   }
@@ -216,7 +234,8 @@ TEST_CASE("emit: the files are there; the counts are of the route that was taken
   CHECK(emitted["files"] == Json({"out/P7_moving_sphere.hpp", "out/P7_moving_sphere.c", "out/P7_moving_sphere.h"}));
   for (const Json& file : emitted["files"]) CHECK(folder.has(file));
   bool among = false;
-  for (const Json& tried : emitted["tried"]) among = among || (tried["route"] == emitted["route"] && tried["operations"] == emitted["operations"]);
+  for (const Json& tried : emitted["tried"])
+    among = among || (tried["route"] == emitted["route"] && tried["operations"] == emitted["operations"]);
   CHECK(among);
   const Json paper = document(folder, {"emit", "P7_moving_sphere", "-o", "paper", "--target", "latex"});
   CHECK(paper["files"] == Json({"paper/P7_moving_sphere.tex"}));
@@ -229,8 +248,8 @@ TEST_CASE("run: the document tells how, how long, how exact") {
   for (const std::string& model : models) {
     CAPTURE(model);
     const Json run = document(folder, {"run", model, "--t-end", "2"});
-    has_keys(run, {"solver", "outcome", "steps", "rejected", "rhs_evaluations", "seconds", "final", "error_estimate", "invariants",
-                   "power_balance", "constraint_drift", "events", "solver_reason"});
+    has_keys(run, {"solver", "outcome", "steps", "rejected", "rhs_evaluations", "seconds", "final", "error_estimate",
+                   "invariants", "power_balance", "constraint_drift", "events", "solver_reason"});
     CHECK(run["outcome"] == "done");
     CHECK(run["error_estimate"]["max"].get<double>() > 0);
     CHECK(run["error_estimate"]["max"].get<double>() < 1e-3);
@@ -247,12 +266,14 @@ TEST_CASE("run: the readable report says the same in words") {
   const Folder folder;
   const ChildResult run = expect(0, folder, {"run", "S5_double_pendulum_cartesian", "--t-end", "1"});
   CHECK(run.err.empty());
-  for (const char* word : {"solver            dop853 (rtol is 1e-6 or below", "outcome           done at t = 1\n", "error estimate    ",
-                           "invariant         energy = ", "power balance     ", "constraints       |psi| at most ", "seconds           derive "}) {
+  for (const char* word : {"solver            dop853 (rtol is 1e-6 or below", "outcome           done at t = 1\n",
+                           "error estimate    ", "invariant         energy = ", "power balance     ",
+                           "constraints       |psi| at most ", "seconds           derive "}) {
     CAPTURE(word);
     CHECK(contains(run.out, word));
   }
   CHECK_FALSE(contains(run.out, "{"));
   CHECK_FALSE(contains(run.out, "0.20000000000000001"));
-  CHECK_FALSE(contains(expect(0, folder, {"run", "P2_planar_pendulum", "--t-end", "1", "--no-error-estimate"}).out, "error estimate"));
+  CHECK_FALSE(contains(expect(0, folder, {"run", "P2_planar_pendulum", "--t-end", "1", "--no-error-estimate"}).out,
+                       "error estimate"));
 }

@@ -50,18 +50,21 @@ int main(void)
 
 TEST_CASE("C: every shipped model compiles as strict C11, passes its self test, and describes itself") {
   const Folder folder;
-  for (const char* model : {"P2_planar_pendulum", "P7_moving_sphere", "P14_kepler_spherical", "S5_double_pendulum_cartesian",
-                            "S5_spherical_double_pendulum", "cart_pendulum", "bilinear_oscillator", "leaving_sphere"}) {
+  for (const char* model :
+       {"P2_planar_pendulum", "P7_moving_sphere", "P14_kepler_spherical", "S5_double_pendulum_cartesian",
+        "S5_spherical_double_pendulum", "cart_pendulum", "bilinear_oscillator", "leaving_sphere"}) {
     const std::string name = model;
     CAPTURE(name);
-    expect(0, folder, {"emit", name, "-o", ".", "--with", "jac,jac_p,mass,constraints,reactions,events", "--output", "energy"});
+    expect(0, folder,
+           {"emit", name, "-o", ".", "--with", "jac,jac_p,mass,constraints,reactions,events", "--output", "energy"});
     folder.write("caller.c", c_caller(name));
     compile(folder, {"gcc", "-std=c11", "-o", "caller", "caller.c", name + ".c", "-lm"});
     const Json all = printed(folder, "caller");
     CHECK(all["abi"] == 1);
     CHECK(all["selftest"] == 0);
     CHECK(all["status"] == 0);
-    for (const char* key : {"model", "content_hash", "states", "parameters", "inputs", "outputs", "modes", "units", "defaults", "verdict"}) {
+    for (const char* key : {"model", "content_hash", "states", "parameters", "inputs", "outputs", "modes", "units",
+                            "defaults", "verdict"}) {
       CAPTURE(key);
       CHECK(all["info"].contains(key));
     }
@@ -142,7 +145,8 @@ int main(void)
   const Json by_hand = printed(folder, "caller");
   const Json final = document(folder, {"run", "P7_moving_sphere", "--t-end", "1", "--rtol", "1e-12"})["final"];
   const Words names{"phi", "theta", "phi_dot", "theta_dot"};
-  for (std::size_t i = 0; i < 4; ++i) CHECK(by_hand[i].get<double>() == doctest::Approx(final[names[i]].get<double>()).epsilon(1e-9));
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK(by_hand[i].get<double>() == doctest::Approx(final[names[i]].get<double>()).epsilon(1e-9));
 }
 
 TEST_CASE("--fix: a parameter becomes a number, the array of parameters stays") {

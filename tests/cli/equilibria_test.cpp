@@ -34,8 +34,10 @@ TEST_CASE("equilibria: coordinates that are 0 are shown, 0 has no sign, and a se
   CHECK(!std::signbit(found["points"][0]["values"]["theta1_dot"].get<double>()));
   CHECK(found["points"][0]["off"] == 0.0);
   CHECK(found["refused"] == 0);
-  folder.write("stick.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"x^2/2\"\n[[force]]\nname = \"stick\"\n"
-                             "generalized = { x = \"-sign(x_dot)\" }\n[scene.default]\ninitial = { x = 1, x_dot = -0.0 }\n");
+  folder.write("stick.toml",
+               "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = "
+               "\"x^2/2\"\n[[force]]\nname = \"stick\"\n"
+               "generalized = { x = \"-sign(x_dot)\" }\n[scene.default]\ninitial = { x = 1, x_dot = -0.0 }\n");
   const std::string why = expect(2, folder, {"equilibria", "stick.toml"}).err;
   CHECK(contains(why, "stick.toml:7:"));
   CHECK(contains(why, "'stick' has no slope"));
@@ -43,8 +45,10 @@ TEST_CASE("equilibria: coordinates that are 0 are shown, 0 has no sign, and a se
 
 TEST_CASE("equilibria: where there is none, no start is said to lead to one") {
   const Folder folder;
-  folder.write("shafts.toml", "format = 1\n[coordinates]\na = {}\nb = {}\nc = {}\n[energy]\nkinetic = \"a_dot^2/2 + (a_dot + b_dot)^2 + 3/2*(a_dot + b_dot + c_dot)^2\"\n"
-                              "[[force]]\ngeneralized = { a = \"2\" }\n");
+  folder.write("shafts.toml",
+               "format = 1\n[coordinates]\na = {}\nb = {}\nc = {}\n[energy]\nkinetic = \"a_dot^2/2 + (a_dot + b_dot)^2 "
+               "+ 3/2*(a_dot + b_dot + c_dot)^2\"\n"
+               "[[force]]\ngeneralized = { a = \"2\" }\n");
   const Json found = document(folder, {"equilibria", "shafts.toml"});
   CHECK(found["points"].empty());
   CHECK(found["converged"] == 0);
@@ -54,9 +58,11 @@ TEST_CASE("equilibria: equations that depend on t, contacts, and what cannot be 
   const Folder folder;
   CHECK(contains(expect(2, folder, {"equilibria", "P1_spherical_pendulum_varying"}).err, "eomgen linearize"));
   CHECK(contains(expect(2, folder, {"equilibria", "bouncing_ball"}).err, "linearise a copy"));
-  CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "thta=1"}).err, "did you mean 'theta'?"));
+  CHECK(
+      contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "thta=1"}).err, "did you mean 'theta'?"));
   CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "psi=1"}).err, "nothing feels it"));
-  CHECK(contains(expect(2, folder, {"equilibria", "S5_double_pendulum", "--hold", "reaction.rod1=1"}).err, "constraint forces"));
+  CHECK(contains(expect(2, folder, {"equilibria", "S5_double_pendulum", "--hold", "reaction.rod1=1"}).err,
+                 "constraint forces"));
   CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--hold", "theta"}).err, "theta"));
   CHECK(contains(expect(2, folder, {"equilibria", "R10_lagrange_top", "--starts", "0"}).err, "--starts"));
 }

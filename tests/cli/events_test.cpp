@@ -10,7 +10,8 @@ using namespace eomgen::test;
 
 namespace {
 
-const std::string scene = "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-12\ninitial = { x = 1, y = 0, x_dot = 0 }\n";
+const std::string scene =
+    "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-12\ninitial = { x = 1, y = 0, x_dot = 0 }\n";
 
 }  // namespace
 
@@ -31,11 +32,13 @@ TEST_CASE("an event that stops a run is no failure: exit code 0, told in JSON, t
   CHECK(contains(text.out, "leaves"));
 }
 
-TEST_CASE("events with a projection: on the rod x = 0 is passed where y = -L, and the motion is that without the event") {
+TEST_CASE(
+    "events with a projection: on the rod x = 0 is passed where y = -L, and the motion is that without the event") {
   const Folder folder;
   folder.write("plain.toml", pendulum_text(scene));
   folder.write("watched.toml", pendulum_text("[[event]]\nname = \"bottom\"\nwhen = \"x\"\n"
-                                             "[[event]]\nname = \"pull\"\nwhen = \"y_ddot\"\ndirection = \"up\"\n" + scene));
+                                             "[[event]]\nname = \"pull\"\nwhen = \"y_ddot\"\ndirection = \"up\"\n" +
+                                             scene));
   const Json plain = document(folder, {"run", "plain.toml"});
   const Json watched = document(folder, {"run", "watched.toml", "--out", "a.csv", "--every", "10"});
   CHECK(watched["final"] == plain["final"]);

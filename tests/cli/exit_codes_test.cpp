@@ -11,8 +11,8 @@ using namespace eomgen::test;
 
 TEST_CASE("exit code 0: results on standard output, nothing on standard error") {
   const Folder folder;
-  for (const Words& words : {Words{"--help"}, Words{"--version"}, Words{"run", "--help"}, Words{"list"}, Words{"check", "P2_planar_pendulum"},
-                             Words{"derive", "P2_planar_pendulum"}}) {
+  for (const Words& words : {Words{"--help"}, Words{"--version"}, Words{"run", "--help"}, Words{"list"},
+                             Words{"check", "P2_planar_pendulum"}, Words{"derive", "P2_planar_pendulum"}}) {
     CAPTURE(words.front());
     const ChildResult result = expect(0, folder, words);
     CHECK(result.err.empty());
@@ -88,7 +88,8 @@ TEST_CASE("exit code 3: a diverging run keeps its rows and says how it ended") {
 TEST_CASE("exit code 3: with fixed steps it grows beyond all bounds, and the document stays valid") {
   const Folder folder;
   folder.write("diverging.toml", diverging_text());
-  const Json run = document(folder, {"run", "diverging.toml", "--solver", "rk4", "--step", "0.1", "--out", "rows.csv"}, 3);
+  const Json run =
+      document(folder, {"run", "diverging.toml", "--solver", "rk4", "--step", "0.1", "--out", "rows.csv"}, 3);
   CHECK((run["outcome"] == "diverged" || run["outcome"] == "not_finite"));
   CHECK(read_table(folder.read("rows.csv")).outcome == run["outcome"]);
 }

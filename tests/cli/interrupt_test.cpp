@@ -21,7 +21,8 @@ const Words endless{"run", "P2_planar_pendulum", "--t-end", "1e7", "--every", "2
 std::string wait_for_rows(const Folder& folder, const std::string& name, std::size_t bytes = 100000) {
   for (int k = 0; k < 2000; ++k) {
     for (const std::string& file : folder.names()) {
-      if (file.starts_with(name + ".partial-") && file.size() == name.size() + 15 && folder.read(file).size() > bytes) return file;
+      if (file.starts_with(name + ".partial-") && file.size() == name.size() + 15 && folder.read(file).size() > bytes)
+        return file;
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
@@ -49,7 +50,8 @@ TEST_CASE("an interrupted run keeps its rows, names its outcome and ends with 3"
   }
 }
 
-TEST_CASE("a run that is killed leaves its rows under another name, whole but for the last, and the old table as it was") {
+TEST_CASE(
+    "a run that is killed leaves its rows under another name, whole but for the last, and the old table as it was") {
   const Folder folder;
   folder.write("a.csv", "old");
   Child child(command(folder, endless));
@@ -107,16 +109,25 @@ TEST_CASE("a polite kill is heeded while the compiler hangs, and nothing is left
   CHECK(result.status == 3);
   CHECK(contains(result.err, "interrupted before the run began"));
   // Of what was to be compiled; the certificate was whole before.
-  for (const auto& entry : std::filesystem::directory_iterator(folder / "cache")) CHECK(entry.path().filename().string().starts_with("certificate-"));
+  for (const auto& entry : std::filesystem::directory_iterator(folder / "cache"))
+    CHECK(entry.path().filename().string().starts_with("certificate-"));
 }
 
 TEST_CASE("every command that derives stops on Ctrl-C at once, with 3, whatever it is doing") {
   const Folder folder;
   // Distances of all pairs of 20 particles on relative angles: nothing of it is short.
-  folder.write("a.toml", "format = 1\n[[chain]]\nname = \"link\"\nn = 20\nmass = 1\nlength = 1\ncoordinate = \"th\"\nangles = \"relative\"\n"
-                         "[[force]]\ngravitation = { G = 1 }\n[scene.default]\nt = [0, 1]\ninitial = { th1 = 0.5, th2 = 0.3 }\n");
-  const std::vector<Words> commands{{"check", "a.toml"}, {"derive", "a.toml", "--show", "all"}, {"verify", "a.toml"}, {"emit", "a.toml", "-o", "out"},
-                                    {"report", "a.toml", "-o", "a.html"}, {"linearize", "a.toml"}, {"equilibria", "a.toml"}, {"stress", "a.toml"}};
+  folder.write("a.toml",
+               "format = 1\n[[chain]]\nname = \"link\"\nn = 20\nmass = 1\nlength = 1\ncoordinate = \"th\"\nangles = "
+               "\"relative\"\n"
+               "[[force]]\ngravitation = { G = 1 }\n[scene.default]\nt = [0, 1]\ninitial = { th1 = 0.5, th2 = 0.3 }\n");
+  const std::vector<Words> commands{{"check", "a.toml"},
+                                    {"derive", "a.toml", "--show", "all"},
+                                    {"verify", "a.toml"},
+                                    {"emit", "a.toml", "-o", "out"},
+                                    {"report", "a.toml", "-o", "a.html"},
+                                    {"linearize", "a.toml"},
+                                    {"equilibria", "a.toml"},
+                                    {"stress", "a.toml"}};
   for (const Words& words : commands) {
     CAPTURE(words[0]);
     Child child(command(folder, words));

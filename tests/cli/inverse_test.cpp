@@ -16,8 +16,8 @@ constexpr double tolerance = 1e-8;  // a run of one second at the default rtol o
 std::string driven(const std::string& drive) {
   return "format = 1\n[parameters]\nm = 2\nL = 0.5\ng = 9.81\n[functions]\ndrive = \"0.3*sin(2*t)\"\n"
          "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
-         "[[force]]\ngravity = \"g*E1\"\n[[constraint]]\nname = \"rod\"\nholonomic = \"r - L\"\n" + drive +
-         "[scene.default]\nt = [0, 1]\nevery = 0.25\n";
+         "[[force]]\ngravity = \"g*E1\"\n[[constraint]]\nname = \"rod\"\nholonomic = \"r - L\"\n" +
+         drive + "[scene.default]\nt = [0, 1]\nevery = 0.25\n";
 }
 
 const char* const motor = "[[constraint]]\nname = \"motor\"\nholonomic = \"theta - drive\"\n";
@@ -32,8 +32,8 @@ TEST_CASE("inverse: where all is prescribed the moment of a driven pendulum is m
   CHECK(found["outcome"] == "done");
   const Table table = read_table(folder.read("driven_inverse.csv"));
   CHECK(found["columns"].get<Words>() == table.columns);
-  CHECK(table.columns == Words{"t", "r", "r_dot", "theta", "theta_dot", "force.theta", "P.force1", "P.force2", "P.force3",
-                               "prescribed.power", "reaction.motor"});
+  CHECK(table.columns == Words{"t", "r", "r_dot", "theta", "theta_dot", "force.theta", "P.force1", "P.force2",
+                               "P.force3", "prescribed.power", "reaction.motor"});
   REQUIRE(table.rows.size() == 5);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const double t = table.rows[i][0], theta = 0.3 * std::sin(2 * t);
@@ -48,7 +48,8 @@ TEST_CASE("inverse: where all is prescribed the moment of a driven pendulum is m
   REQUIRE(all.rows.size() == 3);
   const double theta_ddot = -1.2 * std::sin(1.0), theta_dot = 0.6 * std::cos(1.0), theta = 0.3 * std::sin(1.0);
   const double radial = -2 * 0.5 * theta_dot * theta_dot, across = 2 * 0.5 * theta_ddot;
-  CHECK(all.at(1, "P.force1") == doctest::Approx(radial * std::cos(theta) - across * std::sin(theta) - 2 * 9.81).epsilon(1e-13));
+  CHECK(all.at(1, "P.force1") ==
+        doctest::Approx(radial * std::cos(theta) - across * std::sin(theta) - 2 * 9.81).epsilon(1e-13));
   CHECK(all.at(1, "P.force2") == doctest::Approx(radial * std::sin(theta) + across * std::cos(theta)).epsilon(1e-13));
 }
 
@@ -60,8 +61,10 @@ TEST_CASE("inverse: what is not prescribed moves, and the forces are those along
   REQUIRE(table.rows.size() == 9);
   for (std::size_t i = 0; i < table.rows.size(); ++i) {
     const double theta = table.at(i, "theta"), rate = table.at(i, "theta_dot");
-    CHECK(table.at(i, "force.r") == doctest::Approx(-2 * 0.5 * rate * rate - 2 * 9.81 * std::cos(theta)).epsilon(1e-12));
-    CHECK(rate * rate == doctest::Approx(2 * 9.81 / 0.5 * (std::cos(theta) - std::cos(0.4))).epsilon(tolerance).scale(1));
+    CHECK(table.at(i, "force.r") ==
+          doctest::Approx(-2 * 0.5 * rate * rate - 2 * 9.81 * std::cos(theta)).epsilon(1e-12));
+    CHECK(rate * rate ==
+          doctest::Approx(2 * 9.81 / 0.5 * (std::cos(theta) - std::cos(0.4))).epsilon(tolerance).scale(1));
   }
 }
 
@@ -82,7 +85,8 @@ TEST_CASE("inverse: a prescribed motion may hold an integral without a closed fo
 
 TEST_CASE("inverse: nothing prescribed, a constraint that is not there, a place that cannot be written are told") {
   const Folder folder;
-  CHECK(contains(expect(2, folder, {"inverse", "P14_kepler_spherical"}).err, "no constraint of this model prescribes a motion"));
+  CHECK(contains(expect(2, folder, {"inverse", "P14_kepler_spherical"}).err,
+                 "no constraint of this model prescribes a motion"));
   CHECK(contains(expect(2, folder, {"inverse", "P10_rocket", "--constraint", "radail"}).err, "did you mean 'radial'?"));
   CHECK(contains(expect(2, folder, {"inverse", "P10_rocket", "--out", "no/such/folder/a.csv"}).err, "no/such/folder"));
   CHECK(contains(expect(2, folder, {"inverse", "P10_rocket", "--set", "x"}).err, "sets nothing"));

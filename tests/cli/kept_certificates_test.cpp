@@ -36,7 +36,9 @@ void change(const std::filesystem::path& path) {
 
 }  // namespace
 
-TEST_CASE("kept certificates: the next command takes what an earlier one found, for the same model, program and options only") {
+TEST_CASE(
+    "kept certificates: the next command takes what an earlier one found, for the same model, program and options "
+    "only") {
   const Folder folder;
   folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0 }"));
   const Words emit{"emit", "p.toml", "-o", "out"};
@@ -48,8 +50,10 @@ TEST_CASE("kept certificates: the next command takes what an earlier one found, 
   change(kept(folder).front());
   CHECK(contains(with_cache(folder, emit).out, "worst 1.2e-50 (another route"));
   // Another seed, another function, another byte of the model, other code: each is compared anew.
-  for (const Words& other : {Words{"emit", "p.toml", "-o", "out", "--seed", "2"}, Words{"emit", "p.toml", "-o", "out", "--with", "jac"}, Words{"emit", "p.toml", "-o", "out", "--fix", "g"},
-                             Words{"emit", "p.toml", "-o", "out", "--form", "nullspace"}}) {
+  for (const Words& other :
+       {Words{"emit", "p.toml", "-o", "out", "--seed", "2"}, Words{"emit", "p.toml", "-o", "out", "--with", "jac"},
+        Words{"emit", "p.toml", "-o", "out", "--fix", "g"},
+        Words{"emit", "p.toml", "-o", "out", "--form", "nullspace"}}) {
     const std::size_t before = kept(folder).size();
     const ChildResult result = with_cache(folder, other);
     CHECK(result.status == 0);
@@ -68,7 +72,9 @@ TEST_CASE("kept certificates: verify compares anew, and what is damaged is made 
   CHECK(contains(with_cache(folder, {"run", "p.toml"}).out, "(kept)"));
   change(kept(folder).front());
   CHECK_FALSE(contains(with_cache(folder, {"verify", "p.toml", "--points", "5"}).out, "another route"));
-  for (const char* damaged : {"", "{", "[]", "{\"key\": 1}", "{\"key\": \"x\", \"points\": -1, \"rejected\": {}, \"comparisons\": [[1]], \"left_out\": []}"}) {
+  for (const char* damaged :
+       {"", "{", "[]", "{\"key\": 1}",
+        "{\"key\": \"x\", \"points\": -1, \"rejected\": {}, \"comparisons\": [[1]], \"left_out\": []}"}) {
     std::ofstream(kept(folder).front()) << damaged;
     const ChildResult result = with_cache(folder, {"run", "p.toml"});
     CHECK(result.status == 0);

@@ -28,13 +28,16 @@ TEST_CASE("linearize: states, A, B, eigenvalues and structural zeros") {
 
 TEST_CASE("linearize: another parameter, another time") {
   const Folder folder;
-  folder.write("drop.toml", "format = 1\n[parameters]\nk = 4\nc = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"k*x^2/2 + x^4/12\"\n"
-                            "[[force]]\ngeneralized = { x = \"-c*x_dot\" }\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
+  folder.write("drop.toml",
+               "format = 1\n[parameters]\nk = 4\nc = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = "
+               "\"x_dot^2/2\"\npotential = \"k*x^2/2 + x^4/12\"\n"
+               "[[force]]\ngeneralized = { x = \"-c*x_dot\" }\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
   CHECK(document(folder, {"linearize", "drop.toml"})["A"][1][0] == -5.0);
   CHECK(document(folder, {"linearize", "drop.toml", "--set", "k=9"})["A"][1][0] == -10.0);
   const Json later = document(folder, {"linearize", "drop.toml", "--at", "0.5"});
   CHECK(later["t"] == 0.5);
-  CHECK(later["A"][1][0].get<double>() == doctest::Approx(-4 - std::pow(later["point"]["x"].get<double>(), 2)).epsilon(1e-14));
+  CHECK(later["A"][1][0].get<double>() ==
+        doctest::Approx(-4 - std::pow(later["point"]["x"].get<double>(), 2)).epsilon(1e-14));
   CHECK(later["kind"] == "motion");
   // It comes to rest: within the tolerance of the run that is the equilibrium.
   const Json rest = document(folder, {"linearize", "drop.toml", "--at", "60"});
@@ -44,13 +47,16 @@ TEST_CASE("linearize: another parameter, another time") {
 
 TEST_CASE("linearize: what has no slope, contacts, wrong names and times are told with a remedy") {
   const Folder folder;
-  folder.write("edge.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = \"-x - abs(x_dot)\" }\n"
-                            "[scene.default]\ninitial = { x = 1 }\n");
+  folder.write("edge.toml",
+               "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = "
+               "\"-x - abs(x_dot)\" }\n"
+               "[scene.default]\ninitial = { x = 1 }\n");
   const std::string edge = expect(2, folder, {"linearize", "edge.toml"}).err;
   CHECK(contains(edge, "edge.toml:6:"));
   CHECK(contains(edge, "the edge of abs"));
   CHECK(contains(expect(2, folder, {"linearize", "bouncing_ball"}).err, "linearise a copy"));
-  CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--scene", "defualt"}).err, "did you mean 'default'?"));
+  CHECK(
+      contains(expect(2, folder, {"linearize", "cart_pendulum", "--scene", "defualt"}).err, "did you mean 'default'?"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--set", "mm=1"}).err, "there is no parameter 'mm'"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--at", "-1"}).err, "before the scene's start"));
   CHECK(contains(expect(2, folder, {"linearize", "cart_pendulum", "--at", "soon"}).err, "soon"));

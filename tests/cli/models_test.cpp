@@ -34,19 +34,29 @@ TEST_CASE("new: names that are no names are refused, and nothing is written") {
 TEST_CASE("MODEL is a path, with or without .toml, or a name in models/; a folder of that name is not in the way") {
   const Folder folder;
   const std::string path = source_folder() + "/models/P2_planar_pendulum";
-  for (const std::string& model : {std::string("P2_planar_pendulum"), std::string("P2_planar_pendulum.toml"), path, path + ".toml"}) {
+  for (const std::string& model :
+       {std::string("P2_planar_pendulum"), std::string("P2_planar_pendulum.toml"), path, path + ".toml"}) {
     CHECK(document(folder, {"check", model})["model"] == "P2_planar_pendulum");
   }
   expect(0, folder, {"emit", "P2_planar_pendulum", "-o", "P2_planar_pendulum"});
   CHECK(document(folder, {"check", "P2_planar_pendulum"})["dof"] == 1);
-  CHECK(contains(expect(2, folder, {"check", "P2_planar_pendulum/P2_planar_pendulum.tml"}).err, "there is no such model file"));
+  CHECK(contains(expect(2, folder, {"check", "P2_planar_pendulum/P2_planar_pendulum.tml"}).err,
+                 "there is no such model file"));
 }
 
 TEST_CASE("hostile file names are mangled, never obeyed") {
   const Folder folder;
   const std::vector<std::pair<std::string, std::string>> names{
-      {"my model-1", "my_model_1"}, {"1abc", "model_1abc"}, {"int", "int_"}, {"a;$(touch pwned)`touch pwned`", "a___touch_pwned__touch_pwned_"},
-      {"two\nlines", "two_lines"}, {"q\"uote'", "q_uote_"}, {"bad\xff", "bad_"}, {"back\\", "back_"}, {"tri??", "tri__"}, {"%s%n", "model__s_n"}};
+      {"my model-1", "my_model_1"},
+      {"1abc", "model_1abc"},
+      {"int", "int_"},
+      {"a;$(touch pwned)`touch pwned`", "a___touch_pwned__touch_pwned_"},
+      {"two\nlines", "two_lines"},
+      {"q\"uote'", "q_uote_"},
+      {"bad\xff", "bad_"},
+      {"back\\", "back_"},
+      {"tri??", "tri__"},
+      {"%s%n", "model__s_n"}};
   for (const auto& [id, name] : names) {
     const auto& shown = name;
     CAPTURE(shown);
@@ -54,8 +64,10 @@ TEST_CASE("hostile file names are mangled, never obeyed") {
     document(folder, {"check", "./" + id + ".toml"});
     const Json emitted = document(folder, {"emit", "./" + id + ".toml", "-o", "out", "--with", "jac"});
     CHECK(emitted["files"][0] == "out/" + name + ".hpp");
-    const ChildResult compiled = run_child({{"gcc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror", "-c", "-o",
-                                             "out/" + name + ".o", "out/" + name + ".c"}, folder.path()});
+    const ChildResult compiled =
+        run_child({{"gcc", "-std=c11", "-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror", "-c",
+                    "-o", "out/" + name + ".o", "out/" + name + ".c"},
+                   folder.path()});
     CAPTURE(compiled.err);
     CHECK(compiled.status == 0);
     CHECK(document(folder, {"run", "./" + id + ".toml", "--t-end", "1"})["outcome"] == "done");

@@ -23,8 +23,9 @@ struct Emitted {
     return sum;
   }
   std::string function(const std::string& name) const {  // its text, with that of the functions made for it
-    const std::size_t begin = source.find("_" + name + "_from(") != std::string::npos ? source.find("_" + name + "_from(")
-                                                                                      : source.find("_" + name + "(");
+    const std::size_t begin = source.find("_" + name + "_from(") != std::string::npos
+                                  ? source.find("_" + name + "_from(")
+                                  : source.find("_" + name + "(");
     return source.substr(begin, source.find("\n}\n", begin) - begin);
   }
 };
@@ -101,13 +102,16 @@ TEST_CASE("needs: parameters that are fixed are not read, and what is made of th
 
 TEST_CASE("needs: what is prepared is not done again") {
   const Emitted open = emitted("S5_double_pendulum");
-  const auto cost = [](const Json& operations) { return operations["add"].get<int>() + operations["mul"].get<int>() + operations["div"].get<int>(); };
+  const auto cost = [](const Json& operations) {
+    return operations["add"].get<int>() + operations["mul"].get<int>() + operations["div"].get<int>();
+  };
   CHECK(cost(open.report["hoisted"]["rhs_prepared"]) < cost(open.report["operations"]));
   CHECK(cost(open.report["hoisted"]["prepare"]) > 0);
 }
 
 TEST_CASE("needs: without an input none is read, and its operation is gone") {
-  const Emitted driven = emitted(cart("[inputs]\nF = { unit = \"N\", default = 0 }\n", "[[force]]\ngeneralized = { s = \"F\" }\n"));
+  const Emitted driven =
+      emitted(cart("[inputs]\nF = { unit = \"N\", default = 0 }\n", "[[force]]\ngeneralized = { s = \"F\" }\n"));
   const Emitted free = emitted(cart("", ""));
   CHECK(driven.functions == free.functions);
   CHECK(contains(driven.function("rhs"), "u ? u[0]"));
@@ -130,7 +134,9 @@ TEST_CASE("needs: a kernel for sines comes with two angles, not with one") {
   CHECK(contains(one.function("rhs"), " sin("));
 }
 
-TEST_CASE("needs: second charts are in the code only where they are asked for, and a model that cannot exchange any has none") {
+TEST_CASE(
+    "needs: second charts are in the code only where they are asked for, and a model that cannot exchange any has "
+    "none") {
   const Emitted own = emitted("R1_free_body"), both = emitted("R1_free_body", {"--with", "charts"});
   CHECK_FALSE(contains(own.source, "chart"));
   CHECK(both.functions == with(own.functions, {"chart"}));
@@ -142,7 +148,8 @@ TEST_CASE("needs: second charts are in the code only where they are asked for, a
   const Emitted mass = emitted("R1_free_body", {"--with", "charts,mass"});
   CHECK(mass.functions == with(both.functions, {"mass", "mass_in"}));
   const Folder folder;
-  const ChildResult refused = eomgen::test::eomgen(folder, {"emit", "R14_sliding_cylinder", "-o", ".", "--with", "charts"});
+  const ChildResult refused =
+      eomgen::test::eomgen(folder, {"emit", "R14_sliding_cylinder", "-o", ".", "--with", "charts"});
   CHECK(refused.status == 2);
   CHECK(contains(refused.err, "the coordinate 'psi' is named by constraint 'level'"));
   CHECK(contains(refused.err, "this model has no chart that can be exchanged"));

@@ -33,10 +33,12 @@ TEST_CASE("no option writes over the model's own file, whatever it is called by"
   folder.write("p.toml", oscillator);
   fs::create_symlink("p.toml", folder / "link.csv");
   fs::create_hard_link(folder / "p.toml", folder / "hard.svg");
-  for (const Words& words : {Words{"run", "p.toml", "--out", "link.csv"}, Words{"run", "p.toml", "-o", "./p.toml"}, Words{"run", "p", "--plot", "hard.svg"},
-                             Words{"run", "link.csv", "--out", "link.csv"}, Words{"report", "p.toml", "-o", "p.toml"},
-                             Words{"sweep", "p.toml", "--grid", "k=1,2", "--out", "link.csv"}, Words{"inverse", "p.toml", "--out", "link.csv"},
-                             Words{"bench", "p.toml", "--csv", "link.csv"}, Words{"bench", "p.toml", "--svg", "hard.svg"}}) {
+  for (const Words& words :
+       {Words{"run", "p.toml", "--out", "link.csv"}, Words{"run", "p.toml", "-o", "./p.toml"},
+        Words{"run", "p", "--plot", "hard.svg"}, Words{"run", "link.csv", "--out", "link.csv"},
+        Words{"report", "p.toml", "-o", "p.toml"}, Words{"sweep", "p.toml", "--grid", "k=1,2", "--out", "link.csv"},
+        Words{"inverse", "p.toml", "--out", "link.csv"}, Words{"bench", "p.toml", "--csv", "link.csv"},
+        Words{"bench", "p.toml", "--svg", "hard.svg"}}) {
     const ChildResult result = expect(2, folder, words);
     CAPTURE(result.err);
     CHECK((contains(result.err, "this is the model's own file") || contains(result.err, "the name says toml")));
@@ -115,7 +117,8 @@ TEST_CASE("a model name of 240 letters is no obstacle, or is told") {
   const Folder folder;
   const std::string name(240, 'n');
   folder.write(name + ".toml", oscillator);
-  const ChildResult sweep = expect(2, folder, {"sweep", name + ".toml", "--grid", "k=1,2", "--out", "s.txt", "--set", "k=2"});
+  const ChildResult sweep =
+      expect(2, folder, {"sweep", name + ".toml", "--grid", "k=1,2", "--out", "s.txt", "--set", "k=2"});
   CHECK(contains(sweep.err, "a grid and a value"));
   expect(0, folder, {"sweep", name + ".toml", "--grid", "k=1,2"});
   CHECK(folder.has(name + "_sweep.csv"));
@@ -136,14 +139,18 @@ TEST_CASE("run says what it writes and how much; a size beyond reason is told, o
   CHECK(run["files"][0]["rows"] == 501);
   CHECK(run["files"][0]["bytes"] == folder.read("a.csv").size());
   CHECK(run["files"][1]["bytes"] == folder.read("a.svg").size());
-  for (const Words& words : {Words{"run", "p.toml", "--out", "b.csv", "--every", "1e-9"}, Words{"run", "p.toml", "--plot", "b.svg", "--every", "1e-9"}}) {
+  for (const Words& words : {Words{"run", "p.toml", "--out", "b.csv", "--every", "1e-9"},
+                             Words{"run", "p.toml", "--plot", "b.svg", "--every", "1e-9"}}) {
     const ChildResult refused = expect(2, folder, words);
     CHECK(contains(refused.err, "asks for 1e+09 rows"));
     CHECK(contains(refused.err, "with --yes they are written"));
   }
-  CHECK(contains(expect(2, folder, {"run", "p.toml", "--out", "b.csv", "--every", "1e-300", "--yes"}).err, "lost in the rounding of t"));
+  CHECK(contains(expect(2, folder, {"run", "p.toml", "--out", "b.csv", "--every", "1e-300", "--yes"}).err,
+                 "lost in the rounding of t"));
   CHECK_FALSE(folder.has("b.csv"));
-  const ChildResult many = expect(0, folder, {"run", "p.toml", "--out", "/dev/null", "--plot", "b.svg", "--every", "0.9e-6", "--no-error-estimate"});
+  const ChildResult many =
+      expect(0, folder,
+             {"run", "p.toml", "--out", "/dev/null", "--plot", "b.svg", "--every", "0.9e-6", "--no-error-estimate"});
   CHECK(contains(many.err, "asks for 1.11e+06 rows, about"));
   CHECK(fs::file_size(folder / "b.svg") < 30'000'000);  // a plot has points enough
 }
@@ -178,8 +185,10 @@ TEST_CASE("a full disk is a failure of that disk, in every command that writes")
   if (!fs::exists("/dev/full")) return;
   const Folder folder;
   folder.write("p.toml", oscillator);
-  for (const Words& words : {Words{"run", "p.toml", "--out", "/dev/full"}, Words{"run", "p.toml", "--plot", "/dev/full"}, Words{"report", "p.toml", "-o", "/dev/full"},
-                             Words{"sweep", "p.toml", "--grid", "k=1,2", "--out", "/dev/full"}}) {
+  for (const Words& words :
+       {Words{"run", "p.toml", "--out", "/dev/full"}, Words{"run", "p.toml", "--plot", "/dev/full"},
+        Words{"report", "p.toml", "-o", "/dev/full"},
+        Words{"sweep", "p.toml", "--grid", "k=1,2", "--out", "/dev/full"}}) {
     const ChildResult result = expect(4, folder, words);
     CAPTURE(result.err);
     CHECK(contains(result.err, "/dev/full"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pages of `report` in a browser without a window: what they show, that they move, and that they compute what the program computes. Skipped with a word
-// where there is no Chromium (scripts/setup --with page).
+// The pages of `report` in a browser without a window: what they show, that they move, and that they compute what the
+// program computes. Skipped with a word where there is no Chromium (scripts/setup --with page).
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -18,8 +18,8 @@ using namespace eomgen::test;
 
 namespace {
 
-constexpr std::size_t largest_page = 1000000;   // bytes
-constexpr double as_run_does = 1e-5;            // the page integrates with rtol 1e-8, the run with 1e-9 and another method
+constexpr std::size_t largest_page = 1000000;  // bytes
+constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
 
 // A box in free flight, drawn as it is said to be, with a point at one of its corners.
@@ -49,12 +49,12 @@ initial = { psi_dot = 2, theta_dot = 0.7, phi_dot = 4, x_dot = 1, z_dot = 4 }
 )";
 
 struct Case {
-  std::string model;                // a name, or a file in the folder
-  bool live = true;                 // the page runs it
-  std::string slider = {};          // a parameter that is moved
+  std::string model;        // a name, or a file in the folder
+  bool live = true;         // the page runs it
+  std::string slider = {};  // a parameter that is moved
   double value = 0;
-  std::string drag = {};            // a place that is taken by hand
-  std::string corner = {};          // a point that is a corner of a drawn body
+  std::string drag = {};    // a place that is taken by hand
+  std::string corner = {};  // a point that is a corner of a drawn body
 };
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -87,7 +87,8 @@ std::optional<std::string> browser() {
 }
 
 ChildResult browse(const Folder& folder, const std::string& program, Words words) {
-  Words all{program, "--headless", "--no-sandbox", "--disable-gpu", "--hide-scrollbars", "--user-data-dir=" + (folder / "profile")};
+  Words all{program,         "--headless",        "--no-sandbox",
+            "--disable-gpu", "--hide-scrollbars", "--user-data-dir=" + (folder / "profile")};
   all.insert(all.end(), words.begin(), words.end());
   ChildCommand command{all, folder.path(), {}, 240};
   return run_child(command);
@@ -95,15 +96,20 @@ ChildResult browse(const Folder& folder, const std::string& program, Words words
 
 /// What page_checks.js finds of the cases.
 Json looked_at(const Folder& folder, const std::string& program, const Json& cases) {
-  folder.write("checks.html", "<!DOCTYPE html><html><body><pre id=\"found\"></pre><script id=\"cases\">const cases = " + in_script(cases) + ";</script><script>" +
-                                  source("tests/cli/page_checks.js") + "</script></body></html>");
-  const ChildResult result = browse(folder, program, {"--window-size=1300,1000", "--virtual-time-budget=100000000", "--dump-dom", "file://" + (folder / "checks.html")});
+  folder.write("checks.html", "<!DOCTYPE html><html><body><pre id=\"found\"></pre><script id=\"cases\">const cases = " +
+                                  in_script(cases) + ";</script><script>" + source("tests/cli/page_checks.js") +
+                                  "</script></body></html>");
+  const ChildResult result = browse(folder, program,
+                                    {"--window-size=1300,1000", "--virtual-time-budget=100000000", "--dump-dom",
+                                     "file://" + (folder / "checks.html")});
   const std::string mark = "<pre id=\"found\">";
   const std::size_t begin = result.out.find(mark);
   REQUIRE(begin != std::string::npos);
   std::string text = result.out.substr(begin + mark.size(), result.out.find("</pre>", begin) - begin - mark.size());
-  for (const auto& [escaped, plain] : std::vector<std::pair<std::string, std::string>>{{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&nbsp;", " "}, {"&amp;", "&"}}) {
-    for (std::size_t at = 0; (at = text.find(escaped, at)) != std::string::npos; at += plain.size()) text.replace(at, escaped.size(), plain);
+  for (const auto& [escaped, plain] : std::vector<std::pair<std::string, std::string>>{
+           {"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&nbsp;", " "}, {"&amp;", "&"}}) {
+    for (std::size_t at = 0; (at = text.find(escaped, at)) != std::string::npos; at += plain.size())
+      text.replace(at, escaped.size(), plain);
   }
   const Json found = Json::parse(text, nullptr, false);
   CAPTURE(text);
@@ -166,7 +172,9 @@ void check(const Json& found, const Case& c, const Json& wanted) {
 void keep_picture(const Folder& folder, const std::string& program, const std::string& name) {
   const std::string place = eomgen::test::build_folder() + "/pages";
   std::filesystem::create_directories(place);
-  browse(folder, program, {"--window-size=1280,1600", "--virtual-time-budget=1500", "--screenshot=" + place + "/" + name + ".png", "file://" + (folder / "page.html")});
+  browse(folder, program,
+         {"--window-size=1280,1600", "--virtual-time-budget=1500", "--screenshot=" + place + "/" + name + ".png",
+          "file://" + (folder / "page.html")});
 }
 
 }  // namespace
@@ -181,10 +189,17 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
   folder.write("chain_10.toml", replaced(source("models/S6_chain_6.toml"), "n = 6", "n = 10"));
   folder.write("brick.toml", brick);
   const std::vector<Case> list{{"brick.toml", true, "a", 0.5, "", "corner"},
-                               {"P7_moving_sphere", true, "m", 2},    {"S5_double_pendulum", true, "m2", 1.5, "P2"}, {"R6_rolling_disk", true, "R", 0.25},
-                               {"R7_satellite"},                      {"R10_lagrange_top"},                    {"R15_pin_joint", true, "m1", 2},
-                               {"R16_sphere_on_sphere"},              {"R16_disk_on_disk", false},             {"six_bar_spatial", true, "k", 170, "plate"},
-                               {"n_four_bar_2", true, "", 0, "K1"},                      {"chain_10.toml", true, "L", 1.2}};
+                               {"P7_moving_sphere", true, "m", 2},
+                               {"S5_double_pendulum", true, "m2", 1.5, "P2"},
+                               {"R6_rolling_disk", true, "R", 0.25},
+                               {"R7_satellite"},
+                               {"R10_lagrange_top"},
+                               {"R15_pin_joint", true, "m1", 2},
+                               {"R16_sphere_on_sphere"},
+                               {"R16_disk_on_disk", false},
+                               {"six_bar_spatial", true, "k", 170, "plate"},
+                               {"n_four_bar_2", true, "", 0, "K1"},
+                               {"chain_10.toml", true, "L", 1.2}};
   Json cases = Json::array();
   std::vector<Json> wanted;
   for (const Case& c : list) {
@@ -202,8 +217,10 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
       entry["slider"] = {{"name", c.slider}, {"value", c.value}};
       wanted.back() = document(folder, {"run", c.model, "--set", c.slider + "=" + std::to_string(c.value)})["final"];
     }
-    if (c.live) CHECK(motion["reason"] == "");
-    else CHECK(motion["reason"] != "");
+    if (c.live)
+      CHECK(motion["reason"] == "");
+    else
+      CHECK(motion["reason"] != "");
     if (c.model == "S5_double_pendulum" || c.model == "six_bar_spatial") keep_picture(folder, *program, c.model);
     cases.push_back(std::move(entry));
   }

@@ -38,14 +38,17 @@ TEST_CASE("plot: one panel for each unit, with the title of the model once and t
 
 TEST_CASE("plot: what is asked for, by units; a phase plane is one quantity over another") {
   const Folder folder;
-  const std::string chosen = plotted(folder, {"S5_double_pendulum", "--plot-of", "energy", "--plot-of", "theta1", "--plot-of", "theta2", "--plot-of", "kinetic", "--plot-of", "theta1,theta1_dot"});
+  const std::string chosen =
+      plotted(folder, {"S5_double_pendulum", "--plot-of", "energy", "--plot-of", "theta1", "--plot-of", "theta2",
+                       "--plot-of", "kinetic", "--plot-of", "theta1,theta1_dot"});
   CHECK(count(chosen, "<svg") == 4);
   CHECK(contains(chosen, ">in J<"));
   CHECK(contains(chosen, ">in rad<"));
   CHECK(contains(chosen, ">theta1 in rad<"));
   CHECK(contains(chosen, ">theta1_dot in rad/s<"));
   CHECK(count(chosen, ">t in s<") == 2);
-  CHECK(contains(plotted(folder, {"S5_double_pendulum", "--plot-of", "P2.position1,P2.position2"}), ">P2.position2 in m<"));
+  CHECK(contains(plotted(folder, {"S5_double_pendulum", "--plot-of", "P2.position1,P2.position2"}),
+                 ">P2.position2 in m<"));
 }
 
 TEST_CASE("plot: events are marked with their names, and an estimated error that is more than a line is a bar") {
@@ -53,10 +56,13 @@ TEST_CASE("plot: events are marked with their names, and an estimated error that
   const std::string sphere = plotted(folder, {"leaving_sphere"});
   CHECK(contains(sphere, "<title>halfway</title>"));
   CHECK_FALSE(contains(sphere, "estimated error"));
-  CHECK(contains(plotted(folder, {"S5_double_pendulum", "--rtol", "1e-2", "--atol", "1e-2", "--t-end", "20"}), "estimated error of theta2"));
+  CHECK(contains(plotted(folder, {"S5_double_pendulum", "--rtol", "1e-2", "--atol", "1e-2", "--t-end", "20"}),
+                 "estimated error of theta2"));
 }
 
-TEST_CASE("plot: a PNG has the pixels of the SVG: the paper is white, curves have their colours, and its checksums are right") {
+TEST_CASE(
+    "plot: a PNG has the pixels of the SVG: the paper is white, curves have their colours, and its checksums are "
+    "right") {
   const Folder folder;
   expect(0, folder, {"run", "cart_pendulum", "--plot", "plot.PNG"});
   const std::string png = folder.read("plot.PNG");
@@ -64,7 +70,9 @@ TEST_CASE("plot: a PNG has the pixels of the SVG: the paper is white, curves hav
   CHECK(png.size() < 400000);
   CHECK(png.substr(png.size() - 8) == std::string("IEND\xae\x42\x60\x82", 8));
   // Node's inflate holds the stream, and counts what is drawn.
-  folder.write("read.js", R"(const b = require('fs').readFileSync('plot.PNG'), zlib = require('zlib'); let at = 8, data = [], size = null;
+  folder.write(
+      "read.js",
+      R"(const b = require('fs').readFileSync('plot.PNG'), zlib = require('zlib'); let at = 8, data = [], size = null;
 while (at < b.length) { const n = b.readUInt32BE(at), kind = b.toString('latin1', at + 4, at + 8); if (kind === 'IHDR') size = [b.readUInt32BE(at + 8), b.readUInt32BE(at + 12)]; if (kind === 'IDAT') data.push(b.subarray(at + 8, at + 8 + n)); at += 12 + n; }
 const raw = zlib.inflateSync(Buffer.concat(data)), row = 3 * size[0] + 1, p = Buffer.alloc(raw.length); let white = 0, blue = 0, red = 0;
 for (let y = 0; y < size[1]; ++y) for (let i = 1; i < row; ++i) p[y * row + i] = raw[y * row + i] + (y > 0 ? p[(y - 1) * row + i] : 0);
@@ -86,7 +94,8 @@ console.log(JSON.stringify({size, whole: raw.length === row * size[1], white, bl
 
 TEST_CASE("plot: characters fit into eighty columns and show each curve with a letter of its own") {
   const Folder folder;
-  const std::string text = expect(0, folder, {"run", "S5_double_pendulum", "--plot", "-", "--plot-of", "theta1", "--plot-of", "theta2"}).out;
+  const std::string text =
+      expect(0, folder, {"run", "S5_double_pendulum", "--plot", "-", "--plot-of", "theta1", "--plot-of", "theta2"}).out;
   CHECK(contains(text, "* theta1   + theta2"));
   CHECK(contains(text, "t in s"));
   std::istringstream lines(text);

@@ -46,7 +46,8 @@ bool Folder::has(const std::string& name) const { return fs::exists(path_ + "/" 
 
 std::vector<std::string> Folder::names() const {
   std::vector<std::string> result;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path_)) result.push_back(entry.path().filename().string());
+  for (const fs::directory_entry& entry : fs::directory_iterator(path_))
+    result.push_back(entry.path().filename().string());
   std::sort(result.begin(), result.end());
   return result;
 }

@@ -21,9 +21,12 @@ std::string unbalanced(const std::string& page) {
     if (end == std::string::npos) return "<";
     const bool closing = page[at + 1] == '/', single = page[end - 1] == '/';
     std::string name;
-    for (std::size_t i = at + (closing ? 2 : 1); i < end && (std::isalnum(static_cast<unsigned char>(page[i])) != 0 || page[i] == '-'); ++i) name += page[i];
+    for (std::size_t i = at + (closing ? 2 : 1);
+         i < end && (std::isalnum(static_cast<unsigned char>(page[i])) != 0 || page[i] == '-'); ++i)
+      name += page[i];
     at = end;
-    if (name.empty() || single || std::find(void_tags.begin(), void_tags.end(), name) != void_tags.end()) continue;  // <!DOCTYPE html>
+    if (name.empty() || single || std::find(void_tags.begin(), void_tags.end(), name) != void_tags.end())
+      continue;  // <!DOCTYPE html>
     if (!closing) {
       open.push_back(name);
       if (name == "script" || name == "style") at = page.find("</" + name, end);
@@ -61,11 +64,13 @@ TEST_CASE("report: one page with equations, certificate, run, plots and animatio
     CHECK(count(page, "<math") > 5);
     CHECK(count(page, "<svg") >= 2);
     CHECK(contains(page, "pass: 5 points, 50 digits"));
-    for (const char* reference : {"src=", "href=", "@import", "url(", "fetch(", "XMLHttpRequest"}) CHECK_FALSE(contains(page, reference));
+    for (const char* reference : {"src=", "href=", "@import", "url(", "fetch(", "XMLHttpRequest"})
+      CHECK_FALSE(contains(page, reference));
   }
 }
 
-TEST_CASE("report: a page that runs the model carries the states of the run, one that replays what is drawn, and says why") {
+TEST_CASE(
+    "report: a page that runs the model carries the states of the run, one that replays what is drawn, and says why") {
   const Folder folder;
   expect(0, folder, {"report", "S5_double_pendulum", "-o", "page.html", "--t-end", "1"});
   Json moving = motion(folder.read("page.html"));
@@ -89,12 +94,15 @@ TEST_CASE("report: a page that runs the model carries the states of the run, one
   const std::size_t at = moving["parts"]["places"][0]["at"];
   CHECK(moving["y"].front()[at + 1] == 1);
   double lowest = 1, highest = 0;
-  for (const Json& y : moving["y"]) lowest = std::min(lowest, y[at + 1].get<double>()), highest = std::max(highest, y[at + 1].get<double>());
+  for (const Json& y : moving["y"])
+    lowest = std::min(lowest, y[at + 1].get<double>()), highest = std::max(highest, y[at + 1].get<double>());
   CHECK(lowest == doctest::Approx(0).epsilon(1e-5));
   CHECK(highest == 1);
 }
 
-TEST_CASE("report: parameters that depend on others follow on the page and have no slider of their own; those that are set are numbers") {
+TEST_CASE(
+    "report: parameters that depend on others follow on the page and have no slider of their own; those that are set "
+    "are numbers") {
   const Folder folder;
   expect(0, folder, {"report", "R6_rolling_disk", "-o", "page.html", "--set", "J=0.01", "--t-end", "0.1"});
   const Json moving = motion(folder.read("page.html"));
@@ -104,9 +112,12 @@ TEST_CASE("report: parameters that depend on others follow on the page and have 
 
 TEST_CASE("report: what a model writes stays text") {
   const Folder folder;
-  folder.write("hostile.toml", "format = 1\ntitle = \"</title><script>alert(1)</script>\"\nnotes = \"<img src=x onerror=alert(2)> {{{body}}} & </script>\"\n"
-                               "[parameters]\nm = { value = 1, note = \"</script><b>\", unit = \"kg\" }\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
-                               "[scene.default]\nt = [0, 1]\ninitial = { x_dot = 1 }\n# </pre><script>alert(3)</script>\n");
+  folder.write("hostile.toml",
+               "format = 1\ntitle = \"</title><script>alert(1)</script>\"\nnotes = \"<img src=x onerror=alert(2)> "
+               "{{{body}}} & </script>\"\n"
+               "[parameters]\nm = { value = 1, note = \"</script><b>\", unit = \"kg\" }\n[[particle]]\nname = "
+               "\"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+               "[scene.default]\nt = [0, 1]\ninitial = { x_dot = 1 }\n# </pre><script>alert(3)</script>\n");
   expect(0, folder, {"report", "hostile.toml"});
   const std::string page = folder.read("report.html");
   CHECK(unbalanced(page) == "");

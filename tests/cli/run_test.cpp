@@ -20,7 +20,8 @@ TEST_CASE("--set changes the motion as the closed form says, with the code that 
   const Folder folder;
   document(folder, {"run", "P2_planar_pendulum"});
   for (const double L : {0.5, 1.0, 2.5}) {
-    const Json run = document(folder, {"run", "P2_planar_pendulum", "--set", "L=" + std::to_string(L), "--rtol", "1e-12"});
+    const Json run =
+        document(folder, {"run", "P2_planar_pendulum", "--set", "L=" + std::to_string(L), "--rtol", "1e-12"});
     CHECK(run["compiled"] == "from the cache");
     CHECK(angle(run) == doctest::Approx(pendulum_from_rest(1.0, std::sqrt(9.81 / L), 10).angle).epsilon(1e-9));
     CHECK(run["final"]["r"] == L);
@@ -30,7 +31,9 @@ TEST_CASE("--set changes the motion as the closed form says, with the code that 
 TEST_CASE("--set takes exact decimals, and the last of two") {
   const Folder folder;
   const auto length = [&](const std::string& value) {
-    return document(folder, {"run", "P2_planar_pendulum", "--set", "L=3", "--set", "L=" + value, "--t-end", "0.1"})["final"]["r"].get<double>();
+    return document(folder, {"run", "P2_planar_pendulum", "--set", "L=3", "--set", "L=" + value, "--t-end",
+                             "0.1"})["final"]["r"]
+        .get<double>();
   };
   CHECK(length("0.1") == 0.1);
   CHECK(length("1e-1") == 0.1);
@@ -44,9 +47,12 @@ TEST_CASE("--t-end, --rtol, --scene") {
   CHECK(half["t"] == 0.5);
   const Json coarse = document(folder, {"run", "P2_planar_pendulum", "--rtol", "1e-4"});
   CHECK(coarse["solver"] == "dopri5");
-  CHECK(coarse["rhs_evaluations"].get<int>() < document(folder, {"run", "P2_planar_pendulum", "--rtol", "1e-11"})["rhs_evaluations"].get<int>());
-  folder.write("two.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"
-                                         "[scene.long_rod]\nt = [0, 2]\nparameters = { L = 2 }\ninitial = { x = 0, y = -2, y_dot = 0 }\n"));
+  CHECK(coarse["rhs_evaluations"].get<int>() <
+        document(folder, {"run", "P2_planar_pendulum", "--rtol", "1e-11"})["rhs_evaluations"].get<int>());
+  folder.write(
+      "two.toml",
+      pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"
+                    "[scene.long_rod]\nt = [0, 2]\nparameters = { L = 2 }\ninitial = { x = 0, y = -2, y_dot = 0 }\n"));
   CHECK(document(folder, {"run", "two.toml"})["t"] == 1.0);
   const Json other = document(folder, {"run", "two.toml", "--scene", "long_rod"});
   CHECK(other["scene"] == "long_rod");
@@ -97,7 +103,8 @@ TEST_CASE("--seed: the same run, whatever it is; verify draws other points") {
   CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "1"})["final"]);
   CHECK(one["final"] == document(folder, {"run", "S5_double_pendulum", "--seed", "2"})["final"]);
   const auto routes = [&](const char* seed) {
-    return document(folder, {"verify", "S5_double_pendulum", "--points", "3", "--no-compile", "--seed", seed})["routes"];
+    return document(folder,
+                    {"verify", "S5_double_pendulum", "--points", "3", "--no-compile", "--seed", seed})["routes"];
   };
   CHECK(routes("7") == routes("7"));
   CHECK(routes("7") != routes("8"));

@@ -28,12 +28,15 @@ atol = 1e-12
 )toml";
 
 /// The derivative of the end by a parameter from four runs: a central difference of order 4.
-double by_runs(const Folder& folder, const std::string& model, const std::string& parameter, double value, const std::string& state) {
+double by_runs(const Folder& folder, const std::string& model, const std::string& parameter, double value,
+               const std::string& state) {
   const double h = 1e-2 * value;
   const auto end = [&](double at) {
     char text[32];
     std::snprintf(text, sizeof text, "%.17g", at);
-    return document(folder, {"run", model, "--set", parameter + "=" + text, "--rtol", "1e-12", "--atol", "1e-13", "--no-error-estimate", "--no-charts"})["final"][state].get<double>();
+    return document(folder, {"run", model, "--set", parameter + "=" + text, "--rtol", "1e-12", "--atol", "1e-13",
+                             "--no-error-estimate", "--no-charts"})["final"][state]
+        .get<double>();
   };
   return (8 * (end(value + h) - end(value - h)) - (end(value + 2 * h) - end(value - 2 * h))) / (12 * h);
 }
@@ -87,19 +90,25 @@ t = [0, 1]
 )toml");
   for (const char* solver : {"dop853", "radau5"}) {
     CAPTURE(solver);
-    const Json found = document(folder, {"run", "model.toml", "--approach", "I", "--form", "multipliers", "--solver", solver, "--rtol", "1e-11", "--atol", "1e-12", "--sensitivity", "L,g"})["sensitivities"]["values"];
+    const Json found =
+        document(folder, {"run", "model.toml", "--approach", "I", "--form", "multipliers", "--solver", solver, "--rtol",
+                          "1e-11", "--atol", "1e-12", "--sensitivity", "L,g"})["sensitivities"]["values"];
     for (const auto& [parameter, value] : {std::pair<const char*, double>{"L", 2}, {"g", 9.81}}) {
       const auto& shown = parameter;
       CAPTURE(shown);
       for (const char* state : {"x", "y_dot"})
-        CHECK(std::abs(found[parameter][state].get<double>() - by_runs(folder, "model.toml", parameter, value, state)) < of_order_four);
+        CHECK(std::abs(found[parameter][state].get<double>() - by_runs(folder, "model.toml", parameter, value, state)) <
+              of_order_four);
     }
   }
   // W = m g with m = 1, and g is nowhere else: by W alone, or by g that takes it along.
   const Json weight = document(folder, {"run", "model.toml", "--sensitivity", "W,g"})["sensitivities"]["values"];
   CHECK(weight["W"]["x"].get<double>() == doctest::Approx(weight["g"]["x"].get<double>()).epsilon(1e-8));
-  CHECK(contains(expect(2, folder, {"run", "model.toml", "--approach", "I", "--form", "multipliers", "--sensitivity", "x"}).err, "bound to one another by constraints"));
-  const Json chain = document(folder, {"run", "S5_double_pendulum", "--rtol", "1e-11", "--atol", "1e-12", "--t-end", "2", "--sensitivity", "L1"});
+  CHECK(contains(
+      expect(2, folder, {"run", "model.toml", "--approach", "I", "--form", "multipliers", "--sensitivity", "x"}).err,
+      "bound to one another by constraints"));
+  const Json chain = document(folder, {"run", "S5_double_pendulum", "--rtol", "1e-11", "--atol", "1e-12", "--t-end",
+                                       "2", "--sensitivity", "L1"});
   CHECK(chain["sensitivities"]["outcome"] == "done");
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sound models that the certificate of compiled code, or the self test, would refuse if numbers were compared relative to the wrong size.
+// Sound models that the certificate of compiled code, or the self test, would refuse if numbers were compared relative
+// to the wrong size.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -25,7 +26,8 @@ position = {{ cartesian = ["x", "y"] }}
 [scene.default]
 t = [0, 10]
 initial = {{ x = 0.5, y = 1 }}
-)toml", parameters, force);
+)toml",
+                     parameters, force);
 }
 
 }  // namespace
@@ -41,12 +43,15 @@ TEST_CASE("verify: a motion that is wholly prescribed has constraint forces to h
   }
 }
 
-TEST_CASE("verify: compiled code may be off by what rounding does to large angles, far places, stiff springs and faint forces") {
+TEST_CASE(
+    "verify: compiled code may be off by what rounding does to large angles, far places, stiff springs and faint "
+    "forces") {
   const Folder folder;
-  for (const auto& [parameters, force] : {std::pair{"F = 1\nw = 1e7", "generalized = { x = \"F*sin(w*t)\" }"},
-                                          {"F = 1\nw = 0.1", "generalized = { x = \"F*exp(-((t - 5)/w)^2)\" }"},
-                                          {"k = 100\nd = 1e8", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"},
-                                          {"k = 1e10\nd = 3", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"}}) {
+  for (const auto& [parameters, force] :
+       {std::pair{"F = 1\nw = 1e7", "generalized = { x = \"F*sin(w*t)\" }"},
+        {"F = 1\nw = 0.1", "generalized = { x = \"F*exp(-((t - 5)/w)^2)\" }"},
+        {"k = 100\nd = 1e8", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"},
+        {"k = 1e10\nd = 3", "spring = { between = [\"P\", \"d*E1\"], stiffness = \"k\", length = \"d\" }"}}) {
     const auto& shown = force;
     CAPTURE(shown);
     folder.write("sound.toml", particle(parameters, force));
@@ -54,12 +59,16 @@ TEST_CASE("verify: compiled code may be off by what rounding does to large angle
   }
 }
 
-TEST_CASE("verify: a force that is narrow and far away in numbers acts all the same, and an acceleration may be 0 because the terms of a form cancel") {
+TEST_CASE(
+    "verify: a force that is narrow and far away in numbers acts all the same, and an acceleration may be 0 because "
+    "the terms of a form cancel") {
   const Folder folder;
   folder.write("pulse.toml", particle("", "generalized = { x = \"exp(-((t - 5)/0.01)^2)\" }"));
   CHECK(document(folder, {"verify", "pulse.toml", "--points", "4"})["verdict"] == "pass");
   // exp(-1e11) is a number of 5e10 digits before its first.
-  folder.write("barrier.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"5*exp(-((x - 3)/1e-5)^2)\"\n");
+  folder.write("barrier.toml",
+               "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"5*exp(-((x - "
+               "3)/1e-5)^2)\"\n");
   CHECK(document(folder, {"verify", "barrier.toml", "--points", "4"})["verdict"] == "pass");
   // x goes on as it is, and y without inertia follows: by the null space x_ddot is cos(y) y_ddot - sin(y) y_dot^2 = 0.
   folder.write("follows.toml", R"toml(format = 1
@@ -122,7 +131,8 @@ initial = { x = 0, y = 1 }
   // At rest the walls bear the weight: 0.3 r = 0.5 l, r + l = m g.
   for (const char* tolerance : {"1e-9", "1e-11", "1e-13"}) {
     CAPTURE(tolerance);
-    const Json found = document(folder, {"run", "corner.toml", "--rtol", tolerance, "--atol", tolerance, "--max-steps", "20000"});
+    const Json found =
+        document(folder, {"run", "corner.toml", "--rtol", tolerance, "--atol", tolerance, "--max-steps", "20000"});
     CHECK(found["outcome"] == "done");
     CHECK(std::abs(found["final"]["x"].get<double>()) < 1e-6);
     CHECK(found["final"]["reaction.right"].get<double>() == doctest::Approx(9.81 * 0.5 / 0.8));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Starts: what breaks a constraint is refused with its size and place, what may move is moved, a guess picks the closure.
+// Starts: what breaks a constraint is refused with its size and place, what may move is moved, a guess picks the
+// closure.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -57,10 +58,12 @@ TEST_CASE("a start that breaks a constraint is refused: by how much, which, wher
   const ChildResult result = expect(2, folder, {"run", "off.toml", "--out", "a.csv"});
   CHECK(contains(result.err, "off.toml:17:22: error: the start breaks constraint 'rod': it is off by 0.17 "));
   CHECK(contains(result.err, "  17 | initial = { x = 0.6, y = -0.9 }"));
-  CHECK(contains(result.err, "remedy: give consistent values, or name what may be moved: solve = [one of \"x\", \"y\"]"));
+  CHECK(
+      contains(result.err, "remedy: give consistent values, or name what may be moved: solve = [one of \"x\", \"y\"]"));
   CHECK_FALSE(folder.has("a.csv"));
   folder.write("rate.toml", pendulum_text("[scene.default]\ninitial = { x = 0.6, y = -0.8, x_dot = 1, y_dot = 1 }\n"));
-  CHECK(contains(expect(2, folder, {"run", "rate.toml"}).err, "the start breaks constraint 'rod' in its rates: it is off by -0.4 "));
+  CHECK(contains(expect(2, folder, {"run", "rate.toml"}).err,
+                 "the start breaks constraint 'rod' in its rates: it is off by -0.4 "));
   CHECK(contains(expect(2, folder, {"emit", "off.toml", "-o", "out"}).err, "the start breaks constraint 'rod'"));
   expect(0, folder, {"check", "off.toml"});  // a scene does not make the equations wrong
 }
@@ -71,12 +74,15 @@ TEST_CASE("a value for an eliminated coordinate must be the one that the constra
   text.replace(text.find("cartesian = [\"x\", \"y\"]"), 22, "cylindrical = [\"r\", \"theta\"]");
   text.replace(text.find("x^2 + y^2 - L^2"), 15, "r - L");
   folder.write("fixed.toml", text);
-  CHECK(contains(expect(2, folder, {"run", "fixed.toml"}).err, "r = 1.5 breaks constraint 'rod', which fixes it at 1 (off by 0.5)"));
+  CHECK(contains(expect(2, folder, {"run", "fixed.toml"}).err,
+                 "r = 1.5 breaks constraint 'rod', which fixes it at 1 (off by 0.5)"));
 }
 
 TEST_CASE("solve moves what it may, and nothing else") {
   const Folder folder;
-  folder.write("move.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 0.6, y = -0.9, x_dot = 0.5 }\nsolve = [\"y\"]\n"));
+  folder.write(
+      "move.toml",
+      pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 0.6, y = -0.9, x_dot = 0.5 }\nsolve = [\"y\"]\n"));
   const Json run = document(folder, {"run", "move.toml", "--out", "a.csv"});
   const Table table = read_table(folder.read("a.csv"));
   CHECK(table.at(0, "x") == 0.6);
@@ -98,20 +104,23 @@ TEST_CASE("a guess picks the closure of a loop") {
     CHECK(std::hypot(x2 - 0.6, y2 - 0.8) == doctest::Approx(2.5).epsilon(1e-13));
     CHECK(table.at(0, "x1") == 0.6);
     const std::size_t last = table.rows.size() - 1;  // it stays closed
-    CHECK(std::hypot(table.at(last, "x2") - table.at(last, "x1"), table.at(last, "y2") - table.at(last, "y1")) == doctest::Approx(2.5).epsilon(1e-10));
+    CHECK(std::hypot(table.at(last, "x2") - table.at(last, "x1"), table.at(last, "y2") - table.at(last, "y1")) ==
+          doctest::Approx(2.5).epsilon(1e-10));
   }
 }
 
 TEST_CASE("a start that no values can close is refused") {
   const Folder folder;
-  folder.write("loop.toml", loop("initial = { x1 = -1, y1 = 0, x1_dot = 0 }\n"));  // 4 from the other pivot; 3.5 at most
+  folder.write("loop.toml",
+               loop("initial = { x1 = -1, y1 = 0, x1_dot = 0 }\n"));  // 4 from the other pivot; 3.5 at most
   const ChildResult result = expect(2, folder, {"run", "loop.toml"});
   CHECK(contains(result.err, "the start breaks constraint"));
 }
 
 TEST_CASE("initial(q) is the start value of each scene, also of a coordinate that follows from a constraint") {
   const Folder folder;
-  // A spring that is slack at the start, and a slide that is tied to the crank by x - initial(x) = R (theta - initial(theta)).
+  // A spring that is slack at the start, and a slide that is tied to the crank by x - initial(x) = R (theta -
+  // initial(theta)).
   folder.write("slack.toml", R"toml(format = 1
 [parameters]
 m = "2 kg"

@@ -37,16 +37,20 @@ TEST_CASE("sweep: killed at any time again and again, it ends with the bytes of 
   std::mt19937 random(5);  // fixed: NOLINT(cert-msc32-c,cert-msc51-cpp)
   for (const Words& how : {Words{"--ensemble"}, Words{"--no-error-estimate", "--jobs", "2"}}) {
     CAPTURE(how.front());
-    const Words words = with({"sweep", "oscillator.toml", "--grid", "m=1,-1,2", "--sample", "k=1:9", "--samples", "3000", "--out"}, {});
+    const Words words =
+        with({"sweep", "oscillator.toml", "--grid", "m=1,-1,2", "--sample", "k=1:9", "--samples", "3000", "--out"}, {});
     const ChildResult alone = expect(3, folder, with(with(words, {"whole.csv"}), how));
     int killed = 0, ended = -1;
     for (int i = 0; i < 20 && ended < 0; ++i) {
       Child child(command(folder, with(with(words, {"killed.csv"}), how)));
-      std::this_thread::sleep_for(std::chrono::duration<double>(std::uniform_real_distribution<>(0, 0.6 * alone.seconds)(random)));
+      std::this_thread::sleep_for(
+          std::chrono::duration<double>(std::uniform_real_distribution<>(0, 0.6 * alone.seconds)(random)));
       child.signal(SIGKILL);
       const ChildResult result = child.finish();
-      if (result.status == 128 + SIGKILL) ++killed;
-      else ended = result.status;
+      if (result.status == 128 + SIGKILL)
+        ++killed;
+      else
+        ended = result.status;
     }
     CHECK(killed > 0);
     if (ended < 0) ended = eomgen::test::eomgen(folder, with(with(words, {"killed.csv"}), how)).status;
@@ -77,7 +81,8 @@ TEST_CASE("sweep: rows that a full disk cut in the middle of the table, and runs
 TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they lie") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=-1:1:4001", "--ensemble", "--t-end", "0.01"}, 3);
+  const Json found =
+      document(folder, {"sweep", "oscillator.toml", "--grid", "m=-1:1:4001", "--ensemble", "--t-end", "0.01"}, 3);
   CHECK(found["done"] == 2000);
   CHECK(found["failed"] == 2001);
 }
@@ -87,12 +92,16 @@ TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
   const auto peak = [&](const char* samples, const Words& how) {
-    const Words words = with({"sweep", "oscillator.toml", "--sample", "k=1:9", "--t-end", "0.01", "--statistics", "--samples", samples}, how);
+    const Words words =
+        with({"sweep", "oscillator.toml", "--sample", "k=1:9", "--t-end", "0.01", "--statistics", "--samples", samples},
+             how);
     expect(0, folder, with(words, {"--out", "first.csv"}));  // compiles
     return expect(0, folder, with(words, {"--out", "second.csv"})).peak_kilobytes;
   };
-  // 24 bytes of a row, 8 of a run that is open, 9 of one side by side, 64 of its values while statistics are made; the row itself has 120.
-  for (const Words& how : {Words{"--ensemble", "--jobs", "1"}, Words{"--no-error-estimate", "--jobs", "1", "--solver", "rk4", "--step", "0.01"}}) {
+  // 24 bytes of a row, 8 of a run that is open, 9 of one side by side, 64 of its values while statistics are made; the
+  // row itself has 120.
+  for (const Words& how : {Words{"--ensemble", "--jobs", "1"},
+                           Words{"--no-error-estimate", "--jobs", "1", "--solver", "rk4", "--step", "0.01"}}) {
     CAPTURE(how.front());
     CHECK(peak("61000", how) - peak("1000", how) < 60 * 160);
   }
@@ -103,7 +112,8 @@ TEST_CASE("merge: a table that ends in the middle of a line lacks that run; one 
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
   const Words sweep{"sweep", "oscillator.toml", "--grid", "k=1:9:7", "--no-error-estimate"};
-  for (const char* i : {"1", "2"}) expect(0, folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/2"}));
+  for (const char* i : {"1", "2"})
+    expect(0, folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/2"}));
   const std::string second = folder.read("2.csv");
   folder.write("2.csv", second.substr(0, second.size() - 5));
   const Words merge{"merge", "1.csv", "2.csv", "--out", "all.csv"};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// eomgen-mpi: any number of ranks writes the bytes of one process, also where ranks were killed on the way. Left out where there is no MPI.
+// eomgen-mpi: any number of ranks writes the bytes of one process, also where ranks were killed on the way. Left out
+// where there is no MPI.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -15,7 +16,9 @@ using namespace eomgen::test;
 
 #if !defined(EOMGEN_MPI_PROGRAM)
 
-TEST_CASE("sweep: without MPI there is no eomgen-mpi, and its tests are left out") { MESSAGE("CMake found no MPI: eomgen-mpi is not built, and not tested"); }
+TEST_CASE("sweep: without MPI there is no eomgen-mpi, and its tests are left out") {
+  MESSAGE("CMake found no MPI: eomgen-mpi is not built, and not tested");
+}
 
 #else
 
@@ -32,7 +35,8 @@ Words with(Words words, const Words& more) {
 
 ChildCommand by_ranks(const char* ranks, const Folder& folder, const Words& words) {
   ChildCommand result = command(folder, words);
-  result.arguments = with({EOMGEN_MPIRUN, "--oversubscribe", "--allow-run-as-root", "-n", ranks, EOMGEN_MPI_PROGRAM}, words);
+  result.arguments =
+      with({EOMGEN_MPIRUN, "--oversubscribe", "--allow-run-as-root", "-n", ranks, EOMGEN_MPI_PROGRAM}, words);
   result.limit = 120;
   return result;
 }
@@ -46,7 +50,8 @@ std::vector<pid_t> ranks_in(const Folder& folder) {
     const std::string name = entry.path().filename().string();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     if (fs::read_symlink(entry.path() / "cwd", none) != fs::canonical(folder.path())) continue;
-    if (fs::read_symlink(entry.path() / "exe", none) == fs::canonical(EOMGEN_MPI_PROGRAM)) found.push_back(static_cast<pid_t>(std::stol(name)));
+    if (fs::read_symlink(entry.path() / "exe", none) == fs::canonical(EOMGEN_MPI_PROGRAM))
+      found.push_back(static_cast<pid_t>(std::stol(name)));
   }
   std::sort(found.begin(), found.end());
   return found;
@@ -65,7 +70,9 @@ TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one proce
   folder.write("oscillator.toml", oscillator);
   for (const Words& how : {Words{"--ensemble"}, Words{"--no-error-estimate"}}) {
     CAPTURE(how.front());
-    const Words words = with({"sweep", "oscillator.toml", "--grid", "m=-1,1,2", "--sample", "k=1:9", "--samples", "700", "--statistics", "--json"}, how);
+    const Words words = with({"sweep", "oscillator.toml", "--grid", "m=-1,1,2", "--sample", "k=1:9", "--samples", "700",
+                              "--statistics", "--json"},
+                             how);
     const Json alone = Json::parse(expect(3, folder, with(words, {"--out", "alone.csv"})).out);
     CHECK(alone["done"] == 1400);
     for (const char* ranks : {"1", "2", "5"}) {
@@ -77,7 +84,8 @@ TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one proce
       const Json found = Json::parse(result.out);
       for (const char* key : {"runs", "done", "failed", "statistics"}) CHECK(found[key] == alone[key]);
       CHECK(folder.names() == Words{"alone.csv", "oscillator.toml", "ranks.csv"});
-      CHECK(Json::parse(run_child(by_ranks(ranks, folder, with(words, {"--out", "ranks.csv"}))).out)["resumed"] == 2100);
+      CHECK(Json::parse(run_child(by_ranks(ranks, folder, with(words, {"--out", "ranks.csv"}))).out)["resumed"] ==
+            2100);
       std::filesystem::remove(folder / "ranks.csv");
     }
   }
@@ -91,7 +99,8 @@ TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one proce
 TEST_CASE("sweep by ranks: where a rank is killed, or all are, other ranks go on from the rows of all") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  const Words words{"sweep", "oscillator.toml", "--sample", "k=1:9", "--samples", "20000", "--no-error-estimate", "--out"};
+  const Words words{"sweep", "oscillator.toml",     "--sample", "k=1:9", "--samples",
+                    "20000", "--no-error-estimate", "--out"};
   expect(0, folder, with(words, {"whole.csv"}));
   const ChildResult once = run_child(by_ranks("3", folder, with(words, {"once.csv"})));
   REQUIRE(once.status == 0);
@@ -101,16 +110,21 @@ TEST_CASE("sweep by ranks: where a rank is killed, or all are, other ranks go on
   const char* const counts[] = {"3", "5", "2"};
   for (int i = 0; i < 8; ++i) {
     Child child(by_ranks(counts[i % 3], folder, with(words, {"killed.csv"})));
-    std::this_thread::sleep_for(std::chrono::duration<double>(std::uniform_real_distribution<>(0.3, 0.7)(random) * once.seconds));
+    std::this_thread::sleep_for(
+        std::chrono::duration<double>(std::uniform_real_distribution<>(0.3, 0.7)(random) * once.seconds));
     const std::vector<pid_t> ranks = ranks_in(folder);
-    if (i % 4 == 3) child.signal(SIGTERM);  // to mpirun
-    else if (!ranks.empty()) ::kill(ranks[random() % ranks.size()], SIGKILL);
+    if (i % 4 == 3)
+      child.signal(SIGTERM);  // to mpirun
+    else if (!ranks.empty())
+      ::kill(ranks[random() % ranks.size()], SIGKILL);
     const ChildResult result = child.finish();
-    for (int wait = 0; wait < 100 && !ranks_in(folder).empty(); ++wait) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    for (int wait = 0; wait < 100 && !ranks_in(folder).empty(); ++wait)
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
     if (result.status != 0) {
       ++killed;
       const Words names = folder.names();
-      resumed = resumed || std::any_of(names.begin(), names.end(), [](const std::string& name) { return contains(name, "killed.csv.partial"); });
+      resumed = resumed || std::any_of(names.begin(), names.end(),
+                                       [](const std::string& name) { return contains(name, "killed.csv.partial"); });
       continue;
     }
     ++ended;

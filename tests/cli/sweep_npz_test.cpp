@@ -80,7 +80,8 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
     return words;
   };
   // More rows than are written at a time; some are refused, and the sentence has quotation marks or commas.
-  const Words words{"sweep", "oscillator.toml", "--grid", "m=1,-1", "--sample", "k=1:9", "--samples", "2500", "--ensemble", "--t-end", "0.1", "--output", "all", "--out"};
+  const Words words{"sweep", "oscillator.toml", "--grid",  "m=1,-1", "--sample", "k=1:9", "--samples",
+                    "2500",  "--ensemble",      "--t-end", "0.1",    "--output", "all",   "--out"};
   for (const char* name : {"all.csv", "all.npz"}) expect(3, folder, with(words, {name}));
   CHECK(compared(folder, "all.npz", "all.csv") == "same 5000\n");
   const std::string bytes = folder.read("all.npz");
@@ -89,7 +90,8 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
   // From shards, of one row, and of none that ended well.
   const Words sweep{"sweep", "oscillator.toml", "--grid", "k=1:9:5"};
   expect(0, folder, with(sweep, {"--out", "whole.csv"}));
-  for (const char* i : {"1", "2"}) expect(0, folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/2"}));
+  for (const char* i : {"1", "2"})
+    expect(0, folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/2"}));
   expect(0, folder, {"merge", "1.csv", "2.csv", "--out", "merged.npz"});
   CHECK(compared(folder, "merged.npz", "whole.csv") == "same 5\n");
   const Words one{"sweep", "oscillator.toml", "--grid", "k=1"};

@@ -22,11 +22,13 @@ std::string rows(const std::string& text) { return text.substr(text.find('\n'));
 TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  folder.write("points.csv", "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line without its end
+  folder.write("points.csv",
+               "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line without its end
   expect(0, folder, {"sweep", "oscillator.toml", "--points", "points.csv", "--out", "points_sweep.csv"});
   const std::string table = folder.read("points_sweep.csv");
   CHECK(contains(table, "\nrun,k,m,outcome,"));
-  for (const char* row : {"\n0,1,1,done,", "\n1,2.5,1,done,", "\n2,0.10000000000000001,3,done,"}) CHECK(contains(table, row));
+  for (const char* row : {"\n0,1,1,done,", "\n1,2.5,1,done,", "\n2,0.10000000000000001,3,done,"})
+    CHECK(contains(table, row));
   // What a grid gives too is the same to the last bit.
   folder.write("grid.csv", "k\n1\n2\n9.3\n");
   expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out", "a.csv"});
@@ -34,7 +36,8 @@ TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
   CHECK(rows(folder.read("a.csv")) == rows(folder.read("b.csv")));
   // Another file is another sweep.
   folder.write("grid.csv", "k\n1\n2\n9.4\n");
-  CHECK(document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out", "a.csv"})["resumed"] == 0);
+  CHECK(document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--points", "grid.csv", "--out",
+                          "a.csv"})["resumed"] == 0);
 }
 
 TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
@@ -60,14 +63,16 @@ TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
   refused("k\n1\n", "has a grid and is a column of --points", {"--grid", "k=1,2"});
   refused("k\n1\n", "--sample and --points both", {"--sample", "m=1:2", "--samples", "3"});
   CHECK(contains(expect(2, folder, {"sweep", "oscillator.toml", "--points", "none.csv"}).err, "there is no such file"));
-  CHECK(contains(expect(2, folder, {"sweep", "oscillator.toml", "--points", "/dev/zero"}).err, "there is no such file"));
+  CHECK(
+      contains(expect(2, folder, {"sweep", "oscillator.toml", "--points", "/dev/zero"}).err, "there is no such file"));
   CHECK(folder.names() == Words{"oscillator.toml", "points.csv"});
 }
 
 TEST_CASE("sweep: histograms count every value once, in equal parts from the least to the greatest") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "k=0:40:41", "--t-end", "0", "--statistics"});
+  const Json found =
+      document(folder, {"sweep", "oscillator.toml", "--grid", "k=0:40:41", "--t-end", "0", "--statistics"});
   for (const Json& column : found["statistics"]) {
     const auto counts = column["histogram"].get<std::vector<std::size_t>>();
     CHECK(std::accumulate(counts.begin(), counts.end(), std::size_t{0}) == column["count"].get<std::size_t>());

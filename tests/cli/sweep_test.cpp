@@ -33,14 +33,16 @@ std::vector<Words> rows(const std::string& text) {
 TEST_CASE("sweep: every point of the grid is the run that it stands for, the last parameter fastest") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1:100:log:3", "--rtol", "1e-11", "--jobs", "3"});
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--grid", "m=1,2", "--grid", "k=1:100:log:3",
+                                       "--rtol", "1e-11", "--jobs", "3"});
   CHECK(found["runs"] == 6);
   CHECK(found["done"] == 6);
   CHECK(found["failed"] == 0);
   CHECK(found["file"] == "oscillator_sweep.csv");
   const std::vector<Words> table = rows(folder.read("oscillator_sweep.csv"));
   REQUIRE(table.size() == 8);
-  CHECK(table[1] == Words{"run", "m", "k", "outcome", "t", "steps", "rhs_evaluations", "x", "x_dot", "energy", "error_estimate", "detail"});
+  CHECK(table[1] == Words{"run", "m", "k", "outcome", "t", "steps", "rhs_evaluations", "x", "x_dot", "energy",
+                          "error_estimate", "detail"});
   const double m[] = {1, 1, 1, 2, 2, 2}, k[] = {1, 10, 100, 1, 10, 100};
   for (std::size_t i = 0; i < 6; ++i) {
     const Words& row = table[i + 2];
@@ -86,8 +88,10 @@ TEST_CASE("sweep: runs that cannot begin or that fail are kept and counted") {
   CHECK(table[2][2] == "refused");
   CHECK(contains(folder.read("oscillator_sweep.csv"), "\"parameter 'm' is declared positive, and its value is -1\"\n"));
   CHECK(table[3][2] == "done");
-  folder.write("diverging.toml", "format = 1\n[parameters]\nk = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-k*x^3/3\"\n"
-                                 "[scene.default]\nt = [0, 10]\ninitial = { x = 1 }\n");
+  folder.write("diverging.toml",
+               "format = 1\n[parameters]\nk = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = "
+               "\"-k*x^3/3\"\n"
+               "[scene.default]\nt = [0, 10]\ninitial = { x = 1 }\n");
   CHECK(document(folder, {"sweep", "diverging.toml", "--grid", "k=0,1"}, 3)["failed"] == 1);
   const ChildResult none = expect(2, folder, {"sweep", "oscillator.toml", "--grid", "m=-1,-2"});
   CHECK(contains(none.err, "no run of the grid can begin"));
@@ -120,13 +124,20 @@ TEST_CASE("sweep: what is wrong with a grid is told") {
   refused({"--grid", "k=1:2:3", "--set", "mm=3"}, "there is no parameter 'mm' to set");
 }
 
-TEST_CASE("sweep: an ensemble gives the bytes of runs one by one, for any number of threads, and goes on from what is there") {
+TEST_CASE(
+    "sweep: an ensemble gives the bytes of runs one by one, for any number of threads, and goes on from what is "
+    "there") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  folder.write("diverging.toml", "format = 1\n[parameters]\nk = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-k*x^3/3\"\n"
-                                 "[scene.default]\nt = [0, 10]\ninitial = { x = 1 }\n");
-  folder.write("pushed.toml", "format = 1\n[parameters]\nm = 1\nc = 0.5\n[inputs]\nF = { unit = \"N\" }\n[coordinates]\nx = {}\n[energy]\nkinetic = \"m*x_dot^2/2\"\n"
-                              "[[force]]\nname = \"push\"\ngeneralized = { x = \"F - c*x_dot\" }\n[scene.default]\nt = [0, 3]\ninitial = { x = 1 }\ninputs = { F = \"2*m\" }\n");
+  folder.write("diverging.toml",
+               "format = 1\n[parameters]\nk = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = "
+               "\"-k*x^3/3\"\n"
+               "[scene.default]\nt = [0, 10]\ninitial = { x = 1 }\n");
+  folder.write("pushed.toml",
+               "format = 1\n[parameters]\nm = 1\nc = 0.5\n[inputs]\nF = { unit = \"N\" }\n[coordinates]\nx = "
+               "{}\n[energy]\nkinetic = \"m*x_dot^2/2\"\n"
+               "[[force]]\nname = \"push\"\ngeneralized = { x = \"F - c*x_dot\" }\n[scene.default]\nt = [0, "
+               "3]\ninitial = { x = 1 }\ninputs = { F = \"2*m\" }\n");
   const auto rows_of = [&](const std::string& file) {
     const std::string text = folder.read(file);
     return text.substr(text.find('\n'));  // the first line tells sweeps apart
@@ -136,11 +147,16 @@ TEST_CASE("sweep: an ensemble gives the bytes of runs one by one, for any number
     Words options;
     int status;
   };
-  for (const Case& c : {Case{"S5_double_pendulum", {"--grid", "L1=0.5:2:5", "--grid", "g=1,9.81,30", "--t-end", "3", "--solver", "dop853"}, 0},
-                        Case{"S6_chain_2", {"--grid", "L=0.5:2:9", "--solver", "tsit5", "--rtol", "1e-7", "--output", "all"}, 0},
-                        Case{"oscillator.toml", {"--grid", "m=1,-1,2,0", "--grid", "k=1:100:log:4", "--solver", "rk4", "--step", "0.01"}, 3},
-                        Case{"diverging.toml", {"--grid", "k=0:1:7", "--solver", "dopri5"}, 3},
-                        Case{"pushed.toml", {"--grid", "m=1:3:7", "--solver", "dop853"}, 0}}) {
+  for (const Case& c :
+       {Case{"S5_double_pendulum",
+             {"--grid", "L1=0.5:2:5", "--grid", "g=1,9.81,30", "--t-end", "3", "--solver", "dop853"},
+             0},
+        Case{"S6_chain_2", {"--grid", "L=0.5:2:9", "--solver", "tsit5", "--rtol", "1e-7", "--output", "all"}, 0},
+        Case{"oscillator.toml",
+             {"--grid", "m=1,-1,2,0", "--grid", "k=1:100:log:4", "--solver", "rk4", "--step", "0.01"},
+             3},
+        Case{"diverging.toml", {"--grid", "k=0:1:7", "--solver", "dopri5"}, 3},
+        Case{"pushed.toml", {"--grid", "m=1:3:7", "--solver", "dop853"}, 0}}) {
     CAPTURE(std::string(c.model));
     const auto sweep = [&](const Words& more) {
       Words words{"sweep", c.model};
@@ -175,11 +191,14 @@ TEST_CASE("sweep: what an ensemble cannot look after is told") {
     CAPTURE(what);
     CHECK(contains(expect(2, folder, words).err, what));
   };
-  refused({"S5_double_pendulum", "--grid", "g=1,2", "--solver", "radau5"}, "solver 'radau5' is no explicit Runge-Kutta method");
+  refused({"S5_double_pendulum", "--grid", "g=1,2", "--solver", "radau5"},
+          "solver 'radau5' is no explicit Runge-Kutta method");
   refused({"stick_slip_belt", "--grid", "m=1,2"}, "contacts with friction");
   refused({"bouncing_ball", "--grid", "m=1,2"}, "cannot be made side by side");
   refused({"R1_free_body", "--grid", "m=1,2"}, "cannot be made side by side");
-  folder.write("morse.toml", "format = 1\n[parameters]\nD = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"D*(1 - exp(-x))^2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
+  folder.write("morse.toml",
+               "format = 1\n[parameters]\nD = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = "
+               "\"D*(1 - exp(-x))^2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n");
   refused({"morse.toml", "--grid", "D=1,2"}, "a force that is narrow");
 }
 
@@ -206,14 +225,17 @@ TEST_CASE("sweep: samples lie as their design says, follow from the seed, and go
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
   const auto table = [&](const Words& more) {
-    Words words{"sweep", "oscillator.toml", "--solver", "rk4", "--step", "0.5", "--no-error-estimate", "--out", "s.csv", "--sample", "m=1:2", "--sample", "k=0:1", "--samples", "64"};
+    Words words{"sweep", "oscillator.toml", "--solver", "rk4",   "--step",   "0.5",   "--no-error-estimate",
+                "--out", "s.csv",           "--sample", "m=1:2", "--sample", "k=0:1", "--samples",
+                "64"};
     words.insert(words.end(), more.begin(), more.end());
     expect(0, folder, words);
     return folder.read("s.csv");
   };
   for (const char* design : {"random", "latin", "sobol"}) {
     CAPTURE(std::string(design));
-    const std::string text = table({"--design", design}), again = table({"--design", design, "--jobs", "2"}), other = table({"--design", design, "--seed", "7"});
+    const std::string text = table({"--design", design}), again = table({"--design", design, "--jobs", "2"}),
+                      other = table({"--design", design, "--seed", "7"});
     CHECK(text == again);
     CHECK(text != other);
     std::vector<double> m = column(text, "m"), k = column(text, "k");
@@ -227,7 +249,9 @@ TEST_CASE("sweep: samples lie as their design says, follow from the seed, and go
     for (std::size_t i = 0; i < 64; ++i) squares.push_back((std::floor(8 * m[i]) + std::floor(8 * k[i]) / 8) / 8);
     CHECK(held_once(squares, 64) == 64);
   }
-  expect(0, folder, {"sweep", "oscillator.toml", "--grid", "m=1,2,3", "--sample", "k=1:100:log", "--samples", "5", "--out", "both.csv"});
+  expect(0, folder,
+         {"sweep", "oscillator.toml", "--grid", "m=1,2,3", "--sample", "k=1:100:log", "--samples", "5", "--out",
+          "both.csv"});
   const std::vector<double> k = column(folder.read("both.csv"), "k"), m = column(folder.read("both.csv"), "m");
   REQUIRE(k.size() == 15);
   for (std::size_t i = 0; i < 15; ++i) {
@@ -240,12 +264,14 @@ TEST_CASE("sweep: samples lie as their design says, follow from the seed, and go
 TEST_CASE("sweep: Sobol' points fill every axis of ten evenly") {
   const Folder folder;
   std::string model = "format = 1\n[parameters]\n";
-  Words words{"sweep", "many.toml", "--solver", "rk4", "--step", "1", "--no-error-estimate", "--out", "s.csv", "--samples", "128", "--design", "sobol"};
+  Words words{"sweep", "many.toml", "--solver",  "rk4", "--step",   "1",    "--no-error-estimate",
+              "--out", "s.csv",     "--samples", "128", "--design", "sobol"};
   for (int i = 0; i < 10; ++i) {
     model += "a" + std::to_string(i) + " = 1\n";
     words.insert(words.end(), {"--sample", "a" + std::to_string(i) + "=0:1"});
   }
-  folder.write("many.toml", model + "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[scene.default]\nt = [0, 1]\n");
+  folder.write("many.toml",
+               model + "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[scene.default]\nt = [0, 1]\n");
   expect(0, folder, words);
   const std::string text = folder.read("s.csv");
   std::vector<std::vector<double>> axes;
@@ -261,7 +287,8 @@ TEST_CASE("sweep: Sobol' points fill every axis of ten evenly") {
 TEST_CASE("sweep: statistics are those of the table's columns") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  const Json found = document(folder, {"sweep", "oscillator.toml", "--sample", "m=10:2:normal", "--samples", "400", "--design", "latin", "--t-end", "0", "--statistics", "--grid", "k=1,-1"});
+  const Json found = document(folder, {"sweep", "oscillator.toml", "--sample", "m=10:2:normal", "--samples", "400",
+                                       "--design", "latin", "--t-end", "0", "--statistics", "--grid", "k=1,-1"});
   const auto of = [&](const std::string& name) {
     for (const Json& column : found["statistics"]) {
       if (column["column"] == name) return column;
@@ -290,15 +317,18 @@ TEST_CASE("sweep: statistics are those of the table's columns") {
 TEST_CASE("merge: shards come to the bytes of the sweep in one call, interrupted or not") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator);
-  const Words sweep{"sweep", "oscillator.toml", "--grid", "m=1,2,-1", "--sample", "k=1:9", "--samples", "5", "--no-error-estimate"};
+  const Words sweep{"sweep", "oscillator.toml", "--grid", "m=1,2,-1",           "--sample",
+                    "k=1:9", "--samples",       "5",      "--no-error-estimate"};
   const auto with = [&](const Words& more) {
     Words words = sweep;
     words.insert(words.end(), more.begin(), more.end());
     return words;
   };
   expect(3, folder, with({"--out", "whole.csv"}));
-  for (const char* i : {"1", "2", "3", "4"}) document(folder, with({"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/4"}), 3);
-  const Json found = document(folder, {"merge", "3.csv", "1.csv", "4.csv", "2.csv", "--out", "merged.csv", "--statistics"});
+  for (const char* i : {"1", "2", "3", "4"})
+    document(folder, with({"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/4"}), 3);
+  const Json found =
+      document(folder, {"merge", "3.csv", "1.csv", "4.csv", "2.csv", "--out", "merged.csv", "--statistics"});
   CHECK(found["runs"] == 15);
   CHECK(found["shards"] == 4);
   CHECK(found["statistics"].size() > 0);
@@ -333,6 +363,8 @@ TEST_CASE("merge: shards come to the bytes of the sweep in one call, interrupted
   refused({"sweep", "oscillator.toml", "--sample", "k=1:0:normal", "--samples", "3"}, "is not above 0");
   refused({"sweep", "oscillator.toml", "--sample", "k=-1:1:log", "--samples", "3"}, "goes through 0");
   refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--sample", "k=1:2", "--samples", "3"}, "is sampled twice");
-  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--grid", "k=1,2"}, "has a grid and is sampled");
-  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--design", "lattice"}, "choose random, latin or sobol");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--grid", "k=1,2"},
+          "has a grid and is sampled");
+  refused({"sweep", "oscillator.toml", "--sample", "k=1:2", "--samples", "3", "--design", "lattice"},
+          "choose random, latin or sobol");
 }

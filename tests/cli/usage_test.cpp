@@ -46,7 +46,9 @@ TEST_CASE("commands and options that are not there: the nearest one is told") {
       {{"simulate", P2}, "there is no command 'simulate'", "did you mean 'run'?"},
       {{"Run", P2}, "there is no command 'Run'", "did you mean 'run'?"},
       {{"init", "p"}, "there is no command 'init'", "did you mean 'new'?"},
-      {{"pendulum.toml"}, "a command is missing before 'pendulum.toml'", "eomgen check pendulum.toml says what the model is"},
+      {{"pendulum.toml"},
+       "a command is missing before 'pendulum.toml'",
+       "eomgen check pendulum.toml says what the model is"},
       {{"run", P2, "-v"}, "there is no option '-v'", "did you mean 'eomgen --version'?"},
       {{"run", P2, "--version"}, "there is no option '--version'", "did you mean 'eomgen --version'?"},
       {{"run", P2, "-s", "x"}, "there is no option '-s'", "did you mean '--s"},
@@ -63,20 +65,26 @@ TEST_CASE("names that are not there: the nearest one is told") {
       {{"check", ""}, "there is no such model file", "eomgen new NAME"},
       {{"run", P2, "--scene", "defualt"}, "there is no scene 'defualt'", "did you mean 'default'?"},
       {{"run", P2, "--solver", "dop835"}, "there is no solver 'dop835'", "did you mean 'dop853'?"},
-      {{"run", P2, "--solver", "variational2"}, "solver 'variational2' takes steps of a fixed size, and none is given", "give --step H"},
+      {{"run", P2, "--solver", "variational2"},
+       "solver 'variational2' takes steps of a fixed size, and none is given",
+       "give --step H"},
       {{"run", P2, "--output", "enrgy"}, "there is no output 'enrgy'", "choose from: energy, "},
       {{"run", P2, "--set", "LL=1"}, "there is no parameter 'LL' to set", "did you mean 'L'?"},
       {{"run", P2, "--set", "nosuch=1"}, "there is no parameter 'nosuch' to set", "the parameters are m, g, L"},
       {{"run", P2, "--approach", "III"}, "there is no approach 'III'", "choose auto, I or II"},
       {{"emit", P2, "-o", "out", "--fix", "LL"}, "there is no parameter 'LL' to fix", "did you mean 'L'?"},
       {{"emit", P2, "-o", "out", "--with", "jacc"}, "there is no function 'jacc'", "did you mean 'jac'?"},
-      {{"emit", P2, "-o", "out", "--with", "jac,rhs_batch"}, "there is no function 'rhs_batch'", "--target batch writes batches of rhs"},
+      {{"emit", P2, "-o", "out", "--with", "jac,rhs_batch"},
+       "there is no function 'rhs_batch'",
+       "--target batch writes batches of rhs"},
       {{"emit", P2, "-o", "out", "--target", "ccp"}, "there is no target 'ccp'", "did you mean 'cpp'?"},
-      {{"emit", P2, "-o", "out", "--form", "multiplier"}, "there is no form 'multiplier'",
+      {{"emit", P2, "-o", "out", "--form", "multiplier"},
+       "there is no form 'multiplier'",
        "choose auto, multipliers, nullspace or chaplygin"},
       {{"emit", P2, "-o", "out", "--form", "routh"}, "form 'routh' is not supported yet", "choose auto"},
       {{"emit", P2, "-o", "out", "--form", "nullspace"},
-       "form 'nullspace' is one of constraints that keep multipliers, and this model has none", "leave --form out"},
+       "form 'nullspace' is one of constraints that keep multipliers, and this model has none",
+       "leave --form out"},
       {{"derive", P2, "--show", "equatons"}, "there is nothing called 'equatons' to show", "did you mean 'equations'?"},
       {{"derive", P2, "--format", "tex"}, "there is no format 'tex'", "did you mean 'text'?"},
   });
@@ -93,7 +101,9 @@ TEST_CASE("values that cannot be are refused") {
       {{"run", P2, "--every", "0"}, "--every: '0' is not a number greater than 0", "eomgen run --help"},
       {{"run", P2, "--t-end", "inf"}, "--t-end: 'inf' is not a number", "eomgen run --help"},
       {{"bench", P2, "--t-end", "0"}, "the run would end at t = 0, at its start", "give a later --t-end"},
-      {{"run", P2, "--t-end", "0", "--sensitivity", "L"}, "there are no derivatives of the end", "give a later --t-end"},
+      {{"run", P2, "--t-end", "0", "--sensitivity", "L"},
+       "there are no derivatives of the end",
+       "give a later --t-end"},
       {{"run", P2, "--t-end", "-1"}, "the run would end at t = -1, before its start at t = 0", "give a later --t-end"},
       {{"run", P2, "--solver", "rk4", "--out", "a.csv"}, "solver 'rk4' takes steps of a fixed size", "give --step H"},
       {{"run", P2, "--set", "m=abc"}, "'m=abc' has no decimal number", "write it as 9.81"},
@@ -111,10 +121,16 @@ TEST_CASE("values that cannot be are refused") {
 
 TEST_CASE("places that cannot be written to are told before any work is done") {
   refuse({
-      {{"run", P2, "--out", "nowhere/a.csv"}, "--out nowhere/a.csv: there is no folder nowhere", "make the folder first"},
+      {{"run", P2, "--out", "nowhere/a.csv"},
+       "--out nowhere/a.csv: there is no folder nowhere",
+       "make the folder first"},
       {{"run", P2, "--out", "/"}, "this is a folder, not a file", "name a file in it"},
-      {{"run", P2, "--plot", "nowhere/a.svg"}, "--plot nowhere/a.svg: there is no folder nowhere", "make the folder first"},
-      {{"emit", P2, "-o", "/proc/nowhere"}, "cannot make the folder /proc/nowhere", "choose a folder that you may write to"},
+      {{"run", P2, "--plot", "nowhere/a.svg"},
+       "--plot nowhere/a.svg: there is no folder nowhere",
+       "make the folder first"},
+      {{"emit", P2, "-o", "/proc/nowhere"},
+       "cannot make the folder /proc/nowhere",
+       "choose a folder that you may write to"},
   });
 }
 
@@ -175,7 +191,8 @@ TEST_CASE("-o and --out are one option, of every command that writes") {
 
 TEST_CASE("a run of no length gives the state, accelerations and reactions at the start") {
   const Folder folder;
-  folder.write("p.toml", pendulum_text("[scene.default]\nt = [2, 3]\ninitial = { x = 0, y = -1, x_dot = 3, y_dot = 0 }\n"));
+  folder.write("p.toml",
+               pendulum_text("[scene.default]\nt = [2, 3]\ninitial = { x = 0, y = -1, x_dot = 3, y_dot = 0 }\n"));
   const Json run = document(folder, {"run", "p.toml", "--t-end", "2", "--out", "a.csv"});
   CHECK(run["outcome"] == "done");
   CHECK(run["t"] == 2.0);
@@ -195,7 +212,10 @@ TEST_CASE("a run of no length gives the state, accelerations and reactions at th
 
 TEST_CASE("accelerations are outputs like any other") {
   const Folder folder;
-  folder.write("p.toml", pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0, x_dot = 0 }\noutputs = [\"y_ddot\", \"x_ddot\"]\n"));
+  folder.write(
+      "p.toml",
+      pendulum_text(
+          "[scene.default]\nt = [0, 1]\ninitial = { x = 1, y = 0, x_dot = 0 }\noutputs = [\"y_ddot\", \"x_ddot\"]\n"));
   const Json run = document(folder, {"run", "p.toml", "--out", "a.csv", "--every", "0.001", "--rtol", "1e-11"});
   const Table table = read_table(folder.read("a.csv"));
   CHECK(table.at(0, "y_ddot") == doctest::Approx(-9.81));
@@ -212,20 +232,25 @@ TEST_CASE("accelerations are outputs like any other") {
 
 TEST_CASE("a scene without initial values says where it starts") {
   const Folder folder;
-  folder.write("free.toml", "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x\"\n");
-  CHECK(contains(expect(0, folder, {"run", "free.toml"}).out, "no initial values: all coordinates and rates start at 0\n"));
+  folder.write("free.toml",
+               "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x\"\n");
+  CHECK(contains(expect(0, folder, {"run", "free.toml"}).out,
+                 "no initial values: all coordinates and rates start at 0\n"));
 }
 
 TEST_CASE("inputs are in check's list; of an input that is set as a parameter it is told how") {
   const Folder folder;
-  folder.write("cart.toml", "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 2 }\nG = { unit = \"N\" }\n[coordinates]\nx = \"m\"\n"
-                            "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"0\"\n[[force]]\ngeneralized = { x = \"F + G\" }\n");
+  folder.write("cart.toml",
+               "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 2 }\nG = { unit = "
+               "\"N\" }\n[coordinates]\nx = \"m\"\n"
+               "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"0\"\n[[force]]\ngeneralized = { x = \"F + G\" }\n");
   const Json found = document(folder, {"check", "cart.toml"});
   REQUIRE(found["inputs"].size() == 2);
   CHECK(found["inputs"][0] == Json({{"name", "F"}, {"unit", "N"}, {"default", "2"}}));
   CHECK(found["inputs"][1]["default"] == "0");
   CHECK(contains(expect(0, folder, {"check", "cart.toml"}).out, "inputs\n  F "));
-  CHECK(contains(expect(2, folder, {"run", "cart.toml", "--set", "F=3"}).err, "it is an input: a scene gives it, as inputs = { F = 2 }"));
+  CHECK(contains(expect(2, folder, {"run", "cart.toml", "--set", "F=3"}).err,
+                 "it is an input: a scene gives it, as inputs = { F = 2 }"));
 }
 
 TEST_CASE("report: a hundred coordinates have room in its plots") {
@@ -237,7 +262,8 @@ TEST_CASE("report: a hundred coordinates have room in its plots") {
     kinetic += " + " + x + "_dot^2/2";
     potential += " + " + x + "^2/2";
   }
-  folder.write("many.toml", text + "[energy]\nkinetic = \"" + kinetic + "\"\npotential = \"" + potential + "\"\n[scene.default]\nt = [0, 0.1]\ninitial = { x1 = 1 }\n");
+  folder.write("many.toml", text + "[energy]\nkinetic = \"" + kinetic + "\"\npotential = \"" + potential +
+                                "\"\n[scene.default]\nt = [0, 0.1]\ninitial = { x1 = 1 }\n");
   for (const Words& words : {Words{"report", "many.toml"}, Words{"run", "many.toml", "--plot", "a.svg"}}) {
     ChildCommand call = command(folder, words);
     call.limit = 120;

@@ -53,7 +53,8 @@ TEST_CASE("derive shows the constraint, the verdict and the integral") {
   const Folder folder;
   const Json shown = document(folder, {"derive", "P12_pfaffian_set", "--show", "constraints"})["constraints"];
   const auto has = [&](const char* role, const char* text) {
-    return std::any_of(shown.begin(), shown.end(), [&](const Json& item) { return item["role"] == role && item["text"] == text; });
+    return std::any_of(shown.begin(), shown.end(),
+                       [&](const Json& item) { return item["role"] == role && item["text"] == text; });
   };
   CHECK(has("binds velocities, integrable", "x1 x1_dot + y1 y1_dot + h = 0"));
   CHECK(has("its integral", "d/dt(1/2 (x1^2 + y1^2 + 2 h0 sin(w t)/w)) = 0"));

@@ -12,7 +12,8 @@ TEST_CASE("every wrong model is refused by the program, in the same words, in un
   using namespace eomgen::model;
   const Folder folder;
   std::size_t count = 0;
-  for (const auto& table : {wrong_names(), wrong_structure(), wrong_units(), wrong_expressions(), wrong_scenes(), wrong_hostile(), wrong_bodies()}) {
+  for (const auto& table : {wrong_names(), wrong_structure(), wrong_units(), wrong_expressions(), wrong_scenes(),
+                            wrong_hostile(), wrong_bodies()}) {
     for (const WrongModel& wrong : table) {
       CAPTURE(wrong.name);
       folder.write("model.toml", wrong.text);
@@ -24,7 +25,8 @@ TEST_CASE("every wrong model is refused by the program, in the same words, in un
         CHECK(contains(result.err, "the file has more than 1048576 bytes"));
         continue;
       }
-      CHECK(result.err.starts_with("model.toml:" + (wrong.place.empty() ? "" : wrong.place + ":") + " error: " + wrong.message + "\n"));
+      CHECK(result.err.starts_with("model.toml:" + (wrong.place.empty() ? "" : wrong.place + ":") +
+                                   " error: " + wrong.message + "\n"));
       CHECK(contains(result.err, "  remedy: " + wrong.remedy));
     }
   }

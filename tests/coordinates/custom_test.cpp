@@ -10,7 +10,8 @@ using namespace eomgen::test;
 namespace {
 
 std::string custom(const std::string& position, const std::string& coordinates = "") {
-  return "format = 1\n[parameters]\nm = 1\nk = 0.7\n" + coordinates + "[[particle]]\nname = \"P\"\nmass = \"k*m\"\nposition = { " + position + " }\n";
+  return "format = 1\n[parameters]\nm = 1\nk = 0.7\n" + coordinates +
+         "[[particle]]\nname = \"P\"\nmass = \"k*m\"\nposition = { " + position + " }\n";
 }
 
 std::string refusal(const std::string& text) {
@@ -61,7 +62,8 @@ TEST_CASE("q(x) is solved: functions with one inverse are undone") {
   const auto log = [](const Sum& x) { return reading::call(symbolic::Op::log, {x}); };
   CHECK(reading::is_zero(s.x(0) - log(s.q("a"))));
   CHECK(reading::is_zero(s.x(1) - s.x(0) - log(s.q("b") + sqrt(square(s.q("b")) + Sum(1)))));
-  CHECK(refusal(custom(solve_first + "q = [\"sqrt(x1)\", \"x2\", \"x3\"]", "[coordinates]\na = { range = [0, inf] }\n")) == "accepted");
+  CHECK(refusal(custom(solve_first + "q = [\"sqrt(x1)\", \"x2\", \"x3\"]",
+                       "[coordinates]\na = { range = [0, inf] }\n")) == "accepted");
 }
 
 TEST_CASE("x(q) and q(x) together are held against one another") {
@@ -75,30 +77,39 @@ TEST_CASE("x(q) and q(x) together are held against one another") {
 }
 
 TEST_CASE("what is no coordinate system is refused") {
-  const auto contains = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
+  const auto contains = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
   // two solutions, none by elementary steps, dependent, nothing at all
-  for (const char* q : {"[\"x1^2\", \"x2\", \"x3\"]", "[\"sin(x1)\", \"x2\", \"x3\"]", "[\"x1 + sin(x1)\", \"x2\", \"x3\"]",
-                        "[\"x1 + x2\", \"x1 + x2\", \"x3\"]", "[\"x1 - x1\", \"x2\", \"x3\"]", "[\"1\", \"x2\", \"x3\"]"}) {
+  for (const char* q :
+       {"[\"x1^2\", \"x2\", \"x3\"]", "[\"sin(x1)\", \"x2\", \"x3\"]", "[\"x1 + sin(x1)\", \"x2\", \"x3\"]",
+        "[\"x1 + x2\", \"x1 + x2\", \"x3\"]", "[\"x1 - x1\", \"x2\", \"x3\"]", "[\"1\", \"x2\", \"x3\"]"}) {
     CAPTURE(q);
     CHECK(contains(refusal(custom(solve_first + "q = " + q)), "q(x) cannot be solved for x1, x2, x3"));
   }
   CHECK(contains(refusal(custom(solve_first + "q = [\"x1 + k*x2\", \"k*x1 + k^2*x2\", \"x3\"]")), "too few points"));
   CHECK(contains(refusal(custom(solve_first + "q = [\"sqrt(x1)\", \"x2\", \"x3\"]")), "q(x) and x(q) are not inverse"));
-  CHECK(contains(refusal(custom(solve_first + "x = [\"a + b\", \"(a + b)*k\", \"c\"]")), "these custom coordinates are singular everywhere"));
-  CHECK(contains(refusal(custom("custom = [\"a\", \"b\", \"c\"]")), "custom coordinates are named here but not defined"));
+  CHECK(contains(refusal(custom(solve_first + "x = [\"a + b\", \"(a + b)*k\", \"c\"]")),
+                 "these custom coordinates are singular everywhere"));
+  CHECK(
+      contains(refusal(custom("custom = [\"a\", \"b\", \"c\"]")), "custom coordinates are named here but not defined"));
   CHECK(contains(refusal(custom("custom = [\"a\", \"b\"], x = [\"a\", \"b\", 0]")), "'custom' has 2 entries"));
   CHECK(contains(refusal(custom(solve_first + "x = [\"a\", \"b\"]")), "'x' has 2 entries"));
   CHECK(contains(refusal(custom(solve_first + "q = [\"x1\", \"x2\", \"x3 - a\"]")), "depends on coordinates"));
-  CHECK(contains(refusal(custom("custom = [\"x1\", \"b\", \"c\"], q = [\"2*x1\", \"x2\", \"x3\"]")), "'x1' is a Cartesian coordinate"));
-  CHECK(contains(refusal(custom("cartesian = [\"a\", \"b\"], x = [\"a\", \"b\", 0]")), "'x' does not belong to a position in cartesian"));
+  CHECK(contains(refusal(custom("custom = [\"x1\", \"b\", \"c\"], q = [\"2*x1\", \"x2\", \"x3\"]")),
+                 "'x1' is a Cartesian coordinate"));
+  CHECK(contains(refusal(custom("cartesian = [\"a\", \"b\"], x = [\"a\", \"b\", 0]")),
+                 "'x' does not belong to a position in cartesian"));
 }
 
 TEST_CASE("custom coordinates may measure from a particle, and may be prescribed by parameters") {
-  System s(model::read_model_text(custom(solve_first + "x = [\"a\", \"a*b\", \"c\"], from = \"Q\"") +
-                                      "[[particle]]\nname = \"Q\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", 0] }\n",
-                                  "relative"));
+  System s(
+      model::read_model_text(custom(solve_first + "x = [\"a\", \"a*b\", \"c\"], from = \"Q\"") +
+                                 "[[particle]]\nname = \"Q\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\", 0] }\n",
+                             "relative"));
   const auto position = *s.mechanics.place_position[1];
   CHECK(reading::read(s.mechanics, position[1]) == s.symbol("a") * s.symbol("b") + s.symbol("y"));
-  System fixed(model::read_model_text(custom("custom = [\"k\", \"b\", \"c\"], x = [\"k*cos(b)\", \"k*sin(b)\", \"c\"]"), "fixed"));
+  System fixed(model::read_model_text(custom("custom = [\"k\", \"b\", \"c\"], x = [\"k*cos(b)\", \"k*sin(b)\", \"c\"]"),
+                                      "fixed"));
   CHECK(fixed.model.coordinates.size() == 2);
 }

@@ -16,21 +16,25 @@ using coordinates::CoordinateSystem;
 
 namespace {
 
-constexpr double exact = 1e-12;        // of a few operations in double
+constexpr double exact = 1e-12;       // of a few operations in double
 constexpr double differences = 1e-8;  // of central differences over 1e-6
 
 std::string model_in(const CoordinateSystem& system, bool planar) {
   std::string entries, more;
-  for (std::size_t k = 0; k < (planar ? 2u : 3u); ++k) entries += (k > 0 ? ", \"" : "\"") + std::string(system.slots[k].name) + "\"";
+  for (std::size_t k = 0; k < (planar ? 2u : 3u); ++k)
+    entries += (k > 0 ? ", \"" : "\"") + std::string(system.slots[k].name) + "\"";
   const std::string constant(system.constant.name);
   if (!constant.empty()) more = ", " + constant + " = \"c\"";
-  return "format = 1\n[parameters]\nm = \"1 kg\"\n" + (constant.empty() ? "" : "c = { value = 0.4, unit = \"" + std::string(system.constant.unit) + "\" }\n") +
-         "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { " + std::string(system.name) + " = [" + entries + "]" + more + " }\n";
+  return "format = 1\n[parameters]\nm = \"1 kg\"\n" +
+         (constant.empty() ? "" : "c = { value = 0.4, unit = \"" + std::string(system.constant.unit) + "\" }\n") +
+         "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { " + std::string(system.name) + " = [" + entries + "]" +
+         more + " }\n";
 }
 
 struct Charted {
   explicit Charted(const CoordinateSystem& system, bool planar = false)
-      : s(model::read_model_text(model_in(system, planar), std::string(system.name))), geometry(reading::geometry(s.mechanics).at(0)) {}
+      : s(model::read_model_text(model_in(system, planar), std::string(system.name))),
+        geometry(reading::geometry(s.mechanics).at(0)) {}
 
   reading::Symbol symbol(std::string_view name) {
     const std::string asked = name == "angle" || name == "pitch" ? "c" : std::string(name);
@@ -39,7 +43,9 @@ struct Charted {
   /// Coordinates anywhere in their charts, constants too.
   Values point() {
     Values at;
-    const auto random = [&](double low, double high) { return std::uniform_real_distribution<double>(low, high)(generator); };
+    const auto random = [&](double low, double high) {
+      return std::uniform_real_distribution<double>(low, high)(generator);
+    };
     for (const model::Coordinate& q : s.model.coordinates) {
       const bool below = q.lower != model::no_node, above = q.upper != model::no_node;
       at[symbol(q.name)] = random(below ? 0.1 : -2, above ? 3.0 : 2);
@@ -49,7 +55,8 @@ struct Charted {
   }
   std::array<double, 3> position(const Values& at) {
     std::array<double, 3> r;
-    for (std::size_t c = 0; c < 3; ++c) r[c] = value_of(reading::read(s.mechanics, (*s.mechanics.place_position[1])[c]), at);
+    for (std::size_t c = 0; c < 3; ++c)
+      r[c] = value_of(reading::read(s.mechanics, (*s.mechanics.place_position[1])[c]), at);
     return r;
   }
   std::array<double, 3> unit_vector(std::size_t k, const Values& at) {
@@ -67,7 +74,9 @@ struct Charted {
 std::array<double, 3> values(const reading::Components& v, const Values& at) {
   return {value_of(v[0], at), value_of(v[1], at), value_of(v[2], at)};
 }
-double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) { return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]; }
+double dot(const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
 
 /// "R = 0, phi = pi, cos(angle) = 0": the places that a chart tells to be singular.
 std::vector<std::pair<std::string, double>> told(std::string_view singular) {
@@ -78,8 +87,10 @@ std::vector<std::pair<std::string, double>> told(std::string_view singular) {
     std::stringstream(item) >> name >> equals >> value;
     REQUIRE(equals == "=");
     const double pi = std::acos(-1.0);
-    if (name.starts_with("cos(")) result.emplace_back(name.substr(4, name.size() - 5), pi / 2);
-    else result.emplace_back(name, value == "pi" ? pi : std::stod(value));
+    if (name.starts_with("cos("))
+      result.emplace_back(name.substr(4, name.size() - 5), pi / 2);
+    else
+      result.emplace_back(name, value == "pi" ? pi : std::stod(value));
   }
   return result;
 }

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From one chart to another and back: the same attitude or direction, rates that are the derivatives of the values.
+#include "derive/chart_change.hpp"
+
 #include <doctest/doctest.h>
 
 #include <Eigen/Dense>
 #include <cmath>
 
-#include "derive/chart_change.hpp"
 #include "rotations/rotation.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -13,21 +14,26 @@ using namespace eomgen;
 
 namespace {
 
-constexpr double rounding = 1e-13;      // a few operations on numbers about 1, some 0.2 from a singular set
-constexpr double difference = 1e-8;     // of central differences with steps of 1e-5: their square, times third derivatives
+constexpr double rounding = 1e-13;   // a few operations on numbers about 1, some 0.2 from a singular set
+constexpr double difference = 1e-8;  // of central differences with steps of 1e-5: their square, times third derivatives
 
 model::Model body(const std::string& set) {
-  return model::read_model_text("format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 3] }\nrotation = { euler = \"" + set +
-                                    "\", angles = [\"a\", \"b\", \"c\"] }\n[scene.default]\nt = [0, 1]\n", "body.toml");
+  return model::read_model_text(
+      "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 3] }\nrotation = { euler = \"" +
+          set + "\", angles = [\"a\", \"b\", \"c\"] }\n[scene.default]\nt = [0, 1]\n",
+      "body.toml");
 }
 model::Model particle() {
-  return model::read_model_text("format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
-                                "[scene.default]\nt = [0, 1]\ninitial = { R = 1, phi = 1 }\n", "particle.toml");
+  return model::read_model_text(
+      "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
+      "[scene.default]\nt = [0, 1]\ninitial = { R = 1, phi = 1 }\n",
+      "particle.toml");
 }
 
 using Values = std::vector<double>;  // angles, then rates
 
-Values applied(symbolic::Dag& dag, const std::vector<symbolic::Ref>& formulas, const std::vector<std::uint32_t>& angles, const Values& x) {
+Values applied(symbolic::Dag& dag, const std::vector<symbolic::Ref>& formulas, const std::vector<std::uint32_t>& angles,
+               const Values& x) {
   return symbolic::evaluate(dag, formulas, [&](const symbolic::Symbol& s) {
     const auto found = std::find(angles.begin(), angles.end(), s.index);
     REQUIRE(found != angles.end());
@@ -38,7 +44,8 @@ Values applied(symbolic::Dag& dag, const std::vector<symbolic::Ref>& formulas, c
 /// Rows e_k . E_j.
 Eigen::Matrix3d attitude(const std::string& set, const Values& n) {
   Eigen::Matrix3d Q = Eigen::Matrix3d::Identity();
-  for (std::size_t s = 0; s < 3; ++s) Q = Eigen::AngleAxisd(-n[s], Eigen::Vector3d::Unit(set[s] - '1')).toRotationMatrix() * Q;
+  for (std::size_t s = 0; s < 3; ++s)
+    Q = Eigen::AngleAxisd(-n[s], Eigen::Vector3d::Unit(set[s] - '1')).toRotationMatrix() * Q;
   return Q;
 }
 
@@ -49,18 +56,23 @@ Values moved(const Values& x, double h) {
 }
 
 /// The rates of `formulas` against the change of its values along the motion.
-void check_rates(symbolic::Dag& dag, const std::vector<symbolic::Ref>& formulas, const std::vector<std::uint32_t>& angles, const Values& x) {
+void check_rates(symbolic::Dag& dag, const std::vector<symbolic::Ref>& formulas,
+                 const std::vector<std::uint32_t>& angles, const Values& x) {
   constexpr double h = 1e-5;
-  const Values before = applied(dag, formulas, angles, moved(x, -h)), after = applied(dag, formulas, angles, moved(x, h));
+  const Values before = applied(dag, formulas, angles, moved(x, -h)),
+               after = applied(dag, formulas, angles, moved(x, h));
   const Values here = applied(dag, formulas, angles, x);
   for (std::size_t k = 0; k < angles.size(); ++k) {
-    CHECK(std::remainder(after[k] - before[k], 2 * M_PI) / (2 * h) == doctest::Approx(here[angles.size() + k]).epsilon(difference));
+    CHECK(std::remainder(after[k] - before[k], 2 * M_PI) / (2 * h) ==
+          doctest::Approx(here[angles.size() + k]).epsilon(difference));
   }
 }
 
 }  // namespace
 
-TEST_CASE("chart change: each of the twelve sets has a second one, of the same attitude, with rates that belong to the values") {
+TEST_CASE(
+    "chart change: each of the twelve sets has a second one, of the same attitude, with rates that belong to the "
+    "values") {
   std::size_t sets = 0;
   for (const rotations::Rotation& r : rotations::registry()) {
     if (r.family != "euler") continue;
@@ -75,7 +87,8 @@ TEST_CASE("chart change: each of the twelve sets has a second one, of the same a
     symbolic::Dag dag;
     const system::ChartChange change = derive::chart_change(dag, model, charts[0]);
     const double near = change.at_sine ? 0.2 : M_PI / 2 - 0.2;  // where the own set is about to fail
-    for (const Values& x : {Values{0.4, near, -1.1, 0.3, -0.8, 1.7}, Values{2.9, near, 4.0, -2, 0.1, 0.6}, Values{-1.3, near + 0.5, 0.2, 1, 2, -3}}) {
+    for (const Values& x : {Values{0.4, near, -1.1, 0.3, -0.8, 1.7}, Values{2.9, near, 4.0, -2, 0.1, 0.6},
+                            Values{-1.3, near + 0.5, 0.2, 1, 2, -3}}) {
       const Values second = applied(dag, change.to, change.angles, x);
       CHECK((attitude(r.name, x) - attitude(charts[0].second, second)).norm() < rounding);
       check_rates(dag, change.to, change.angles, x);
@@ -99,7 +112,8 @@ TEST_CASE("chart change: spherical coordinates about E3 and about E1") {
   for (const Values& x : {Values{0.2, 0.9, -1.1, 0.3}, Values{M_PI - 0.2, -2.5, 0.4, 1.6}}) {
     const Values second = applied(dag, change.to, change.angles, x);
     CHECK(std::cos(second[0]) == doctest::Approx(std::sin(x[0]) * std::cos(x[1])).epsilon(rounding));
-    CHECK(std::sin(second[0]) * std::cos(second[1]) == doctest::Approx(std::sin(x[0]) * std::sin(x[1])).epsilon(rounding));
+    CHECK(std::sin(second[0]) * std::cos(second[1]) ==
+          doctest::Approx(std::sin(x[0]) * std::sin(x[1])).epsilon(rounding));
     CHECK(std::sin(second[0]) * std::sin(second[1]) == doctest::Approx(std::cos(x[0])).epsilon(rounding));
     check_rates(dag, change.to, change.angles, x);
     const Values again = applied(dag, change.back, change.angles, second);

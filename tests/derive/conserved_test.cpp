@@ -95,7 +95,9 @@ x = {}
 
 TEST_CASE("conserved: what jumps in time or in place is not kept, though its derivatives vanish on either side") {
   const auto with_potential = [](const std::string& potential) {
-    return names("format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"" + potential + "\"\n");
+    return names(
+        "format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"" +
+        potential + "\"\n");
   };
   CHECK(with_potential("y*sign(t - 2)") == std::vector<std::string>{"momentum.x"});
   CHECK(with_potential("y*if(x > 1, 1, 2)") == std::vector<std::string>{"energy"});
@@ -106,10 +108,15 @@ TEST_CASE("conserved: what jumps in time or in place is not kept, though its der
 
 TEST_CASE("conserved: momenta of the whole are kept across a jump that only the distance decides") {
   const auto pair = [](const std::string& condition) {
-    return names("format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] }\n[[particle]]\nname = \"Q\"\nmass = 2\n"
-                 "position = { cartesian = [\"u\", \"v\"] }\n[energy]\npotential = \"if(" + condition + ", 1, 3)\"\n");
+    return names(
+        "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] "
+        "}\n[[particle]]\nname = \"Q\"\nmass = 2\n"
+        "position = { cartesian = [\"u\", \"v\"] }\n[energy]\npotential = \"if(" +
+        condition + ", 1, 3)\"\n");
   };
-  const auto has = [](const std::vector<std::string>& found, const std::string& name) { return std::find(found.begin(), found.end(), name) != found.end(); };
+  const auto has = [](const std::vector<std::string>& found, const std::string& name) {
+    return std::find(found.begin(), found.end(), name) != found.end();
+  };
   const std::vector<std::string> between = pair("norm(P - Q) < 1"), fixed = pair("x < 1");
   for (const char* name : {"linear_momentum.E1", "linear_momentum.E2", "angular_momentum.E3"}) {
     CHECK_MESSAGE(has(between, name), name);
@@ -123,7 +130,9 @@ TEST_CASE("conserved: a bump that is narrow, far away or faint is no constant") 
   for (const char* potential : {"exp(-((x - 30)/0.01)^2)", "1e-40*x"}) {
     CAPTURE(potential);
     const std::vector<std::string> found =
-        names(std::string("format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"") + potential + "\"\n");
+        names(std::string("format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + "
+                          "y_dot^2)/2\"\npotential = \"") +
+              potential + "\"\n");
     CHECK(found == std::vector<std::string>{"energy", "momentum.y"});
   }
 }

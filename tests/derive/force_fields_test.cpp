@@ -13,8 +13,10 @@ struct One {
   mechanics::Mechanics m;
   derive::ForceClass found;
   One(const std::string& position, const std::string& force)
-      : model(model::read_model_text("format = 1\n[parameters]\nm = 1\nk = 2\nL = 0.5\n[inputs]\nu = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = " +
-                                     position + "\n[[force]]\n" + force, "field")),
+      : model(model::read_model_text("format = 1\n[parameters]\nm = 1\nk = 2\nL = 0.5\n[inputs]\nu = "
+                                     "{}\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = " +
+                                         position + "\n[[force]]\n" + force,
+                                     "field")),
         m(mechanics::build_mechanics(model)),
         found(derive::classify_forces(m)[0]) {}
 };
@@ -51,7 +53,8 @@ TEST_CASE("fields: a force along a circle does work on each turn, the same gener
   REQUIRE(moment.found.potential.has_value());
 }
 
-TEST_CASE("fields: a potential that exists and has no closed form found is told so; one that may not exist is unknown") {
+TEST_CASE(
+    "fields: a potential that exists and has no closed form found is told so; one that may not exist is unknown") {
   const One gauss("\"x*E1\"\n[coordinates]\nx = {}", field("exp(-x^2)*E1"));
   CHECK(gauss.found.conservative == derive::Verdict::yes);
   CHECK_FALSE(gauss.found.potential.has_value());

@@ -75,7 +75,8 @@ from = "P"
 
 TEST_CASE("momenta: Kepler's problem in Cartesian coordinates keeps the angular momentum, which is proven") {
   const Found found(kepler());
-  CHECK(found.names() == std::vector<std::string>{"energy", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"});
+  CHECK(found.names() ==
+        std::vector<std::string>{"energy", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"});
   for (const derive::Conserved& c : found.conserved) CHECK(c.certainty == derive::Certainty::proven);
 }
 
@@ -98,8 +99,10 @@ TEST_CASE("momenta: uniform gravity along E2 leaves only what it does no work on
 }
 
 TEST_CASE("momenta: a chain in free space keeps G and H, with gravity the horizontal part of G only") {
-  CHECK(Found(free_chain()).names() == std::vector<std::string>{"energy", "momentum.x", "momentum.y", "angular_momentum.E3"});
-  CHECK(Found(free_chain("[[force]]\ngravity = \"-g*E2\"\n")).names() == std::vector<std::string>{"energy", "momentum.x"});
+  CHECK(Found(free_chain()).names() ==
+        std::vector<std::string>{"energy", "momentum.x", "momentum.y", "angular_momentum.E3"});
+  CHECK(Found(free_chain("[[force]]\ngravity = \"-g*E2\"\n")).names() ==
+        std::vector<std::string>{"energy", "momentum.x"});
 }
 
 TEST_CASE("momenta: a constraint that a rotation keeps leaves H, one that it breaks does not") {

@@ -55,17 +55,28 @@ force = "D*R*P.e_theta"
 [[constraint]]
 name = "sphere"
 holonomic = "R - d"
-)toml", "P7");
+)toml",
+                                                    "P7");
   const double m = 2, g = 9.81, D = 0.3, phi = 1.1, dphi = -0.4, dtheta = 1.7, t = 0.3;
   const double d = 1 + 0.1 * std::sin(2 * t), d1 = 0.2 * std::cos(2 * t), d2 = -0.4 * std::sin(2 * t);
   const double s = std::sin(phi), c = std::cos(phi);
-  const double theta_ddot = (D * s / m * d * d - 2 * d * d1 * s * s * dtheta - 2 * d * d * s * c * dphi * dtheta) / (d * d * s * s);
+  const double theta_ddot =
+      (D * s / m * d * d - 2 * d * d1 * s * s * dtheta - 2 * d * d * s * c * dphi * dtheta) / (d * d * s * s);
   const double phi_ddot = (m * d * d * s * c * dtheta * dtheta + m * g * d * s - 2 * m * d * d1 * dphi) / (m * d * d);
   const double lambda = m * d2 - m * d * s * s * dtheta * dtheta - m * d * dphi * dphi + m * g * c;
   int systems = 0;
   for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
-    test::Point point(mechanics, {{"t", t}, {"m", m}, {"g", g}, {"D", D}, {"d0", 1}, {"a", 0.1}, {"w", 2},
-                                  {"phi", phi}, {"phi_dot", dphi}, {"theta", 0.7}, {"theta_dot", dtheta}});
+    test::Point point(mechanics, {{"t", t},
+                                  {"m", m},
+                                  {"g", g},
+                                  {"D", D},
+                                  {"d0", 1},
+                                  {"a", 0.1},
+                                  {"w", 2},
+                                  {"phi", phi},
+                                  {"phi_dot", dphi},
+                                  {"theta", 0.7},
+                                  {"theta_dot", dtheta}});
     REQUIRE(system.free.size() == 2);
     REQUIRE(system.active.empty());
     point.solve(system);
@@ -99,7 +110,8 @@ kinetic = "(M + m)/2*x_dot^2 + m*l*x_dot*theta_dot*cos(theta) + m*l^2/2*theta_do
 potential = "-m*g*l*cos(theta)"
 [[force]]
 generalized = { x = "F - c*x_dot" }
-)toml", "cart");
+)toml",
+                                                    "cart");
   const double M = 2, m = 0.5, l = 0.8, g = 9.81, c = 0.1, F = 3, v = 0.4, th = 0.9, w = -1.2;
   // Solved by hand for the accelerations.
   const double right_x = F - c * v + m * l * w * w * std::sin(th), right_th = -m * g * l * std::sin(th);
@@ -108,8 +120,17 @@ generalized = { x = "F - c*x_dot" }
   const double theta_ddot = ((M + m) * right_th - coupling * right_x) / det;
   int systems = 0;
   for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
-    test::Point point(mechanics, {{"t", 0}, {"M", M}, {"m", m}, {"l", l}, {"g", g}, {"c", c}, {"F", F},
-                                  {"x", 0.2}, {"x_dot", v}, {"theta", th}, {"theta_dot", w}});
+    test::Point point(mechanics, {{"t", 0},
+                                  {"M", M},
+                                  {"m", m},
+                                  {"l", l},
+                                  {"g", g},
+                                  {"c", c},
+                                  {"F", F},
+                                  {"x", 0.2},
+                                  {"x_dot", v},
+                                  {"theta", th},
+                                  {"theta_dot", w}});
     point.solve(system);
     CHECK(point.at("x_ddot") == doctest::Approx(x_ddot).epsilon(rounding));
     CHECK(point.at("theta_ddot") == doctest::Approx(theta_ddot).epsilon(rounding));
@@ -134,7 +155,8 @@ gravity = "-g*E2"
 [[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
-)toml", "rod");
+)toml",
+                                                    "rod");
   const double m = 1.5, g = 9.81, L = 2, th = 0.6, w = 1.3;
   const double x = L * std::sin(th), y = -L * std::cos(th), vx = L * w * std::cos(th), vy = L * w * std::sin(th);
   // Planar pendulum: the rod pulls with N = m L w^2 + m g cos(th) towards the origin; lambda grad psi = 2 lambda r.
@@ -142,7 +164,8 @@ holonomic = "x^2 + y^2 - L^2"
   const double a_t = -g * std::sin(th);
   for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     REQUIRE(system.active.size() == 1);
-    test::Point point(mechanics, {{"t", 0}, {"m", m}, {"g", g}, {"L", L}, {"x", x}, {"y", y}, {"x_dot", vx}, {"y_dot", vy}});
+    test::Point point(mechanics,
+                      {{"t", 0}, {"m", m}, {"g", g}, {"L", L}, {"x", x}, {"y", y}, {"x_dot", vx}, {"y_dot", vy}});
     point.solve(system);
     CHECK(point.at("lambda.rod") == doctest::Approx(lambda).epsilon(rounding));
     CHECK(point.reaction(system, "rod") == doctest::Approx(lambda).epsilon(rounding));
@@ -171,7 +194,8 @@ on = "P"
 force = "-x_dot*E1 + E3"
 [coordinates]
 x = {}
-)toml", "power");
+)toml",
+                                                    "power");
   for_each_route(model, [&](mechanics::Mechanics& mechanics, const system::EquationSystem& system) {
     test::Point point(mechanics, {{"t", 0.4}, {"m0", 1}, {"k", 3}, {"x", 0.8}, {"x_dot", -0.5}});
     point.solve(system);

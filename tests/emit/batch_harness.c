@@ -1,6 +1,6 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiled with the header and the sources that target batch wrote, and -DNAME=..: every state of a batch has the bits, and
- * the code, that it has alone. The line of what is wrong is what is returned. */
+/* Compiled with the header and the sources that target batch wrote, and -DNAME=..: every state of a batch has the bits,
+ * and the code, that it has alone. The line of what is wrong is what is returned. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -24,62 +24,58 @@ enum {
 static unsigned long long seed = 1;
 static double within_one(void) /* -1 to 1 */
 {
-  seed = seed*6364136223846793005ULL + 1442695040888963407ULL;
-  return (double)(seed >> 11)*0x1p-52 - 1.0;
+  seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
+  return (double)(seed >> 11) * 0x1p-52 - 1.0;
 }
 
-static double t[stride], x[states*stride], p[parameters*stride], u[inputs*stride], w[prepared*stride], own_x[states], own_p[parameters],
-    own_u[inputs], own_w[prepared];
+static double t[stride], x[states * stride], p[parameters * stride], u[inputs * stride], w[prepared * stride],
+    own_x[states], own_p[parameters], own_u[inputs], own_w[prepared];
 static int mode[stride], codes[stride];
 
-static void entries_of(const double* from, int entries, int s, int own, double* to)
-{
-  for (int i = 0; i < entries; ++i) to[i] = own ? from[i*stride + s] : from[i];
+static void entries_of(const double* from, int entries, int s, int own, double* to) {
+  for (int i = 0; i < entries; ++i) to[i] = own ? from[i * stride + s] : from[i];
 }
 
 /* Whether entries i of the results of state s are these. */
-static int same(const double* batch, const double* alone, int entries, int s)
-{
+static int same(const double* batch, const double* alone, int entries, int s) {
   for (int i = 0; i < entries; ++i) {
-    if (memcmp(&batch[i*stride + s], &alone[i], sizeof(double)) == 0) continue;
-    if (isnan(batch[i*stride + s]) && isnan(alone[i])) continue; /* the sign of a NaN is nobody's */
-    printf("state %d, entry %d: %.17g in the batch, %.17g alone\n", s, i, batch[i*stride + s], alone[i]);
+    if (memcmp(&batch[i * stride + s], &alone[i], sizeof(double)) == 0) continue;
+    if (isnan(batch[i * stride + s]) && isnan(alone[i])) continue; /* the sign of a NaN is nobody's */
+    printf("state %d, entry %d: %.17g in the batch, %.17g alone\n", s, i, batch[i * stride + s], alone[i]);
     return 0;
   }
   return 1;
 }
 
-static void take(int s, int own)
-{
+static void take(int s, int own) {
   entries_of(x, states, s, 1, own_x);
   entries_of(p, parameters, s, own & OF(_own_parameters), own_p);
   entries_of(u, inputs, s, own & OF(_own_inputs), own_u);
   entries_of(w, prepared, s, own & OF(_own_prepared), own_w);
 }
 
-#define CHECK_FUNCTION(entries, batch_call, alone_call)                                  \
-  do {                                                                                   \
-    static double batch[(entries)*stride + 1], before[(entries) + 1];                    \
-    int first = 0;                                                                       \
-    for (int i = 0; i < (entries)*stride; ++i) batch[i] = 7.25;                          \
-    const int code = (batch_call);                                                       \
-    for (int s = 0; s < count; ++s) {                                                    \
-      take(s, own);                                                                      \
-      for (int i = 0; i < (entries); ++i) before[i] = 7.25;                              \
-      const int alone = (alone_call);                                                    \
-      if (first == 0) first = alone;                                                     \
-      if (codes[s] != alone || !same(batch, before, (entries), s)) return __LINE__;      \
-    }                                                                                    \
-    if (code != first) return __LINE__;                                                  \
-    for (int i = 0; i < (entries); ++i) {                                                \
-      for (int s = count; s < stride; ++s) {                                             \
-        if (batch[i*stride + s] != 7.25) return __LINE__; /* beyond the last state */    \
-      }                                                                                  \
-    }                                                                                    \
+#define CHECK_FUNCTION(entries, batch_call, alone_call)                                 \
+  do {                                                                                  \
+    static double batch[(entries)*stride + 1], before[(entries) + 1];                   \
+    int first = 0;                                                                      \
+    for (int i = 0; i < (entries)*stride; ++i) batch[i] = 7.25;                         \
+    const int code = (batch_call);                                                      \
+    for (int s = 0; s < count; ++s) {                                                   \
+      take(s, own);                                                                     \
+      for (int i = 0; i < (entries); ++i) before[i] = 7.25;                             \
+      const int alone = (alone_call);                                                   \
+      if (first == 0) first = alone;                                                    \
+      if (codes[s] != alone || !same(batch, before, (entries), s)) return __LINE__;     \
+    }                                                                                   \
+    if (code != first) return __LINE__;                                                 \
+    for (int i = 0; i < (entries); ++i) {                                               \
+      for (int s = count; s < stride; ++s) {                                            \
+        if (batch[i * stride + s] != 7.25) return __LINE__; /* beyond the last state */ \
+      }                                                                                 \
+    }                                                                                   \
   } while (0)
 
-static int compare(int own, int with_inputs)
-{
+static int compare(int own, int with_inputs) {
   const double* const inputs_of = with_inputs ? u : NULL;
   const double* const inputs_alone = with_inputs ? own_u : NULL;
 #define T (t[(own & OF(_own_time)) ? s : 0])
@@ -92,7 +88,7 @@ static int compare(int own, int with_inputs)
                  OF(_rhs_prepared)(T, own_x, own_p, own_w, inputs_alone, MODE, before));
 #endif
 #ifdef JAC
-  CHECK_FUNCTION(states*states, OF(_jac_batch)(count, stride, t, x, p, inputs_of, mode, own, batch, NULL, codes),
+  CHECK_FUNCTION(states * states, OF(_jac_batch)(count, stride, t, x, p, inputs_of, mode, own, batch, NULL, codes),
                  OF(_jac)(T, own_x, own_p, inputs_alone, MODE, before, NULL));
 #endif
 #ifdef OUTPUTS
@@ -106,23 +102,22 @@ static int compare(int own, int with_inputs)
   return 0;
 }
 
-int main(void)
-{
-  static double kept[states*stride];
+int main(void) {
+  static double kept[states * stride];
   double x0[states], p0[parameters];
   int modes[] = {0, MODES};
-  const int mode_count = (int)(sizeof modes/sizeof modes[0]);
+  const int mode_count = (int)(sizeof modes / sizeof modes[0]);
   if (OF(_batch_width)() != WIDTH) return 1;
   OF(_defaults)(x0, p0);
   for (int s = 0; s < count; ++s) {
-    t[s] = 0.5*within_one() + 0.6;
-    mode[s] = modes[(s*7 + 1) % mode_count];
-    for (int i = 0; i < states; ++i) x[i*stride + s] = x0[i]*(1 + 0.1*within_one()) + 0.4*within_one();
-    for (int i = 0; i < OF(_parameters); ++i) p[i*stride + s] = p0[i]*(1 + 0.05*within_one());
-    for (int i = 0; i < OF(_inputs); ++i) u[i*stride + s] = within_one();
+    t[s] = 0.5 * within_one() + 0.6;
+    mode[s] = modes[(s * 7 + 1) % mode_count];
+    for (int i = 0; i < states; ++i) x[i * stride + s] = x0[i] * (1 + 0.1 * within_one()) + 0.4 * within_one();
+    for (int i = 0; i < OF(_parameters); ++i) p[i * stride + s] = p0[i] * (1 + 0.05 * within_one());
+    for (int i = 0; i < OF(_inputs); ++i) u[i * stride + s] = within_one();
   }
   for (int i = 0; i < OF(_prepared_size); ++i) {
-    for (int s = 0; s < stride; ++s) w[i*stride + s] = 1 + 0.3*within_one();
+    for (int s = 0; s < stride; ++s) w[i * stride + s] = 1 + 0.3 * within_one();
   }
   for (int own = 0; own <= all; own += own == 0 ? 5 : all - own > 0 ? all - own : 1) {
     const int line = compare(own, own != 5);
@@ -130,13 +125,13 @@ int main(void)
   }
   /* Lanes that nobody else may feel: far and infinite angles, what is no number, singular masses. */
   for (int i = 0; i < states; ++i) {
-    x[i*stride + 3] = 1e6 + i;
-    x[i*stride + 4] = (double)NAN;
-    x[i*stride + 12] = 1e200;
-    x[i*stride + 28] = (double)INFINITY;
+    x[i * stride + 3] = 1e6 + i;
+    x[i * stride + 4] = (double)NAN;
+    x[i * stride + 12] = 1e200;
+    x[i * stride + 28] = (double)INFINITY;
   }
-  for (int i = 0; i < parameters; ++i) p[i*stride + 17] = 0;
-  for (int i = 0; i < OF(_prepared_size); ++i) w[i*stride + 17] = 0;
+  for (int i = 0; i < parameters; ++i) p[i * stride + 17] = 0;
+  for (int i = 0; i < OF(_prepared_size); ++i) w[i * stride + 17] = 0;
   const int line = compare(all, 1);
   if (line != 0) return line;
   /* dx may be x. */

@@ -29,13 +29,24 @@ std::vector<Width> widths() {
 std::string wrong(const std::string& folder, const Example& e, const Width& width, const std::string& modes) {
   const std::string name = emit::mangled_id(e.context.id), program = folder + "/use";
   const auto has = [&](const char* function) { return e.program.entries(function) > 0; };
-  std::vector<std::string> command{EOMGEN_TEST_CC, "-std=gnu11", "-O1", "-ffp-contract=off", "-o", program, "-DNAME=" + name,
-                                   "-DHEADER=\"" + name + "_batch.h\"", "-DMODES=" + modes, fmt::format("-DWIDTH={}", width.lanes), "-I" + folder};
+  std::vector<std::string> command{EOMGEN_TEST_CC,
+                                   "-std=gnu11",
+                                   "-O1",
+                                   "-ffp-contract=off",
+                                   "-o",
+                                   program,
+                                   "-DNAME=" + name,
+                                   "-DHEADER=\"" + name + "_batch.h\"",
+                                   "-DMODES=" + modes,
+                                   fmt::format("-DWIDTH={}", width.lanes),
+                                   "-I" + folder};
   command.insert(command.end(), width.flags.begin(), width.flags.end());
-  for (const auto& [function, define] : {std::pair{"prepare", "-DPREPARED"}, {"jac", "-DJAC"}, {"outputs", "-DOUTPUTS"}, {"events", "-DEVENTS"}}) {
+  for (const auto& [function, define] :
+       {std::pair{"prepare", "-DPREPARED"}, {"jac", "-DJAC"}, {"outputs", "-DOUTPUTS"}, {"events", "-DEVENTS"}}) {
     if (has(function)) command.emplace_back(define);
   }
-  const std::string said = complaints(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
+  const std::string said =
+      complaints(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
   if (!said.empty()) return said;
   const emit::Finished finished = emit::run_process({program});
   return finished.status == 0 ? "" : fmt::format("line {} of the harness: {}", finished.status, finished.output);
@@ -53,7 +64,8 @@ std::string wrong(const Example& e, const std::string& modes = "0") {
 
 }  // namespace
 
-TEST_CASE("batch: every state has the bits and the code that it has alone, whatever its neighbours are, for every width") {
+TEST_CASE(
+    "batch: every state has the bits and the code that it has alone, whatever its neighbours are, for every width") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
     CHECK(wrong(e) == "");
@@ -85,7 +97,8 @@ TEST_CASE("batch: hostile names, and every compiler there is") {
   if (emit::run_process({"clang", "--version"}).started) {
     CHECK(complaints({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
   }
-  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c}).find("without -ffast-math") != std::string::npos);
+  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c})
+            .find("without -ffast-math") != std::string::npos);
 }
 
 TEST_CASE("batch: what the other target writes stays as it is") {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "emit/examples.hpp"
-#include "model/content_hash.hpp"
 #include "error.hpp"
+#include "model/content_hash.hpp"
 #include "support/tolerances.hpp"
 
 using namespace eomgen;
@@ -25,7 +25,8 @@ void compiles_everywhere(const Example& e) {
   const std::string c = folder.path + "/" + name + ".c", cpp = folder.path + "/use.cpp";
   std::ofstream(cpp) << fmt::format(
       "#include \"{0}.hpp\"\n#include \"{0}.h\"\n"
-      "int main() {{ return eom::{0}::selftest() + {0}_selftest(); }}\n", name);
+      "int main() {{ return eom::{0}::selftest() + {0}_selftest(); }}\n",
+      name);
   const std::string object = folder.path + "/object.o", program = folder.path + "/use";
   CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {c}) == "");
   CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", program + ".o"}, {c}) == "");
@@ -58,7 +59,8 @@ TEST_CASE("emitted code: a right-hand side of thousands of operations comes in p
   REQUIRE(e.program.functions[0].code.size() > 3000);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context));
-  const std::string c = folder.path + "/long_chain.c", use = folder.path + "/use.cpp", object = folder.path + "/object.o", program = folder.path + "/use";
+  const std::string c = folder.path + "/long_chain.c", use = folder.path + "/use.cpp",
+                    object = folder.path + "/object.o", program = folder.path + "/use";
   std::ifstream written(c);
   const std::string text{std::istreambuf_iterator<char>(written), {}};
   CHECK(text.find("long_chain_rhs_part2(") != std::string::npos);
@@ -80,14 +82,17 @@ TEST_CASE("emitted code: hostile names and texts stay what they are") {
   const auto files = emit::emit(e.program, e.context);
   CHECK(files[0].name == "int_.hpp");
   for (const auto& file : files) {
-    for (const char c : file.text) CHECK_MESSAGE((static_cast<unsigned char>(c) < 0x7f && (c >= ' ' || c == '\n')), file.name);
+    for (const char c : file.text)
+      CHECK_MESSAGE((static_cast<unsigned char>(c) < 0x7f && (c >= ' ' || c == '\n')), file.name);
     CHECK(file.text.find("??") == std::string::npos);
     CHECK(file.text.find("\\\n") == std::string::npos);
   }
   compiles_everywhere(example("template", double_pendulum(), {"class", "sin"}, {"v1", "v2", "Real", "State", "std"}));
   compiles_everywhere(example("9 lives-%", double_pendulum(), {"x", "x_"}, {"p", "u", "mode", "INT_MAX", "errno"}));
-  compiles_everywhere(example("eom", cart_pendulum(), {"M", "h"}, {"rhs", "finite", "M_11", "sin_theta", "lambda"}, {"selftest"}));
-  compiles_everywhere(example("two", double_pendulum(), {"two_sincos", "sincos"}, {"angle", "sine", "eom_sincos", "eom_lanes", "two_bits"}));
+  compiles_everywhere(
+      example("eom", cart_pendulum(), {"M", "h"}, {"rhs", "finite", "M_11", "sin_theta", "lambda"}, {"selftest"}));
+  compiles_everywhere(example("two", double_pendulum(), {"two_sincos", "sincos"},
+                              {"angle", "sine", "eom_sincos", "eom_lanes", "two_bits"}));
 }
 
 TEST_CASE("emitted code: no model's name can collide with one of the runtime's") {
@@ -101,8 +106,10 @@ TEST_CASE("emitted code: no model's name can collide with one of the runtime's")
     for (std::string line; std::getline(file, line);) {
       std::string word;
       for (const char c : line.substr(0, line.find("//")) + " ") {
-        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_') word += c;
-        else if (!word.empty()) words.insert(std::exchange(word, ""));
+        if (std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_')
+          word += c;
+        else if (!word.empty())
+          words.insert(std::exchange(word, ""));
       }
     }
   }
@@ -110,11 +117,13 @@ TEST_CASE("emitted code: no model's name can collide with one of the runtime's")
   std::string text;
   for (const std::string& header : headers) text += "#include \"" + header + "\"\n";
   for (const std::string& word : words) {
-    if (std::isdigit(static_cast<unsigned char>(word[0])) == 0 && emit::mangled_id(word) == word) text += "namespace eom { using " + word + " = int; }\n";
+    if (std::isdigit(static_cast<unsigned char>(word[0])) == 0 && emit::mangled_id(word) == word)
+      text += "namespace eom { using " + word + " = int; }\n";
   }
   const Folder folder;
   std::ofstream(folder.path + "/use.cpp") << text;
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN}, {folder.path + "/use.cpp"}) == "");
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-fsyntax-only", "-I", lib.string(), "-isystem", EOMGEN_TEST_EIGEN},
+                   {folder.path + "/use.cpp"}) == "");
 }
 
 TEST_CASE("emitted code: df/dt may be left out of the Jacobian, in C and in C++") {
@@ -145,7 +154,8 @@ TEST_CASE("emitted code: -ffast-math is refused") {
   const Example e = examples()[0];
   emit::write_files(folder.path, emit::emit(e.program, e.context));
   for (const char* flag : {"-ffast-math", "-ffinite-math-only"}) {
-    const auto said = complaints({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
+    const auto said =
+        complaints({EOMGEN_TEST_CC, "-std=c11", flag, "-c", "-o", folder.path + "/o"}, {folder.path + "/pendulum.c"});
     CHECK(said.find("without -ffast-math") != std::string::npos);
   }
 }
@@ -217,7 +227,8 @@ int main() {
   CHECK(emit::run_process({program}).status == 0);
 }
 
-TEST_CASE("emitted code: Taylor series compile cleanly, and the header's agree with the C function's, in long double too") {
+TEST_CASE(
+    "emitted code: Taylor series compile cleanly, and the header's agree with the C function's, in long double too") {
   auto list = {example("chain3", chain(3), {"k", "x", "w"}, {"m1", "a", "b", "l1", "z", "dx", "g"}, {}, {"taylor"}),
                example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}, {"taylor", "mass"})};
   for (const Example& e : list) {
@@ -250,9 +261,11 @@ int main() {{
   x[n - 1] = 1e300;
   return {0}_taylor(0, x, p, nullptr, 0, order, c) == 5 ? 0 : 7;
 }}
-)", e.context.id);
+)",
+                                                           e.context.id);
     const std::string object = folder.path + "/object.o", program = folder.path + "/use";
-    CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object}, {folder.path + "/" + e.context.id + ".c"}) == "");
+    CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", object},
+                     {folder.path + "/" + e.context.id + ".c"}) == "");
     CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", program}, {folder.path + "/use.cpp", object, "-lm"}) == "");
     CHECK(emit::run_process({program}).status == 0);
   }
@@ -295,9 +308,11 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
     for (const double value : test.u) exact.u.push_back(exactly(value));
     for (const auto& function : e.program.functions) {
       auto arguments = exact;
-      if (function.name == "rhs_prepared") arguments.w = program::interpret(e.program.functions.rbegin()[1], exact, 60).results[0];
+      if (function.name == "rhs_prepared")
+        arguments.w = program::interpret(e.program.functions.rbegin()[1], exact, 60).results[0];
       const bool no_inputs = function.name == "mass" || function.name == "constraints";
-      for (std::size_t i = 0; i < arguments.u.size() && no_inputs; ++i) arguments.u[i] = exactly(e.context.inputs[i].value);
+      for (std::size_t i = 0; i < arguments.u.size() && no_inputs; ++i)
+        arguments.u[i] = exactly(e.context.inputs[i].value);
       const auto expected = program::interpret(function, arguments, 50).results;
       std::vector<std::vector<double>> got;
       for (const auto& list : expected) got.emplace_back(list.size() + 1);
@@ -313,7 +328,8 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
       if (function.name == "jac") code = m.jac(test.t, x, p, u, 0, got[0].data(), got[1].data());
       if (function.name == "jac_p") code = m.jac_p(test.t, x, p, u, 0, got[0].data());
       if (function.name == "mass") code = m.mass(test.t, x, p, got[0].data(), got[1].data());
-      if (function.name == "constraints") code = m.constraints(test.t, x, p, got[0].data(), got[1].data(), got[2].data());
+      if (function.name == "constraints")
+        code = m.constraints(test.t, x, p, got[0].data(), got[1].data(), got[2].data());
       if (function.name == "reactions") code = m.reactions(test.t, x, p, u, 0, got[0].data());
       if (function.name == "outputs") code = m.outputs(test.t, x, p, u, 0, got[0].data());
       CHECK(code == 0);

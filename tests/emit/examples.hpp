@@ -10,8 +10,8 @@
 #include <fstream>
 #include <sstream>
 
-#include "emit/shared_library/loaded_model.hpp"
 #include "emit/self_test.hpp"
+#include "emit/shared_library/loaded_model.hpp"
 #include "emit/shared_library/process.hpp"
 #include "emit/targets.hpp"
 #include "emit/write_files.hpp"
@@ -27,8 +27,9 @@ struct Example {
   emit::EmissionContext context;
 };
 
-inline Example example(const std::string& id, const system::EquationSystem& system, const std::vector<std::string>& coordinates,
-                       const std::vector<std::string>& parameters, const std::vector<std::string>& inputs = {},
+inline Example example(const std::string& id, const system::EquationSystem& system,
+                       const std::vector<std::string>& coordinates, const std::vector<std::string>& parameters,
+                       const std::vector<std::string>& inputs = {},
                        const std::vector<std::string>& with = {"jac", "jac_p", "mass", "constraints", "reactions"}) {
   Example result;
   result.program = build(system, with, true, true);
@@ -38,7 +39,8 @@ inline Example example(const std::string& id, const system::EquationSystem& syst
   context.content_hash = "0123abcd";
   context.verdict = "pass: 20 points, 50 digits";
   for (const std::string& name : coordinates) context.coordinates.push_back({name, "rad", "", 0});
-  for (const std::string& name : parameters) context.parameters.push_back({name, "kg", "", 0.5 + 0.125 * static_cast<double>(context.parameters.size())});
+  for (const std::string& name : parameters)
+    context.parameters.push_back({name, "kg", "", 0.5 + 0.125 * static_cast<double>(context.parameters.size())});
   for (const std::string& name : inputs) context.inputs.push_back({name, "N", "", 0.25});
   for (std::uint64_t point = 0; point < 3; ++point) {
     auto arguments = arguments_at<cln::cl_R>(system, point);
@@ -95,8 +97,10 @@ struct Setting {
     ::setenv(name.c_str(), value.c_str(), 1);
   }
   ~Setting() {
-    if (had) ::setenv(name.c_str(), before.c_str(), 1);
-    else ::unsetenv(name.c_str());
+    if (had)
+      ::setenv(name.c_str(), before.c_str(), 1);
+    else
+      ::unsetenv(name.c_str());
   }
   Setting(const Setting&) = delete;
   Setting& operator=(const Setting&) = delete;
@@ -110,7 +114,8 @@ inline std::string file_named(const std::vector<emit::EmittedFile>& files, const
 }
 
 inline const std::vector<std::string>& strict() {
-  static const std::vector<std::string> list = {"-Wall", "-Wextra", "-Wpedantic", "-Wshadow", "-Wconversion", "-Werror"};
+  static const std::vector<std::string> list = {"-Wall",    "-Wextra",      "-Wpedantic",
+                                                "-Wshadow", "-Wconversion", "-Werror"};
   return list;
 }
 
@@ -120,7 +125,9 @@ inline std::string complaints(std::vector<std::string> command, const std::vecto
   command.insert(command.end(), arguments.begin(), arguments.end());
   const emit::Finished finished = emit::run_process(command);
   if (!finished.started) return "not started: " + command[0];
-  return finished.status == 0 && finished.output.empty() ? "" : fmt::format("status {}\n{}", finished.status, finished.output);
+  return finished.status == 0 && finished.output.empty()
+             ? ""
+             : fmt::format("status {}\n{}", finished.status, finished.output);
 }
 
 }  // namespace test_systems

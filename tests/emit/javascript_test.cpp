@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Target javascript in the hands of Node where there is one. Shipped models are compared with their C by tests/models/javascript_test.cpp.
+// Target javascript in the hands of Node where there is one. Shipped models are compared with their C by
+// tests/models/javascript_test.cpp.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
@@ -17,7 +18,8 @@ void loads(const Example& e, const std::string& more = "") {
   const auto files = emit::emit(e.program, e.context, "javascript");
   REQUIRE(files.size() == 1);
   CHECK(files[0].name == emit::script_name(e.context.id) + ".js");
-  for (const char letter : files[0].text) CHECK((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')));
+  for (const char letter : files[0].text)
+    CHECK((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')));
   CHECK(files[0].text.find("</") == std::string::npos);
   CHECK(files[0].text.find("<!") == std::string::npos);
   if (!has_node()) {
@@ -26,8 +28,10 @@ void loads(const Example& e, const std::string& more = "") {
   }
   emit::write_files(folder.path, files);
   const emit::Finished finished = emit::run_process(
-      {"node", "-e", fmt::format("const assert = require('assert'), m = require('{}/{}'); assert.strictEqual(m.selftest(), 0); "
-                                 "assert.strictEqual(m.info.states.length, {}); {}", folder.path, files[0].name, e.context.start.size(), more)});
+      {"node", "-e",
+       fmt::format("const assert = require('assert'), m = require('{}/{}'); assert.strictEqual(m.selftest(), 0); "
+                   "assert.strictEqual(m.info.states.length, {}); {}",
+                   folder.path, files[0].name, e.context.start.size(), more)});
   CHECK_MESSAGE(finished.status == 0, finished.output);
 }
 
@@ -47,16 +51,21 @@ TEST_CASE("target javascript: its self test sees a wrong value") {
   const Folder folder;
   const auto files = emit::emit(e.program, e.context, "javascript");
   emit::write_files(folder.path, files);
-  CHECK(emit::run_process({"node", "-e", fmt::format("process.exit(require('{}/{}').selftest())", folder.path, files[0].name)}).status == 2);
+  CHECK(emit::run_process(
+            {"node", "-e", fmt::format("process.exit(require('{}/{}').selftest())", folder.path, files[0].name)})
+            .status == 2);
 }
 
 TEST_CASE("target javascript: names that JavaScript or a browser has, and hostile texts, stay what they are") {
   for (const char* id : {"function", "document", "module", "window", "json", "Math"}) {
     INFO(id);
-    auto e = example(id, cart_pendulum(), {"let", "arguments"}, {"rhs", "import", "Math", "eval", "var"}, {"undefined"});
+    auto e =
+        example(id, cart_pendulum(), {"let", "arguments"}, {"rhs", "import", "Math", "eval", "var"}, {"undefined"});
     e.context.title = "</script><script>throw 1</script> <!-- */ \" ' ` ${process.exit(7)} \\u2028";
     e.context.parameters[0].note = "\nprocess.exit(8)";
     e.context.parameters[1].unit = "\"); process.exit(9) // \xff";
-    loads(e, "assert.deepStrictEqual(m.info.parameters, ['rhs', 'import', 'Math', 'eval', 'var']); assert(m.info.title.startsWith('</script>'));");
+    loads(e,
+          "assert.deepStrictEqual(m.info.parameters, ['rhs', 'import', 'Math', 'eval', 'var']); "
+          "assert(m.info.title.startsWith('</script>'));");
   }
 }

@@ -15,18 +15,20 @@ void compiles_and_imports(const Example& e, const std::string& more = "pass") {
   const Setting cache("EOMGEN_CACHE_DIR", folder.path);
   const auto files = emit::emit(e.program, e.context, "python");
   emit::write_files(folder.path, files);
-  const std::string name = emit::mangled_id(e.context.id), module = emit::module_name(e.context.id), c = folder.path + "/" + name + "_simulate.c";
+  const std::string name = emit::mangled_id(e.context.id), module = emit::module_name(e.context.id),
+                    c = folder.path + "/" + name + "_simulate.c";
   CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O2", "-c", "-o", folder.path + "/c.o"}, {c}) == "");
   CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/cpp.o"}, {c}) == "");
   for (const auto& file : files) {
-    for (const char letter : file.text) CHECK_MESSAGE((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')), file.name);
+    for (const char letter : file.text)
+      CHECK_MESSAGE((static_cast<unsigned char>(letter) < 0x7f && (letter >= ' ' || letter == '\n')), file.name);
   }
   if (emit::run_process({"python3", "--version"}).status != 0) return;
   const std::string use = fmt::format(
       "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{0}'); import {1} as m; "
       "assert len(m.rhs(0, m.defaults['x'])) == len(m.states) == {2}; assert len(m.params) == {3}; "
-      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'; {4}", folder.path, module, e.context.start.size(),
-      e.context.parameters.size(), more);
+      "assert m.simulate(m.defaults['t'] + 1e-3).outcome == 'done'; {4}",
+      folder.path, module, e.context.start.size(), e.context.parameters.size(), more);
   const emit::Finished finished = emit::run_process({"python3", "-c", use});
   CHECK_MESSAGE(finished.status == 0, finished.output);
 }
@@ -49,7 +51,8 @@ TEST_CASE("target python: hostile names and texts stay what they are") {
 }
 
 TEST_CASE("target python: a dict of parameters changes those that depend on them too, whatever their names") {
-  auto e = example("dependent", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
+  auto e =
+      example("dependent", cart_pendulum(), {"I", "lambda"}, {"rhs", "import", "numpy", "main", "None"}, {"class"});
   e.context.parameters[0].expression = "import^2 + if(numpy < 3, main, sqrt(4))";
   e.context.parameters[1].expression = "2*None";
   compiles_and_imports(e,
@@ -63,8 +66,9 @@ TEST_CASE("target python: compiled code is kept and loaded only where nobody els
   const Folder folder, shared;
   const Example e = examples()[0];
   emit::write_files(folder.path, emit::emit(e.program, e.context, "python"));
-  const std::string use = fmt::format("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m; print(m._library._name)", folder.path,
-                                      emit::mangled_id(e.context.id));
+  const std::string use = fmt::format(
+      "import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m; print(m._library._name)",
+      folder.path, emit::mangled_id(e.context.id));
   const Setting cache("EOMGEN_CACHE_DIR", shared.path);
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));
   CHECK(emit::run_process({"python3", "-c", use}).output.starts_with(shared.path));

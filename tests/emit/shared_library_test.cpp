@@ -109,8 +109,9 @@ TEST_CASE("compiler: one that is missing is told with the command that installs 
   const Folder cache;
   const Setting folder("EOMGEN_CACHE_DIR", cache.path);
   const Setting compiler("EOMGEN_CC", "no-such-compiler");
-  CHECK(failure(sources().c) ==
-        "the C compiler `no-such-compiler` does not run / sudo apt-get install gcc libc6-dev, or unset EOMGEN_CC and CC");
+  CHECK(
+      failure(sources().c) ==
+      "the C compiler `no-such-compiler` does not run / sudo apt-get install gcc libc6-dev, or unset EOMGEN_CC and CC");
 }
 
 TEST_CASE("compiler: what it says about code that does not compile is shown, and nothing is kept") {
@@ -154,7 +155,8 @@ TEST_CASE("cache: a folder that another user could have filled is not used, and 
       CHECK(code.note.find(why) != std::string::npos);
       CHECK_FALSE(code.path.starts_with(cache));
       path = code.path;
-      CHECK(std::filesystem::status(std::filesystem::path(path).parent_path()).permissions() == std::filesystem::perms::owner_all);
+      CHECK(std::filesystem::status(std::filesystem::path(path).parent_path()).permissions() ==
+            std::filesystem::perms::owner_all);
     }
     CHECK_FALSE(std::filesystem::exists(path));  // gone with the code
   };
@@ -188,7 +190,9 @@ TEST_CASE("cache: a folder that another user could have filled is not used, and 
   CHECK_FALSE(std::filesystem::is_symlink(library));
 }
 
-TEST_CASE("cache: without a home it is in the folder of temporary files, also where TMPDIR is none, and not one that was there before") {
+TEST_CASE(
+    "cache: without a home it is in the folder of temporary files, also where TMPDIR is none, and not one that was "
+    "there before") {
   const Folder temporary;
   const Setting none("EOMGEN_CACHE_DIR", ""), xdg("XDG_CACHE_HOME", ""), home("HOME", "");
   const Setting there("TMPDIR", temporary.path);
@@ -210,10 +214,12 @@ TEST_CASE("cache: what killed runs left is cleared, what others are working on i
     const std::string path = cache.path + "/" + name;
     std::filesystem::create_directory(path);
     std::ofstream(path + "/half.c") << "int";
-    if (old) std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+    if (old)
+      std::filesystem::last_write_time(path, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
     return path;
   };
-  const std::string left = make("make-killed", true), new_one = make("make-newone", false), held = make("make-beheld", true);
+  const std::string left = make("make-killed", true), new_one = make("make-newone", false),
+                    held = make("make-beheld", true);
   const int file = ::open(held.c_str(), O_RDONLY | O_DIRECTORY);
   REQUIRE(::flock(file, LOCK_EX) == 0);
   (void)load();

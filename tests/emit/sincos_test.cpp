@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // templates/kernels/sincos against CLN in 60 digits, through the compiler as users will.
 #include <cln/real.h>
-#include <doctest/doctest.h>
 #include <dlfcn.h>
+#include <doctest/doctest.h>
 
 #include <bit>
 #include <cmath>
@@ -31,7 +31,8 @@ struct Kernel {
   Packed packed = nullptr;
   explicit Kernel(const std::vector<std::string>& flags, const std::string& replace = "", const std::string& by = "") {
     std::string text = emit::sincos_kernel("k_", "static inline", "");
-    for (std::size_t at = text.find(replace); !replace.empty() && at != std::string::npos; at = text.find(replace, at + by.size())) {
+    for (std::size_t at = text.find(replace); !replace.empty() && at != std::string::npos;
+         at = text.find(replace, at + by.size())) {
       text.replace(at, replace.size(), by);
     }
     const std::string source = folder.path + "/kernel.c", library = folder.path + "/kernel.so";
@@ -85,7 +86,8 @@ std::vector<double> angles() {
     std::uniform_real_distribution<double> within(-reach, reach);
     for (int i = 0; i < 1500; ++i) list.push_back(within(random));
   }
-  // Next to multiples of pi/4: where sines and cosines vanish, and where the reduction goes from one quarter to the next.
+  // Next to multiples of pi/4: where sines and cosines vanish, and where the reduction goes from one quarter to the
+  // next.
   const cln::cl_R quarter = cln::pi(cln::float_format(60)) / 4;
   for (int k = 1; k * 0.7853981633974483 < 65536; k += k < 400 ? 1 : 41) {
     const double x = cln::double_approx(k * quarter);
@@ -96,8 +98,12 @@ std::vector<double> angles() {
 
 std::vector<double> special() {
   const double inf = std::numeric_limits<double>::infinity(), tiny = std::numeric_limits<double>::denorm_min();
-  return {0.0, -0.0, tiny, -tiny, 1e-310, 1e-30, 65536.0, -65536.0, std::nextafter(65536.0, inf), 1e5, -1e5, 1e22, -1e22, 1e300,
-          std::numeric_limits<double>::max(), inf, -inf, std::nan("")};
+  return {0.0,     -0.0,     tiny,
+          -tiny,   1e-310,   1e-30,
+          65536.0, -65536.0, std::nextafter(65536.0, inf),
+          1e5,     -1e5,     1e22,
+          -1e22,   1e300,    std::numeric_limits<double>::max(),
+          inf,     -inf,     std::nan("")};
 }
 
 }  // namespace
@@ -105,7 +111,8 @@ std::vector<double> special() {
 TEST_CASE("packed sincos: wrong by less than a unit in the last place up to 65536") {
   std::vector<std::vector<std::string>> flags = {{"-O2"}};
   // With fused multiplications and wide registers, where this machine has them.
-  if (emit::run_process({EOMGEN_TEST_CC, "-march=native", "-E", "-x", "c", "/dev/null"}).status == 0) flags.push_back({"-O3", "-march=native"});
+  if (emit::run_process({EOMGEN_TEST_CC, "-march=native", "-E", "-x", "c", "/dev/null"}).status == 0)
+    flags.push_back({"-O3", "-march=native"});
   for (const auto& set : flags) {
     const Kernel kernel(set);
     double largest = 0, where = 0;
@@ -119,7 +126,9 @@ TEST_CASE("packed sincos: wrong by less than a unit in the last place up to 6553
   }
 }
 
-TEST_CASE("packed sincos: zeros keep their sign, denormals are their own sine, what is large or not finite is the C library's") {
+TEST_CASE(
+    "packed sincos: zeros keep their sign, denormals are their own sine, what is large or not finite is the C "
+    "library's") {
   const Kernel kernel({"-O2"});
   for (const double angle : special()) {
     CAPTURE(angle);
@@ -128,7 +137,8 @@ TEST_CASE("packed sincos: zeros keep their sign, denormals are their own sine, w
       CHECK(same_bits(kernel(-angle).first, -sine));
       CHECK(same_bits(kernel(-angle).second, cosine));
       const bool its_own_sine = std::abs(angle) < 1e-300;  // CLN's floats underflow there
-      CHECK((its_own_sine ? same_bits(sine, angle) && cosine == 1 : worst(kernel, angle) < tolerances::packed_sincos_ulps));
+      CHECK((its_own_sine ? same_bits(sine, angle) && cosine == 1
+                          : worst(kernel, angle) < tolerances::packed_sincos_ulps));
     } else {
       CHECK(same_bits(sine, std::sin(angle)));
       CHECK(same_bits(cosine, std::cos(angle)));
@@ -152,7 +162,8 @@ TEST_CASE("packed sincos: the same bits in any company, with and without optimis
   }
 }
 
-TEST_CASE("packed sincos: without vector types, or where doubles are kept in wider registers, all is left to the C library") {
+TEST_CASE(
+    "packed sincos: without vector types, or where doubles are kept in wider registers, all is left to the C library") {
   const Kernel kernel({"-O2"}, "defined(__GNUC__) && defined(FLT_EVAL_METHOD)", "0");
   for (const double angle : {0.5, -2.0, 1e3, 1e22}) {
     CHECK(same_bits(kernel(angle).first, std::sin(angle)));

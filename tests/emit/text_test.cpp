@@ -12,7 +12,10 @@ using namespace eomgen::emit;
 using eomgen::symbolic::Rational;
 
 TEST_CASE("text: comments cannot be ended or continued from inside") {
-  for (const char* text : {"*/", "/*/", "**//", "\\", "?\?/", "a\nb", "*\n/", "/", "*", "??""?\?/", "\x7f\x80"}) {
+  for (const char* text : {"*/", "/*/", "**//", "\\", "?\?/", "a\nb", "*\n/", "/", "*",
+                           "??"
+                           "?\?/",
+                           "\x7f\x80"}) {
     const std::string safe = "/* " + comment_text(text) + "*/";
     CHECK(safe.find("*/") == safe.size() - 2);
     CHECK(safe.find("/*", 2) == std::string::npos);
@@ -38,9 +41,10 @@ TEST_CASE("text: decimals read back as the same number") {
 
 TEST_CASE("text: exact numbers are rounded to the nearest double") {
   // strtod is correctly rounded: its reading of a decimal is the judge
-  for (const char* text : {"9.81", "0.1", "0.3", "6.67430e-11", "1.7976931348623157e308", "4.9e-324", "2.5e-324", "2.4e-324",
-                           "9007199254740993", "9007199254740995", "0.1000000000000000055511151231257827", "1e-320", "2.2250738585072011e-308",
-                           "1e400", "1e-400", "3.141592653589793238462643383279502884"}) {
+  for (const char* text :
+       {"9.81", "0.1", "0.3", "6.67430e-11", "1.7976931348623157e308", "4.9e-324", "2.5e-324", "2.4e-324",
+        "9007199254740993", "9007199254740995", "0.1000000000000000055511151231257827", "1e-320",
+        "2.2250738585072011e-308", "1e400", "1e-400", "3.141592653589793238462643383279502884"}) {
     const std::string all = text;
     const std::size_t e = all.find('e'), point = all.find('.');
     const std::string digits = all.substr(0, e);

@@ -21,7 +21,8 @@ class RoughProgram {
     program::Request request;
     request.with = {"events"};
     for (const auto& output : systems[0].outputs) {
-      if (output.name.find("friction.") == 0 || output.name.find("reaction.") == 0) request.outputs.push_back(output.name);
+      if (output.name.find("friction.") == 0 || output.name.find("reaction.") == 0)
+        request.outputs.push_back(output.name);
     }
     outputs_ = request.outputs;
     program_ = program::build_program(systems, request);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Friction in the equations and the law that closes them, against d'Alembert's principle, Newton's law and a count of solutions.
+// Friction in the equations and the law that closes them, against d'Alembert's principle, Newton's law and a count of
+// solutions.
 #include <doctest/doctest.h>
 
 #include <array>
@@ -23,11 +24,12 @@ void check_routes(const std::string& text) {
   // The program in CLN in every mode against Newton's iteration on the law.
   program::Program program = program::build_program(subjects.systems, {});
   const program::Function& rhs = program.functions[0];
-  subjects.programs.push_back({"program", [&](const verify::Real& t, const std::vector<verify::Real>& x, const std::vector<verify::Real>& p,
-                                              const std::vector<verify::Real>& u, int mode) {
-                                 const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, 40);
-                                 return values.results[0];
-                               }});
+  subjects.programs.push_back(
+      {"program", [&](const verify::Real& t, const std::vector<verify::Real>& x, const std::vector<verify::Real>& p,
+                      const std::vector<verify::Real>& u, int mode) {
+         const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, 40);
+         return values.results[0];
+       }});
   const verify::Certificate certificate = verify::certify(m, subjects, {40, 4, 1});
   INFO(certificate.summary());
   CHECK(certificate.pass);
@@ -39,8 +41,9 @@ double dot(const Vector& a, const Vector& b) { return a[0] * b[0] + a[1] * b[1] 
 }  // namespace
 
 TEST_CASE("friction: the equations take up forces of any size, and the program obeys the law in every mode") {
-  for (const std::string* text : {&test::belt, &test::dry, &test::rough_line, &test::sphere, &test::helix, &test::dumbbell, &test::floor, &test::drop, &test::dome, &test::creeping,
-                                  &test::hinge, &test::wires}) {
+  for (const std::string* text :
+       {&test::belt, &test::dry, &test::rough_line, &test::sphere, &test::helix, &test::dumbbell, &test::floor,
+        &test::drop, &test::dome, &test::creeping, &test::hinge, &test::wires}) {
     check_routes(*text);
   }
 }
@@ -123,5 +126,6 @@ TEST_CASE("friction: coefficients that make no sense are refused with their plac
     return std::string("nothing");
   };
   CHECK(message("mu_d = 0.5", "mu_d = -0.5") == "a coefficient of friction of 'belt' is negative");
-  CHECK(message("mu_d = 0.5", "mu_d = 1.5") == "the static coefficient of friction of 'belt' is less than the dynamic one");
+  CHECK(message("mu_d = 0.5", "mu_d = 1.5") ==
+        "the static coefficient of friction of 'belt' is less than the dynamic one");
 }

@@ -41,7 +41,8 @@ TEST_CASE("friction: a block on a belt sticks for 5 and slips for 2(pi - atan 2.
   const eom::ModeResult end = run(rough, {0, 0.2}, 4 * (stick + slip));
   REQUIRE(end.outcome == eom::Outcome::done);
   REQUIRE(end.events.size() >= 6);
-  // The block is carried from x = 0 to the limit x = 1, and sticks again at x = 0 (sticking starts at the mirror image 1 - 2 * 0.5).
+  // The block is carried from x = 0 to the limit x = 1, and sticks again at x = 0 (sticking starts at the mirror image
+  // 1 - 2 * 0.5).
   double t = 5;
   for (std::size_t i = 0; i < end.events.size(); ++i) {
     CHECK(end.events[i].kind == (i % 2 == 0 ? "slip" : "stick"));
@@ -51,7 +52,9 @@ TEST_CASE("friction: a block on a belt sticks for 5 and slips for 2(pi - atan 2.
   }
 }
 
-TEST_CASE("friction: an oscillator with dry friction stops where and when the closed form says, and loses what friction takes") {
+TEST_CASE(
+    "friction: an oscillator with dry friction stops where and when the closed form says, and loses what friction "
+    "takes") {
   const test::RoughProgram rough(test::dry, {1, 1, 0.25, 1});
   const eom::ModeResult end = run(rough, {1.6, 0}, 20);
   REQUIRE(end.outcome == eom::Outcome::done);

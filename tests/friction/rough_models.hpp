@@ -125,7 +125,8 @@ holonomic = ["r - r0", "nu"]
 friction = { static = "mu_s", dynamic = "mu_d" }
 )toml";
 
-// Two equal masses on a massless rod, one of them on a rough floor: above mu = 2 sqrt 2 the law may have no solution, or several.
+// Two equal masses on a massless rod, one of them on a rough floor: above mu = 2 sqrt 2 the law may have no solution,
+// or several.
 inline const std::string dumbbell = R"toml(format = 1
 [parameters]
 m = 1

@@ -9,8 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <nlohmann/json.hpp>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <string_view>
 
@@ -106,13 +106,15 @@ void check_document(const Result& result, const Words& words) {
 
 /// The derivations of a model disagree, its code cannot be compiled: defects of ours, whatever the model is.
 bool is_ours(const Error& error) {
-  return error.fault() == Fault::tool || error.remedy().find("defect of eomgen") != std::string::npos || error.message().find("internal") != std::string::npos;
+  return error.fault() == Fault::tool || error.remedy().find("defect of eomgen") != std::string::npos ||
+         error.message().find("internal") != std::string::npos;
 }
 
 /// The call of a text, and where its model begins.
 std::size_t chosen(const std::vector<Words>& calls, std::string_view text) {
   std::size_t number = text.size();
-  if (text.size() > 1 && text[0] == '#' && text[1] >= '0' && text[1] <= '9') number = static_cast<std::size_t>(text[1] - '0');
+  if (text.size() > 1 && text[0] == '#' && text[1] >= '0' && text[1] <= '9')
+    number = static_cast<std::size_t>(text[1] - '0');
   return number % calls.size();
 }
 
@@ -120,7 +122,8 @@ std::vector<std::string> shipped() {
   std::vector<std::string> result;
   std::vector<fs::path> files;
   for (const char* folder : {"models", "tests/fuzz/seeds"}) {
-    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(test::source_folder()) / folder)) files.push_back(entry.path());
+    for (const fs::directory_entry& entry : fs::directory_iterator(fs::path(test::source_folder()) / folder))
+      files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
@@ -138,7 +141,8 @@ const std::vector<Words>& derive_calls() {
   static const std::vector<Words> all{
       {"check", "--json"},
       {"derive", "--show", "all", "--json"},
-      {"derive", "--show", "equations,constraints,reactions,friction,conserved,routh", "--approach", "I", "--format", "text"},
+      {"derive", "--show", "equations,constraints,reactions,friction,conserved,routh", "--approach", "I", "--format",
+       "text"},
       {"verify", "--no-compile", "--points", "3", "--json"},
       {"emit", "-o", "OUT", "--with", "jac,jac_p,mass,constraints,reactions,outputs,events,energy", "--json"},
       {"emit", "-o", "OUT", "--target", "python", "--approach", "I", "--json"},
@@ -174,11 +178,13 @@ std::string try_command(const std::vector<Words>& calls, const std::string& text
   words.insert(words.begin() + 1, model);
   try {
     const Result result = call(words);
-    if (result.code != 0 && result.code != 3) found("exit code " + std::to_string(result.code) + "\n" + result.out, words);
+    if (result.code != 0 && result.code != 3)
+      found("exit code " + std::to_string(result.code) + "\n" + result.out, words);
     if (std::find(words.begin(), words.end(), "--json") != words.end()) check_document(result, words);
     return "";
   } catch (const Error& error) {
-    if (error.message().empty() || error.remedy().empty()) found(std::string("an error without a remedy: ") + error.what(), words);
+    if (error.message().empty() || error.remedy().empty())
+      found(std::string("an error without a remedy: ") + error.what(), words);
     if (is_ours(error)) found(error.what(), words);
     return error.what();
   } catch (const std::exception& error) {
@@ -191,7 +197,8 @@ std::string mutate(const std::vector<Words>& calls, const std::string& text, uns
   Random random(seed);
   random.discard(3);  // seeds in a row begin alike
   const bool numbered = text.size() > 3 && text[0] == '#' && text[2] == '\n';
-  const std::string first = numbered && random() % 4 != 0 ? text.substr(0, 3) : "#" + std::to_string(random() % calls.size()) + "\n";
+  const std::string first =
+      numbered && random() % 4 != 0 ? text.substr(0, 3) : "#" + std::to_string(random() % calls.size()) + "\n";
   return first + mutator(numbered ? text.substr(3) : text, random);
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Commands of the program on a model that somebody made, in this process: whatever the model is, a command does its work
-// and its JSON document fits its schema, or it ends in one Error with a remedy. Anything else ends the process.
+// Commands of the program on a model that somebody made, in this process: whatever the model is, a command does its
+// work and its JSON document fits its schema, or it ends in one Error with a remedy. Anything else ends the process.
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,7 @@ std::string try_command(const std::vector<Words>& calls, const std::string& text
 std::string mutate(const std::vector<Words>& calls, const std::string& text, unsigned seed);
 
 /// What libFuzzer asks of a custom mutator; bytes instead of words now and then.
-std::size_t mutate_bytes(const std::vector<Words>& calls, std::uint8_t* data, std::size_t size, std::size_t most, unsigned seed);
+std::size_t mutate_bytes(const std::vector<Words>& calls, std::uint8_t* data, std::size_t size, std::size_t most,
+                         unsigned seed);
 
 }  // namespace eomgen::fuzz

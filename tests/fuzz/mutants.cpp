@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The harnesses without libFuzzer, for any compiler: mutated models in a fixed order, each in a process of its own with
 // bounds on its time and memory.
-//   mutants derive|run FIRST COUNT [SECONDS]   models of the seeds FIRST, FIRST + 1 ..; findings are kept in this folder
-//   mutants derive|run FILE...                 these models, or those in these folders
+//   mutants derive|run FIRST COUNT [SECONDS]   models of the seeds FIRST, FIRST + 1 ..; findings are kept in this
+//   folder mutants derive|run FILE...                 these models, or those in these folders
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -49,7 +49,6 @@ int tried_apart(const std::vector<Words>& calls, const std::string& text) {
   }
   return status;
 }
-
 
 /// Models in a row, and what became of them.
 class Trial {
@@ -111,8 +110,10 @@ int main(int argc, char** argv) {
   Trial trial(words[0]);
   if (is_number(words[1])) {
     const auto first = static_cast<unsigned>(std::stoul(words[1])), count = static_cast<unsigned>(std::stoul(words[2]));
-    const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(words.size() > 3 ? std::stol(words[3]) : 1000000);
-    for (unsigned seed = first; seed < first + count && std::chrono::steady_clock::now() < end; ++seed) trial.fresh(seed);
+    const auto end =
+        std::chrono::steady_clock::now() + std::chrono::seconds(words.size() > 3 ? std::stol(words[3]) : 1000000);
+    for (unsigned seed = first; seed < first + count && std::chrono::steady_clock::now() < end; ++seed)
+      trial.fresh(seed);
   } else {
     for (std::size_t i = 1; i < words.size(); ++i) {
       for (const std::filesystem::path& path : files_of(words[i])) trial.file(path);

@@ -28,8 +28,10 @@ const auto& any(const List& list, Random& random) {
 
 /// Lines whose texts are no expressions.
 bool is_spoken(const std::string& text, std::size_t line) {
-  static constexpr std::array keys{"format", "title", "note", "name", "unit", "tex", "type", "from", "solver", "outputs", "#", "["};
-  return std::any_of(keys.begin(), keys.end(), [&](const std::string_view key) { return text.compare(line, key.size(), key) == 0; });
+  static constexpr std::array keys{"format", "title", "note",   "name",    "unit", "tex",
+                                   "type",   "from",  "solver", "outputs", "#",    "["};
+  return std::any_of(keys.begin(), keys.end(),
+                     [&](const std::string_view key) { return text.compare(line, key.size(), key) == 0; });
 }
 
 /// What expressions and values are made of: to the right of '='.
@@ -53,7 +55,9 @@ std::vector<Token> tokens(const std::string& text) {
     if (c == '=' && !quoted) value = true;
     std::size_t end = i + 1;
     if (value && (is_digit(c) || (quoted && is_word(c)))) {
-      const auto exponent = [&](std::size_t at) { return is_digit(c) && text[at - 1] == 'e' && (text[at] == '-' || text[at] == '+'); };
+      const auto exponent = [&](std::size_t at) {
+        return is_digit(c) && text[at - 1] == 'e' && (text[at] == '-' || text[at] == '+');
+      };
       while (end < text.size() && (is_word(text[end]) || exponent(end))) ++end;
       const bool called = end < text.size() && text[end] == '(';
       result.push_back({is_digit(c) ? Kind::number : called ? Kind::function : Kind::name, quoted, i, end - i});
@@ -118,23 +122,28 @@ std::string other_token(const std::string& text, const std::string& source, Rand
 }
 
 std::string extreme_number(const std::string& text, Random& random) {
-  static constexpr std::array numbers{"0", "1", "2", "3", "0.5", "-1", "0.1", "0.3", "1/3", "7", "64", "pi", "-0.5", "10", "1e-3", "1e4", "1e-9", "1e9", "1e300"};
+  static constexpr std::array numbers{"0",  "1",  "2",    "3",  "0.5",  "-1",  "0.1",  "0.3", "1/3",  "7",
+                                      "64", "pi", "-0.5", "10", "1e-3", "1e4", "1e-9", "1e9", "1e300"};
   std::vector<Token> all = tokens(text);
   std::erase_if(all, [](const Token& token) { return token.kind != Kind::number; });
   return all.empty() ? text : exchanged(text, any(all, random), any(numbers, random));
 }
 
 std::string wrapped(const std::string& text, Random& random) {
-  static constexpr std::array forms{"sin(@)", "cos(@)", "abs(@)", "sqrt(@)", "exp(@)", "(@)^2", "(@)^-1", "(@ - @)", "(@ + t)", "0*@", "(-@)", "max(@, 0)", "tanh(@)",
-                                    "if(@ < 0, 1, @)", "atan2(@, 1)", "(@)^(1/2)", "ddt(@)", "sign(@)", "log(@)", "@*@", "norm(@)", "unit(@)", "velocity(@)", "dot(@, E1)",
-                                    "integral(@)", "cross(@, E3)", "(1 + @^2)", "asin(@)", "min(@, t)", "diff(@, t)"};
+  static constexpr std::array forms{"sin(@)",       "cos(@)",    "abs(@)",      "sqrt(@)",         "exp(@)",
+                                    "(@)^2",        "(@)^-1",    "(@ - @)",     "(@ + t)",         "0*@",
+                                    "(-@)",         "max(@, 0)", "tanh(@)",     "if(@ < 0, 1, @)", "atan2(@, 1)",
+                                    "(@)^(1/2)",    "ddt(@)",    "sign(@)",     "log(@)",          "@*@",
+                                    "norm(@)",      "unit(@)",   "velocity(@)", "dot(@, E1)",      "integral(@)",
+                                    "cross(@, E3)", "(1 + @^2)", "asin(@)",     "min(@, t)",       "diff(@, t)"};
   std::vector<Token> all = tokens(text);
   std::erase_if(all, [](const Token& token) { return token.kind == Kind::sign || token.kind == Kind::function; });
   if (all.empty()) return text;
   const Token token = any(all, random);
   const std::string inner = text.substr(token.at, token.size);
   std::string form = any(forms, random);
-  for (std::size_t at = form.find('@'); at != std::string::npos; at = form.find('@', at + inner.size())) form.replace(at, 1, inner);
+  for (std::size_t at = form.find('@'); at != std::string::npos; at = form.find('@', at + inner.size()))
+    form.replace(at, 1, inner);
   return exchanged(text, token, form);
 }
 
@@ -158,7 +167,9 @@ std::string header(const std::string& line) { return line.substr(0, line.find_la
 std::string with_section(const std::string& text, const std::string& source, Random& random) {
   std::vector<std::string> added = section(source, random), own = lines(text);
   if (added.empty()) return text;
-  const auto same = std::find_if(own.begin(), own.end(), [&](const std::string& line) { return is_header(line) && header(line) == header(added[0]); });
+  const auto same = std::find_if(own.begin(), own.end(), [&](const std::string& line) {
+    return is_header(line) && header(line) == header(added[0]);
+  });
   // What a model may have once is continued where it is there already, by keys that it does not have.
   if (!added[0].starts_with("[[") && same != own.end()) {
     const auto end = std::find_if(same + 1, own.end(), is_header);
@@ -187,7 +198,8 @@ std::string moved_line(const std::string& text, Random& random) {
 }  // namespace
 
 std::string without_units(const std::string& text) {
-  static const std::regex value(R"re("(-?[0-9.]+(?:e-?[0-9]+)?) [A-Za-z/^*0-9()-]+")re"), bracket(R"re(([0-9)])\[[A-Za-z/^*0-9()-]+\])re"), key(R"re(, *unit *= *"[^"]*"|unit *= *"[^"]*" *,?)re");
+  static const std::regex value(R"re("(-?[0-9.]+(?:e-?[0-9]+)?) [A-Za-z/^*0-9()-]+")re"),
+      bracket(R"re(([0-9)])\[[A-Za-z/^*0-9()-]+\])re"), key(R"re(, *unit *= *"[^"]*"|unit *= *"[^"]*" *,?)re");
   return std::regex_replace(std::regex_replace(std::regex_replace(text, value, "$1"), bracket, "$1"), key, "");
 }
 
@@ -202,12 +214,19 @@ std::string Mutator::donor(Random& random) const {
 
 std::string Mutator::changed(const std::string& text, Random& random) const {
   switch (below(16, random)) {
-    case 0: case 1: case 2: return other_token(text, text, random);
+    case 0:
+    case 1:
+    case 2: return other_token(text, text, random);
     case 3: return other_token(text, donor(random), random);
-    case 4: case 5: return extreme_number(text, random);
-    case 6: case 7: case 8: return wrapped(text, random);
-    case 9: case 10: return other_value(text, donor(random), random);
-    case 11: case 12: return with_section(text, donor(random), random);
+    case 4:
+    case 5: return extreme_number(text, random);
+    case 6:
+    case 7:
+    case 8: return wrapped(text, random);
+    case 9:
+    case 10: return other_value(text, donor(random), random);
+    case 11:
+    case 12: return with_section(text, donor(random), random);
     case 13: return moved_line(text, random);
     case 14: return without_units(text);
     default: return with_section(text, text, random);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: the text of a model. Out: one that is a change or two away and mostly still a model: names, numbers, operators and
-// values are exchanged for others, sections come from other models. Bytes alone seldom get past the reader.
+// In: the text of a model. Out: one that is a change or two away and mostly still a model: names, numbers, operators
+// and values are exchanged for others, sections come from other models. Bytes alone seldom get past the reader.
 #pragma once
 
 #include <random>

@@ -23,7 +23,8 @@ std::string changed(const std::string& name, const std::vector<std::pair<std::st
 struct Built {
   model::Model model;
   mechanics::Mechanics mechanics;
-  explicit Built(const std::string& text) : model(model::read_model_text(text, "loop.toml")), mechanics(mechanics::build_mechanics(model)) {}
+  explicit Built(const std::string& text)
+      : model(model::read_model_text(text, "loop.toml")), mechanics(mechanics::build_mechanics(model)) {}
   std::size_t redundant() const {
     std::size_t count = 0;
     for (const mechanics::Constraint& c : mechanics.constraints) count += c.need == mechanics::Need::redundant;
@@ -46,10 +47,13 @@ const std::string axis = "axis = [\"coupler.e3\", \"rocker.e3\"]";
 }  // namespace
 
 TEST_CASE("a loop whose dimensions are inexact, or fit for special parameters only, is refused") {
-  CHECK(refusal(changed("four_bar_spatial_pins", {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + 1e-8*rocker.e1\"]"}})).find("looks as if it followed") != std::string::npos);
+  CHECK(refusal(changed("four_bar_spatial_pins", {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + 1e-8*rocker.e1\"]"}}))
+            .find("looks as if it followed") != std::string::npos);
   for (const std::string tilt : {"sin(p - q)", "r"}) {  // numbers that happen to agree, a number that happens to be 0
-    const std::string text = changed("four_bar_spatial_pins", {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + " + tilt + "*rocker.e1\"]"},
-                                                               {"g = \"9.81 m/s^2\"\n", "g = \"9.81 m/s^2\"\np = \"0.5 rad\"\nq = \"0.5 rad\"\nr = 0\n"}});
+    const std::string text =
+        changed("four_bar_spatial_pins",
+                {{axis, "axis = [\"coupler.e3\", \"rocker.e3 + " + tilt + "*rocker.e1\"]"},
+                 {"g = \"9.81 m/s^2\"\n", "g = \"9.81 m/s^2\"\np = \"0.5 rad\"\nq = \"0.5 rad\"\nr = 0\n"}});
     CHECK(refusal(text).find("for these values of the parameters only") != std::string::npos);
   }
 }
@@ -63,13 +67,15 @@ TEST_CASE("lengths of a planar loop do not matter, and what is redundant does no
 }
 
 TEST_CASE("a ball in place of one pin leaves no redundant equation but the turn of the coupler about itself") {
-  const Built built(changed("four_bar_spatial_pins", {{"type = \"pin\"", "type = \"ball\""}, {"axis = [\"crank.e3\", \"coupler.e3\"]\n", ""}}));
+  const Built built(changed("four_bar_spatial_pins",
+                            {{"type = \"pin\"", "type = \"ball\""}, {"axis = [\"crank.e3\", \"coupler.e3\"]\n", ""}}));
   CHECK(built.redundant() == 1);  // both ends of the coupler are in the plane, and so is its axis
   CHECK(built.mechanics.freedom() == 1);
 }
 
 TEST_CASE("a constraint of the model is kept where a joint says the same") {
-  const Built built(changed("four_bar_spatial_pins", {{"[[joint]]", "[[constraint]]\nname = \"level\"\nholonomic = \"theta\"\n[[joint]]"}}));
+  const Built built(changed("four_bar_spatial_pins",
+                            {{"[[joint]]", "[[constraint]]\nname = \"level\"\nholonomic = \"theta\"\n[[joint]]"}}));
   CHECK(built.mechanics.freedom() == 1);
   for (const mechanics::Constraint& c : built.mechanics.constraints) {
     if (c.name == "level") CHECK(c.need == mechanics::Need::holds);
@@ -78,7 +84,9 @@ TEST_CASE("a constraint of the model is kept where a joint says the same") {
 }
 
 TEST_CASE("a second joint between the same bodies repeats the first") {
-  const std::string twice = "[[joint]]\nname = \"D\"\ntype = \"ball\"\nbodies = [\"coupler\", \"rocker\"]\nat = [\"coupler + l2/2*coupler.e1\", \"rocker + l3/2*rocker.e1\"]\n[scene.default]";
+  const std::string twice =
+      "[[joint]]\nname = \"D\"\ntype = \"ball\"\nbodies = [\"coupler\", \"rocker\"]\nat = [\"coupler + "
+      "l2/2*coupler.e1\", \"rocker + l3/2*rocker.e1\"]\n[scene.default]";
   const Built built(changed("four_bar_spatial_pins", {{"[scene.default]", twice}}));
   CHECK(built.redundant() == 6);
   const mechanics::JointReaction& shared = built.mechanics.joints[2];

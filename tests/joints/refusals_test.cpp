@@ -27,7 +27,8 @@ Refusal refusal(const std::string& text) {
 
 bool has(const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; }
 
-const std::string pin = "type = \"pin\"\n", both = "bodies = [\"base\", \"rod\"]\n", axis = "axis = [\"base.e3\", \"rod.e3\"]\n";
+const std::string pin = "type = \"pin\"\n", both = "bodies = [\"base\", \"rod\"]\n",
+                  axis = "axis = [\"base.e3\", \"rod.e3\"]\n";
 
 }  // namespace
 
@@ -40,17 +41,23 @@ TEST_CASE("misuse of joints") {
       {pin + "bodies = [\"base\"]\n" + at_tip + axis, "is between 1 bodies", "bodies = [\"A\", \"B\"]"},
       {pin + "bodies = [\"ground\", \"ground\"]\n" + at_tip + axis, "is between 'ground' and itself", "[[body]]"},
       {pin + "bodies = [\"rod\", \"rod\"]\n" + at_tip + axis, "is between 'rod' and itself", "two bodies"},
-      {pin + "bodies = [\"base\", \"tip\"]\n" + at_tip + axis, "'tip' is a particle or point, which has no axes", "bodies and frames are"},
+      {pin + "bodies = [\"base\", \"tip\"]\n" + at_tip + axis, "'tip' is a particle or point, which has no axes",
+       "bodies and frames are"},
       {pin + both + axis, "has no at", "at = ["},
       {pin + both + at_tip, "has no axis", "axis = ["},
       {"type = \"ball\"\n" + both + at_tip + axis, "has no axis", "remove 'axis'"},
       {pin + both + "at = [\"base\"]\n" + axis, "'at' of the joint 'j' has 1 entries", "as placed at the start"},
-      {pin + both + at_tip + "axis = [\"base.e3\"]\n", "'axis' of the joint 'j' has 1 entries", "as placed at the start"},
-      {pin + both + at_tip + "axis = [\"rod.e3\", \"rod.e3\"]\n", "this axis is not fixed in 'base'", "base.e1, base.e2, base.e3"},
+      {pin + both + at_tip + "axis = [\"base.e3\"]\n", "'axis' of the joint 'j' has 1 entries",
+       "as placed at the start"},
+      {pin + both + at_tip + "axis = [\"rod.e3\", \"rod.e3\"]\n", "this axis is not fixed in 'base'",
+       "base.e1, base.e2, base.e3"},
       {pin + both + at_tip + "axis = [\"base.e3 - base.e3\", \"rod.e3\"]\n", "has no direction", "base.e1"},
-      {pin + both + "at = [\"base\", \"base\"]\n" + axis, "this point of the joint 'j' is not fixed in its body", "[[point]]"},
-      {pin + "bodies = [\"ground\", \"rod\"]\nat = [\"base\", \"tip\"]\naxis = [\"E3\", \"rod.e3\"]\n", "depends on coordinates", "parameters, functions of time"},
-      {"type = \"universal\"\n" + both + at_tip + "axis = [\"base.e3\", \"rod.e3\"]\n", "the axes of the joint 'j' are parallel at the start", "right angles"},
+      {pin + both + "at = [\"base\", \"base\"]\n" + axis, "this point of the joint 'j' is not fixed in its body",
+       "[[point]]"},
+      {pin + "bodies = [\"ground\", \"rod\"]\nat = [\"base\", \"tip\"]\naxis = [\"E3\", \"rod.e3\"]\n",
+       "depends on coordinates", "parameters, functions of time"},
+      {"type = \"universal\"\n" + both + at_tip + "axis = [\"base.e3\", \"rod.e3\"]\n",
+       "the axes of the joint 'j' are parallel at the start", "right angles"},
       {"type = \"universal\"\n" + both + at_tip + "axis = \"E3\"\n", "has two axes", "axis = [\"A.e1\", \"B.e2\"]"},
       {pin + both + at_tip + axis + "axes = \"rot\"\n", "there is no body or frame 'rot'", "rod"},
       {pin + both + at_tip + axis + "angle = 1\n", "angle", ""},

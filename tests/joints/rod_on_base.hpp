@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rod on a joint of a base that slides along E1 and turns about E3. F and M are what acts on the rod besides gravity, the moment
-// about its tip, by Newton and Euler: m a = F - m g E2 .., dH/dt = M + (tip - rod) x F.
+// A rod on a joint of a base that slides along E1 and turns about E3. F and M are what acts on the rod besides gravity,
+// the moment about its tip, by Newton and Euler: m a = F - m g E2 .., dH/dt = M + (tip - rod) x F.
 #pragma once
 
 #include <string>
@@ -8,8 +8,12 @@
 namespace eomgen::test {
 
 /// `joint`: the lines of the [[joint]] after its name.
-inline std::string rod_on_base(const std::string& joint, const std::string& initial = "u = 0, a = 0.2, u_dot = 0.3, psi = 0.3, theta = 0.4, phi = 0",
-                               const std::string& rod = "position = { cartesian = [\"x\", \"y\", \"z\"] }\nrotation = { euler = \"321\", angles = [\"psi\", \"theta\", \"phi\"] }\n") {
+inline std::string rod_on_base(
+    const std::string& joint,
+    const std::string& initial = "u = 0, a = 0.2, u_dot = 0.3, psi = 0.3, theta = 0.4, phi = 0",
+    const std::string& rod =
+        "position = { cartesian = [\"x\", \"y\", \"z\"] }\nrotation = { euler = \"321\", angles = [\"psi\", \"theta\", "
+        "\"phi\"] }\n") {
   return R"toml(format = 1
 [parameters]
 m = "2 kg"
@@ -40,7 +44,8 @@ rotation = { axis = "E3", angle = "a" }
 name = "rod"
 mass = "m"
 inertia = { principal = ["J1", "J", "J"] }
-)toml" + rod + R"toml([[point]]
+)toml" + rod +
+         R"toml([[point]]
 name = "tip"
 on = "rod"
 at = ["-L/2", 0, 0]
@@ -51,10 +56,12 @@ moment = "2[N*m]*E3"
 on = "base"
 [[joint]]
 name = "j"
-)toml" + joint + R"toml([scene.default]
+)toml" + joint +
+         R"toml([scene.default]
 t = [0, 1]
 every = 0.1
-initial = { )toml" + initial + R"toml( }
+initial = { )toml" +
+         initial + R"toml( }
 outputs = ["reaction.j", "N1", "N2", "N3", "N4", "N5", "N6", "B1", "B6"]
 )toml";
 }

@@ -83,15 +83,18 @@ TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tent
     CHECK(count(600) == of_short_run);
   };
   for (const eom::MethodInfo& method : eom::methods()) {
-    if (method.constrained) check(method, Circle{});
-    else check(method, Kepler{});
+    if (method.constrained)
+      check(method, Circle{});
+    else
+      check(method, Kepler{});
   }
   check({eom::Automatic::name, eom::Automatic::order, 4, true}, Kepler{});
 }
 
 TEST_CASE("ensembles: a hundred members over 100 periods allocate as often as one over a tenth of a period") {
   const Kepler kepler;
-  const auto rhs = [&](std::size_t count, std::size_t stride, const double* t, const double* x, const double*, double* dx, int* codes) {
+  const auto rhs = [&](std::size_t count, std::size_t stride, const double* t, const double* x, const double*,
+                       double* dx, int* codes) {
     for (std::size_t s = 0; s < count; ++s) {
       double one[4], slope[4];
       for (std::size_t i = 0; i < 4; ++i) one[i] = x[i * stride + s];
@@ -105,10 +108,13 @@ TEST_CASE("ensembles: a hundred members over 100 periods allocate as often as on
     const auto count = [&](std::size_t members, double t1) {
       const std::size_t before = allocations;
       std::size_t ended = 0;
-      eom::integrate_ensemble(method, rhs, members, 4, 0, {}, [&](std::size_t, eom::EnsembleStart& start) {
-        std::copy(kepler.start.begin(), kepler.start.end(), start.x.begin());
-        start.t1 = t1;
-      }, [&](const eom::EnsembleEnd&) { ++ended; });
+      eom::integrate_ensemble(
+          method, rhs, members, 4, 0, {},
+          [&](std::size_t, eom::EnsembleStart& start) {
+            std::copy(kepler.start.begin(), kepler.start.end(), start.x.begin());
+            start.t1 = t1;
+          },
+          [&](const eom::EnsembleEnd&) { ++ended; });
       CHECK(ended == members);
       return allocations - before;
     };

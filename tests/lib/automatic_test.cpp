@@ -1,5 +1,5 @@
-// `auto`: what it chooses, when it changes to the method for stiff systems and back, what it says of that, and that events,
-// projections and restarts go on with what was chosen.
+// `auto`: what it chooses, when it changes to the method for stiff systems and back, what it says of that, and that
+// events, projections and restarts go on with what was chosen.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -56,7 +56,8 @@ Options options_for(double tolerance, Choice& choice) {
 
 }  // namespace
 
-TEST_CASE("auto: where nothing is stiff it is dopri5 or dop853 to the last bit, in both directions of time, and says so") {
+TEST_CASE(
+    "auto: where nothing is stiff it is dopri5 or dop853 to the last bit, in both directions of time, and says so") {
   const problems::Kepler kepler(0.9);
   for (const double tolerance : {1e-3, 1e-5, 1e-7, 1e-9, 1e-11, 1e-13})
     for (const double end : {40.0, -40.0}) {
@@ -83,7 +84,8 @@ TEST_CASE("auto: a decay a hundred thousand times faster than the motion is hand
       dx[0] = -dx[0];
       return code;
     };
-    CHECK(eom::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome == eom::Outcome::done);
+    CHECK(eom::integrate("auto", mirrored, 0, State{1}, -5, options_for(tolerance, backwards)).outcome ==
+          eom::Outcome::done);
     CHECK(backwards.method == std::string("radau5"));
     CHECK(backwards.changes.size() == 1);  // it stays
     CHECK(found.outcome == eom::Outcome::done);
@@ -95,7 +97,8 @@ TEST_CASE("auto: a decay a hundred thousand times faster than the motion is hand
     CHECK(found.statistics.steps < 400);  // 80000 and more for stability alone
     CHECK(found.statistics.jacobians > 0);
     CHECK(found.statistics.difference_evaluations == 0);  // the right-hand side has df/dx
-    CHECK(std::abs(found.x[0] - std::cos(5.0)) < 5 * std::pow(tolerance, 2.0 / 3));  // of radau5 where all is stiff (docs/runtime.md)
+    CHECK(std::abs(found.x[0] - std::cos(5.0)) <
+          5 * std::pow(tolerance, 2.0 / 3));  // of radau5 where all is stiff (docs/runtime.md)
   }
 }
 
@@ -104,7 +107,8 @@ TEST_CASE("auto: vibrations that are not part of the motion are stiff as well") 
     CAPTURE(tolerance);
     Choice choice, of_reference;
     const Result found = eom::integrate("auto", elastic_pendulum, 0, hanging, 2, options_for(tolerance, choice));
-    const Result reference = eom::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
+    const Result reference =
+        eom::integrate("dop853", elastic_pendulum, 0, hanging, 2, options_for(1e-11, of_reference));
     CHECK(choice.method == std::string("radau5"));
     CHECK(found.statistics.steps < reference.statistics.steps / 10);
     CHECK(std::abs(found.x[1] - reference.x[1]) < 100 * tolerance);
@@ -148,7 +152,8 @@ TEST_CASE("auto: dense output and events go through changes; what was chosen is 
                                              {{eom::Direction::any, eom::Watch::breaking}}, handler, see);
   CHECK(found.outcome == eom::Outcome::done);
   REQUIRE(times.size() == 3);
-  for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(times[k] - std::numbers::pi * (static_cast<double>(k) + 0.5)) < 1e-7);
+  for (std::size_t k = 0; k < 3; ++k)
+    CHECK(std::abs(times[k] - std::numbers::pi * (static_cast<double>(k) + 0.5)) < 1e-7);
   CHECK(choice.changes.size() == 1);  // without memory: once more after each event
   CHECK(worst < 1e-6);
 }
@@ -157,6 +162,8 @@ TEST_CASE("auto: fixed steps are those of the method chosen; an unknown name is 
   const problems::Kepler kepler;
   Options options;
   options.fixed_step = 0.05;
-  CHECK(eom::integrate("auto", kepler, 0, kepler.start, 3, options).x == eom::integrate("dop853", kepler, 0, kepler.start, 3, options).x);
-  CHECK_THROWS_WITH_AS(eom::integrate("automatic", kepler, 0, kepler.start, 1), doctest::Contains("there are auto, rk4"), std::invalid_argument);
+  CHECK(eom::integrate("auto", kepler, 0, kepler.start, 3, options).x ==
+        eom::integrate("dop853", kepler, 0, kepler.start, 3, options).x);
+  CHECK_THROWS_WITH_AS(eom::integrate("automatic", kepler, 0, kepler.start, 1),
+                       doctest::Contains("there are auto, rk4"), std::invalid_argument);
 }

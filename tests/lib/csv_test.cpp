@@ -1,4 +1,6 @@
 // The CSV file appears whole, with its outcome, or not at all; what is written reads back to the same bits.
+#include "eom/output/csv.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -11,7 +13,6 @@
 #include <string>
 #include <vector>
 
-#include "eom/output/csv.hpp"
 #include "eom/output/whole_file.hpp"
 
 namespace {
@@ -47,8 +48,7 @@ TEST_CASE("csv: t first, 17 significant digits, a trailing line with the outcome
   csv.row(0.5, std::vector<double>{1e-300, std::numeric_limits<double>::infinity()});
   CHECK(!fs::exists(path));
   csv.finish(eom::Outcome::done);
-  CHECK(text_of(path) ==
-        "t,theta,theta_dot\n0,0.10000000000000001,-2\n0.5,1e-300,inf\n# outcome: done\n");
+  CHECK(text_of(path) == "t,theta,theta_dot\n0,0.10000000000000001,-2\n0.5,1e-300,inf\n# outcome: done\n");
   CHECK(std::distance(fs::directory_iterator(folder.path), {}) == 1);
 }
 

@@ -1,11 +1,12 @@
 // Invariants and the power balance: the scales are those the header defines, and nothing shrinks back or hides.
+#include "eom/watch/drift.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <limits>
 
 #include "eom/ode.hpp"
-#include "eom/watch/drift.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 

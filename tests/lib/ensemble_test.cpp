@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t states = 4, parameters = 2;
 
-/// Kepler's problem with a mass and a place of its own for the centre; further parameters give codes and values that are not finite.
+/// Kepler's problem with a mass and a place of its own for the centre; further parameters give codes and values that
+/// are not finite.
 int slopes(double t, const double* x, const double* p, double* dx) {
   if (p[1] == 2 && t > 1.5) return 1;  // a place that no step crosses
   if (p[1] == 3 && x[0] < 0.5) return 3;
@@ -27,7 +28,8 @@ int slopes(double t, const double* x, const double* p, double* dx) {
   return 0;
 }
 
-int batch(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx, int* codes) {
+int batch(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
+          int* codes) {
   int first = 0;
   for (std::size_t s = 0; s < count; ++s) {
     double one[states], own[parameters], result[states];
@@ -63,10 +65,11 @@ struct End {
 
 std::vector<End> ensemble(const char* method, std::size_t members, const eom::EnsembleOptions& options) {
   std::vector<End> ends(members);
-  eom::integrate_ensemble(method, batch, members, states, parameters, options, start_of, [&](const eom::EnsembleEnd& end) {
-    End& kept = ends[end.member];
-    kept = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, kept.times + 1};
-  });
+  eom::integrate_ensemble(method, batch, members, states, parameters, options, start_of,
+                          [&](const eom::EnsembleEnd& end) {
+                            End& kept = ends[end.member];
+                            kept = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, kept.times + 1};
+                          });
   return ends;
 }
 
@@ -131,7 +134,8 @@ TEST_CASE("ensemble: fixed steps, of every method") {
 TEST_CASE("ensemble: the members of the test end in many ways") {
   std::vector<int> seen(16);
   for (const End& end : ensemble("dop853", 300, {})) ++seen[static_cast<std::size_t>(end.outcome)];
-  for (const eom::Outcome outcome : {eom::Outcome::done, eom::Outcome::singular_mass_matrix, eom::Outcome::friction_no_solution, eom::Outcome::not_finite}) {
+  for (const eom::Outcome outcome : {eom::Outcome::done, eom::Outcome::singular_mass_matrix,
+                                     eom::Outcome::friction_no_solution, eom::Outcome::not_finite}) {
     CAPTURE(std::string(eom::name(outcome)));
     CHECK(seen[static_cast<std::size_t>(outcome)] > 0);
   }
@@ -141,7 +145,8 @@ TEST_CASE("ensemble: one member, none, and all that fail at the start") {
   CHECK(ensemble("dop853", 0, {}).empty());
   same_as_alone("tsit5", {}, 1);
   std::size_t ended = 0;
-  const auto never = [](std::size_t count, std::size_t, const double*, const double*, const double*, double*, int* codes) {
+  const auto never = [](std::size_t count, std::size_t, const double*, const double*, const double*, double*,
+                        int* codes) {
     for (std::size_t s = 0; s < count; ++s) codes[s] = 4;
     return 4;
   };
@@ -153,16 +158,20 @@ TEST_CASE("ensemble: one member, none, and all that fail at the start") {
   CHECK(ended == 100);
 }
 
-TEST_CASE("ensemble: what is thrown in a thread is thrown to the caller, an interruption ends all, unknown methods are refused") {
+TEST_CASE(
+    "ensemble: what is thrown in a thread is thrown to the caller, an interruption ends all, unknown methods are "
+    "refused") {
   eom::EnsembleOptions options;
   options.threads = 3;
   const auto done = [](const eom::EnsembleEnd& end) {
     if (end.member == 40) throw std::runtime_error("enough");
   };
-  CHECK_THROWS_WITH(eom::integrate_ensemble("dop853", batch, 200, states, parameters, options, start_of, done), "enough");
+  CHECK_THROWS_WITH(eom::integrate_ensemble("dop853", batch, 200, states, parameters, options, start_of, done),
+                    "enough");
   const std::atomic<bool> interrupt{true};
   options.interrupt = &interrupt;
-  for (const End& end : ensemble("dop853", 5, options)) CHECK((end.outcome == eom::Outcome::interrupted || end.times == 0 || end.statistics.steps == 0));
+  for (const End& end : ensemble("dop853", 5, options))
+    CHECK((end.outcome == eom::Outcome::interrupted || end.times == 0 || end.statistics.steps == 0));
   CHECK_THROWS_AS(ensemble("radau5", 1, {}), std::invalid_argument);
   CHECK_THROWS_AS(ensemble("rk4", 1, {}), std::invalid_argument);
 }

@@ -1,11 +1,12 @@
 // The estimate of the end state's error against closed forms: within a factor of 10, both ways.
+#include "eom/error_estimate.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <numbers>
 #include <string>
 
-#include "eom/error_estimate.hpp"
 #include "lib/problems.hpp"
 #include "support/tolerances.hpp"
 

@@ -46,11 +46,12 @@ std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::
     seen.push_back({point.t, point.crossing.function, point.crossing.up, {point.x.begin(), point.x.end()}});
     return AtEvent::go_on;
   };
-  const eom::Result result =
-      eom::integrate_events(method.name, oscillator, 0, oscillator.start, t1, options, g, std::move(functions), handler);
+  const eom::Result result = eom::integrate_events(method.name, oscillator, 0, oscillator.start, t1, options, g,
+                                                   std::move(functions), handler);
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(result.t == t1);
-  CHECK(problems::largest_difference(result.x, oscillator.exact(t1)) < problems::coarser(method) * tolerances::event_state);
+  CHECK(problems::largest_difference(result.x, oscillator.exact(t1)) <
+        problems::coarser(method) * tolerances::event_state);
   return seen;
 }
 
@@ -102,7 +103,8 @@ TEST_CASE("all methods: several functions in one step come in the order of the r
       const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
       const auto handler = [&](const EventPoint& point) {
         order.push_back(point.crossing.function);
-        CHECK(std::abs(point.t - (0.5 - 0.1 * static_cast<double>(point.crossing.function))) < problems::coarser(method) * tolerances::event_time);
+        CHECK(std::abs(point.t - (0.5 - 0.1 * static_cast<double>(point.crossing.function))) <
+              problems::coarser(method) * tolerances::event_time);
         return AtEvent::go_on;
       };
       const std::vector<double> start{0};
@@ -202,8 +204,8 @@ TEST_CASE("the observer sees steps that join, the last before an event ending th
       CHECK(point.x[1] == doctest::Approx(-1));
       return AtEvent::stop;
     };
-    const eom::Result r = eom::integrate_events(method.name, oscillator, 0, oscillator.start, 7, tight(method), position,
-                                                {EventFunction{}}, handler, observer);
+    const eom::Result r = eom::integrate_events(method.name, oscillator, 0, oscillator.start, 7, tight(method),
+                                                position, {EventFunction{}}, handler, observer);
     CHECK(r.outcome == eom::Outcome::stopped_by_event);
     CHECK(r.t == reached);
     CHECK(r.statistics.steps == ends.size());
@@ -243,19 +245,24 @@ TEST_CASE("an event function without a value is no event; one that fails at the 
   CHECK(none.outcome == eom::Outcome::chart_left);
 }
 
-TEST_CASE("a dip between two samples is found: of a function with a kink, and of a short one by what crosses within it") {
+TEST_CASE(
+    "a dip between two samples is found: of a function with a kink, and of a short one by what crosses within it") {
   const auto f = [](double, const double*, double* dx) { return dx[0] = 1, 0; };
   const std::vector<double> start{0};
   eom::Options options;
   options.fixed_step = 1;  // all in one step
   const auto met = [&](auto g) {
     std::vector<std::pair<std::size_t, double>> events;
-    const auto handler = [&](const EventPoint& point) { return events.emplace_back(point.crossing.function, point.t), AtEvent::go_on; };
-    CHECK(eom::integrate_events("rk4", f, 0, start, 1, options, g, std::vector<EventFunction>(2), handler).outcome == eom::Outcome::done);
+    const auto handler = [&](const EventPoint& point) {
+      return events.emplace_back(point.crossing.function, point.t), AtEvent::go_on;
+    };
+    CHECK(eom::integrate_events("rk4", f, 0, start, 1, options, g, std::vector<EventFunction>(2), handler).outcome ==
+          eom::Outcome::done);
     return events;
   };
   // As a friction limit about N = 0: the parabola through three of the nine samples stays above zero.
-  const auto kink = met([](double t, const double*, double* g) { return g[0] = std::abs(t - 0.4) - 0.01, g[1] = 1, 0; });
+  const auto kink =
+      met([](double t, const double*, double* g) { return g[0] = std::abs(t - 0.4) - 0.01, g[1] = 1, 0; });
   REQUIRE(kink.size() == 2);
   CHECK(std::abs(kink[0].second - 0.39) < tolerances::event_time);
   CHECK(std::abs(kink[1].second - 0.41) < tolerances::event_time);
@@ -281,7 +288,8 @@ TEST_CASE("a function that has another meaning after an event is watched from wh
   const std::vector<double> start{0};
   eom::Options options;
   options.fixed_step = 0.3;
-  CHECK(eom::integrate_events("rk4", f, 0, start, 4, options, g, {{Direction::down}}, handler).outcome == eom::Outcome::done);
+  CHECK(eom::integrate_events("rk4", f, 0, start, 4, options, g, {{Direction::down}}, handler).outcome ==
+        eom::Outcome::done);
   REQUIRE(times.size() == 2);
   CHECK(std::abs(times[0] - 1) < tolerances::event_time);
   CHECK(std::abs(times[1] - 3) < tolerances::event_time);
@@ -296,13 +304,18 @@ TEST_CASE("estimate: sees the error of a way to an event that is shorter than an
     CAPTURE(std::string(method.name));
     const auto run = [&](const eom::Options& options) {
       bool stands = false;
-      const auto f = [&](double, const double* x, double* dx) { return dx[0] = stands ? 0 : x[1], dx[1] = stands ? 0 : -1 - x[1], 0; };
+      const auto f = [&](double, const double* x, double* dx) {
+        return dx[0] = stands ? 0 : x[1], dx[1] = stands ? 0 : -1 - x[1], 0;
+      };
       const auto speed = [](double, const double* x, double* g) { return g[0] = x[1], 0; };
       const auto handler = [&](const EventPoint& point) { return stands = true, point.x[1] = 0, AtEvent::restart; };
       std::vector<double> ends{0};
       bool joined = true;
-      const auto observer = [&](const eom::StepView& view) { return joined = joined && view.t0 == ends.back(), ends.push_back(view.t1), true; };
-      const eom::Result end = eom::integrate_events(method.name, f, 0, start, 8, options, speed, {{Direction::down}}, handler, observer);
+      const auto observer = [&](const eom::StepView& view) {
+        return joined = joined && view.t0 == ends.back(), ends.push_back(view.t1), true;
+      };
+      const eom::Result end =
+          eom::integrate_events(method.name, f, 0, start, 8, options, speed, {{Direction::down}}, handler, observer);
       CHECK(joined);
       CHECK(ends.back() == 8);
       return end;

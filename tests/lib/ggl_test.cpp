@@ -1,5 +1,5 @@
-// What the stabilised index-2 form promises: order 5 and a dense output of order 4 in both directions of time, constraints at rounding
-// without projection, redundant and nonholonomic ones, events; and what it refuses.
+// What the stabilised index-2 form promises: order 5 and a dense output of order 4 in both directions of time,
+// constraints at rounding without projection, redundant and nonholonomic ones, events; and what it refuses.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -16,8 +16,9 @@ using eom::Options;
 using eom::Result;
 using problems::State;
 
-/// A pendulum in Cartesian coordinates, its rod 1 + stretch sin t long, with masses that differ along x and y (an anisotropic metric);
-/// the constraint as many times as `rows` says, in other units; the last one missed by `contradiction` t.
+/// A pendulum in Cartesian coordinates, its rod 1 + stretch sin t long, with masses that differ along x and y (an
+/// anisotropic metric); the constraint as many times as `rows` says, in other units; the last one missed by
+/// `contradiction` t.
 struct Rod {
   double stretch = 0.1, heavy = 1;
   std::size_t rows = 1;
@@ -44,7 +45,8 @@ struct Rod {
   int constrain(double t, const double* x, double* psi, double* A, double* b) const {
     for (std::size_t k = 0; k < rows; ++k) {
       const double unit = std::pow(10.0, 2.0 * static_cast<double>(k));
-      psi[k] = unit * 0.5 * (x[0] * x[0] + x[1] * x[1] - length(t) * length(t)) + (k + 1 == rows ? contradiction * t : 0);
+      psi[k] =
+          unit * 0.5 * (x[0] * x[0] + x[1] * x[1] - length(t) * length(t)) + (k + 1 == rows ? contradiction * t : 0);
       A[k] = unit * x[0];
       A[k + rows] = unit * x[1];
       b[k] = -unit * length(t) * rate(t);
@@ -103,7 +105,9 @@ Result tight(const Rod& f, double t1) { return eom::integrate("dop853", f, 0, f.
 
 }  // namespace
 
-TEST_CASE("ggl: order 5 in both directions of time, redundant rows, unequal masses, moving constraint; the dense output is of order 4") {
+TEST_CASE(
+    "ggl: order 5 in both directions of time, redundant rows, unequal masses, moving constraint; the dense output is "
+    "of order 4") {
   for (const Rod& f : {Rod{}, Rod{0.1, 3, 3}})
     for (const double end : {1.5, -1.5}) {
       CAPTURE(end);
@@ -136,7 +140,9 @@ TEST_CASE("ggl: order 5 in both directions of time, redundant rows, unequal mass
 TEST_CASE("ggl: a constraint on velocities alone, to order 5 against a closed form") {
   const Skate f;
   for (const double end : {2.0, -2.0}) {
-    const auto error = [&](double h) { return problems::largest_difference(eom::integrate("ggl", f, 0, f.exact(0), end, fixed(h)).x, f.exact(end)); };
+    const auto error = [&](double h) {
+      return problems::largest_difference(eom::integrate("ggl", f, 0, f.exact(0), end, fixed(h)).x, f.exact(end));
+    };
     CHECK(std::abs(std::log2(error(0.1) / error(0.05)) - 5) < 0.4);
   }
 }
@@ -165,7 +171,8 @@ TEST_CASE("ggl: the error follows the tolerance, in about the steps of radau5") 
   const State right = tight(f, 10).x;
   for (const double r : {1e-4, 1e-6, 1e-8, 1e-10}) {
     CAPTURE(r);
-    const Result found = eom::integrate("ggl", f, 0, f.start(), 10, tolerance(r)), plain = eom::integrate("radau5", f, 0, f.start(), 10, tolerance(r));
+    const Result found = eom::integrate("ggl", f, 0, f.start(), 10, tolerance(r)),
+                 plain = eom::integrate("radau5", f, 0, f.start(), 10, tolerance(r));
     CHECK(problems::largest_difference(found.x, right) < 20 * r);
     CHECK(found.statistics.steps < 1.2 * static_cast<double>(plain.statistics.steps));
   }
@@ -179,18 +186,24 @@ TEST_CASE("ggl: events of a pendulum in Cartesian coordinates at the times of th
       std::vector<double> times;
       const auto g = [](double, const double* x, double* values) { return values[0] = x[0], 0; };
       const auto handler = [&](const eom::EventPoint& point) { return times.push_back(point.t), eom::AtEvent::go_on; };
-      const Result found = eom::integrate_events("ggl", f, 0, f.start(), 10 * direction, tolerance(1e-12), g, {{eom::Direction::any, watch}}, handler);
+      const Result found = eom::integrate_events("ggl", f, 0, f.start(), 10 * direction, tolerance(1e-12), g,
+                                                 {{eom::Direction::any, watch}}, handler);
       CHECK(found.outcome == eom::Outcome::done);
       REQUIRE(times.size() == static_cast<std::size_t>((10 / quarter + 1) / 2));
-      for (std::size_t k = 0; k < times.size(); ++k) CHECK(std::abs(times[k] - direction * (2.0 * static_cast<double>(k) + 1) * quarter) < 1e-9);
+      for (std::size_t k = 0; k < times.size(); ++k)
+        CHECK(std::abs(times[k] - direction * (2.0 * static_cast<double>(k) + 1) * quarter) < 1e-9);
     }
 }
 
-TEST_CASE("ggl: rows that contradict one another end the run; a start beside the constraints, and a problem without, are refused") {
+TEST_CASE(
+    "ggl: rows that contradict one another end the run; a start beside the constraints, and a problem without, are "
+    "refused") {
   const Result found = eom::integrate("ggl", Rod{0.1, 1, 2, 1e-3}, 0, Rod{}.start(), 1, tolerance(1e-8));
   CHECK(found.outcome == eom::Outcome::step_too_small);
   CHECK(found.t < 1e-4);  // where the contradiction is seen
   const problems::Kepler kepler;
-  CHECK_THROWS_WITH_AS(eom::integrate("ggl", kepler, 0, kepler.start, 1), doctest::Contains("constraints"), std::invalid_argument);
-  CHECK_THROWS_WITH_AS(eom::integrate("ggl", Rod{}, 0, State{1, -1, 0, 0}, 1), doctest::Contains("does not meet"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(eom::integrate("ggl", kepler, 0, kepler.start, 1), doctest::Contains("constraints"),
+                       std::invalid_argument);
+  CHECK_THROWS_WITH_AS(eom::integrate("ggl", Rod{}, 0, State{1, -1, 0, 0}, 1), doctest::Contains("does not meet"),
+                       std::invalid_argument);
 }

@@ -28,8 +28,8 @@ Options with_tolerance(double tolerance) {
   return options;
 }
 
-/// Van der Pol's equation with epsilon = 1e-6, its Jacobian, and its solution at t = 2 from (2, 0): Hairer, Wanner, Solving
-/// Ordinary Differential Equations II, section IV.10 (VDPOL).
+/// Van der Pol's equation with epsilon = 1e-6, its Jacobian, and its solution at t = 2 from (2, 0): Hairer, Wanner,
+/// Solving Ordinary Differential Equations II, section IV.10 (VDPOL).
 struct VanDerPol {
   double epsilon = 1e-6;
   problems::State start{2, 0}, end{1.706167732170483, -0.8928097010247975};
@@ -119,8 +119,8 @@ TEST_CASE("implicit methods: x' = lambda (x - cos t) - sin t follows cos t for l
         return 0;
       };
       for (const double start : {1.0, 1.5}) {  // on the smooth solution, and beside it
-        const Result result = eom::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 0, problems::State{start}, 10,
-                                             with_tolerance(1e-8));
+        const Result result = eom::integrate(method.name, eom::WithJacobian{rhs, jacobian}, 0, problems::State{start},
+                                             10, with_tolerance(1e-8));
         CHECK(result.outcome == eom::Outcome::done);
         // radau5 compares with 1e-8^(2/3) / 10 = 5e-7, and what lambda damps is of no higher order than its estimate
         CHECK(std::abs(result.x[0] - std::cos(10.0) - (start - 1) * std::exp(10 * lambda)) < 5e-6);
@@ -142,7 +142,8 @@ TEST_CASE("implicit methods: differences stand in for df/dx, and are told") {
     CHECK(differences.statistics.difference_evaluations >= 2 * differences.statistics.jacobians);
     CHECK(problems::largest_difference(given.x, differences.x) < 1e-4);
     CHECK(differences.statistics.steps < 1.2 * static_cast<double>(given.statistics.steps));
-    const Result refused = eom::integrate(method.name, eom::WithJacobian{plain, has_none}, 0, problem.start, 2, options);
+    const Result refused =
+        eom::integrate(method.name, eom::WithJacobian{plain, has_none}, 0, problem.start, 2, options);
     CHECK(refused.x == differences.x);
     CHECK(refused.statistics.difference_evaluations == differences.statistics.difference_evaluations);
   }

@@ -14,18 +14,22 @@ namespace {
 bool allowed(const std::string& included, const std::string& header) {
   if (included.starts_with("\"eom/")) return true;
   if (included.starts_with("<Eigen/")) return header == "projection.hpp";
-  // A file that nobody else can have put there, and that follows no link, is opened by POSIX: the standard library cannot.
+  // A file that nobody else can have put there, and that follows no link, is opened by POSIX: the standard library
+  // cannot.
   const std::set<std::string> posix{"<fcntl.h>", "<stdlib.h>", "<sys/stat.h>", "<unistd.h>"};
   if (posix.contains(included)) return header == "whole_file.hpp";
   if (!included.starts_with("<")) return false;
   for (const char c : included.substr(1, included.size() - 2))
-    if (std::islower(static_cast<unsigned char>(c)) == 0 && c != '_') return false;  // <vector>, but not <ginac/ginac.h>
+    if (std::islower(static_cast<unsigned char>(c)) == 0 && c != '_')
+      return false;  // <vector>, but not <ginac/ginac.h>
   return true;
 }
 
 }  // namespace
 
-TEST_CASE("runtime headers: own headers and the standard library only, Eigen in the projection only, POSIX in what writes files, MIT, no globals") {
+TEST_CASE(
+    "runtime headers: own headers and the standard library only, Eigen in the projection only, POSIX in what writes "
+    "files, MIT, no globals") {
   int headers = 0;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(eomgen::test::source_folder() + "/lib/eom")) {
     if (!entry.is_regular_file()) continue;

@@ -32,7 +32,8 @@ void check_closed_form(const Problem& problem, double t1) {
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(result.t == end);
       CHECK(result.detail.empty());
-      CHECK(problems::largest_difference(result.x, problem.exact(end)) < problems::coarser(method) * tolerances::closed_form);
+      CHECK(problems::largest_difference(result.x, problem.exact(end)) <
+            problems::coarser(method) * tolerances::closed_form);
     }
 }
 
@@ -207,7 +208,9 @@ TEST_CASE("options: max_step and initial_step are kept to") {
   CHECK(longest <= 0.125 * (1 + 0.02));  // the last step may be stretched by 1 %
 }
 
-TEST_CASE("options: admit is asked of every step that would be taken, with its dense output, and heeded where steps are chosen") {
+TEST_CASE(
+    "options: admit is asked of every step that would be taken, with its dense output, and heeded where steps are "
+    "chosen") {
   for (const eom::MethodInfo& info : problems::methods()) {
     CAPTURE(info.name);
     const auto rhs = [](double, const double* x, double* dx) {

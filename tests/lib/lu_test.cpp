@@ -1,4 +1,6 @@
 // LU with partial pivoting: solutions against the products they have to give; singular matrices are told.
+#include "eom/linalg/lu.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <random>
 #include <vector>
 
-#include "eom/linalg/lu.hpp"
 #include "support/tolerances.hpp"
 
 namespace {

@@ -1,4 +1,5 @@
-// What the implicit midpoint rule claims: time symmetry, quadratic invariants, symplecticity; as far as rounding lets it.
+// What the implicit midpoint rule claims: time symmetry, quadratic invariants, symplecticity; as far as rounding lets
+// it.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -46,7 +47,8 @@ TEST_CASE("midpoint: there and back again is the identity but for rounding; rk4 
   const problems::Pendulum pendulum;
   const auto miss = [&](const char* method) {
     const eom::Result there = eom::integrate(method, pendulum, 0, pendulum.start, 100, fixed(0.125));
-    return problems::largest_difference(eom::integrate(method, pendulum, 100, there.x, 0, fixed(0.125)).x, pendulum.start);
+    return problems::largest_difference(eom::integrate(method, pendulum, 100, there.x, 0, fixed(0.125)).x,
+                                        pendulum.start);
   };
   CHECK(miss("midpoint") < 1e-12);  // 1600 steps, each of some roundings
   CHECK(miss("rk4") > 1e-6);
@@ -77,21 +79,26 @@ TEST_CASE("midpoint: with the jacobian given no differences are taken") {
     dfdx[2] = 1;
     return 0;
   };
-  const auto result = eom::integrate("midpoint", eom::WithJacobian{oscillator, jacobian}, 0, oscillator.start, 10, fixed(0.01));
+  const auto result =
+      eom::integrate("midpoint", eom::WithJacobian{oscillator, jacobian}, 0, oscillator.start, 10, fixed(0.01));
   CHECK(result.statistics.difference_evaluations == 0);
   CHECK(result.statistics.jacobians == 1);  // linear: one serves for all steps
   CHECK(problems::largest_difference(result.x, oscillator.exact(10)) < 1e-4);
 }
 
-TEST_CASE("fixed implicit steps: components at rounding level, or 0, end no iteration; small ones beside large ones keep their digits") {
-  // a pendulum near its lowest point in Cartesian coordinates, with a spin and a slow one beside it: x stays at 1e-17, z at 0
+TEST_CASE(
+    "fixed implicit steps: components at rounding level, or 0, end no iteration; small ones beside large ones keep "
+    "their digits") {
+  // a pendulum near its lowest point in Cartesian coordinates, with a spin and a slow one beside it: x stays at 1e-17,
+  // z at 0
   const auto f = [](double, const double* x, double* dx) {
     const double lambda = -(x[4] * x[4] + x[5] * x[5] - 9.81 * x[1]) / (x[0] * x[0] + x[1] * x[1]);
     dx[0] = x[4];
     dx[1] = x[5];
     dx[2] = x[6];
     dx[3] = x[7];
-    dx[4] = lambda * x[0] + 0.3 * (x[1] + std::cos(std::acos(-1.0) / 3) * 2);  // a force whose terms cancel but for rounding
+    dx[4] = lambda * x[0] +
+            0.3 * (x[1] + std::cos(std::acos(-1.0) / 3) * 2);  // a force whose terms cancel but for rounding
     dx[5] = -9.81 + lambda * x[1];
     dx[6] = 0;
     dx[7] = -1e18 * x[3];  // 1e-6 with 1e3
@@ -105,11 +112,14 @@ TEST_CASE("fixed implicit steps: components at rounding level, or 0, end no iter
     CHECK(fast.outcome == eom::Outcome::done);
     // of 1e9 in 1e-9: a phase of 1, in 1000 steps, by an error of h^2/12 per phase for order 2
     CHECK(std::abs(fast.x[3] - 1e-6 * std::cos(1.0)) < 1e-6 * (method == std::string("midpoint") ? 1e-7 : 1e-12));
-    const eom::Result slow = eom::integrate(method, [&](double t, const double* x, double* dx) {
-      f(t, x, dx);
-      dx[7] = -x[3];
-      return 0;
-    }, 0, start, 1, fixed(1e-3));
+    const eom::Result slow = eom::integrate(
+        method,
+        [&](double t, const double* x, double* dx) {
+          f(t, x, dx);
+          dx[7] = -x[3];
+          return 0;
+        },
+        0, start, 1, fixed(1e-3));
     CHECK(slow.outcome == eom::Outcome::done);
     CHECK(std::abs(slow.x[0]) < 1e-13);
     CHECK(std::abs(slow.x[3] - 1e-6 * std::cos(1.0)) < 1e-6 * (method == std::string("midpoint") ? 1e-6 : 1e-13));

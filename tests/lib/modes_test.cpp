@@ -42,8 +42,9 @@ int belt_events(double, const double* x, const double* p, const double*, int, do
   g[2] = p[1] + x[0];
   return 0;
 }
-const std::vector<Mode> belt_modes{
-    {"stick", {{1, Direction::down}, {2, Direction::down}}}, {"back", {{0, Direction::up}}}, {"ahead", {{0, Direction::down}}}};
+const std::vector<Mode> belt_modes{{"stick", {{1, Direction::down}, {2, Direction::down}}},
+                                   {"back", {{0, Direction::up}}},
+                                   {"ahead", {{0, Direction::down}}}};
 
 Transition belt_rule(const ModePoint& point, const std::array<double, 3>& p) {
   if (point.mode == 0) return {point.crossing.function == 1 ? 1 : 2, "slip", "belt"};
@@ -61,8 +62,9 @@ TEST_CASE("all methods: a block on a belt sticks for 5 and slips for 2(pi - atan
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const std::vector<double> start{0, 0.2};  // sticking; x = 1 after 5
-    const ModeResult r = eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 60, tight(method), model.events(), 3,
-                                              belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
+    const ModeResult r =
+        eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 60, tight(method), model.events(), 3, belt_modes,
+                             [&](const ModePoint& point) { return belt_rule(point, p); });
     CHECK(r.outcome == eom::Outcome::done);
     REQUIRE(r.events.size() >= 10);
     // Slip swings about x = 0.5, from x = 1 to x = 0 at belt speed; to be carried back to x = 1 takes 1/0.2 = 5.
@@ -89,8 +91,8 @@ TEST_CASE("implicit methods: df/dx of the mode that holds is what they are given
     CAPTURE(std::string(method.name));
     const std::vector<double> start{0, 0.2};
     const auto events = [&] {
-      return eom::integrate_modes(method.name, model.rhs_and_jacobian(), 0, start, 0, 20, tight(method), model.events(), 3,
-                                  belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
+      return eom::integrate_modes(method.name, model.rhs_and_jacobian(), 0, start, 0, 20, tight(method), model.events(),
+                                  3, belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
     };
     model.jac_function = jacobian;
     const ModeResult given = events();
@@ -98,7 +100,8 @@ TEST_CASE("implicit methods: df/dx of the mode that holds is what they are given
     CHECK(given.statistics.jacobians > 0);
     CHECK(given.statistics.difference_evaluations == 0);
     REQUIRE(given.events.size() >= 2);
-    CHECK(std::abs(given.events[1].t - (5 + 2 * (pi - std::atan(2.5)))) < problems::coarser(method) * tolerances::event_time);
+    CHECK(std::abs(given.events[1].t - (5 + 2 * (pi - std::atan(2.5)))) <
+          problems::coarser(method) * tolerances::event_time);
     model.jac_function = nullptr;
     const ModeResult differences = events();
     CHECK(differences.statistics.difference_evaluations > 0);
@@ -114,8 +117,9 @@ TEST_CASE("all methods: an oscillator with Coulomb friction stops where and when
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
     const std::vector<double> start{4.1, 0};
-    const ModeResult r = eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 50, tight(method), model.events(), 3,
-                                              belt_modes, [&](const ModePoint& point) { return belt_rule(point, p); });
+    const ModeResult r =
+        eom::integrate_modes(method.name, model.rhs(), 0, start, 0, 50, tight(method), model.events(), 3, belt_modes,
+                             [&](const ModePoint& point) { return belt_rule(point, p); });
     CHECK(r.outcome == eom::Outcome::done);
     CHECK(r.mode == 0);
     REQUIRE(r.events.size() == 8);
@@ -167,7 +171,8 @@ TEST_CASE("all methods: a bouncing ball ends told, where its bounces accumulate"
     for (const double e : {0.5, 0.8}) {
       CAPTURE(std::string(method.name));
       CAPTURE(e);
-      const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), ball_events, 1, flight, Bounce{e});
+      const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), ball_events, 1,
+                                                flight, Bounce{e});
       CHECK(r.outcome == eom::Outcome::step_too_small);
       CHECK(r.detail.find("accumulate") != std::string::npos);
       CHECK(std::abs(r.accumulation - fall * (1 + e) / (1 - e)) < problems::coarser(method) * tolerances::event_time);
@@ -178,8 +183,8 @@ TEST_CASE("all methods: a bouncing ball ends told, where its bounces accumulate"
         t += flight_time;
       }
       CHECK(r.events.size() > 10);
-      const ModeResult rests =
-          eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), ball_events, 1, flight, BounceAndRest{{e}});
+      const ModeResult rests = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), ball_events,
+                                                    1, flight, BounceAndRest{{e}});
       CHECK(rests.outcome == eom::Outcome::done);
       CHECK(rests.mode == 1);
       CHECK(rests.x == std::vector<double>{0, 0});
@@ -198,8 +203,8 @@ TEST_CASE("a ball on a table of height 1 never falls through it, down to where r
     double lowest = 1;
     const auto observe = [&](const eom::StepView& view, int) { return lowest = std::min(lowest, view.x1[0]), true; };
     const std::vector<double> start{1.5, 0.1};
-    const ModeResult r =
-        eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), above_table, 1, flight, bounce, observe);
+    const ModeResult r = eom::integrate_modes(method.name, ball_rhs, 0, start, 0, 10, tight(method), above_table, 1,
+                                              flight, bounce, observe);
     CHECK(r.outcome == eom::Outcome::step_too_small);
     CHECK_FALSE(r.detail.empty());
     CHECK(lowest > 1 - tolerances::event_state);

@@ -72,7 +72,8 @@ TEST_CASE("codes: one that only too long a step meets does not end the run") {
 }
 
 TEST_CASE("a code at the start ends the run there") {
-  const eom::Result result = run("dopri5", [](double, const double*, double*) { return 1; }, 1);
+  const eom::Result result = run(
+      "dopri5", [](double, const double*, double*) { return 1; }, 1);
   CHECK(result.outcome == eom::Outcome::singular_mass_matrix);
   CHECK(result.t == 0);
   CHECK(result.detail.find("start") != std::string::npos);
@@ -81,10 +82,12 @@ TEST_CASE("a code at the start ends the run there") {
 TEST_CASE("not_finite: at the start, and later with the last finite state kept") {
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
-    CHECK(run(method.name, [](double, const double*, double* dx) { return dx[0] = not_a_number, 0; }, 1).outcome ==
-          eom::Outcome::not_finite);
-    CHECK(run(method.name, [](double, const double*, double* dx) { return dx[0] = 1, 0; }, 1, {}, not_a_number).outcome ==
-          eom::Outcome::not_finite);
+    CHECK(run(
+              method.name, [](double, const double*, double* dx) { return dx[0] = not_a_number, 0; }, 1)
+              .outcome == eom::Outcome::not_finite);
+    CHECK(run(
+              method.name, [](double, const double*, double* dx) { return dx[0] = 1, 0; }, 1, {}, not_a_number)
+              .outcome == eom::Outcome::not_finite);
     const auto later = [](double t, const double*, double* dx) { return dx[0] = t < 1 ? 1 : not_a_number, 0; };
     const eom::Result result = run(method.name, later, 2);
     CHECK(result.outcome == eom::Outcome::not_finite);
@@ -96,7 +99,8 @@ TEST_CASE("not_finite: at the start, and later with the last finite state kept")
 TEST_CASE("diverged: beyond the stated bound; max_steps: when these are used up") {
   for (const eom::MethodInfo& method : problems::methods()) {
     CAPTURE(std::string(method.name));
-    const eom::Result grown = run(method.name, [](double, const double* x, double* dx) { return dx[0] = x[0], 0; }, 400);
+    const eom::Result grown = run(
+        method.name, [](double, const double* x, double* dx) { return dx[0] = x[0], 0; }, 400);
     CHECK(grown.outcome == eom::Outcome::diverged);
     CHECK(grown.x[0] > eom::divergence_bound);
     CHECK(std::abs(grown.t - 345.4) < 5);  // ln 1e150
@@ -112,7 +116,8 @@ TEST_CASE("diverged: beyond the stated bound; max_steps: when these are used up"
 
 TEST_CASE("step_too_small: a pole of the motion, x' = x^2, and a fixed step lost in t") {
   for (const char* method : problems::adaptive_methods()) {
-    const eom::Result pole = run(method, [](double, const double* x, double* dx) { return dx[0] = x[0] * x[0], 0; }, 2);
+    const eom::Result pole = run(
+        method, [](double, const double* x, double* dx) { return dx[0] = x[0] * x[0], 0; }, 2);
     CHECK(pole.outcome == eom::Outcome::step_too_small);
     CHECK(std::abs(pole.t - 1) < 1e-6);
   }
@@ -147,8 +152,7 @@ TEST_CASE("interrupted: at the next step after the flag is set") {
 
 TEST_CASE("a projection that fails ends the run with its code's outcome after shorter steps were tried") {
   const auto fails = [](double t, double*) { return t > 1 ? -1 : 0; };
-  const auto result =
-      eom::integrate("dopri5", FailsFromOne{0}, 0, problems::State{1}, 2, {}, eom::NoObserver{}, fails);
+  const auto result = eom::integrate("dopri5", FailsFromOne{0}, 0, problems::State{1}, 2, {}, eom::NoObserver{}, fails);
   CHECK(result.outcome == eom::Outcome::step_too_small);
   CHECK(result.detail.find("-1") != std::string::npos);
   CHECK(std::abs(result.t - 1) < 1e-12);

@@ -12,8 +12,8 @@
 
 namespace problems {
 
-/// The methods that take any right-hand side; those that need its series, momenta or constraints have tests of their own (taylor_test.cpp,
-/// variational_test.cpp, ggl_test.cpp).
+/// The methods that take any right-hand side; those that need its series, momenta or constraints have tests of their
+/// own (taylor_test.cpp, variational_test.cpp, ggl_test.cpp).
 inline std::vector<eom::MethodInfo> methods() {
   std::vector<eom::MethodInfo> result;
   for (const eom::MethodInfo& method : eom::methods())
@@ -49,8 +49,7 @@ struct Oscillator {
 
 /// The planar two-body problem, semi-major axis 1, from the pericentre.
 struct Kepler {
-  explicit Kepler(double eccentricity = 0.5)
-      : e(eccentricity), start{1 - e, 0, 0, std::sqrt((1 + e) / (1 - e))} {}
+  explicit Kepler(double eccentricity = 0.5) : e(eccentricity), start{1 - e, 0, 0, std::sqrt((1 + e) / (1 - e))} {}
   double e;
   State start;
   int operator()(double, const double* x, double* dx) const {
@@ -95,7 +94,8 @@ struct Pendulum {
     }
     return static_cast<double>(2 * std::numbers::pi_v<long double> / a);
   }
-  /// sin(theta/2) = k cd(t, k) with k = sin(theta_max / 2): Jacobi's functions by descending arithmetic-geometric means.
+  /// sin(theta/2) = k cd(t, k) with k = sin(theta_max / 2): Jacobi's functions by descending arithmetic-geometric
+  /// means.
   State exact(double t) const {
     constexpr int levels = 8;
     const long double k = std::sin(static_cast<long double>(theta_max) / 2);

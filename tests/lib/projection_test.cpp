@@ -4,18 +4,16 @@
 
 #include <stdexcept>
 #define EIGEN_RUNTIME_NO_MALLOC  // Eigen then asserts where it would allocate; the assertion is made to throw
-#define eigen_assert(condition) \
-  do {                          \
+#define eigen_assert(condition)                                     \
+  do {                                                              \
     if (!(condition)) throw std::logic_error("Eigen: " #condition); \
   } while (false)
-#include "eom/constraints/projection.hpp"
-
 #include <Eigen/Dense>
-
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "eom/constraints/projection.hpp"
 #include "eom/ode.hpp"
 #include "support/tolerances.hpp"
 
@@ -106,8 +104,8 @@ void check_against_reference(const Linear& problem) {
 Linear random_problem(Eigen::Index n, Eigen::Index m) {
   std::srand(7);
   const Eigen::MatrixXd B = Eigen::MatrixXd::Random(n, n);
-  return {Eigen::MatrixXd::Random(m, n), B * B.transpose() + Eigen::MatrixXd::Identity(n, n), Eigen::VectorXd::Random(m),
-          Eigen::VectorXd::Random(m)};
+  return {Eigen::MatrixXd::Random(m, n), B * B.transpose() + Eigen::MatrixXd::Identity(n, n),
+          Eigen::VectorXd::Random(m), Eigen::VectorXd::Random(m)};
 }
 
 }  // namespace
@@ -289,9 +287,7 @@ TEST_CASE("projection in a run: the Cartesian pendulum stays on its circle, wher
   const auto project = [&](double t, double* x) {
     return projection(t, x, pendulum.constraints(), pendulum.mass()).code;
   };
-  const auto off_circle = [](const eom::Result& result) {
-    return std::abs(std::hypot(result.x[0], result.x[1]) - 1);
-  };
+  const auto off_circle = [](const eom::Result& result) { return std::abs(std::hypot(result.x[0], result.x[1]) - 1); };
   const auto with = eom::integrate("dopri5", rhs, 0, start, 50, options, eom::NoObserver{}, project);
   const auto without = eom::integrate("dopri5", rhs, 0, start, 50, options);
   CHECK(with.outcome == eom::Outcome::done);

@@ -36,7 +36,8 @@ struct VanDerPol {
 
 }  // namespace
 
-TEST_CASE("radau: stages integrate polynomials of degree s - 1, the last one of degree 2s - 2; T brings A^-1 to its blocks") {
+TEST_CASE(
+    "radau: stages integrate polynomials of degree s - 1, the last one of degree 2s - 2; T brings A^-1 to its blocks") {
   for (const std::size_t s : {3u, 5u, 7u}) {
     CAPTURE(s);
     const RadauTableau& r = RadauTableau::of(s);
@@ -51,9 +52,10 @@ TEST_CASE("radau: stages integrate polynomials of degree s - 1, the last one of 
       for (std::size_t i = 0; i < s; ++i) {
         double sum = 0;
         for (std::size_t j = 0; j < s; ++j) {
-          const double image = column == 0       ? r.gamma * r.T[j][0]
-                               : column % 2 == 1 ? r.alpha[pair - 1] * r.T[j][column] + r.beta[pair - 1] * r.T[j][column + 1]
-                                                 : r.alpha[pair - 1] * r.T[j][column] - r.beta[pair - 1] * r.T[j][column - 1];
+          const double image = column == 0 ? r.gamma * r.T[j][0]
+                               : column % 2 == 1
+                                   ? r.alpha[pair - 1] * r.T[j][column] + r.beta[pair - 1] * r.T[j][column + 1]
+                                   : r.alpha[pair - 1] * r.T[j][column] - r.beta[pair - 1] * r.T[j][column - 1];
           sum += r.A[i][j] * image;
         }
         CHECK(std::abs(sum - r.T[i][column]) < 1e-13);
@@ -96,7 +98,8 @@ TEST_CASE("radau: orders 5, 9 and 13 in both directions of time, dense output of
     }
   Options options;
   options.series_order = 7;
-  CHECK_THROWS_WITH_AS(eom::integrate("radau", f, 0, f.start, 1, options), doctest::Contains("5, 9 or 13"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(eom::integrate("radau", f, 0, f.start, 1, options), doctest::Contains("5, 9 or 13"),
+                       std::invalid_argument);
 }
 
 TEST_CASE("radau: tight tolerances cost a fifth of the steps of radau5, to the same accuracy") {
@@ -105,7 +108,8 @@ TEST_CASE("radau: tight tolerances cost a fifth of the steps of radau5, to the s
     CAPTURE(tolerance);
     Options options;
     options.rtol = options.atol = tolerance;
-    const Result found = eom::integrate("radau", f, 0, f.start, 2, options), plain = eom::integrate("radau5", f, 0, f.start, 2, options);
+    const Result found = eom::integrate("radau", f, 0, f.start, 2, options),
+                 plain = eom::integrate("radau5", f, 0, f.start, 2, options);
     CHECK(found.outcome == eom::Outcome::done);
     CHECK(problems::largest_difference(found.x, f.end) < 2 * tolerance);
     CHECK(found.statistics.rhs_evaluations < plain.statistics.rhs_evaluations);
@@ -114,8 +118,11 @@ TEST_CASE("radau: tight tolerances cost a fifth of the steps of radau5, to the s
   }
 }
 
-// A mass that has just met a spring of k/m = 3e14 1/s^2: in a step that is long beside its contact the filtered estimate sees nothing of it, and the mass would be left at rest.
-TEST_CASE("radau5, radau: the first step resolves the fastest motion, so that an impact on a stiff spring is not damped away") {
+// A mass that has just met a spring of k/m = 3e14 1/s^2: in a step that is long beside its contact the filtered
+// estimate sees nothing of it, and the mass would be left at rest.
+TEST_CASE(
+    "radau5, radau: the first step resolves the fastest motion, so that an impact on a stiff spring is not damped "
+    "away") {
   const double omega = std::sqrt(3e14);
   const auto spring = [&](double, const double* x, double* dx) {
     dx[0] = x[1];
@@ -133,7 +140,7 @@ TEST_CASE("radau5, radau: the first step resolves the fastest motion, so that an
       fastest = std::max(fastest, std::abs(step.x1[1]));
       return step.t1 < 3.2 / omega;  // over the impact
     });
-    CHECK(first * omega <= 1.1);  // power iteration from a start that is not the motion itself
+    CHECK(first * omega <= 1.1);                           // power iteration from a start that is not the motion itself
     CHECK(fastest == doctest::Approx(0.5).epsilon(1e-3));  // it comes back as fast as it came
   }
 }

@@ -14,7 +14,8 @@ struct Tree {
 };
 
 /// Adds all trees of the given order whose branches are taken from trees[0..last], largest index first.
-inline void grow(std::vector<Tree>& trees, int order, int missing, std::size_t last, std::vector<std::size_t>& branches) {
+inline void grow(std::vector<Tree>& trees, int order, int missing, std::size_t last,
+                 std::vector<std::size_t>& branches) {
   if (missing == 0) {
     double density = order;
     for (const std::size_t b : branches) density *= trees[b].density;

@@ -130,7 +130,8 @@ TEST_CASE("rodas: the order holds where the right-hand side depends on time, df/
     options.fixed_step = step;
     return std::abs(eom::integrate("rodas", f, 0, problems::State{1}, 3, options).x[0] - std::exp(std::cos(3.0) - 1));
   };
-  const double given = std::log2(error(eom::WithJacobian{rhs, jacobian}, 0.1) / error(eom::WithJacobian{rhs, jacobian}, 0.05));
+  const double given =
+      std::log2(error(eom::WithJacobian{rhs, jacobian}, 0.1) / error(eom::WithJacobian{rhs, jacobian}, 0.05));
   const double differences = std::log2(error(rhs, 0.1) / error(rhs, 0.05));
   const auto without_time = [](double t, const double*, double* dfdx, double*) {
     dfdx[0] = -std::sin(t);

@@ -1,4 +1,5 @@
-// Problems of problems.hpp with their Taylor series, by recurrences written by hand. In: nothing. Out: right-hand sides for `taylor`.
+// Problems of problems.hpp with their Taylor series, by recurrences written by hand. In: nothing. Out: right-hand sides
+// for `taylor`.
 #pragma once
 
 #include <algorithm>
@@ -55,7 +56,8 @@ struct KeplerSeries : Kepler {
       r[k] = convolution(x, x, at) + convolution(y, y, at);
       double sum = k == 0 ? std::pow(r[0], -1.5) : 0;
       for (std::size_t j = 1; j <= k; ++j)
-        sum += (-1.5 * static_cast<double>(j) - static_cast<double>(k - j)) * r[j] * u[k - j] / (static_cast<double>(k) * r[0]);
+        sum += (-1.5 * static_cast<double>(j) - static_cast<double>(k - j)) * r[j] * u[k - j] /
+               (static_cast<double>(k) * r[0]);
       u[k] = sum;
       const double n = static_cast<double>(k) + 1;
       out[4 * k + 4] = out[4 * k + 2] / n;

@@ -1,4 +1,6 @@
 // The SVG is well-formed XML whatever the text and the numbers are, and shows what it was given.
+#include "eom/output/svg_plot.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -8,11 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "eom/output/svg_plot.hpp"
-
 namespace {
 
-/// Empty for well-formed XML of the kind drawn here (elements, quoted attributes, the five entities); else what is wrong.
+/// Empty for well-formed XML of the kind drawn here (elements, quoted attributes, the five entities); else what is
+/// wrong.
 std::string defect_of(const std::string& xml) {
   std::vector<std::string> open;
   std::size_t i = 0;
@@ -32,7 +33,8 @@ std::string defect_of(const std::string& xml) {
     const std::size_t end = xml.find('>', i);
     if (end == std::string::npos) return "a tag without an end";
     const std::string tag = xml.substr(i + 1, end - i - 1);
-    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0 || tag.find('<') != std::string::npos) return "quotes in " + tag;
+    if (std::count(tag.begin(), tag.end(), '"') % 2 != 0 || tag.find('<') != std::string::npos)
+      return "quotes in " + tag;
     const std::string name = tag.substr(0, tag.find_first_of(" /", tag[0] == '/' ? 1 : 0));
     if (tag[0] == '/') {
       if (open.empty() || open.back() != tag.substr(1)) return "closes " + tag;
@@ -77,17 +79,18 @@ TEST_CASE("svg: well-formed, text escaped, one path per line, names in the legen
 TEST_CASE("svg: well-formed and finite for ranges that are empty, flat, huge, tiny, far from zero, or not numbers") {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   const double not_a_number = std::nan("");
-  const std::vector<std::vector<double>> values{{},
-                                                {5, 5},
-                                                {0, 0},
-                                                {-1e300, 1e300},
-                                                {1e-300, 2e-300},
-                                                {1e6, 1e6 + 1e-3},
-                                                {1, 1 + 1e-15},
-                                                {not_a_number, infinity},
-                                                {-1, 0},
-                                                {1e-30, 1e30},
-                                                {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()}};
+  const std::vector<std::vector<double>> values{
+      {},
+      {5, 5},
+      {0, 0},
+      {-1e300, 1e300},
+      {1e-300, 2e-300},
+      {1e6, 1e6 + 1e-3},
+      {1, 1 + 1e-15},
+      {not_a_number, infinity},
+      {-1, 0},
+      {1e-30, 1e30},
+      {-std::numeric_limits<double>::max(), std::numeric_limits<double>::max()}};
   for (const std::vector<double>& y : values)
     for (const bool logarithmic : {false, true}) {
       CAPTURE(y.size());

@@ -71,7 +71,8 @@ TEST_CASE("trees: there are 1, 1, 2, 4, 9, 20, 48, 115 and 286 of order 1 to 9")
   CHECK(count == std::vector<int>{0, 1, 1, 2, 4, 9, 20, 48, 115, 286});
 }
 
-TEST_CASE_TEMPLATE_DEFINE("tableaux: c holds the row sums of a, which is strictly lower triangular", T, tableau_claim_1) {
+TEST_CASE_TEMPLATE_DEFINE("tableaux: c holds the row sums of a, which is strictly lower triangular", T,
+                          tableau_claim_1) {
   for (std::size_t i = 0; i < columns<T>; ++i) {
     CAPTURE(i);
     double sum = 0;
@@ -83,13 +84,15 @@ TEST_CASE_TEMPLATE_DEFINE("tableaux: c holds the row sums of a, which is strictl
   }
 }
 
-TEST_CASE_TEMPLATE_DEFINE("tableaux: the weights sum to 1 as exactly as binary64 can, so that no run drifts", T, tableau_weight_sum) {
+TEST_CASE_TEMPLATE_DEFINE("tableaux: the weights sum to 1 as exactly as binary64 can, so that no run drifts", T,
+                          tableau_weight_sum) {
   long double sum = -1;
   for (std::size_t j = 0; j < T::stages; ++j) sum += static_cast<long double>(T::a[T::stages][j]);
   CHECK(std::abs(static_cast<double>(sum)) < tolerances::weight_sum);
 }
 
-TEST_CASE_TEMPLATE_DEFINE("tableaux: the weights meet all order conditions up to the order, and not one more", T, tableau_claim_2) {
+TEST_CASE_TEMPLATE_DEFINE("tableaux: the weights meet all order conditions up to the order, and not one more", T,
+                          tableau_claim_2) {
   CAPTURE(T::name);
   const auto trees = rooted_trees(T::order + 1);
   const auto weights = stage_weights<T>(trees);
@@ -116,15 +119,15 @@ TEST_CASE("tableaux: the error weights vanish up to order 4 (dopri5, tsit5) and 
   CHECK(order_met(Dop853::error[1], trees, of_dop853, tolerances::order_condition, zero) == 3);
 }
 
-TEST_CASE_TEMPLATE_DEFINE("tableaux: the dense output meets the order conditions at any point of the step", T, tableau_claim_4) {
+TEST_CASE_TEMPLATE_DEFINE("tableaux: the dense output meets the order conditions at any point of the step", T,
+                          tableau_claim_4) {
   CAPTURE(T::name);
   const auto trees = rooted_trees(T::dense_order + 1);
   const auto weights = stage_weights<T>(trees);
   for (const double s : {0.15, 0.4, 0.65, 0.9}) {
     CAPTURE(s);
-    CHECK(order_met(dense_weights<T>(s), trees, weights, tolerances::dense_order_condition, [&](const Tree& tree) {
-            return std::pow(s, tree.order) / tree.density;
-          }) == T::dense_order);
+    CHECK(order_met(dense_weights<T>(s), trees, weights, tolerances::dense_order_condition,
+                    [&](const Tree& tree) { return std::pow(s, tree.order) / tree.density; }) == T::dense_order);
   }
 }
 

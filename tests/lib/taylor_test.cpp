@@ -1,4 +1,5 @@
-// The method `taylor` on series written by hand: measured order, dense output, tolerances, steps, events, modes, quadratures.
+// The method `taylor` on series written by hand: measured order, dense output, tolerances, steps, events, modes,
+// quadratures.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -31,7 +32,8 @@ std::pair<double, double> errors(int order, double direction, double step) {
     }
     return true;
   };
-  const auto result = eom::integrate("taylor", pendulum, start_time, pendulum.exact(start_time), start_time + direction * 6, options, observe);
+  const auto result = eom::integrate("taylor", pendulum, start_time, pendulum.exact(start_time),
+                                     start_time + direction * 6, options, observe);
   REQUIRE(result.outcome == eom::Outcome::done);
   return {ends, between};
 }
@@ -61,7 +63,8 @@ TEST_CASE("taylor: the tolerance is kept, by orders that grow with its digits, w
     const auto result = eom::integrate("taylor", kepler, 0, kepler.start, 20, options);
     REQUIRE(result.outcome == eom::Outcome::done);
     const double error = problems::largest_difference(result.x, kepler.exact(20));
-    CHECK(error < 3000 * rtol);  // the phase of an orbit is wrong by its energy's error times 3 t/2 and times 1/(1 - e), over some 50 steps
+    CHECK(error < 3000 * rtol);  // the phase of an orbit is wrong by its energy's error times 3 t/2 and times 1/(1 -
+                                 // e), over some 50 steps
     const double steps = static_cast<double>(result.statistics.steps);
     if (steps_before > 0) CHECK(steps < 2.2 * steps_before);  // of a method of order 5: 4 times
     CHECK(static_cast<double>(result.statistics.rejected) < 0.1 * steps);
@@ -75,7 +78,8 @@ TEST_CASE("taylor: from a start to an end and back, and through its own estimate
   options.rtol = options.atol = 1e-13;
   const auto there = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto back = eom::integrate("taylor", pendulum, 30, there.x, 0, options);
-  CHECK(problems::largest_difference(back.x, pendulum.start) < 1e-10);  // the phase is off by the error of the energy times the time
+  CHECK(problems::largest_difference(back.x, pendulum.start) <
+        1e-10);  // the phase is off by the error of the energy times the time
   options.rtol = options.atol = 1e-6;
   const auto rough = eom::integrate("taylor", pendulum, 0, pendulum.start, 30, options);
   const auto estimate = eom::estimate_error("taylor", pendulum, 0, pendulum.start, rough, options);
@@ -178,7 +182,8 @@ TEST_CASE("taylor: components without a series are integrated along the others")
 
 TEST_CASE("taylor: a right-hand side without a series, and orders that it does not have, are told") {
   const problems::Pendulum plain;
-  CHECK_THROWS_WITH_AS(eom::integrate("taylor", plain, 0, plain.start, 1), doctest::Contains("Taylor series"), std::invalid_argument);
+  CHECK_THROWS_WITH_AS(eom::integrate("taylor", plain, 0, plain.start, 1), doctest::Contains("Taylor series"),
+                       std::invalid_argument);
   const problems::PendulumSeries pendulum;
   eom::Options options;
   options.series_order = problems::hand_order + 1;

@@ -1,5 +1,6 @@
-// What the variational integrators promise: the sums that compositions need, orders in both directions of time, free and with
-// constraints, symmetry, a flow that is symplectic in (q, p), energies that stay bounded, constraints kept, no allocation in steps.
+// What the variational integrators promise: the sums that compositions need, orders in both directions of time, free
+// and with constraints, symmetry, a flow that is symplectic in (q, p), energies that stay bounded, constraints kept, no
+// allocation in steps.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -47,7 +48,8 @@ struct DoublePendulum {
   }
   int constrain(double, const double*, double*, double*, double*) const { return 0; }
   double energy(const double* x) const {
-    return x[2] * x[2] + 0.5 * x[3] * x[3] + std::cos(x[0] - x[1]) * x[2] * x[3] - g * (2 * std::cos(x[0]) + std::cos(x[1]));
+    return x[2] * x[2] + 0.5 * x[3] * x[3] + std::cos(x[0] - x[1]) * x[2] * x[3] -
+           g * (2 * std::cos(x[0]) + std::cos(x[1]));
   }
 };
 
@@ -90,7 +92,8 @@ struct Rod {
   }
 };
 
-const State swinging{0.5, -0.3, 0, 0}, rod_start{std::sin(1.0), -std::cos(1.0), 0.1 * std::sin(1.0), -0.1 * std::cos(1.0), 0};
+const State swinging{0.5, -0.3, 0, 0},
+    rod_start{std::sin(1.0), -std::cos(1.0), 0.1 * std::sin(1.0), -0.1 * std::cos(1.0), 0};
 
 std::vector<eom::MethodInfo> variational() {
   std::vector<eom::MethodInfo> found;
@@ -150,7 +153,9 @@ TEST_CASE("variational: the substeps are symmetric, and their odd powers add up 
   check(Order6::substeps, 6);
 }
 
-TEST_CASE("variational: the order is the one claimed, in both directions of time, without and with a constraint, forces and work") {
+TEST_CASE(
+    "variational: the order is the one claimed, in both directions of time, without and with a constraint, forces and "
+    "work") {
   check_order(DoublePendulum{}, swinging, 0);
   check_order(Rod{}, rod_start, 1);
   check_order(Rod{0.3}, rod_start, 1);
@@ -166,7 +171,8 @@ TEST_CASE("variational: a step back undoes a step, and constraints hold to round
     CHECK(std::abs(psi) < 1e-14);
     CHECK(std::abs(A[0] * there.x[2] + A[1] * there.x[3] + b) < 1e-13);
     const Result back = eom::integrate(method.name, rod, 20, there.x, 0, fixed(0.1, 1));
-    CHECK(problems::largest_difference(back.x, rod_start) < 1e-10);  // 400 steps, each of some roundings, of a motion that spreads them
+    CHECK(problems::largest_difference(back.x, rod_start) <
+          1e-10);  // 400 steps, each of some roundings, of a motion that spreads them
   }
 }
 
@@ -207,7 +213,8 @@ TEST_CASE("variational: the map of a step keeps dq ^ dp; that of dopri5 does not
       }
     return worst;
   };
-  for (const eom::MethodInfo& method : variational()) CHECK(defect(method.name) < 1e-8);  // differences of order 4, by 1e-4
+  for (const eom::MethodInfo& method : variational())
+    CHECK(defect(method.name) < 1e-8);  // differences of order 4, by 1e-4
   CHECK(defect("dopri5") > 1e-5);
 }
 
@@ -241,7 +248,9 @@ TEST_CASE("variational: events are found, and a right-hand side without momenta 
     REQUIRE(!times.empty());
     CHECK(std::abs(reference(DoublePendulum{}, swinging, times[0], 0)[0]) < 1e-5);  // the error of steps of order 2
     const problems::Kepler kepler;
-    CHECK_THROWS_WITH_AS(eom::integrate(method.name, kepler, 0, kepler.start, 1, fixed(0.1)), doctest::Contains("momenta"), std::invalid_argument);
-    CHECK_THROWS_WITH_AS(eom::integrate(method.name, DoublePendulum{}, 0, swinging, 1), doctest::Contains("fixed_step"), std::invalid_argument);
+    CHECK_THROWS_WITH_AS(eom::integrate(method.name, kepler, 0, kepler.start, 1, fixed(0.1)),
+                         doctest::Contains("momenta"), std::invalid_argument);
+    CHECK_THROWS_WITH_AS(eom::integrate(method.name, DoublePendulum{}, 0, swinging, 1), doctest::Contains("fixed_step"),
+                         std::invalid_argument);
   }
 }

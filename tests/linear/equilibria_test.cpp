@@ -12,8 +12,8 @@ using linear::Stability;
 
 namespace {
 
-cli::SteadyMotions found(const std::string& model, const std::map<std::string, symbolic::Rational>& hold = {}, const std::string& scene = "default",
-                         const std::string& more = "") {
+cli::SteadyMotions found(const std::string& model, const std::map<std::string, symbolic::Rational>& hold = {},
+                         const std::string& scene = "default", const std::string& more = "") {
   cli::SteadyRequest request;
   request.model = model_path(model);
   request.scene = scene;
@@ -27,7 +27,8 @@ cli::SteadyMotions found(const std::string& model, const std::map<std::string, s
 
 double value(const cli::SteadyMotions& all, std::size_t point, const std::string& name) {
   const auto& names = all.problem.flow->names();
-  return linear::to_double(all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+  return linear::to_double(
+      all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
 }
 
 const double pi = std::acos(-1.0);
@@ -66,16 +67,20 @@ TEST_CASE("rotating hoop: two equilibria below the critical rate, four above, a 
     CHECK(fast.points[i].verdict.stability == (i % 2 == 0 ? Stability::stable : Stability::unstable));
   }
   same(fast.points[2].l.spectrum.values[0].im, 6 * std::sin(beta));
-  const cli::SteadyMotions slow = found("rotating_hoop", {}, "slow", "\n[scene.slow]\nfrom = \"default\"\nparameters = { w = 3 }\n");
+  const cli::SteadyMotions slow =
+      found("rotating_hoop", {}, "slow", "\n[scene.slow]\nfrom = \"default\"\nparameters = { w = 3 }\n");
   REQUIRE(slow.points.size() == 2);
   CHECK(slow.points[0].verdict.stability == Stability::stable);
 }
 
 // I cos(theta) p^2 - Ja s p + m g L = 0
-TEST_CASE("Lagrange top: at a tilt and spin the slow and the fast precession; at the momenta of a start the tilt that they have") {
+TEST_CASE(
+    "Lagrange top: at a tilt and spin the slow and the fast precession; at the momenta of a start the tilt that they "
+    "have") {
   const cli::SteadyMotions all = found("R10_lagrange_top", {{"theta", symbolic::Rational(3) / 5}, {"top.omega3", 150}});
   REQUIRE(all.points.size() == 2);
-  const double I = 0.004 + 0.01, a = 0.002 * 150, weight = 9.81 * 0.1, c = std::cos(0.6), root = std::sqrt(a * a - 4 * I * c * weight);
+  const double I = 0.004 + 0.01, a = 0.002 * 150, weight = 9.81 * 0.1, c = std::cos(0.6),
+               root = std::sqrt(a * a - 4 * I * c * weight);
   same(value(all, 0, "psi_dot"), (a - root) / (2 * I * c));
   same(value(all, 1, "psi_dot"), (a + root) / (2 * I * c));
   for (const cli::SteadyMotion& point : all.points) {
@@ -86,7 +91,8 @@ TEST_CASE("Lagrange top: at a tilt and spin the slow and the fast precession; at
   const cli::SteadyMotions kept = found("R10_lagrange_top");
   REQUIRE(kept.points.size() == 1);
   REQUIRE(kept.held.size() == 2);
-  const double t = value(kept, 0, "theta"), p = value(kept, 0, "psi_dot"), w = value(kept, 0, "phi_dot") + p * std::cos(t);
+  const double t = value(kept, 0, "theta"), p = value(kept, 0, "psi_dot"),
+               w = value(kept, 0, "phi_dot") + p * std::cos(t);
   same(w, 150);
   same(I * p * std::pow(std::sin(t), 2) + a * std::cos(t), a * c);  // the start does not precess
 }
@@ -95,14 +101,16 @@ TEST_CASE("rolling disk: a circle at the start's tilt and rate of turning, one o
   const cli::SteadyMotions all = found("R6_rolling_disk");
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].family == 2);
-  const double m = 0.5, R = 0.2, g = 9.81, A = m * R * R / 4, K = 3 * m * R * R / 2, s = std::sin(1.2), c = std::cos(1.2), p = 0.5;
+  const double m = 0.5, R = 0.2, g = 9.81, A = m * R * R / 4, K = 3 * m * R * R / 2, s = std::sin(1.2),
+               c = std::cos(1.2), p = 0.5;
   same(value(all, 0, "psi_dot"), (A * p * p * s * c - m * g * R * c) / (K * p * s) - p * c);
   CHECK(all.points[0].verdict.stability == Stability::unknown);  // its two further integrals are not found
 }
 
 TEST_CASE("sleigh: straight ahead is stable, astern is not") {
-  const char* const scenes = "\n[scene.ahead]\nfrom = \"default\"\ninitial = { x1_dot = 5, phi_dot = 0 }\n"
-                             "[scene.astern]\nfrom = \"default\"\ninitial = { x1_dot = -5, phi_dot = 0 }\n";
+  const char* const scenes =
+      "\n[scene.ahead]\nfrom = \"default\"\ninitial = { x1_dot = 5, phi_dot = 0 }\n"
+      "[scene.astern]\nfrom = \"default\"\ninitial = { x1_dot = -5, phi_dot = 0 }\n";
   for (const char* scene : {"ahead", "astern"}) {
     const cli::SteadyMotions all = found("R13_sleigh", {}, scene, scenes);
     REQUIRE(all.points.size() == 1);
@@ -114,8 +122,9 @@ TEST_CASE("sleigh: straight ahead is stable, astern is not") {
 TEST_CASE("a degenerate equilibrium is not called stable by its linear terms") {
   const std::string path = test::build_folder() + "/degenerate.toml";
   // x' = v, v' = -v + x^3: the zero eigenvalue is no family, and x = 0 is unstable.
-  write_text(path, "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x^4/4\"\n"
-                   "[[force]]\ngeneralized = { x = \"-x_dot\" }\n[scene.default]\ninitial = { x = 0 }\n");
+  write_text(path,
+             "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x^4/4\"\n"
+             "[[force]]\ngeneralized = { x = \"-x_dot\" }\n[scene.default]\ninitial = { x = 0 }\n");
   cli::SteadyRequest request;
   request.model = path;
   const cli::SteadyMotions all = cli::steady_motions(request);

@@ -33,11 +33,14 @@ struct Linearised {
     }
     throw std::logic_error("no state " + name);
   }
-  double A(const std::string& row, const std::string& column) const { return linear::to_double(l.A(state(row), state(column))); }
+  double A(const std::string& row, const std::string& column) const {
+    return linear::to_double(l.A(state(row), state(column)));
+  }
   double B(const std::string& row, std::size_t input) const { return linear::to_double(l.B(state(row), input)); }
   double at(const std::string& name) const {
     const auto& names = problem.flow->names();
-    return linear::to_double(l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+    return linear::to_double(
+        l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
   }
   /// The n-th eigenvalue by falling real part, then imaginary part.
   const linear::Eigenvalue& value(std::size_t n) const { return l.spectrum.values.at(n); }
@@ -45,8 +48,9 @@ struct Linearised {
 };
 
 /// `more` is written below the model: further scenes.
-inline Linearised linearised(const std::string& model, const std::string& scene = "default", const std::string& more = "",
-                             const std::map<std::string, symbolic::Rational>& set = {}, std::optional<double> at = {}) {
+inline Linearised linearised(const std::string& model, const std::string& scene = "default",
+                             const std::string& more = "", const std::map<std::string, symbolic::Rational>& set = {},
+                             std::optional<double> at = {}) {
   std::string path = model_path(model);
   if (!more.empty()) {
     const std::string text = read_text(path) + more;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces at rest and at the edges of their formulas: dampers whose points meet, drag, branches that are not taken, roots that
-// are multiple, balances that hold but for roundings; chains of damped bodies.
+// Forces at rest and at the edges of their formulas: dampers whose points meet, drag, branches that are not taken,
+// roots that are multiple, balances that hold but for roundings; chains of damped bodies.
 #include <fmt/format.h>
 
 #include "cli/steady_search.hpp"
@@ -33,13 +33,17 @@ cli::SteadyMotions found(const std::string& path) {
 
 double value(const cli::SteadyMotions& all, std::size_t point, const std::string& name) {
   const auto& names = all.problem.flow->names();
-  return linear::to_double(all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+  return linear::to_double(
+      all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
 }
 
-const std::string particle = "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"0\", \"0\"] }\n";
-const std::string free_particle = "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n";
+const std::string particle =
+    "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"0\", \"0\"] }\n";
+const std::string free_particle =
+    "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n";
 const std::string spring = "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\" }\n";
-const std::string damper = "[[force]]\nname = \"dashpot\"\ndamper = { between = [\"P\", \"origin\"], coefficient = \"c\" }\n";
+const std::string damper =
+    "[[force]]\nname = \"dashpot\"\ndamper = { between = [\"P\", \"origin\"], coefficient = \"c\" }\n";
 const std::string numbers = "[parameters]\nm = 2\nk = 8\nc = 0.5\ng = 9.81\n";
 const std::string at_rest = "[scene.default]\ninitial = { x = 0 }\n";
 
@@ -56,45 +60,64 @@ TEST_CASE("a mass on a spring and a damper: where the points of the damper meet 
   CHECK(all.points[0].verdict.stability == Stability::stable);
 }
 
-TEST_CASE("cart and pole with a damper to the wall; two masses on an incline; a bead on a turning rod in polar coordinates") {
-  const std::string cart = file("cart", "[parameters]\nM = 2\nm = 0.5\nl = 0.8\ng = 9.81\nc = 0.3\n[coordinates]\nx = {}\nth = {}\n"
-                                "[[particle]]\nname = \"C\"\nmass = \"M\"\nposition = { cartesian = [\"x\", \"0\", \"0\"] }\n"
-                                "[[particle]]\nname = \"B\"\nmass = \"m\"\nposition = { cartesian = [\"l*sin(th)\", \"-l*cos(th)\", \"0\"], from = \"C\" }\n"
-                                "[[force]]\ngravity = \"-g*E2\"\n[[force]]\ndamper = { between = [\"C\", \"origin\"], coefficient = \"c\" }\n" + at_rest);
+TEST_CASE(
+    "cart and pole with a damper to the wall; two masses on an incline; a bead on a turning rod in polar coordinates") {
+  const std::string cart = file(
+      "cart",
+      "[parameters]\nM = 2\nm = 0.5\nl = 0.8\ng = 9.81\nc = 0.3\n[coordinates]\nx = {}\nth = {}\n"
+      "[[particle]]\nname = \"C\"\nmass = \"M\"\nposition = { cartesian = [\"x\", \"0\", \"0\"] }\n"
+      "[[particle]]\nname = \"B\"\nmass = \"m\"\nposition = { cartesian = [\"l*sin(th)\", \"-l*cos(th)\", \"0\"], from "
+      "= \"C\" }\n"
+      "[[force]]\ngravity = \"-g*E2\"\n[[force]]\ndamper = { between = [\"C\", \"origin\"], coefficient = \"c\" }\n" +
+          at_rest);
   const Linearised hanging = linearised_at(cart);
   same(hanging.A("x_dot", "x_dot"), -0.15);
   same(hanging.A("th_dot", "x_dot"), 0.15 / 0.8);
   REQUIRE(found(cart).points.size() == 2);
 
-  const Linearised incline = linearised_at(file("incline", numbers + "[coordinates]\nx = {}\ny = {}\n"
-                                                "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"x*(cos(0.4)*E1 + sin(0.4)*E2)\"\n"
-                                                "[[particle]]\nname = \"Q\"\nmass = \"m\"\nposition = \"y*(cos(0.4)*E1 + sin(0.4)*E2)\"\n" + spring +
-                                                "[[force]]\ndamper = { between = [\"P\", \"Q\"], coefficient = \"c\" }\n" + at_rest));
+  const Linearised incline = linearised_at(file(
+      "incline", numbers +
+                     "[coordinates]\nx = {}\ny = {}\n"
+                     "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"x*(cos(0.4)*E1 + sin(0.4)*E2)\"\n"
+                     "[[particle]]\nname = \"Q\"\nmass = \"m\"\nposition = \"y*(cos(0.4)*E1 + sin(0.4)*E2)\"\n" +
+                     spring + "[[force]]\ndamper = { between = [\"P\", \"Q\"], coefficient = \"c\" }\n" + at_rest));
   same(incline.A("x_dot", "x_dot"), -0.25);
   same(incline.A("x_dot", "y_dot"), 0.25);
 
-  const Linearised rod = linearised_at(file("rod", numbers + "W = 1\n[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
-                                            "position = \"x*cos(W*t)*E1 + x*sin(W*t)*E2\"\n" + spring + damper + at_rest));
+  const Linearised rod =
+      linearised_at(file("rod", numbers +
+                                    "W = 1\n[coordinates]\nx = {}\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
+                                    "position = \"x*cos(W*t)*E1 + x*sin(W*t)*E2\"\n" +
+                                    spring + damper + at_rest));
   same(rod.A("x_dot", "x_dot"), -0.25);
   same(rod.A("x_dot", "x"), 1 - 4);
 }
 
 TEST_CASE("quadratic drag has no slope at rest, however it is written, and one in the wind") {
-  for (const char* law : {"force = \"-0.3*norm(velocity(P))*velocity(P)\"\non = \"P\"\n", "force = \"-0.3*unit(velocity(P))*dot(velocity(P), velocity(P))\"\non = \"P\"\n",
-                          "drag = { on = \"P\", density = 1.2, area = 0.5, coefficient = 1 }\n", "generalized = { x = \"-0.3*abs(x_dot)*x_dot\", y = \"-0.3*x_dot*sqrt(y_dot^2)\" }\n"}) {
+  for (const char* law : {"force = \"-0.3*norm(velocity(P))*velocity(P)\"\non = \"P\"\n",
+                          "force = \"-0.3*unit(velocity(P))*dot(velocity(P), velocity(P))\"\non = \"P\"\n",
+                          "drag = { on = \"P\", density = 1.2, area = 0.5, coefficient = 1 }\n",
+                          "generalized = { x = \"-0.3*abs(x_dot)*x_dot\", y = \"-0.3*x_dot*sqrt(y_dot^2)\" }\n"}) {
     CAPTURE(law);
-    const std::string path = file("drag", numbers + free_particle + spring + "[[force]]\nname = \"air\"\n" + law + at_rest);
+    const std::string path =
+        file("drag", numbers + free_particle + spring + "[[force]]\nname = \"air\"\n" + law + at_rest);
     const Linearised here = linearised_at(path);
     for (const char* speed : {"x_dot", "y_dot", "z_dot"}) same(here.A(speed, speed), 0);
     same(here.value(0).im, 2);
     CHECK(found(path).points.size() == 1);
   }
-  const Linearised wind = linearised_at(file("wind", numbers + free_particle + spring +
-                                             "[[force]]\nforce = \"-0.3*norm(velocity(P) - 3*E1)*(velocity(P) - 3*E1)\"\non = \"P\"\n" + at_rest));
+  const Linearised wind = linearised_at(file(
+      "wind", numbers + free_particle + spring +
+                  "[[force]]\nforce = \"-0.3*norm(velocity(P) - 3*E1)*(velocity(P) - 3*E1)\"\non = \"P\"\n" + at_rest));
   same(wind.A("x_dot", "x_dot"), -0.9);
   same(wind.A("y_dot", "y_dot"), -0.45);
   // The energy k |x|^3/3 is as smooth.
-  same(linearised_at(file("hard", numbers + free_particle + "[[force]]\nspring = { between = [\"P\", \"origin\"], energy = \"k*extension^3/3\" }\n" + at_rest)).A("x_dot", "x"), 0);
+  same(linearised_at(
+           file("hard", numbers + free_particle +
+                            "[[force]]\nspring = { between = [\"P\", \"origin\"], energy = \"k*extension^3/3\" }\n" +
+                            at_rest))
+           .A("x_dot", "x"),
+       0);
 }
 
 TEST_CASE("a kink that is one is told with the line of its force, by both commands, and never as nothing found") {
@@ -102,9 +125,15 @@ TEST_CASE("a kink that is one is told with the line of its force, by both comman
     const char* name;
     std::string text;
   };
-  for (const Case& c : {Case{"coulomb", numbers + particle + spring + "[[force]]\nname = \"culprit\"\ngeneralized = { x = \"-0.2*sign(x_dot)\" }\n" + at_rest},
-                        Case{"two_ways", numbers + free_particle + spring + "[[force]]\nname = \"culprit\"\ndamper = { between = [\"P\", \"origin\"], coefficient = \"c\" }\n" + at_rest},
-                        Case{"edge", numbers + particle + spring + "[[force]]\nname = \"culprit\"\ngeneralized = { x = \"-abs(x_dot)\" }\n" + at_rest}}) {
+  for (const Case& c :
+       {Case{"coulomb", numbers + particle + spring +
+                            "[[force]]\nname = \"culprit\"\ngeneralized = { x = \"-0.2*sign(x_dot)\" }\n" + at_rest},
+        Case{"two_ways",
+             numbers + free_particle + spring +
+                 "[[force]]\nname = \"culprit\"\ndamper = { between = [\"P\", \"origin\"], coefficient = \"c\" }\n" +
+                 at_rest},
+        Case{"edge", numbers + particle + spring +
+                         "[[force]]\nname = \"culprit\"\ngeneralized = { x = \"-abs(x_dot)\" }\n" + at_rest}}) {
     CAPTURE(c.name);
     const std::string path = file(c.name, c.text);
     bool told = false;
@@ -120,22 +149,31 @@ TEST_CASE("a kink that is one is told with the line of its force, by both comman
 }
 
 TEST_CASE("a search begins where linearize does: at the edge of an `if` that is not taken, at a spring of length 0") {
-  const std::string text = "[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"(x^2 + y^2)/2\"\n"
-                           "[[force]]\ngeneralized = { x = \"if(x < 1, -x_dot, -abs(y)*3)\", y = \"if(x > 5, max(0, y), 0)\" }\n[scene.default]\ninitial = { x = 0.3 }\n";
+  const std::string text =
+      "[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"(x^2 + y^2)/2\"\n"
+      "[[force]]\ngeneralized = { x = \"if(x < 1, -x_dot, -abs(y)*3)\", y = \"if(x > 5, max(0, y), 0)\" "
+      "}\n[scene.default]\ninitial = { x = 0.3 }\n";
   const std::string path = file("branch", text);
   same(linearised_at(path).A("x_dot", "x_dot"), -1);
   CHECK(found(path).points.size() == 1);
   // At x = 0 this spring has a kink; the search leaves it.
-  const cli::SteadyMotions all = found(file("length", numbers + particle + "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = \"0.5\" }\n" + at_rest));
+  const cli::SteadyMotions all = found(file(
+      "length", numbers + particle +
+                    "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = \"0.5\" }\n" +
+                    at_rest));
   REQUIRE(all.points.size() == 2);
   same(value(all, 0, "x"), -0.5);
   same(value(all, 1, "x"), 0.5);
 }
 
 TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance by a rounding, and told by how much") {
-  const std::string path = file("hover", "[parameters]\nm = 0.7\ng = 9.81\nI = 0.02\nl = 0.3\n[inputs]\nu1 = { default = 3.4335 }\nu2 = { default = 3.4335 }\n"
-                                "[coordinates]\nx = {}\ny = {}\nth = {}\n[energy]\nkinetic = \"m/2*(x_dot^2 + y_dot^2) + I/2*th_dot^2\"\npotential = \"m*g*y\"\n"
-                                "[[force]]\ngeneralized = { x = \"-(u1 + u2)*sin(th)\", y = \"(u1 + u2)*cos(th)\", th = \"l*(u2 - u1)\" }\n[scene.default]\ninitial = { x = 0.3 }\n");
+  const std::string path = file("hover",
+                                "[parameters]\nm = 0.7\ng = 9.81\nI = 0.02\nl = 0.3\n[inputs]\nu1 = { default = 3.4335 "
+                                "}\nu2 = { default = 3.4335 }\n"
+                                "[coordinates]\nx = {}\ny = {}\nth = {}\n[energy]\nkinetic = \"m/2*(x_dot^2 + y_dot^2) "
+                                "+ I/2*th_dot^2\"\npotential = \"m*g*y\"\n"
+                                "[[force]]\ngeneralized = { x = \"-(u1 + u2)*sin(th)\", y = \"(u1 + u2)*cos(th)\", th "
+                                "= \"l*(u2 - u1)\" }\n[scene.default]\ninitial = { x = 0.3 }\n");
   const Linearised here = linearised_at(path);
   CHECK(here.l.kind == linear::Kind::equilibrium);
   CHECK(here.l.off > 0);
@@ -153,11 +191,15 @@ TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance
 }
 
 TEST_CASE("slider-crank with all coordinates bound to one another: both rests of both ways to put it together") {
-  const cli::SteadyMotions all = found(file("slider", "[parameters]\nr = 0.2\nL = 0.6\n[coordinates]\na = {}\nb = {}\nx = {}\n"
-                                            "[[particle]]\nname = \"C\"\nmass = 1\nposition = { cartesian = [\"r*cos(a)\", \"r*sin(a)\", \"0\"] }\n"
-                                            "[[particle]]\nname = \"S\"\nmass = 0.5\nposition = { cartesian = [\"x\", \"0\", \"0\"] }\n"
-                                            "[[particle]]\nname = \"R\"\nmass = 1\nposition = \"C + L/2*(cos(b)*E1 - sin(b)*E2)\"\n[[force]]\ngravity = \"-9.81*E2\"\n"
-                                            "[[constraint]]\nname = \"loop\"\nholonomic = [\"r*cos(a) + L*cos(b) - x\", \"r*sin(a) - L*sin(b)\"]\n[scene.default]\ninitial = { a = 0.3 }\n"));
+  const cli::SteadyMotions all = found(
+      file("slider",
+           "[parameters]\nr = 0.2\nL = 0.6\n[coordinates]\na = {}\nb = {}\nx = {}\n"
+           "[[particle]]\nname = \"C\"\nmass = 1\nposition = { cartesian = [\"r*cos(a)\", \"r*sin(a)\", \"0\"] }\n"
+           "[[particle]]\nname = \"S\"\nmass = 0.5\nposition = { cartesian = [\"x\", \"0\", \"0\"] }\n"
+           "[[particle]]\nname = \"R\"\nmass = 1\nposition = \"C + L/2*(cos(b)*E1 - sin(b)*E2)\"\n[[force]]\ngravity = "
+           "\"-9.81*E2\"\n"
+           "[[constraint]]\nname = \"loop\"\nholonomic = [\"r*cos(a) + L*cos(b) - x\", \"r*sin(a) - "
+           "L*sin(b)\"]\n[scene.default]\ninitial = { a = 0.3 }\n"));
   REQUIRE(all.points.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
     same(value(all, i, "a"), i < 2 ? -std::acos(-1.0) / 2 : std::acos(-1.0) / 2);
@@ -172,11 +214,14 @@ TEST_CASE("equilibria that are multiple roots are found, each once, and are no f
     double x, y;
     std::size_t zeros;
   };
-  for (const Case& c : {Case{"quartic", "x^4 + y^4", 0, 0, 4}, Case{"cubic", "(x - 1)^3 + y^2", 1, 0, 2}, Case{"mixed", "(x + 2*y - 1)^4 + (x - y)^6", 1.0 / 3, 1.0 / 3, 4},
+  for (const Case& c : {Case{"quartic", "x^4 + y^4", 0, 0, 4}, Case{"cubic", "(x - 1)^3 + y^2", 1, 0, 2},
+                        Case{"mixed", "(x + 2*y - 1)^4 + (x - y)^6", 1.0 / 3, 1.0 / 3, 4},
                         Case{"valley", "(x - y)^4 + (x + y - 2)^2", 1, 1, 2}}) {
     CAPTURE(c.name);
-    const cli::SteadyMotions all = found(file(c.name, std::string("[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"") + c.potential +
-                                              "\"\n[scene.default]\ninitial = { x = 0.3 }\n"));
+    const cli::SteadyMotions all = found(file(
+        c.name,
+        std::string("[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"") +
+            c.potential + "\"\n[scene.default]\ninitial = { x = 0.3 }\n"));
     REQUIRE(all.points.size() == 1);
     CHECK(all.held.empty());
     CHECK(all.points[0].family == 0);
@@ -192,12 +237,16 @@ TEST_CASE("a hanging chain of 12 damped bodies: no eigenvalue has a positive rea
   std::string before = "origin";
   for (int k = 1; k <= 12; ++k) {
     const std::string rod = fmt::format("(sin(q{0})*E1 - cos(q{0})*E2)", k), name = fmt::format("pin{}", k);
-    text += fmt::format("[[body]]\nname = \"B{0}\"\nmass = \"m\"\ninertia = \"J\"\nposition = \"{1} + L/2*{2}\"\nrotation = {{ axis = \"E3\", angle = \"q{0}\" }}\n"
-                        "[[point]]\nname = \"{3}\"\nposition = \"{1} + L*{2}\"\n[[force]]\ntorsion = {{ angle = \"{4}\", coefficient = \"c\" }}\n",
-                        k, before, rod, name, k == 1 ? "q1" : fmt::format("q{} - q{}", k, k - 1));
+    text += fmt::format(
+        "[[body]]\nname = \"B{0}\"\nmass = \"m\"\ninertia = \"J\"\nposition = \"{1} + L/2*{2}\"\nrotation = {{ axis = "
+        "\"E3\", angle = \"q{0}\" }}\n"
+        "[[point]]\nname = \"{3}\"\nposition = \"{1} + L*{2}\"\n[[force]]\ntorsion = {{ angle = \"{4}\", coefficient = "
+        "\"c\" }}\n",
+        k, before, rod, name, k == 1 ? "q1" : fmt::format("q{} - q{}", k, k - 1));
     before = name;
   }
-  const Linearised here = linearised_at(file("chain", text + "[[force]]\ngravity = \"-g*E2\"\n[scene.default]\ninitial = { q1 = 0 }\n"));
+  const Linearised here =
+      linearised_at(file("chain", text + "[[force]]\ngravity = \"-g*E2\"\n[scene.default]\ninitial = { q1 = 0 }\n"));
   REQUIRE(here.l.spectrum.values.size() == 24);
   CHECK(here.zeros() == 0);
   CHECK(here.l.spectrum.holds());

@@ -26,7 +26,8 @@ Matrix<Precise> similar(const Rows& J) {
   Matrix<Precise> S(n, n), one(n, n);
   for (std::size_t i = 0; i < n; ++i) {
     one(i, i) = Precise(1);
-    for (std::size_t j = 0; j < n; ++j) S(i, j) = number<Precise>(Precise(static_cast<int>((3 * i * i + 7 * j + i * j) % 11) - 5 + (i == j ? 9 : 0)));
+    for (std::size_t j = 0; j < n; ++j)
+      S(i, j) = number<Precise>(Precise(static_cast<int>((3 * i * i + 7 * j + i * j) % 11) - 5 + (i == j ? 9 : 0)));
   }
   return S * matrix(J) * Elimination<Precise>(S, tiny<Precise>(100)).solve(one);
 }
@@ -43,9 +44,15 @@ void same(const Spectrum& s, const std::vector<Eigenvalue>& expected) {
 }  // namespace
 
 TEST_CASE("Jordan blocks stay whole: a triple 0, a double pair on the imaginary axis, a double -2") {
-  const Spectrum s = spectrum(similar({{0, 1, 0, 0, 0, 0, 0, 0, 0}, {0, 0, 1, 0, 0, 0, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, 0, 0},
-                                       {0, 0, 0, 0, 3, 1, 0, 0, 0}, {0, 0, 0, -3, 0, 0, 1, 0, 0}, {0, 0, 0, 0, 0, 0, 3, 0, 0},
-                                       {0, 0, 0, 0, 0, -3, 0, 0, 0}, {0, 0, 0, 0, 0, 0, 0, -2, 1}, {0, 0, 0, 0, 0, 0, 0, 0, -2}}));
+  const Spectrum s = spectrum(similar({{0, 1, 0, 0, 0, 0, 0, 0, 0},
+                                       {0, 0, 1, 0, 0, 0, 0, 0, 0},
+                                       {0, 0, 0, 0, 0, 0, 0, 0, 0},
+                                       {0, 0, 0, 0, 3, 1, 0, 0, 0},
+                                       {0, 0, 0, -3, 0, 0, 1, 0, 0},
+                                       {0, 0, 0, 0, 0, 0, 3, 0, 0},
+                                       {0, 0, 0, 0, 0, -3, 0, 0, 0},
+                                       {0, 0, 0, 0, 0, 0, 0, -2, 1},
+                                       {0, 0, 0, 0, 0, 0, 0, 0, -2}}));
   CHECK(s.zeros == 3);
   same(s, {{0, 3}, {0, 3}, {0, 0}, {0, 0}, {0, 0}, {0, -3}, {0, -3}, {-2, 0}, {-2, 0}});
 }
@@ -83,17 +90,21 @@ Matrix<Precise> chain(std::size_t n, double stiffness, double damping) {
 std::vector<Eigenvalue> chain_values(std::size_t n, double stiffness, double damping) {
   std::vector<Eigenvalue> result;
   for (std::size_t j = 1; j <= n; ++j) {
-    const long double sine = std::sin(static_cast<long double>(j) * 3.14159265358979323846L / (2.0L * static_cast<long double>(n + 1))), w2 = 4 * sine * sine;
+    const long double sine = std::sin(static_cast<long double>(j) * 3.14159265358979323846L /
+                                      (2.0L * static_cast<long double>(n + 1))),
+                      w2 = 4 * sine * sine;
     const long double half = w2 * damping / 2, root = half * half - w2 * stiffness;
     if (root < 0) {
-      for (const long double im : {std::sqrt(-root), -std::sqrt(-root)}) result.push_back({static_cast<double>(-half), static_cast<double>(im)});
+      for (const long double im : {std::sqrt(-root), -std::sqrt(-root)})
+        result.push_back({static_cast<double>(-half), static_cast<double>(im)});
     } else {
       const long double fast = -half - std::sqrt(root);
       result.push_back({static_cast<double>(fast), 0});
       result.push_back({static_cast<double>(w2 * stiffness / fast), 0});
     }
   }
-  std::stable_sort(result.begin(), result.end(), [](const Eigenvalue& a, const Eigenvalue& b) { return a.re != b.re ? a.re > b.re : a.im > b.im; });
+  std::stable_sort(result.begin(), result.end(),
+                   [](const Eigenvalue& a, const Eigenvalue& b) { return a.re != b.re ? a.re > b.re : a.im > b.im; });
   return result;
 }
 
@@ -130,7 +141,8 @@ TEST_CASE("a block of Jordan of size 12 stays one value, and one beside it that 
 }
 
 TEST_CASE("a hanging chain of particles: squares of its frequencies are zeros of Laguerre's polynomial times g/l") {
-  // Joints in angles at rest, as energies: M_ij = min of masses below, K_ii = weight below; here in heights: x_i'' = g/l ((n - i + 1) x_i+1 - ..).
+  // Joints in angles at rest, as energies: M_ij = min of masses below, K_ii = weight below; here in heights: x_i'' =
+  // g/l ((n - i + 1) x_i+1 - ..).
   const std::size_t n = 10;
   Matrix<Precise> A(2 * n, 2 * n);
   for (std::size_t i = 0; i < n; ++i) {  // particle i counted from the free end, i strings' weight above it

@@ -20,9 +20,16 @@ const Symbol x{SymbolKind::coordinate, 0, 0}, y{SymbolKind::coordinate, 1, 0};
 
 std::vector<Ref> expressions(symbolic::Dag& dag) {
   const Ref a = dag.symbol(x), b = dag.symbol(y), c = dag.div(a, dag.add(a, dag.integer(3)));
-  std::vector<Ref> all{dag.sub(dag.mul(a, b), dag.power(b, 3)), dag.div(a, b), dag.pow(a, b), dag.neg(dag.mul(dag.pi(), a)),
-                       dag.call(Op::atan2, a, b), dag.call(Op::min, a, b), dag.call(Op::max, a, b), dag.select(a, b, c, dag.mul(a, a))};
-  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::asin, Op::acos, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp, Op::log, Op::abs, Op::sign}) {
+  std::vector<Ref> all{dag.sub(dag.mul(a, b), dag.power(b, 3)),
+                       dag.div(a, b),
+                       dag.pow(a, b),
+                       dag.neg(dag.mul(dag.pi(), a)),
+                       dag.call(Op::atan2, a, b),
+                       dag.call(Op::min, a, b),
+                       dag.call(Op::max, a, b),
+                       dag.select(a, b, c, dag.mul(a, a))};
+  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::asin, Op::acos, Op::atan, Op::sinh, Op::cosh, Op::tanh,
+                      Op::exp, Op::log, Op::abs, Op::sign}) {
     all.push_back(dag.call(op, dag.mul(c, b)));
   }
   return all;
@@ -38,9 +45,12 @@ TEST_CASE("slopes of every operation are those of symbolic differentiation, in 1
   }
   const linear::Tape tape(dag, roots, {x, y});
   for (std::uint64_t point = 1; point <= 3; ++point) {
-    const auto precise = [point](const Symbol& s) -> Precise { return linear::number<Precise>(symbolic::sample(s, point)); };
+    const auto precise = [point](const Symbol& s) -> Precise {
+      return linear::number<Precise>(symbolic::sample(s, point));
+    };
     const auto rough = [point](const Symbol& s) { return symbolic::sample_double(s, point); };
-    const auto expected = symbolic::evaluate(dag, slopes, std::function<Precise(const Symbol&)>(precise), linear::digits);
+    const auto expected =
+        symbolic::evaluate(dag, slopes, std::function<Precise(const Symbol&)>(precise), linear::digits);
     const auto values = symbolic::evaluate(dag, roots, std::function<Precise(const Symbol&)>(precise), linear::digits);
     const auto got = tape.at<Precise>(precise);
     const auto got_rough = tape.at<double>(rough);
@@ -59,8 +69,8 @@ TEST_CASE("where there is no value or no slope the tape says so") {
   symbolic::Dag dag;
   const Ref a = dag.symbol(x), b = dag.symbol(y);
   const auto zero = [](const Symbol& s) { return s == x ? 0.0 : 1.0; };
-  for (const Ref r : {dag.div(b, a), dag.call(Op::sqrt, dag.power(a, 2)), dag.call(Op::log, a), dag.call(Op::abs, a), dag.call(Op::asin, b),
-                      dag.call(Op::max, a, dag.mul(a, b))}) {
+  for (const Ref r : {dag.div(b, a), dag.call(Op::sqrt, dag.power(a, 2)), dag.call(Op::log, a), dag.call(Op::abs, a),
+                      dag.call(Op::asin, b), dag.call(Op::max, a, dag.mul(a, b))}) {
     CHECK_THROWS_AS(linear::Tape(dag, {r}, {x, y}).at<double>(zero), std::domain_error);
   }
   // Without a direction along which it moves, the root of 0 is 0.

@@ -13,7 +13,8 @@ using namespace eomgen::test;
 namespace {
 
 struct Built {
-  explicit Built(const std::string& text) : model(model::read_model_text(text, "dependent.toml")), m(mechanics::build_mechanics(model)) {}
+  explicit Built(const std::string& text)
+      : model(model::read_model_text(text, "dependent.toml")), m(mechanics::build_mechanics(model)) {}
 
   std::string of(mechanics::Need need) const {
     std::string list;
@@ -49,19 +50,22 @@ bool has(const std::string& text, const std::string& part) { return text.find(pa
 
 /// A platform in a plane on cranks of the given lengths, whose bearings lie on one line.
 std::string cranks(const std::vector<std::string>& lengths, const std::string& parameters) {
-  std::string text = "format = 1\n[parameters]\nm = 1\n" + parameters + "[[body]]\nname = \"P\"\nmass = \"m\"\ninertia = 1\n"
+  std::string text = "format = 1\n[parameters]\nm = 1\n" + parameters +
+                     "[[body]]\nname = \"P\"\nmass = \"m\"\ninertia = 1\n"
                      "position = { cartesian = [\"x\", \"y\"] }\nrotation = { axis = \"E3\", angle = \"phi\" }\n";
   for (std::size_t k = 0; k < lengths.size(); ++k) {
     const std::string at = std::to_string(k);
-    text += "[[constraint]]\nname = \"crank" + at + "\"\nholonomic = \"dot(P + " + at + "*P.e1 - " + at + "*E1, P + " + at + "*P.e1 - " + at +
-            "*E1) - " + lengths[k] + "^2\"\n";
+    text += "[[constraint]]\nname = \"crank" + at + "\"\nholonomic = \"dot(P + " + at + "*P.e1 - " + at + "*E1, P + " +
+            at + "*P.e1 - " + at + "*E1) - " + lengths[k] + "^2\"\n";
   }
   return text + "[scene.default]\ninitial = { phi = 0, x = 0.3 }\nguess = { y = 1 }\n";
 }
 
 }  // namespace
 
-TEST_CASE("two wheels roll on one axle: what the second says of the axle's height and of its slip sideways the first has said") {
+TEST_CASE(
+    "two wheels roll on one axle: what the second says of the axle's height and of its slip sideways the first has "
+    "said") {
   const Built built(wheels_on_one_axle("z"));
   CHECK(built.of(mechanics::Need::redundant) == "right.2 right.3");
   CHECK(built.m.freedom() == 2);
@@ -69,7 +73,8 @@ TEST_CASE("two wheels roll on one axle: what the second says of the axle's heigh
   CHECK(built.undetermined() == "left.1 left.2 left.3 right.1 right.2 right.3");
 }
 
-TEST_CASE("a body rolls at constant height: the distance from the plane is no equation, and its force is not determined") {
+TEST_CASE(
+    "a body rolls at constant height: the distance from the plane is no equation, and its force is not determined") {
   const Built built(wheels_on_one_axle("R"));
   CHECK(built.of(mechanics::Need::identity) == "left.3 right.3");
   CHECK(built.of(mechanics::Need::redundant) == "right.2");
@@ -111,17 +116,20 @@ TEST_CASE("three parallel cranks move a platform if they are equal for all value
 TEST_CASE("the unit length of Euler parameters follows where those of another body are bound to them") {
   std::string text = "format = 1\n";
   for (const std::string b : {"A", "B"}) {
-    text += "[[body]]\nname = \"" + b + "\"\nmass = 1\ninertia = { principal = [1, 1.2, 1.4] }\nrotation = { euler_parameters = [";
+    text += "[[body]]\nname = \"" + b +
+            "\"\nmass = 1\ninertia = { principal = [1, 1.2, 1.4] }\nrotation = { euler_parameters = [";
     for (const std::string k : {"0", "1", "2", "3"}) text += "\"" + b + "p" + k + "\"" + (k == "3" ? "] }\n" : ", ");
   }
-  for (const std::string k : {"0", "1", "2", "3"}) text += "[[constraint]]\nname = \"c" + k + "\"\nholonomic = \"Ap" + k + " - Bp" + k + "\"\n";
+  for (const std::string k : {"0", "1", "2", "3"})
+    text += "[[constraint]]\nname = \"c" + k + "\"\nholonomic = \"Ap" + k + " - Bp" + k + "\"\n";
   const Built built(text + "[scene.default]\ninitial = { Ap1 = 0.3, Ap2 = 0.2 }\n");
   CHECK(built.m.freedom() == 3);
 }
 
 TEST_CASE("a constraint that can be left out of the file is refused where it repeats others, with all its equations") {
   const std::string text = wheels_on_one_axle("z");
-  const std::string again = "[[constraint]]\nname = \"again\"\nrolling = { body = \"L\", at = \"-R*E3\", on = \"ground\" }\n[scene.default]";
+  const std::string again =
+      "[[constraint]]\nname = \"again\"\nrolling = { body = \"L\", at = \"-R*E3\", on = \"ground\" }\n[scene.default]";
   std::string twice = text;
   twice.replace(twice.find("[scene.default]"), 15, again);
   CHECK(has(refusal(twice), "'again."));

@@ -40,8 +40,17 @@ radial = "dot(acceleration(P), P.e_R)"
   const model::Model model = model::read_model_text(text, "spherical");
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   const double R = 1.7, phi = 0.8, dR = 0.3, dphi = -0.6, dtheta = 1.1;
-  test::Point point(m, {{"t", 0}, {"m", 1}, {"R", R}, {"phi", phi}, {"theta", 2.1}, {"R_dot", dR}, {"phi_dot", dphi},
-                        {"theta_dot", dtheta}, {"R_ddot", 0.5}, {"phi_ddot", 0.7}, {"theta_ddot", -0.2}});
+  test::Point point(m, {{"t", 0},
+                        {"m", 1},
+                        {"R", R},
+                        {"phi", phi},
+                        {"theta", 2.1},
+                        {"R_dot", dR},
+                        {"phi_dot", dphi},
+                        {"theta_dot", dtheta},
+                        {"R_ddot", 0.5},
+                        {"phi_ddot", 0.7},
+                        {"theta_ddot", -0.2}});
   const auto definition = [&](std::size_t i) { return point.evaluate(m.scalar_definition[i]); };
   CHECK(definition(0) == doctest::Approx(1).epsilon(rounding));
   CHECK(std::abs(definition(1)) < rounding);
@@ -52,7 +61,8 @@ radial = "dot(acceleration(P), P.e_R)"
   CHECK(definition(6) == doctest::Approx(1).epsilon(rounding));
   const double s = R * std::sin(phi) * dtheta;
   CHECK(definition(7) == doctest::Approx(dR * dR + R * R * dphi * dphi + s * s).epsilon(rounding));
-  CHECK(definition(8) == doctest::Approx(0.5 - R * dphi * dphi - R * std::pow(std::sin(phi) * dtheta, 2)).epsilon(rounding));
+  CHECK(definition(8) ==
+        doctest::Approx(0.5 - R * dphi * dphi - R * std::pow(std::sin(phi) * dtheta, 2)).epsilon(rounding));
 }
 
 TEST_CASE("mechanics: constraints that fix coordinates one after another are eliminated in that order") {
@@ -72,7 +82,8 @@ holonomic = "3*(x - sin(t))"
 [[constraint]]
 name = "stays"
 holonomic = "z^2 + y - 4"
-)toml", "chain");
+)toml",
+                                                    "chain");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   REQUIRE(m.fixed.size() == 2);
   CHECK(m.fixed[0].coordinate == 0);

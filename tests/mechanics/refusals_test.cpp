@@ -44,14 +44,16 @@ TEST_CASE("mechanics refuses: gravity across the plane of motion changes no equa
 }
 
 TEST_CASE("mechanics refuses: a constraint that follows from the one before it") {
-  const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
-                                     "[[constraint]]\nname = \"b\"\nholonomic = \"2*x - 2\"\n");
+  const Refusal r = refusal(planar +
+                            "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
+                            "[[constraint]]\nname = \"b\"\nholonomic = \"2*x - 2\"\n");
   CHECK(r.message == "constraint 'b' follows from the constraints before it");
 }
 
 TEST_CASE("mechanics refuses: a constraint that contradicts the one before it") {
-  const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
-                                     "[[constraint]]\nname = \"b\"\nholonomic = \"x - 2\"\n");
+  const Refusal r = refusal(planar +
+                            "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
+                            "[[constraint]]\nname = \"b\"\nholonomic = \"x - 2\"\n");
   CHECK(r.message.starts_with("constraint 'b' fixes nothing"));
 }
 
@@ -62,7 +64,8 @@ TEST_CASE("mechanics refuses: a constraint that is not linear in the velocities"
 }
 
 TEST_CASE("mechanics accepts: velocities whose squares cancel") {
-  CHECK(refusal(planar + "[[constraint]]\nname = \"c\"\nvelocity = \"(x_dot + y)^2 - x_dot^2 + y_dot*x\"\n").message == "accepted");
+  CHECK(refusal(planar + "[[constraint]]\nname = \"c\"\nvelocity = \"(x_dot + y)^2 - x_dot^2 + y_dot*x\"\n").message ==
+        "accepted");
 }
 
 TEST_CASE("mechanics refuses: a constraint that divides by a velocity, linear as it is") {
@@ -80,45 +83,62 @@ TEST_CASE("mechanics accepts: a force that acts only beyond a kink") {
 }
 
 TEST_CASE("mechanics refuses: more friction than there are directions to move in") {
-  const std::string slot = "[[constraint]]\nname = \"a\"\nholonomic = \"x - y/2\"\nfriction = { static = 0.2, dynamic = 0.1 }\n";
-  const std::string joint = "[[force]]\nname = \"b\"\ndry = { coordinate = \"y\", normal = 1, static = 0.2, dynamic = 0.1 }\n";
+  const std::string slot =
+      "[[constraint]]\nname = \"a\"\nholonomic = \"x - y/2\"\nfriction = { static = 0.2, dynamic = 0.1 }\n";
+  const std::string joint =
+      "[[force]]\nname = \"b\"\ndry = { coordinate = \"y\", normal = 1, static = 0.2, dynamic = 0.1 }\n";
   CHECK(refusal(planar + slot).message == "accepted");
   const Refusal r = refusal(planar + slot + joint);
-  CHECK(r.message == "with 'b' friction can hold 2 directions, and the system has 1 degree of freedom: where all stick, the forces are not determined");
+  CHECK(r.message ==
+        "with 'b' friction can hold 2 directions, and the system has 1 degree of freedom: where all stick, the forces "
+        "are not determined");
   CHECK(r.line == 15);
-  const std::string smooth = "[[force]]\nname = \"b\"\ndry = { coordinate = \"y\", normal = 1, dynamic = 0.1, law = \"smooth\", width = 0.001 }\n";
+  const std::string smooth =
+      "[[force]]\nname = \"b\"\ndry = { coordinate = \"y\", normal = 1, dynamic = 0.1, law = \"smooth\", width = 0.001 "
+      "}\n";
   CHECK(refusal(planar + slot + smooth).message == "accepted");
 }
 
 TEST_CASE("mechanics refuses: restitution beyond 1, a width that is not positive") {
   const auto wall = [](const std::string& e) {
-    return planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nholds = \"unilateral\"\nrestitution = " + e + "\n";
+    return planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nholds = \"unilateral\"\nrestitution = " + e +
+           "\n";
   };
   CHECK(refusal(wall("1")).message == "accepted");
   CHECK(refusal(wall("1.5")).message == "the coefficient of restitution of 'a' is not between 0 and 1");
   CHECK(refusal(wall("-0.1")).line == 13);
-  const Refusal r = refusal(planar + "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nfriction = { dynamic = 0.1, law = \"smooth\", width = 0 }\n");
+  const Refusal r = refusal(
+      planar +
+      "[[constraint]]\nname = \"a\"\nholonomic = \"x\"\nfriction = { dynamic = 0.1, law = \"smooth\", width = 0 }\n");
   CHECK(r.message == "the width of the friction of 'a' is not positive");
 }
 
-TEST_CASE("mechanics: a constraint that can be left takes no degree of freedom; friction counts what moves while it touches") {
+TEST_CASE(
+    "mechanics: a constraint that can be left takes no degree of freedom; friction counts what moves while it "
+    "touches") {
   const std::string stop = "[[constraint]]\nname = \"stop\"\nholonomic = \"x\"\nholds = \"unilateral\"\n";
   const std::string plane = "[[constraint]]\nname = \"plane\"\nholonomic = \"y\"\n";
   const model::Model model = model::read_model_text(planar + stop + plane, "stop.toml");
   CHECK(mechanics::build_mechanics(model).freedom() == 1);
   const Refusal r = refusal(planar + stop + plane + "friction = { static = 0.3, dynamic = 0.2 }\n");
-  CHECK(r.message == "with 'plane' friction can hold 1 directions, and the system has 0 degrees of freedom while everything touches: "
-                     "where all stick, the forces are not determined");
+  CHECK(
+      r.message ==
+      "with 'plane' friction can hold 1 directions, and the system has 0 degrees of freedom while everything touches: "
+      "where all stick, the forces are not determined");
 }
 
 TEST_CASE("mechanics refuses: a constraint whose gradient vanishes where it holds, however the power is written") {
-  for (const char* power : {"x^2 - 2*y*x + y^2", "1 - cos(x - y)", "x^2 + y^2", "(x^2 + y^2)^2 - 2*(x^2 + y^2)*m^2 + m^4", "x^3 - 3*x^2*y + 3*x*y^2 - y^3"}) {
+  for (const char* power : {"x^2 - 2*y*x + y^2", "1 - cos(x - y)", "x^2 + y^2",
+                            "(x^2 + y^2)^2 - 2*(x^2 + y^2)*m^2 + m^4", "x^3 - 3*x^2*y + 3*x*y^2 - y^3"}) {
     CAPTURE(power);
     const Refusal r = refusal(planar + "[[constraint]]\nname = \"c\"\nholonomic = \"" + power + "\"\n");
-    CHECK(r.message == "constraint 'c' is a square or a higher power: its gradient vanishes where it holds, so that it has no force");
+    CHECK(
+        r.message ==
+        "constraint 'c' is a square or a higher power: its gradient vanishes where it holds, so that it has no force");
     CHECK(r.line == 11);
   }
-  for (const char* sound : {"x^2 - y^2", "x^2 + y^2 - m^2", "cos(x - y)", "x^3 - y", "sqrt(x^2 + y^2) - m", "x*y", "abs(x - y) - m", "x - y^2"}) {
+  for (const char* sound : {"x^2 - y^2", "x^2 + y^2 - m^2", "cos(x - y)", "x^3 - y", "sqrt(x^2 + y^2) - m", "x*y",
+                            "abs(x - y) - m", "x - y^2"}) {
     CAPTURE(sound);
     CHECK(refusal(planar + "[[constraint]]\nname = \"c\"\nholonomic = \"" + sound + "\"\n").message == "accepted");
   }

@@ -5,8 +5,10 @@ using namespace eomgen::model;
 
 namespace {
 
-Model with_inertia(const std::string& inertia, const std::string& rotation = "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") {
-  return read("format = 1\n[parameters]\nm = 12\nR = 5\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = " + inertia + "\nrotation = " + rotation + "\n");
+Model with_inertia(const std::string& inertia,
+                   const std::string& rotation = "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") {
+  return read("format = 1\n[parameters]\nm = 12\nR = 5\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = " + inertia +
+              "\nrotation = " + rotation + "\n");
 }
 
 std::array<Rational, 3> moments(const Model& model) {
@@ -33,16 +35,21 @@ TEST_CASE("an inertia is principal, a symmetric matrix, or one moment about a fi
 }
 
 TEST_CASE("one moment is enough for a body relative to one that turns about the same axis") {
-  const Model model = read("format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = 2\nrotation = { axis = \"E3\", angle = \"a\" }\n"
-                           "[[body]]\nname = \"B\"\nmass = 1\ninertia = 3\nrotation = { axis = \"A.e3\", angle = \"b\" }\nrelative_to = \"A\"\n");
+  const Model model = read(
+      "format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = 2\nrotation = { axis = \"E3\", angle = \"a\" }\n"
+      "[[body]]\nname = \"B\"\nmass = 1\ninertia = 3\nrotation = { axis = \"A.e3\", angle = \"b\" }\nrelative_to = "
+      "\"A\"\n");
   CHECK(exact(model, model.bodies[1].inertia[2][2]) == 3);
   CHECK(model.frames[2].parent == 1);
 }
 
 TEST_CASE("coordinates come in the order of the file: position, then rotation, of one body after the other") {
-  const Model model = read("format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { euler = \"123\", angles = [\"a\", \"b\", \"c\"] }\n"
-                           "position = { cartesian = [\"x\", \"y\", \"z\"] }\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"s\"  , \"0\"] }\n"
-                           "[[frame]]\nname = \"F\"\nrotation = { axis = \"E3\", angle = \"f\" }\n");
+  const Model model = read(
+      "format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { euler = \"123\", angles = "
+      "[\"a\", \"b\", \"c\"] }\n"
+      "position = { cartesian = [\"x\", \"y\", \"z\"] }\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian "
+      "= [\"s\"  , \"0\"] }\n"
+      "[[frame]]\nname = \"F\"\nrotation = { axis = \"E3\", angle = \"f\" }\n");
   std::string names;
   for (const Coordinate& q : model.coordinates) names += q.name + " ";
   CHECK(names == "x y z a b c s f ");
@@ -59,8 +66,10 @@ TEST_CASE("Euler parameters bring a constraint of unit length, and a start witho
 }
 
 TEST_CASE("a point on a body is its centre of mass and components along its axes") {
-  const Model model = read("format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { axis = \"E3\", angle = \"a\" }\n"
-                           "[[point]]\nname = \"P\"\non = \"A\"\nat = [2, 0, 0]\n");
+  const Model model = read(
+      "format = 1\n[[body]]\nname = \"A\"\nmass = 1\ninertia = { sphere = 1 }\nrotation = { axis = \"E3\", angle = "
+      "\"a\" }\n"
+      "[[point]]\nname = \"P\"\non = \"A\"\nat = [2, 0, 0]\n");
   const Node& sum = model.arena[model.places[2].position];
   CHECK(sum.op == Op::add);
   CHECK(model.arena[model.arena[sum.args[1]].args[1]].op == Op::axis);

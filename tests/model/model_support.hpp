@@ -53,25 +53,15 @@ inline Rational exact(const Model& model, NodeId id) {
   const Node& node = model.arena[id];
   const auto arg = [&](std::size_t k) { return exact(model, node.args[k]); };
   switch (node.op) {
-    case Op::number:
-      return node.value;
-    case Op::parameter:
-      return exact(model, model.parameters[node.index].value);
-    case Op::add:
-      return arg(0) + arg(1);
-    case Op::subtract:
-      return arg(0) - arg(1);
-    case Op::negate:
-      return -arg(0);
-    case Op::multiply:
-      return arg(0) * arg(1);
-    case Op::divide:
-      return arg(0) / arg(1);
-    case Op::power:
-      return cln::expt(arg(0), cln::numerator(arg(1)));
-    default:
-      FAIL("not a constant");
-      return 0;
+    case Op::number: return node.value;
+    case Op::parameter: return exact(model, model.parameters[node.index].value);
+    case Op::add: return arg(0) + arg(1);
+    case Op::subtract: return arg(0) - arg(1);
+    case Op::negate: return -arg(0);
+    case Op::multiply: return arg(0) * arg(1);
+    case Op::divide: return arg(0) / arg(1);
+    case Op::power: return cln::expt(arg(0), cln::numerator(arg(1)));
+    default: FAIL("not a constant"); return 0;
   }
 }
 
@@ -80,21 +70,13 @@ inline double approximate(const Model& model, NodeId id) {
   const Node& node = model.arena[id];
   const auto arg = [&](std::size_t k) { return approximate(model, node.args[k]); };
   switch (node.op) {
-    case Op::number:
-      return cln::double_approx(node.value);
-    case Op::pi:
-      return std::acos(-1.0);
-    case Op::add:
-      return arg(0) + arg(1);
-    case Op::negate:
-      return -arg(0);
-    case Op::multiply:
-      return arg(0) * arg(1);
-    case Op::divide:
-      return arg(0) / arg(1);
-    default:
-      FAIL("not a constant");
-      return 0;
+    case Op::number: return cln::double_approx(node.value);
+    case Op::pi: return std::acos(-1.0);
+    case Op::add: return arg(0) + arg(1);
+    case Op::negate: return -arg(0);
+    case Op::multiply: return arg(0) * arg(1);
+    case Op::divide: return arg(0) / arg(1);
+    default: FAIL("not a constant"); return 0;
   }
 }
 

@@ -57,14 +57,41 @@ TEST_CASE("names are kept apart from derivatives and functions") {
 }
 
 TEST_CASE("harmless LaTeX passes, everything else is refused") {
-  for (const char* good : {"\\theta", "m_{\\mathrm{cart}}", "\\bar\\omega'", "x^{*}", "\\vec{r}\\,", "L_{1,2}", "x'^2", "x''_1", "L_1^2", "{L_1}_2",
-                           "\\mathbb{R}", "\\mathfrak g", "\\text{of the rod}", "x_\\alpha", "\\hat x", "e^{-x^2}"}) {
+  for (const char* good :
+       {"\\theta", "m_{\\mathrm{cart}}", "\\bar\\omega'", "x^{*}", "\\vec{r}\\,", "L_{1,2}", "x'^2", "x''_1", "L_1^2",
+        "{L_1}_2", "\\mathbb{R}", "\\mathfrak g", "\\text{of the rod}", "x_\\alpha", "\\hat x", "e^{-x^2}"}) {
     CAPTURE(good);
     CHECK(!illegal_tex(good));
   }
-  for (const char* bad : {"", "\\write18{x}", "\\input{x}", "\\def\\a{b}", "}{", "{", "$x$", "x & y", "a%b", "#1",
-                          "\\\\", "<b>", "~", "\\catcode`\\%=0", "L_1_2", "x^a^b", "x^2'", "x'_1'", "x_", "x^", "{x_}", "\\bar", "\\mathrm", "x_\\hat{a}",
-                          "\\text{a_1}", "\\text a", "\\text{\\alpha}", "x_'", "x^_2"}) {
+  for (const char* bad : {"",
+                          "\\write18{x}",
+                          "\\input{x}",
+                          "\\def\\a{b}",
+                          "}{",
+                          "{",
+                          "$x$",
+                          "x & y",
+                          "a%b",
+                          "#1",
+                          "\\\\",
+                          "<b>",
+                          "~",
+                          "\\catcode`\\%=0",
+                          "L_1_2",
+                          "x^a^b",
+                          "x^2'",
+                          "x'_1'",
+                          "x_",
+                          "x^",
+                          "{x_}",
+                          "\\bar",
+                          "\\mathrm",
+                          "x_\\hat{a}",
+                          "\\text{a_1}",
+                          "\\text a",
+                          "\\text{\\alpha}",
+                          "x_'",
+                          "x^_2"}) {
     CAPTURE(bad);
     CHECK(illegal_tex(bad));
   }
@@ -101,7 +128,8 @@ when = "x"
 [[event]]
 name = "integral_1"
 when = "x_dot"
-)toml", "names");
+)toml",
+                                      "names");
   REQUIRE(model.integrals.size() == 2);
   CHECK(model.integrals[0].name == "integral_1_");
   CHECK(model.integrals[1].name == "integral_2_");

@@ -10,23 +10,14 @@ double at(const Model& model, NodeId id, const std::vector<double>& q) {
   const Node& node = model.arena[id];
   const auto arg = [&](std::size_t k) { return at(model, node.args[k], q); };
   switch (node.op) {
-    case Op::coordinate:
-      return q[node.index];
-    case Op::number:
-      return cln::double_approx(node.value);
-    case Op::parameter:
-      return at(model, model.parameters[node.index].value, q);
-    case Op::add:
-      return arg(0) + arg(1);
-    case Op::negate:
-      return -arg(0);
-    case Op::multiply:
-      return arg(0) * arg(1);
-    case Op::call:
-      return node.fn == Fn::sin ? std::sin(arg(0)) : std::cos(arg(0));
-    default:
-      FAIL("unexpected operation");
-      return 0;
+    case Op::coordinate: return q[node.index];
+    case Op::number: return cln::double_approx(node.value);
+    case Op::parameter: return at(model, model.parameters[node.index].value, q);
+    case Op::add: return arg(0) + arg(1);
+    case Op::negate: return -arg(0);
+    case Op::multiply: return arg(0) * arg(1);
+    case Op::call: return node.fn == Fn::sin ? std::sin(arg(0)) : std::cos(arg(0));
+    default: FAIL("unexpected operation"); return 0;
   }
 }
 

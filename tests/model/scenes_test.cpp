@@ -110,13 +110,16 @@ TEST_CASE("an output asked for twice is named once") {
 TEST_CASE("an angle above a full turn that has no unit is asked about") {
   const auto warned = [](const std::string& value) {
     std::string all;
-    for (const eomgen::Warning& warning : read(particle("[scene.default]\ninitial = { R = 1, phi = 1, theta = " + value + " }\n")).warnings) {
+    for (const eomgen::Warning& warning :
+         read(particle("[scene.default]\ninitial = { R = 1, phi = 1, theta = " + value + " }\n")).warnings) {
       if (warning.message.find("starts at") != std::string::npos) all += warning.message + " / " + warning.remedy;
     }
     return all;
   };
   CHECK(warned("45") == "'theta' starts at 45: radians? / write \"45 deg\" for degrees, \"45 rad\" for radians");
   CHECK(warned("-6.5").starts_with("'theta' starts at -6.5: radians?"));
-  for (const char* fine : {"6.28", "\"45 deg\"", "\"45 rad\"", "\"20*pi\""}) CHECK_FALSE(warned(fine).find("radians?") != std::string::npos);
-  CHECK(read(particle("[scene.default]\ninitial = { R = 45, phi = 1, theta_dot = 45 }\n")).warnings.size() == read(particle("[scene.default]\ninitial = { R = 1, phi = 1, theta_dot = 4 }\n")).warnings.size());
+  for (const char* fine : {"6.28", "\"45 deg\"", "\"45 rad\"", "\"20*pi\""})
+    CHECK_FALSE(warned(fine).find("radians?") != std::string::npos);
+  CHECK(read(particle("[scene.default]\ninitial = { R = 45, phi = 1, theta_dot = 45 }\n")).warnings.size() ==
+        read(particle("[scene.default]\ninitial = { R = 1, phi = 1, theta_dot = 4 }\n")).warnings.size());
 }

@@ -75,7 +75,8 @@ TEST_CASE("dimensions are written as an engineer would") {
 }
 
 TEST_CASE("what is no unit is refused") {
-  for (const char* text : {"", "mm m", "foo", "m^", "m^0", "m^12", "m//s", "(m", "m)", "2", "kdeg", "m^(1/2", "m^(1/0)", "m^-(1/2)", "mm^(1/2)", "m^1.5", "m-s"}) {
+  for (const char* text : {"", "mm m", "foo", "m^", "m^0", "m^12", "m//s", "(m", "m)", "2", "kdeg", "m^(1/2", "m^(1/0)",
+                           "m^-(1/2)", "mm^(1/2)", "m^1.5", "m-s"}) {
     CAPTURE(text);
     CHECK(!parse_unit(text));
   }
@@ -153,9 +154,10 @@ TEST_CASE("numbers made of pi are numbers, in every place") {
 }
 
 TEST_CASE("a file whose only units are angles is a file without units") {
-  const std::string text = "format = 1\n[parameters]\nm = 1\nL = 2\na = \"30 deg\"\nb = \"0.1[rad]\"\n[coordinates]\nphi = \"rad\"\nx = {}\n"
-                           "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"phi\", \"x\"] }\n"
-                           "[definitions]\nd = \"r + r^2 + sin(r)\"\n[scene.default]\ninitial = { phi = \"45 deg\" }\n";
+  const std::string text =
+      "format = 1\n[parameters]\nm = 1\nL = 2\na = \"30 deg\"\nb = \"0.1[rad]\"\n[coordinates]\nphi = \"rad\"\nx = {}\n"
+      "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"phi\", \"x\"] }\n"
+      "[definitions]\nd = \"r + r^2 + sin(r)\"\n[scene.default]\ninitial = { phi = \"45 deg\" }\n";
   CHECK(only_unused(read(text)));
   std::string other = text;
   other.replace(other.find("m = 1"), 5, "m = \"1 kg\"");

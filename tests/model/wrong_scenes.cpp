@@ -6,15 +6,23 @@ namespace eomgen::model {
 
 std::vector<WrongModel> wrong_scenes() {
   return {
-      {"a scene one letter from default", pendulum({}, "[scene.Default]\ninitial = { R = 1, phi = 1 }\n"), "12:8", "there is no scene 'default', and 'Default' is next to it",
+      {"a scene one letter from default", pendulum({}, "[scene.Default]\ninitial = { R = 1, phi = 1 }\n"), "12:8",
+       "there is no scene 'default', and 'Default' is next to it",
        "write [scene.default], or add one: it is the scene that runs where none is named"},
-      {"a scene with a letter too many", pendulum({}, "[scene.defaults]\ninitial = { R = 1, phi = 1 }\n"), "12:8", "there is no scene 'default', and 'defaults' is next to it",
+      {"a scene with a letter too many", pendulum({}, "[scene.defaults]\ninitial = { R = 1, phi = 1 }\n"), "12:8",
+       "there is no scene 'default', and 'defaults' is next to it",
        "write [scene.default], or add one: it is the scene that runs where none is named"},
-      {"initial with a capital", pendulum({}, "[scene.default]\nInitial = { R = 1, phi = 1 }\n"), "13:1", "[scene.default] has no key 'Initial'", "did you mean 'initial'?"},
-      {"a solver in capitals", pendulum({}, "[scene.default]\nsolver = \"RK4\"\n"), "13:10", "there is no solver 'RK4'", "did you mean 'rk4'?"},
-      {"an input that follows the state", pendulum({}, "[inputs]\nu = { unit = \"N\" }\n[[force]]\non = \"P\"\nforce = \"u*E1\"\n[scene.default]\ninputs = { u = \"2*R\" }\n"), "18:19",
-       "'R' depends on coordinates, which the input 'u' cannot",
-       "a scene gives an input as a function of t and parameters, or as a table; what depends on the state is a [[force]], or a controller's, which hands u to the emitted code at every step (docs/linking.md)"},
+      {"initial with a capital", pendulum({}, "[scene.default]\nInitial = { R = 1, phi = 1 }\n"), "13:1",
+       "[scene.default] has no key 'Initial'", "did you mean 'initial'?"},
+      {"a solver in capitals", pendulum({}, "[scene.default]\nsolver = \"RK4\"\n"), "13:10", "there is no solver 'RK4'",
+       "did you mean 'rk4'?"},
+      {"an input that follows the state",
+       pendulum({},
+                "[inputs]\nu = { unit = \"N\" }\n[[force]]\non = \"P\"\nforce = \"u*E1\"\n[scene.default]\ninputs = { "
+                "u = \"2*R\" }\n"),
+       "18:19", "'R' depends on coordinates, which the input 'u' cannot",
+       "a scene gives an input as a function of t and parameters, or as a table; what depends on the state is a "
+       "[[force]], or a controller's, which hands u to the emitted code at every step (docs/linking.md)"},
       {"an unknown start value", pendulum({}, "[scene.default]\ninitial = { tetha = 1 }\n"), "13:13",
        "'initial' names 'tetha', which is no coordinate or velocity", "did you mean 'theta'?"},
       {"an acceleration as a start value", pendulum({}, "[scene.default]\ninitial = { theta_ddot = 1 }\n"), "13:13",

@@ -6,10 +6,14 @@ namespace eomgen::model {
 
 std::vector<WrongModel> wrong_units() {
   return {
-      {"a power without its hat", pendulum({{"L = \"1 m\"", "L = \"1 m/s2\""}}), "5:8", "'m/s2' is not a unit", "did you mean 'm/s^2'?"},
-      {"a negative power without its hat", pendulum({{"L = \"1 m\"", "L = \"1 s-1\""}}), "5:8", "'s-1' is not a unit", "did you mean 's^-1'?"},
-      {"a power as in Python, in brackets", pendulum({{"L = \"1 m\"", "L = \"1[m/s**2]\""}}), "5:8", "'m/s**2' is not a unit", "did you mean 'm/s^2'?"},
-      {"superscripts", pendulum({{"L = \"1 m\"", "L = \"1 m/s\xc2\xb2\""}}), "5:8", "'m/s\xc2\xb2' is not a unit", "did you mean 'm/s^2'?"},
+      {"a power without its hat", pendulum({{"L = \"1 m\"", "L = \"1 m/s2\""}}), "5:8", "'m/s2' is not a unit",
+       "did you mean 'm/s^2'?"},
+      {"a negative power without its hat", pendulum({{"L = \"1 m\"", "L = \"1 s-1\""}}), "5:8", "'s-1' is not a unit",
+       "did you mean 's^-1'?"},
+      {"a power as in Python, in brackets", pendulum({{"L = \"1 m\"", "L = \"1[m/s**2]\""}}), "5:8",
+       "'m/s**2' is not a unit", "did you mean 'm/s^2'?"},
+      {"superscripts", pendulum({{"L = \"1 m\"", "L = \"1 m/s\xc2\xb2\""}}), "5:8", "'m/s\xc2\xb2' is not a unit",
+       "did you mean 'm/s^2'?"},
       {"a sum of metres and seconds", pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"R - L*t\"\n"),
        "14:16", "the units clash: m on one side and m*s on the other side of '-'",
        "check the formula and the units of the names in it"},

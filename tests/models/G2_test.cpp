@@ -10,7 +10,8 @@ using namespace eomgen::test;
 TEST_CASE("G2: the bases are (2.167) and (2.168), the metric is diagonal, T is half m times the line element") {
   Read g2("G2_parabolic");
   const reading::Geometry g = reading::geometry(g2.s.mechanics).at(0);
-  const Sum u = g2("u"), v = g2("v"), c = cos(g2("theta")), s = sin(g2("theta")), m = g2("m"), w = square(u) + square(v);
+  const Sum u = g2("u"), v = g2("v"), c = cos(g2("theta")), s = sin(g2("theta")), m = g2("m"),
+            w = square(u) + square(v);
   CHECK(same(g.covariant[0], v * c, v * s, u));
   CHECK(same(g.covariant[1], u * c, u * s, -v));
   CHECK(same(g.covariant[2], -u * v * s, u * v * c, Sum()));

@@ -14,7 +14,8 @@ TEST_CASE("G3: the basis is (1.71), which is not orthogonal; the dual basis belo
   CHECK(same(g.covariant[0], -r * s, r * c, al * r));
   CHECK(same(g.covariant[1], c, s, al * th));
   CHECK(same(g.covariant[2], Sum(), Sum(), Sum(1)));
-  // a^theta = e_theta/r, a^r = e_r, a^nu = E3 - alpha (theta e_r + e_theta): the gradients of theta, r, z - alpha r theta
+  // a^theta = e_theta/r, a^r = e_r, a^nu = E3 - alpha (theta e_r + e_theta): the gradients of theta, r, z - alpha r
+  // theta
   CHECK(same(g.contravariant[0], over(-s, r), over(c, r), Sum()));
   CHECK(same(g.contravariant[1], c, s, Sum()));
   CHECK(same(g.contravariant[2], -al * (th * c - s), -al * (th * s + c), Sum(1)));
@@ -24,10 +25,12 @@ TEST_CASE("G3: the basis is (1.71), which is not orthogonal; the dual basis belo
 
 TEST_CASE("G3: the kinetic energy is (1.72)") {
   Read g3("G3_helical");
-  const Sum r = g3("r"), th = g3("theta"), al = g3("alpha"), dr = g3("r_dot"), dth = g3("theta_dot"), dnu = g3("nu_dot");
+  const Sum r = g3("r"), th = g3("theta"), al = g3("alpha"), dr = g3("r_dot"), dth = g3("theta_dot"),
+            dnu = g3("nu_dot");
   const Sum two(2);
-  const Sum kinetic = half(g3("m")) * ((Sum(1) + square(al * th)) * square(dr) + (Sum(1) + square(al)) * square(r * dth) + square(dnu) +
-                                       two * dnu * r * al * dth + two * dnu * th * al * dr + two * r * dth * square(al) * th * dr);
+  const Sum kinetic =
+      half(g3("m")) * ((Sum(1) + square(al * th)) * square(dr) + (Sum(1) + square(al)) * square(r * dth) + square(dnu) +
+                       two * dnu * r * al * dth + two * dnu * th * al * dr + two * r * dth * square(al) * th * dr);
   CHECK(same(g3.form(system::Approach::two).kinetic, kinetic));
 }
 

@@ -21,7 +21,8 @@ TEST_CASE("G5: coordinates by x(q) and by q(x) have the same basis, metric and k
     CHECK(same(g.contravariant[2], o, o, one));
     CHECK(same(g.determinant, one));
     CHECK(same(g.second[(0 * 3 + 0) * 3 + 1], Sum(2) * k));  // Gamma^b_aa, the only one
-    CHECK(same(g.kinetic, half(g5("m")) * (square(g5("a_dot")) + square(g5("b_dot") + slope * g5("a_dot")) + square(g5("c_dot")))));
+    CHECK(same(g.kinetic, half(g5("m")) *
+                              (square(g5("a_dot")) + square(g5("b_dot") + slope * g5("a_dot")) + square(g5("c_dot")))));
   }
 }
 
@@ -35,7 +36,8 @@ TEST_CASE("G5: the throw, and components of a given vector in both bases") {
     CHECK(run.final("along_g1") == doctest::Approx(10 + 5 * slope).epsilon(tolerance));
     CHECK(run.final("along_g2") == doctest::Approx(5).epsilon(tolerance));
     double square = 0;
-    for (const char* k : {"1", "2", "3"}) square += run.final(std::string("along_a") + k) * run.final(std::string("along_g") + k);
+    for (const char* k : {"1", "2", "3"})
+      square += run.final(std::string("along_a") + k) * run.final(std::string("along_g") + k);
     CHECK(square == doctest::Approx(161).epsilon(1e-13));
   }
 }

@@ -77,7 +77,8 @@ TEST_CASE("P10: free to turn, the moment of momentum is that of the side force, 
     const double thrust = n.thrust(t) - h * h / (m * R * R * R);
     CHECK(std::abs(run.rows.at(i, "reaction.radial") - thrust) < of_a_run * n.thrust(t));
     // (2.164): d(mT)/dt = F . G with G = m v and F the sum of gravity, side force and thrust
-    const double F_G = m * ((run.rows.at(i, "reaction.radial") - n.alpha * m / (R * R)) * Rdot + wind * R * run.rows.at(i, "theta_dot"));
+    const double F_G = m * ((run.rows.at(i, "reaction.radial") - n.alpha * m / (R * R)) * Rdot +
+                            wind * R * run.rows.at(i, "theta_dot"));
     const double size = m * (n.alpha * m / (R * R) * std::abs(Rdot) + wind * h / (m * R));
     CHECK(std::abs(run.rows.at(i, "mT_rate") - F_G) < of_a_run * size);
   }

@@ -10,7 +10,11 @@ namespace {
 
 struct Wall {
   explicit Wall(const Finished& run)
-      : m(run.parameter("m")), g(run.parameter("g")), b(run.parameter("b")), F0(run.parameter("F0")), mu_s(run.parameter("mu_s")),
+      : m(run.parameter("m")),
+        g(run.parameter("g")),
+        b(run.parameter("b")),
+        F0(run.parameter("F0")),
+        mu_s(run.parameter("mu_s")),
         mu_d(run.parameter("mu_d")) {}
   double slips_at() const { return mu_s * m * b / F0; }
   /// From rest at the time of slip.
@@ -34,12 +38,14 @@ TEST_CASE("P11: the particle is held by static friction until the pull is mu_s m
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i];
     const bool slides = t > wall.slips_at();
-    CHECK(run.rows.at(i, "reaction.floor") == doctest::Approx(wall.m * wall.g).epsilon(rounding));  // the floor is smooth
+    CHECK(run.rows.at(i, "reaction.floor") ==
+          doctest::Approx(wall.m * wall.g).epsilon(rounding));  // the floor is smooth
     CHECK(run.rows.at(i, "reaction.wall") == doctest::Approx(wall.m * wall.b).epsilon(rounding));
     CHECK(std::abs(run.rows.at(i, "y") - (slides ? wall.y(t) : 0)) < by_hand);
     CHECK(std::abs(run.rows.at(i, "y_dot") - (slides ? wall.y_dot(t) : 0)) < by_hand);
     const double friction = slides ? -wall.mu_d * wall.m * wall.b : -wall.F0 * t;
-    if (std::abs(t - wall.slips_at()) > 1e-6) CHECK(run.rows.at(i, "friction.wall.2") == doctest::Approx(friction).epsilon(1e-11).scale(1));
+    if (std::abs(t - wall.slips_at()) > 1e-6)
+      CHECK(run.rows.at(i, "friction.wall.2") == doctest::Approx(friction).epsilon(1e-11).scale(1));
     CHECK(run.rows.at(i, "friction.wall.1") == 0);
     CHECK(run.rows.at(i, "friction.wall.3") == 0);  // the floor lets nothing slide up or down the wall
   }
@@ -61,17 +67,20 @@ TEST_CASE("P11: thrown against the pull it slides, is held, and slides again") {
 
 TEST_CASE("P11: under the smooth law it creeps before it slides, as its one equation integrated by hand does") {
   std::string text = read_text(model_path("P11_rough_wall"));
-  const std::string law = "static = \"mu_s\", dynamic = \"mu_d\"", static_value = "mu_s = { value = 0.5, unit = \"1\" }\n";
+  const std::string law = "static = \"mu_s\", dynamic = \"mu_d\"",
+                    static_value = "mu_s = { value = 0.5, unit = \"1\" }\n";
   text.replace(text.find(law), law.size(), "dynamic = \"mu_d\", law = \"smooth\", width = \"20 mm/s\"");
   text.erase(text.find(static_value), static_value.size());
   const std::string path = test::build_folder() + "/smooth_wall.toml";
   write_text(path, text);
   const Finished run = run_rough(path);
   const double m = run.parameter("m"), b = run.parameter("b"), F0 = run.parameter("F0"), mu = run.parameter("mu_d");
-  Hand hand([=](double t, const double* x, double* dx) {
-    dx[0] = x[1];
-    dx[1] = F0 * t / m - mu * b * x[1] / std::hypot(x[1], 0.02);
-  }, 0, {0, 0});
+  Hand hand(
+      [=](double t, const double* x, double* dx) {
+        dx[0] = x[1];
+        dx[1] = F0 * t / m - mu * b * x[1] / std::hypot(x[1], 0.02);
+      },
+      0, {0, 0});
   for (std::size_t i = 1; i < run.rows.size(); ++i) {
     hand.to(run.rows.t[i]);
     CHECK(std::abs(run.rows.at(i, "y") - hand.x[0]) < by_hand);

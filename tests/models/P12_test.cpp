@@ -44,7 +44,8 @@ TEST_CASE("P12: the integral is kept with the constant of the start, and all thr
 TEST_CASE("P12: a run on the integral ends where the same motion with a holonomic constraint ends") {
   // phi_dot = 0 on the moving sphere, (2.114) with f2 = 1: a circle of radius d sin(phi0); as holonomic "phi - phi0".
   const auto circle = [](const std::string& second) {
-    const std::string text = R"toml(format = 1
+    const std::string text =
+        R"toml(format = 1
 [parameters]
 m = 1
 g = 9.81
@@ -65,10 +66,12 @@ name = "sphere"
 holonomic = "R - d"
 [[constraint]]
 name = "circle"
-)toml" + second + "\n[scene.default]\nt = [0, 2]\ninitial = { phi = 1, theta_dot = 2 }\noutputs = [\"reaction.circle\"]\n";
+)toml" + second +
+        "\n[scene.default]\nt = [0, 2]\ninitial = { phi = 1, theta_dot = 2 }\noutputs = [\"reaction.circle\"]\n";
     const std::string path = test::build_folder() + "/circle.toml";
     test::write_text(path, text);
-    return test::run_model(path, [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
+    return test::run_model(
+        path, [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
   };
   const test::Finished bound = circle("velocity = \"phi_dot\""), fixed = circle("holonomic = \"phi - 1\"");
   CHECK(bound.drift("integral.circle") == 0);

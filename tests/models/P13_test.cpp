@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Force fields of Ex 2.1: verdicts by hand (2.20), potentials by their differences between places, which no constant changes.
+// Force fields of Ex 2.1: verdicts by hand (2.20), potentials by their differences between places, which no constant
+// changes.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -70,14 +71,16 @@ void check_fields(const std::string& name, const std::function<std::vector<doubl
     CHECK_FALSE(found[i].in_energy);
     REQUIRE(found[i].potential.has_value() == static_cast<bool>(right.U));
     if (!right.U) continue;
-    const double difference = value(m, *found[i].potential, coordinates(there)) - value(m, *found[i].potential, coordinates(here));
+    const double difference =
+        value(m, *found[i].potential, coordinates(there)) - value(m, *found[i].potential, coordinates(here));
     CHECK(difference == doctest::Approx(right.U(there) - right.U(here)).epsilon(rounding));
   }
 }
 
 }  // namespace
 
-TEST_CASE("P13: in Cartesian coordinates two of the four fields of (2.155) are conservative or not as their curl says") {
+TEST_CASE(
+    "P13: in Cartesian coordinates two of the four fields of (2.155) are conservative or not as their curl says") {
   check_fields("P13_force_fields", [](const Place& p) { return std::vector<double>{p.x, p.y, p.z}; });
 }
 
@@ -87,7 +90,8 @@ TEST_CASE("P13: in cylindrical coordinates the verdicts and the potentials are t
   });
 }
 
-TEST_CASE("P13: e_theta/r does work 2 pi c along each turn, though its curl vanishes, and its domain leaves out the axis") {
+TEST_CASE(
+    "P13: e_theta/r does work 2 pi c along each turn, though its curl vanishes, and its domain leaves out the axis") {
   const model::Model model = model::read_model(test::model_path("P13_force_fields_cylindrical"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   const derive::ForceClass vortex = derive::classify_forces(m).back();

@@ -38,7 +38,8 @@ TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates it follows Kep
     CHECK(run.drift("energy") < 1e-11);
     // Cyclic or not, in every chart; at the start H.E1 vanishes but for rounding, and its drift is measured by |r||v|.
     const bool cyclic = name != std::string("P14_kepler_cartesian");
-    for (const char* h : {"angular_momentum.E1", "angular_momentum.E2", cyclic ? "momentum.theta" : "angular_momentum.E3"}) {
+    for (const char* h :
+         {"angular_momentum.E1", "angular_momentum.E2", cyclic ? "momentum.theta" : "angular_momentum.E3"}) {
       CHECK(run.drift(h) < 1e-10);
     }
     CHECK(run.final("energy") == doctest::Approx(-m * GM / (2 * a)).epsilon(tolerance));

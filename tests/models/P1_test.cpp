@@ -18,9 +18,8 @@ TEST_CASE("P1: of constant length it keeps E and h_z to 1e-10 over 100 s") {
 }
 
 TEST_CASE("P1: a conical pendulum circles at a constant height with the tension that the circle needs") {
-  const test::Finished run = test::run_model("P1_spherical_pendulum", [](cli::SimulationRequest& request) {
-    request.scene = "conical";
-  });
+  const test::Finished run =
+      test::run_model("P1_spherical_pendulum", [](cli::SimulationRequest& request) { request.scene = "conical"; });
   const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L");
   const double rate = std::sqrt(2 * g / L);  // phi = 2 pi/3: rate^2 = -g/(L cos phi)
   // The circle is neutral to first order: errors of the steps (rtol 1e-9) grow linearly over some 44 radians.
@@ -47,7 +46,8 @@ TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
     const double power = rows.at(i, "reaction.rod") * rows.at(i, "R_dot");
     // Eighth-order differences over 0.01 s: their own error is some 0.01^8 w^9 E/630 < 1e-13 E.
     const double slope = (4.0 / 5 * (energy(1) - energy(-1)) - 1.0 / 5 * (energy(2) - energy(-2)) +
-                          4.0 / 105 * (energy(3) - energy(-3)) - 1.0 / 280 * (energy(4) - energy(-4))) / 0.01;
+                          4.0 / 105 * (energy(3) - energy(-3)) - 1.0 / 280 * (energy(4) - energy(-4))) /
+                         0.01;
     worst_power = std::max(worst_power, std::abs(rows.at(i, "power") - power));
     worst_slope = std::max(worst_slope, std::abs(slope - power));
     scale = std::max(scale, std::abs(power));

@@ -24,7 +24,7 @@ TEST_CASE("P2: of constant length it swings as the elliptic functions say, and b
     CHECK(run.rows.at(i, "reaction.plane") == 0);  // nothing pushes it out of its plane
   }
   CHECK(run.rows.size() > 400);
-  CHECK(worst_angle < 1e-10);      // ten seconds at rtol 1e-12, dense output included
+  CHECK(worst_angle < 1e-10);  // ten seconds at rtol 1e-12, dense output included
   CHECK(worst_rod < 1e-9);
 }
 

@@ -80,7 +80,8 @@ TEST_CASE("P3: an integral that is no elementary function is a state, and has th
 TEST_CASE("P3: the start of the run is the scene's affair, and a factor of t that is 0 is told") {
   const auto problem = [](const char* parameter, long value) -> std::string {
     try {
-      test::run_model("P3_moving_plane", [&](cli::SimulationRequest& request) { request.overrides.parameters[parameter] = value; });
+      test::run_model("P3_moving_plane",
+                      [&](cli::SimulationRequest& request) { request.overrides.parameters[parameter] = value; });
     } catch (const Error& error) {
       return std::string(error.what());
     }

@@ -11,8 +11,13 @@ struct Cone {
   double m, g, K, L0, mu_d, mu_s, alpha0, A = 0, w = 0;
 
   explicit Cone(const Finished& run, bool moves)
-      : m(run.parameter("m")), g(run.parameter("g")), K(run.parameter("K")), L0(run.parameter("L0")), mu_d(run.parameter("mu_d")),
-        mu_s(run.parameter("mu_s")), alpha0(run.parameter(moves ? "alpha0" : "alpha")) {
+      : m(run.parameter("m")),
+        g(run.parameter("g")),
+        K(run.parameter("K")),
+        L0(run.parameter("L0")),
+        mu_d(run.parameter("mu_d")),
+        mu_s(run.parameter("mu_s")),
+        alpha0(run.parameter(moves ? "alpha0" : "alpha")) {
     if (moves) A = run.parameter("A"), w = run.parameter("w");
   }
   double phi(double t) const { return std::acos(-1.0) / 2 - alpha0 - A * std::sin(w * t); }
@@ -28,11 +33,14 @@ struct Cone {
     const double s = std::sin(phi(t)), c = std::cos(phi(t)), N = std::abs(normal(t, x));
     const double along = x[2], round = x[0] * s * x[3], speed = std::hypot(along, round);
     dx[0] = x[2], dx[1] = x[3];
-    dx[2] = x[0] * (phi1(t) * phi1(t) + s * s * x[3] * x[3]) - g * c - K / m * (x[0] - L0) - mu_d * N / m * along / speed;
+    dx[2] =
+        x[0] * (phi1(t) * phi1(t) + s * s * x[3] * x[3]) - g * c - K / m * (x[0] - L0) - mu_d * N / m * along / speed;
     dx[3] = (-mu_d * N / m * round / speed - 2 * x[2] * s * x[3] - 2 * x[0] * c * phi1(t) * x[3]) / (x[0] * s);
   }
   /// What friction has to hold at rest on the cone.
-  double pull(double t, double R) const { return m * (-R * phi1(t) * phi1(t)) + m * g * std::cos(phi(t)) + K * (R - L0); }
+  double pull(double t, double R) const {
+    return m * (-R * phi1(t) * phi1(t)) + m * g * std::cos(phi(t)) + K * (R - L0);
+  }
 };
 
 void follows_newton(const std::string& model, bool moves) {
@@ -50,7 +58,8 @@ void follows_newton(const std::string& model, bool moves) {
     CHECK(std::abs(run.rows.at(i, "R_dot") - hand.x[2]) < 10 * by_hand);
     CHECK(std::abs(run.rows.at(i, "theta_dot") - hand.x[3]) < 10 * by_hand);
     // lambda grad psi = lambda/R e_phi
-    CHECK(std::abs(run.rows.at(i, "reaction.cone") / hand.x[0] - cone.normal(run.rows.t[i], hand.x.data())) < 100 * by_hand);
+    CHECK(std::abs(run.rows.at(i, "reaction.cone") / hand.x[0] - cone.normal(run.rows.t[i], hand.x.data())) <
+          100 * by_hand);
     CHECK(run.rows.at(i, "mode.cone") == 1);
   }
   CHECK(compared > 60);
@@ -59,7 +68,9 @@ void follows_newton(const std::string& model, bool moves) {
 
 }  // namespace
 
-TEST_CASE("P4: on the cone that stands, and on the one that moves, the particle slides as Newton's law in spherical coordinates says") {
+TEST_CASE(
+    "P4: on the cone that stands, and on the one that moves, the particle slides as Newton's law in spherical "
+    "coordinates says") {
   follows_newton("P4_rough_cone", false);
   follows_newton("P4_moving_cone", true);
 }
@@ -76,7 +87,8 @@ TEST_CASE("P4: at random states the derived accelerations are those of Newton's 
     const double x[4] = {R, theta, R_dot, theta_dot};
     double expected[4];
     cone.rates(t, x, expected);
-    for (std::size_t k = 2; k < 4; ++k) CHECK(derived.dx[k] == doctest::Approx(expected[k]).epsilon(rounding).scale(100));
+    for (std::size_t k = 2; k < 4; ++k)
+      CHECK(derived.dx[k] == doctest::Approx(expected[k]).epsilon(rounding).scale(100));
     CHECK(derived.output("reaction.cone") == doctest::Approx(R * cone.normal(t, x)).epsilon(rounding).scale(100));
   }
 }
@@ -121,12 +133,14 @@ TEST_CASE("P4: carried by the cone it slips when its pull first exceeds what fri
   const double first = root_between(spare, 0, 1);
   REQUIRE(events_of(run).size() >= 8);
   CHECK(std::abs(events_of(run)[0].t - first) < by_hand);
-  for (std::size_t i = 0; i < events_of(run).size(); ++i) CHECK(events_of(run)[i].kind == (i % 2 == 0 ? "slip" : "stick"));
+  for (std::size_t i = 0; i < events_of(run).size(); ++i)
+    CHECK(events_of(run)[i].kind == (i % 2 == 0 ? "slip" : "stick"));
   CHECK(run.simulation.result.power_balance < 1e-9);
   for (std::size_t i = 0; i < run.rows.size() && run.rows.t[i] < first; ++i) {
     CHECK(run.rows.at(i, "R") == doctest::Approx(R).epsilon(rounding));
     const double phi = cone.phi(run.rows.t[i]);  // friction along e_R
-    const double along = run.rows.at(i, "friction.cone.1") * std::sin(phi) + run.rows.at(i, "friction.cone.3") * std::cos(phi);
+    const double along =
+        run.rows.at(i, "friction.cone.1") * std::sin(phi) + run.rows.at(i, "friction.cone.3") * std::cos(phi);
     CHECK(along == doctest::Approx(cone.pull(run.rows.t[i], R)).epsilon(1e-11).scale(1));
   }
 }

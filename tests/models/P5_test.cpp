@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The rough sphere of Ex 2.5, (2.157)-(2.160) written out by hand; inside (psi = R0 - R) and outside (psi = R - R0, can be left).
+// The rough sphere of Ex 2.5, (2.157)-(2.160) written out by hand; inside (psi = R0 - R) and outside (psi = R - R0, can
+// be left).
 #include "models/reading_of.hpp"
 #include "models/rough.hpp"
 
@@ -10,8 +11,15 @@ namespace {
 
 struct Sphere {
   explicit Sphere(const Finished& run)
-      : m(run.parameter("m")), g(run.parameter("g")), R0(run.parameter("R0")), K(run.parameter("K")), L0(run.parameter("L0")),
-        a(run.parameter("a")), b(run.parameter("b")), mu_s(run.parameter("mu_s")), mu_d(run.parameter("mu_d")) {}
+      : m(run.parameter("m")),
+        g(run.parameter("g")),
+        R0(run.parameter("R0")),
+        K(run.parameter("K")),
+        L0(run.parameter("L0")),
+        a(run.parameter("a")),
+        b(run.parameter("b")),
+        mu_s(run.parameter("mu_s")),
+        mu_d(run.parameter("mu_d")) {}
 
   /// K (|x| - L) x.e/|x| along e_R, e_phi, e_theta, x = R0 e_R - a E1 - b E2.
   std::array<double, 3> spring(double phi, double theta) const {
@@ -84,7 +92,9 @@ TEST_CASE("P5: the reading form is (2.157) and (2.158) but for friction, by proo
              m * R0 * (square(dphi) + square(s) * square(dtheta)) - m * g * c - F * (R0 - s * to)));
 }
 
-TEST_CASE("P5: at random states friction included, inside and outside, the equations are (2.157) and the normal force is (2.158)") {
+TEST_CASE(
+    "P5: at random states friction included, inside and outside, the equations are (2.157) and the normal force is "
+    "(2.158)") {
   sliding_is_2_157("P5_inside_rough_sphere", false);
   sliding_is_2_157("P5_rough_sphere", true);
 }
@@ -101,7 +111,7 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, and is held there wi
     hand.to(run.rows.t[i]);
     CHECK(std::abs(run.rows.at(i, "phi") - hand.x[0]) < by_hand);
     CHECK(std::abs(run.rows.at(i, "theta") - hand.x[1]) < 10 * by_hand);  // some 8 rad
-    CHECK(run.rows.at(i, "energy") < before);  // decreases while it moves
+    CHECK(run.rows.at(i, "energy") < before);                             // decreases while it moves
     before = run.rows.at(i, "energy");
   }
   CHECK(compared > 100);
@@ -109,7 +119,8 @@ TEST_CASE("P5: inside it slides by (2.157) until it sticks, and is held there wi
   const double phi = run.final("phi"), theta = run.final("theta"), N = -run.final("reaction.sphere");
   const std::array<double, 3> f = sphere.spring(phi, theta);
   const double s = std::sin(phi), c = std::cos(phi);
-  const double F1 = run.final("friction.sphere.1"), F2 = run.final("friction.sphere.2"), F3 = run.final("friction.sphere.3");
+  const double F1 = run.final("friction.sphere.1"), F2 = run.final("friction.sphere.2"),
+               F3 = run.final("friction.sphere.3");
   const double in_plane = F1 * std::cos(theta) + F2 * std::sin(theta);
   CHECK(N == doctest::Approx(sphere.m * sphere.g * c + f[0]).epsilon(rounding));
   CHECK(in_plane * c - F3 * s == doctest::Approx(-sphere.m * sphere.g * s + f[1]).epsilon(1e-11).scale(1));
@@ -136,7 +147,8 @@ TEST_CASE("P5: at rest it stays for as long as mu_s N covers the force along the
   CHECK(events_of(slides)[0].t == 0);
 }
 
-TEST_CASE("P5: it leaves the sphere where (2.158) vanishes along the motion by hand, and flies without friction from there") {
+TEST_CASE(
+    "P5: it leaves the sphere where (2.158) vanishes along the motion by hand, and flies without friction from there") {
   const Finished run = run_rough("P5_rough_sphere");
   const Sphere sphere(run);
   REQUIRE(events_of(run).size() == 1);
@@ -171,10 +183,12 @@ TEST_CASE("P5: smooth and without spring it leaves at cos(phi) = 2/3, and inside
 
   const Finished inside = run_rough("P5_inside_rough_sphere", "smooth");
   const double h = std::pow(std::sin(2.2), 2) * 4;  // of unit m R0^2
-  Hand hand([=](double, const double* x, double* dx) {
-    dx[0] = x[1];
-    dx[1] = std::cos(x[0]) / std::pow(std::sin(x[0]), 3) * h * h + g / R0 * std::sin(x[0]);
-  }, 0, {2.2, 0.5});
+  Hand hand(
+      [=](double, const double* x, double* dx) {
+        dx[0] = x[1];
+        dx[1] = std::cos(x[0]) / std::pow(std::sin(x[0]), 3) * h * h + g / R0 * std::sin(x[0]);
+      },
+      0, {2.2, 0.5});
   for (std::size_t i = 1; i < inside.rows.size(); ++i) {
     hand.to(inside.rows.t[i]);
     const double phi = inside.rows.at(i, "phi");

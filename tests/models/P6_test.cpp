@@ -9,8 +9,14 @@ namespace {
 
 struct Circle {
   explicit Circle(const Finished& run)
-      : m(run.parameter("m")), g(run.parameter("g")), beta(run.parameter("beta")), l0(run.parameter("l0")), A(run.parameter("A")),
-        w(run.parameter("w")), mu_d(run.parameter("mu_d")), mu_s(run.parameter("mu_s")) {}
+      : m(run.parameter("m")),
+        g(run.parameter("g")),
+        beta(run.parameter("beta")),
+        l0(run.parameter("l0")),
+        A(run.parameter("A")),
+        w(run.parameter("w")),
+        mu_d(run.parameter("mu_d")),
+        mu_s(run.parameter("mu_s")) {}
   double L(double t) const { return l0 + A * std::sin(w * t); }
   double L1(double t) const { return A * w * std::cos(w * t); }
   double L2(double t) const { return -A * w * w * std::sin(w * t); }
@@ -27,7 +33,8 @@ struct Circle {
 
 }  // namespace
 
-TEST_CASE("P6: at random states both multipliers, the friction of (2.44) and the acceleration are those of Newton's law") {
+TEST_CASE(
+    "P6: at random states both multipliers, the friction of (2.44) and the acceleration are those of Newton's law") {
   const Finished run = run_rough("P6_rough_circle");
   const Circle c(run);
   AtState derived(run, "P6_rough_circle");
@@ -36,7 +43,8 @@ TEST_CASE("P6: at random states both multipliers, the friction of (2.44) and the
     const double t = draw(0, 6), theta = draw(-4, 4), rate = draw(-8, 8), sign = rate > 0 ? 1 : -1;
     REQUIRE(derived.slide(t, {theta, rate}));
     CHECK(derived.dx[1] == doctest::Approx(c.acceleration(t, theta, rate, sign)).epsilon(rounding).scale(100));
-    CHECK(derived.output("reaction.circle.1") == doctest::Approx(c.along_r(t, theta, rate)).epsilon(rounding).scale(100));
+    CHECK(derived.output("reaction.circle.1") ==
+          doctest::Approx(c.along_r(t, theta, rate)).epsilon(rounding).scale(100));
     CHECK(derived.output("reaction.circle.2") == doctest::Approx(c.along_z()).epsilon(rounding));
     const double F = -sign * c.mu_d * c.normal(t, theta, rate);
     CHECK(derived.output("friction.circle.1") == doctest::Approx(-F * std::sin(theta)).epsilon(rounding).scale(10));
@@ -50,8 +58,8 @@ TEST_CASE("P6: between its events the particle follows the equation by hand, unt
   const std::vector<run::RunEvent> events = events_of(run);
   REQUIRE(events.size() == 4);
   double sign = 1;
-  Hand hand([&](double t, const double* x, double* dx) { dx[0] = x[1], dx[1] = c.acceleration(t, x[0], x[1], sign); }, 0,
-            {-std::acos(-1.0) / 2, 8});
+  Hand hand([&](double t, const double* x, double* dx) { dx[0] = x[1], dx[1] = c.acceleration(t, x[0], x[1], sign); },
+            0, {-std::acos(-1.0) / 2, 8});
   for (std::size_t k = 0; k < events.size(); ++k) {
     CHECK(events[k].kind == (k + 1 < events.size() ? "reverse" : "stick"));
     hand.to(events[k].t);
@@ -76,14 +84,17 @@ TEST_CASE("P6: on a level circle of constant radius it stops after asinh(L w^2/g
   CHECK(std::abs(events_of(run)[0].t - time) < by_hand);
 }
 
-TEST_CASE("P6: a circle that grows and shrinks carries what friction holds, and its power is all that the energy changes by") {
+TEST_CASE(
+    "P6: a circle that grows and shrinks carries what friction holds, and its power is all that the energy changes "
+    "by") {
   const Finished run = run_rough("P6_rough_circle", "held");
   CHECK(events_of(run).empty());
   const Circle c(run);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i], theta = -std::acos(-1.0) / 2 + 0.1;
     CHECK(std::abs(run.rows.at(i, "theta") - theta) < by_hand);
-    const double friction = run.rows.at(i, "friction.circle.2") * std::cos(theta) - run.rows.at(i, "friction.circle.1") * std::sin(theta);
+    const double friction =
+        run.rows.at(i, "friction.circle.2") * std::cos(theta) - run.rows.at(i, "friction.circle.1") * std::sin(theta);
     CHECK(friction == doctest::Approx(c.m * c.g * std::cos(c.beta) * std::cos(theta)).epsilon(1e-11));
     const double energy = c.m / 2 * c.L1(t) * c.L1(t) + c.m * c.g * std::cos(c.beta) * c.L(t) * std::sin(theta);
     CHECK(run.rows.at(i, "energy") == doctest::Approx(energy).epsilon(1e-11));

@@ -35,7 +35,8 @@ TEST_CASE("P7: the reaction along the run is (2.111), and the power balance hold
   const double m = run.parameter("m"), g = run.parameter("g"), a = run.parameter("a"), w = run.parameter("w");
   CHECK(run.simulation.result.power_balance < 1e-9);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
-    const double d = run.rows.at(i, "R"), phi = run.rows.at(i, "phi"), d_ddot = -a * w * w * std::sin(w * run.rows.t[i]);
+    const double d = run.rows.at(i, "R"), phi = run.rows.at(i, "phi"),
+                 d_ddot = -a * w * w * std::sin(w * run.rows.t[i]);
     const double across = std::sin(phi) * run.rows.at(i, "theta_dot"), down = run.rows.at(i, "phi_dot");
     const double lambda = m * d_ddot - m * d * (across * across + down * down) + m * g * std::cos(phi);
     CHECK(run.rows.at(i, "reaction.sphere") == doctest::Approx(lambda).epsilon(1e-11));
@@ -48,9 +49,11 @@ TEST_CASE("P7: with a constraint on velocities both reactions are those of (2.11
     request.overrides.atol = 1e-12;
   });
   const auto p = [&](const char* name) { return run.parameter(name); };
-  const double m = p("m"), g = p("g"), D = p("D"), a = p("a"), w = p("w"), kappa = p("kappa"), eta = p("eta"), nu = p("nu");
+  const double m = p("m"), g = p("g"), D = p("D"), a = p("a"), w = p("w"), kappa = p("kappa"), eta = p("eta"),
+               nu = p("nu");
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
-    const double t = run.rows.t[i], d = run.rows.at(i, "R"), d1 = a * w * std::cos(w * t), d2 = -a * w * w * std::sin(w * t);
+    const double t = run.rows.t[i], d = run.rows.at(i, "R"), d1 = a * w * std::cos(w * t),
+                 d2 = -a * w * w * std::sin(w * t);
     const double phi = run.rows.at(i, "phi"), phi1 = run.rows.at(i, "phi_dot");
     const double theta = run.rows.at(i, "theta"), theta1 = run.rows.at(i, "theta_dot");
     const double s = std::sin(phi), c = std::cos(phi), f1 = -kappa * std::sin(theta - w * t);  // f2 = 1, f3 = -eta

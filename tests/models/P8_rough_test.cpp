@@ -9,7 +9,11 @@ namespace {
 
 struct Helix {
   explicit Helix(const Finished& run)
-      : m(run.parameter("m")), g(run.parameter("g")), R(run.parameter("R")), alpha(run.parameter("alpha")), mu_d(run.parameter("mu_d")),
+      : m(run.parameter("m")),
+        g(run.parameter("g")),
+        R(run.parameter("R")),
+        alpha(run.parameter("alpha")),
+        mu_d(run.parameter("mu_d")),
         slope(1 + alpha * alpha) {}
   /// |N|: curvature along the principal normal, weight along the binormal.
   double normal(double rate) const { return m * std::hypot(R * rate * rate, g / std::sqrt(slope)); }
@@ -35,9 +39,12 @@ TEST_CASE("P8: at random states the derived equations are (2.143), the normal fo
     const double N = std::sqrt(std::pow(l1 - h.alpha * theta * l2, 2) + std::pow(h.alpha * l2, 2) + l2 * l2);
     const double F = -h.mu_d * N * (rate > 0 ? 1 : -1) / std::sqrt(h.slope);  // Ff = F (e_theta + alpha E3)
     const double scale = 100;
-    CHECK(h.m * h.slope * h.R * h.R * dd == doctest::Approx(-h.m * h.g * h.alpha * h.R + F * h.R * h.slope).epsilon(rounding).scale(scale));
+    CHECK(h.m * h.slope * h.R * h.R * dd ==
+          doctest::Approx(-h.m * h.g * h.alpha * h.R + F * h.R * h.slope).epsilon(rounding).scale(scale));
     CHECK(h.m * h.alpha * h.alpha * h.R * (theta * dd + rate * rate) - h.m * h.slope * h.R * rate * rate ==
-          doctest::Approx(-h.m * h.g * h.alpha * theta + l1 + F * h.alpha * h.alpha * theta).epsilon(rounding).scale(scale));
+          doctest::Approx(-h.m * h.g * h.alpha * theta + l1 + F * h.alpha * h.alpha * theta)
+              .epsilon(rounding)
+              .scale(scale));
     CHECK(h.m * h.alpha * h.R * dd == doctest::Approx(-h.m * h.g + l2 + F * h.alpha).epsilon(rounding).scale(scale));
     CHECK(derived.output("friction.wire.3") == doctest::Approx(F * h.alpha).epsilon(rounding).scale(scale));
     CHECK(N == doctest::Approx(h.normal(rate)).epsilon(rounding));
@@ -57,7 +64,8 @@ TEST_CASE("P8: thrown up it stops where and when the quadrature of (2.143) says,
   // Components of the whole force of the wire along a_1, a_2, a_3 are those of -Fa.
   const double l1 = run.final("reaction.wire.1"), l2 = run.final("reaction.wire.2");
   const double f1 = run.final("friction.wire.1"), f2 = run.final("friction.wire.2"), f3 = run.final("friction.wire.3");
-  const double along_r = f1 * std::cos(theta) + f2 * std::sin(theta), along_theta = -f1 * std::sin(theta) + f2 * std::cos(theta);
+  const double along_r = f1 * std::cos(theta) + f2 * std::sin(theta),
+               along_theta = -f1 * std::sin(theta) + f2 * std::cos(theta);
   const double weight = h.m * h.g;
   CHECK(l1 + along_r + h.alpha * theta * f3 == doctest::Approx(weight * h.alpha * theta).epsilon(rounding));
   CHECK(l2 + f3 == doctest::Approx(weight).epsilon(rounding));
@@ -72,7 +80,8 @@ TEST_CASE("P8: on a wire that cannot hold it it turns, and slides down as the qu
   CHECK(events_of(run)[0].kind == "reverse");
   const double up = simpson([&](double w) { return -1 / h.acceleration(w + 1e-300); }, 0, 4);
   CHECK(std::abs(events_of(run)[0].t - up) < by_hand);
-  const double rate = run.final("theta_dot"), down = simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate);
+  const double rate = run.final("theta_dot"),
+               down = simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate);
   CHECK(std::abs(up + down - run.simulation.result.t) < by_hand);
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
@@ -89,6 +98,7 @@ TEST_CASE("P8: from rest it stays if mu_s is at least alpha, and slides if it is
     const Helix h(run);
     const double rate = run.final("theta_dot");
     CHECK(rate < -1);
-    CHECK(std::abs(simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate) - run.simulation.result.t) < by_hand);
+    CHECK(std::abs(simpson([&](double w) { return 1 / h.acceleration(w - 1e-300); }, 0, rate) -
+                   run.simulation.result.t) < by_hand);
   }
 }

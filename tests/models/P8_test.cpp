@@ -11,7 +11,8 @@ using namespace eomgen::test;
 
 TEST_CASE("P8: theta is left, with (2.150); both constraint forces are those of (2.149)") {
   Read p8("P8_smooth_helix");
-  const Sum m = p8("m"), g = p8("g"), R = p8("R"), al = p8("alpha"), th = p8("theta"), dth = p8("theta_dot"), ddth = p8("theta_ddot");
+  const Sum m = p8("m"), g = p8("g"), R = p8("R"), al = p8("alpha"), th = p8("theta"), dth = p8("theta_dot"),
+            ddth = p8("theta_ddot");
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
     const reading::ReadingForm form = p8.form(approach);
     CHECK(same(p8.motion(form, "theta"), m * (Sum(1) + square(al)) * square(R) * ddth + m * g * al * R));
@@ -35,8 +36,10 @@ TEST_CASE("P8: the bead follows (2.151) to 1e-11, and its constraint force is (2
   double worst = 0, worst_force = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i];
-    const double theta = start + rate * t - g * alpha * t * t / (2 * R * slope), theta_dot = rate - g * alpha * t / (R * slope);
-    worst = std::max({worst, std::abs(run.rows.at(i, "theta") - theta), std::abs(run.rows.at(i, "theta_dot") - theta_dot)});
+    const double theta = start + rate * t - g * alpha * t * t / (2 * R * slope),
+                 theta_dot = rate - g * alpha * t / (R * slope);
+    worst =
+        std::max({worst, std::abs(run.rows.at(i, "theta") - theta), std::abs(run.rows.at(i, "theta_dot") - theta_dot)});
     const double radius = m * g * alpha * theta / slope - m * R * theta_dot * theta_dot, height = m * g / slope;
     worst_force = std::max({worst_force, std::abs(run.rows.at(i, "reaction.radius") - radius),
                             std::abs(run.rows.at(i, "reaction.height") - height)});

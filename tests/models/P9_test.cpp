@@ -11,14 +11,16 @@ using namespace eomgen::test;
 
 TEST_CASE("P9: the normal force is (2.171), h is conserved, and with it the motion is (2.172), its energy (2.173)") {
   Read p9("P9_paraboloid");
-  const Sum m = p9("m"), g = p9("g"), c = p9("c"), u = p9("u"), du = p9("u_dot"), ddu = p9("u_ddot"), dth = p9("theta_dot");
+  const Sum m = p9("m"), g = p9("g"), c = p9("c"), u = p9("u"), du = p9("u_dot"), ddu = p9("u_ddot"),
+            dth = p9("theta_dot");
   const Sum h = m * square(c * u) * dth;
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
     const reading::ReadingForm form = p9.form(approach);
     CHECK(same(p9.equation(form, "theta").momentum, h));
     CHECK(p9.equation(form, "theta").slope.is_zero());
     CHECK(p9.equation(form, "theta").force.is_zero());
-    const Sum single = m * (square(u) + square(c)) * ddu + m * u * square(du) - over(square(h), m * u * u * u * square(c)) + m * g * u;
+    const Sum single =
+        m * (square(u) + square(c)) * ddu + m * u * square(du) - over(square(h), m * u * u * u * square(c)) + m * g * u;
     CHECK(same(p9.motion(form, "u"), single));
   }
   const reading::ReadingForm one = p9.form(system::Approach::one), two = p9.form(system::Approach::two);

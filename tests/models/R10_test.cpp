@@ -45,7 +45,8 @@ TEST_CASE("R10: T is (7.111), U (7.112), and the moment along E3 has the compone
   const reading::ReadingForm form = r10.form(system::Approach::two);
   const Sum n = r10("theta"), psi = r10("psi_dot"), theta = r10("theta_dot"), phi = r10("phi_dot");
   const Sum across = r10("Jt") + r10("m") * square(r10("L"));
-  CHECK(same(form.kinetic, half(across * (square(theta) + square(psi * sin(n)))) + half(r10("Ja") * square(phi + psi * cos(n)))));
+  CHECK(same(form.kinetic,
+             half(across * (square(theta) + square(psi * sin(n)))) + half(r10("Ja") * square(phi + psi * cos(n)))));
   CHECK(same(form.potential, r10("m") * r10("g") * r10("L") * cos(n) + half(r10("K") * square(r10("psi")))));
   CHECK(same(r10.equation(form, "psi").force, r10("G")));
   CHECK(same(r10.equation(form, "theta").force, Sum(0)));
@@ -63,7 +64,8 @@ TEST_CASE("R10: the moment along E3 is not conservative, spring and weight are")
 
 TEST_CASE("R10: let go without precession it nods between two tilts, roots of the cubic of its energy, in cusps") {
   const Finished run = top("default");
-  const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L"), u0 = std::cos(run.parameter("tilt"));
+  const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L"),
+               u0 = std::cos(run.parameter("tilt"));
   const double across = run.parameter("Jt") + m * L * L, p = run.parameter("Ja") * run.parameter("spin");
   // p^2 (u0 - u) = 2 across m g L (1 - u^2), u = cos(theta)
   const double b = p * p / (2 * across * m * g * L), u1 = b / 2 - std::sqrt(b * b / 4 - b * u0 + 1);
@@ -78,7 +80,8 @@ TEST_CASE("R10: let go without precession it nods between two tilts, roots of th
   CHECK(greatest == doctest::Approx(std::acos(u1)).epsilon(1e-9));
   CHECK(run.simulation.result.events.size() > 20);
   CHECK(spread(run, "energy") < 1e-10);
-  for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(momentum(run, i) == doctest::Approx(momentum(run, 0)).epsilon(1e-10));
+  for (std::size_t i = 0; i < run.rows.size(); ++i)
+    CHECK(momentum(run, i) == doctest::Approx(momentum(run, 0)).epsilon(1e-10));
 }
 
 TEST_CASE("R10: started with the slow rate of steady precession it keeps its tilt") {

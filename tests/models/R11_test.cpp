@@ -34,7 +34,8 @@ TEST_CASE("R11: two ways to the same attitude with different work") {
     return c;
   };
   CHECK(product(rotation(1), rotation(0)) == rotation(2));
-  // In the model: with 1-2-3 angles the moment's components along n1, n2 vanish on the second way, and not along n3 at n1 = n2 = 0.
+  // In the model: with 1-2-3 angles the moment's components along n1, n2 vanish on the second way, and not along n3 at
+  // n1 = n2 = 0.
   Read r11("R11_constant_moment");
   const reading::ReadingForm form = r11.form(system::Approach::two);
   const Sum M0 = r11("M0"), n1 = r11("n1"), n2 = r11("n2");
@@ -43,10 +44,12 @@ TEST_CASE("R11: two ways to the same attitude with different work") {
   CHECK(same(r11.equation(form, "n3").force, M0 * cos(n1) * cos(n2)));
 }
 
-TEST_CASE("R11: the energy gains what the moment does; about the fixed axis T + U is kept and the turn is that of M0/J") {
+TEST_CASE(
+    "R11: the energy gains what the moment does; about the fixed axis T + U is kept and the turn is that of M0/J") {
   const Finished run = run_model("R11_constant_moment");
   CHECK(run.simulation.result.power_balance < 1e-8);
-  for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(run.rows.at(i, "work") == doctest::Approx(run.rows.at(i, "power")).epsilon(1e-12));
+  for (std::size_t i = 0; i < run.rows.size(); ++i)
+    CHECK(run.rows.at(i, "work") == doctest::Approx(run.rows.at(i, "power")).epsilon(1e-12));
   const Finished axis = run_model("R11_constant_moment_fixed_axis");
   CHECK(axis.drift("energy.applied") < 1e-12);
   CHECK(axis.final("n") == doctest::Approx(0.1 + 5 + 0.3 / 2.5 * 25 / 2).epsilon(1e-12));

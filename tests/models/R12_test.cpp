@@ -7,8 +7,8 @@
 
 using namespace eomgen;
 
-// Balance of momentum and of moment of momentum about the pin, along the body's axes: F = m a + m g E3 with a = d (alpha e2 - W^2 e1),
-// and dH/dt = M + r x (-m g E3) with H = W (J13 - m d h, J23, J33 + m d^2).
+// Balance of momentum and of moment of momentum about the pin, along the body's axes: F = m a + m g E3 with a = d
+// (alpha e2 - W^2 e1), and dH/dt = M + r x (-m g E3) with H = W (J13 - m d h, J23, J33 + m d^2).
 TEST_CASE("R12: the five reactions of the pin are those of Euler's laws, of an unbalanced body and of a balanced one") {
   for (const char* scene : {"default", "balanced"}) {
     INFO(scene);
@@ -17,7 +17,8 @@ TEST_CASE("R12: the five reactions of the pin are those of Euler's laws, of an u
       request.overrides.rtol = request.overrides.atol = 1e-12;
     });
     const auto p = [&](const char* name) { return run.parameter(name); };
-    const double m = p("m"), g = p("g"), d = p("d"), J13 = p("J13") - m * d * p("h"), J23 = p("J23"), J33 = p("J3") + m * d * d;
+    const double m = p("m"), g = p("g"), d = p("d"), J13 = p("J13") - m * d * p("h"), J23 = p("J23"),
+                 J33 = p("J3") + m * d * d;
     const double alpha = p("M0") / J33;
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
       const double t = run.rows.t[i], W = 5 + alpha * t, a = 0.3 + 5 * t + alpha * t * t / 2;

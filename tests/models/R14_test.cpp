@@ -14,14 +14,16 @@ TEST_CASE("R14: T is (9.104), the motion (9.106), the constraint force and momen
   const reading::ReadingForm one = r14.form(system::Approach::one);
   const Sum n = r14("theta"), psi = r14("psi"), dphi = r14("phi_dot"), dn = r14("theta_dot"), dpsi = r14("psi_dot");
   const Sum v2 = square(r14("x1_dot")) + square(r14("x2_dot")) + square(r14("x3_dot"));
-  const Sum T = half(r14("m") * v2) + half(r14("Jt") * (square(dn * sin(psi) - dphi * sin(n) * cos(psi)) + square(dpsi + dphi * cos(n)))) +
+  const Sum T = half(r14("m") * v2) +
+                half(r14("Jt") * (square(dn * sin(psi) - dphi * sin(n) * cos(psi)) + square(dpsi + dphi * cos(n)))) +
                 half(r14("Ja") * square(dn * cos(psi) + dphi * sin(n) * sin(psi)));
   CHECK(same(one.kinetic, T));
   CHECK(same(r14.motion(one, "theta"), r14("Ja") * r14("theta_ddot")));
   CHECK(same(r14.motion(one, "phi"), r14("Jt") * r14("phi_ddot")));
   REQUIRE(one.reactions.size() == 2);
   CHECK(same(*one.reactions[0].value, r14("m") * r14("g")));
-  CHECK(same(*one.reactions[1].value, r14("Jt") * r14("phi_ddot") * cos(n) - r14("Ja") * dphi * dn * sin(n)));  // and phi_ddot = 0
+  CHECK(same(*one.reactions[1].value,
+             r14("Jt") * r14("phi_ddot") * cos(n) - r14("Ja") * dphi * dn * sin(n)));  // and phi_ddot = 0
 }
 
 TEST_CASE("R14: theta = 0, pi is singular for approach I and ordinary for approach II, which turns through it") {

@@ -42,8 +42,10 @@ Finished run_text(const std::string& name, const std::string& text) {
 void check_balance(const Finished& run, const std::string& joint) {
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     for (const char* k : {"1", "2", "3"}) {
-      CHECK(std::abs(run.rows.at(i, "reaction." + joint + "." + k) - run.rows.at(i, std::string("F") + k)) < same);  // Newton's law of the second
-      CHECK(std::abs(run.rows.at(i, std::string("H") + k) - run.rows.at(0, std::string("H") + k)) < same);           // nothing acts from outside
+      CHECK(std::abs(run.rows.at(i, "reaction." + joint + "." + k) - run.rows.at(i, std::string("F") + k)) <
+            same);  // Newton's law of the second
+      CHECK(std::abs(run.rows.at(i, std::string("H") + k) - run.rows.at(0, std::string("H") + k)) <
+            same);  // nothing acts from outside
     }
   }
   CHECK(run.drift("energy") < 1e-11);
@@ -52,7 +54,8 @@ void check_balance(const Finished& run, const std::string& joint) {
 }  // namespace
 
 TEST_CASE("R15: two bodies with a ball joint move as if it were built into the coordinates, relative angles 1-3-1") {
-  const Finished joint = run_model("R15_ball_joint", tighten), tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
+  const Finished joint = run_model("R15_ball_joint", tighten),
+                 tree = run_text("R15_ball_built_in", built_in("R15_ball_joint"));
   CHECK(joint.simulation.derived->mechanics.freedom() == 9);
   check_balance(joint, "ball");
   for (const char* moment : {"reaction.ball.4", "reaction.ball.5", "reaction.ball.6"}) CHECK(joint.final(moment) == 0);
@@ -64,7 +67,8 @@ TEST_CASE("R15: two bodies with a ball joint move as if it were built into the c
 
 TEST_CASE("R15: two bodies with a pin, each by angles 3-2-1, move as if one turned about an axis of the other") {
   std::string text = built_in("R15_pin_joint");
-  replace(text, "{ euler = \"321\", angles = [\"n1\", \"n2\", \"n3\"] }", "{ axis = \"first.e3\", angle = \"q\" }\nrelative_to = \"first\"");
+  replace(text, "{ euler = \"321\", angles = [\"n1\", \"n2\", \"n3\"] }",
+          "{ axis = \"first.e3\", angle = \"q\" }\nrelative_to = \"first\"");
   replace(text, "n1 = 1.1,", "q = 0.8,");        // n1 - psi
   replace(text, "n1_dot = 2,", "q_dot = 1.5,");  // n1_dot - psi_dot, since e3 = E3 at the start
   replace(text, "guess = { n2 = 0, n3 = 0 }", "");
@@ -80,7 +84,8 @@ TEST_CASE("R15: two bodies with a pin, each by angles 3-2-1, move as if one turn
 TEST_CASE("R15: two bodies with a spring (7.65) keep energy, linear and angular momentum; relative angles 3-2-1") {
   const Finished run = run_model("R15_spring", tighten);
   CHECK(run.simulation.derived->mechanics.freedom() == 12);
-  for (const char* name : {"energy", "linear_momentum.E1", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) {
+  for (const char* name :
+       {"energy", "linear_momentum.E1", "angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) {
     CAPTURE(name);
     CHECK(run.drift(name) < 1e-10);
   }

@@ -27,7 +27,8 @@ TEST_CASE("R17: of a sphere w is constant, e3 turns about it, and x is F/m e3 in
   const double W = w.norm(), push = run.parameter("F") / run.parameter("m");
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i];
-    const Vector3d x = push * (along * t * t / 2 + (1 - std::cos(W * t)) / (W * W) * p + (t / W - std::sin(W * t) / (W * W)) * q);
+    const Vector3d x =
+        push * (along * t * t / 2 + (1 - std::cos(W * t)) / (W * W) * p + (t / W - std::sin(W * t) / (W * W)) * q);
     for (int k = 0; k < 3; ++k) CHECK(std::abs(run.rows.at(i, "x" + std::to_string(k + 1)) - x[k]) < 1e-9);
   }
 }
@@ -39,7 +40,8 @@ TEST_CASE("R17: of an axisymmetric body e3 turns about H with the rate |H|/J1") 
   const double W = H.norm(), push = run.parameter("F") / run.parameter("m");
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i];
-    const Vector3d x = push * (along * t * t / 2 + (1 - std::cos(W * t)) / (W * W) * p + (t / W - std::sin(W * t) / (W * W)) * q);
+    const Vector3d x =
+        push * (along * t * t / 2 + (1 - std::cos(W * t)) / (W * W) * p + (t / W - std::sin(W * t) / (W * W)) * q);
     for (int k = 0; k < 3; ++k) CHECK(std::abs(run.rows.at(i, "x" + std::to_string(k + 1)) - x[k]) < 1e-9);
     CHECK(run.rows.at(i, "B.omega3") == doctest::Approx(2).epsilon(1e-10));
   }

@@ -24,21 +24,27 @@ double worst_against_jacobi(const test::Finished& run) {
   double worst = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const std::array<double, 3> w = test::free_body(J, 0.2, 1, run.rows.t[i]);
-    for (std::size_t k = 0; k < 3; ++k) worst = std::max(worst, std::abs(run.rows.at(i, "B.omega" + std::to_string(k + 1)) - w[k]));
+    for (std::size_t k = 0; k < 3; ++k)
+      worst = std::max(worst, std::abs(run.rows.at(i, "B.omega" + std::to_string(k + 1)) - w[k]));
   }
   return worst;
 }
 
 /// The free body with these rotation and start, as a model of its own; all nine e_k . E_j are outputs.
 std::string model_text(const std::string& rotation, const std::string& start) {
-  std::string text = "format = 1\ntitle = \"t\"\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] }\nrotation = " + rotation + "\n[definitions]\n", outputs;
+  std::string text =
+                  "format = 1\ntitle = \"t\"\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] "
+                  "}\nrotation = " +
+                  rotation + "\n[definitions]\n",
+              outputs;
   for (char k = '1'; k <= '3'; ++k) {
     for (char j = '1'; j <= '3'; ++j) {
       text += std::string("c") + k + j + " = \"dot(B.e" + k + ", E" + j + ")\"\n";
       outputs += std::string(outputs.empty() ? "" : ", ") + "\"c" + k + j + "\"";
     }
   }
-  return text + "[scene.default]\nt = [0, 1.5]\nrtol = 1e-13\natol = 1e-14\ninitial = { " + start + ", \"B.omega\" = [0.3, -0.4, 0.5] }\noutputs = [" + outputs + "]\n";
+  return text + "[scene.default]\nt = [0, 1.5]\nrtol = 1e-13\natol = 1e-14\ninitial = { " + start +
+         ", \"B.omega\" = [0.3, -0.4, 0.5] }\noutputs = [" + outputs + "]\n";
 }
 
 }  // namespace
@@ -98,7 +104,8 @@ TEST_CASE("R1: near the middle axis it tumbles: e2 turns over, and E and H are k
   CHECK(greatest > 1.99);
   CHECK(least < -1.99);
   CHECK(run.drift("energy") < 1e-11);
-  for (const char* h : {"angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) CHECK(run.drift(h) < 1e-10);
+  for (const char* h : {"angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"})
+    CHECK(run.drift(h) < 1e-10);
 }
 
 TEST_CASE("R1: all twelve sets of Euler angles, Euler parameters and a Rodrigues vector give the same attitude") {
@@ -112,7 +119,8 @@ TEST_CASE("R1: all twelve sets of Euler angles, Euler parameters and a Rodrigues
     test::write_text(path, model_text(written->rotation, written->start));
     const test::Finished run = test::run_model(path);
     found.emplace_back();
-    for (std::size_t i = 0; i < 9; ++i) found.back()[i] = run.final("c" + std::to_string(i / 3 + 1) + std::to_string(i % 3 + 1));
+    for (std::size_t i = 0; i < 9; ++i)
+      found.back()[i] = run.final("c" + std::to_string(i / 3 + 1) + std::to_string(i % 3 + 1));
     for (std::size_t i = 0; i < 9; ++i) CHECK(std::abs(found.back()[i] - found.front()[i]) < tolerance);
     CHECK(std::abs(found.back()[0] - start(0, 0)) > 0.01);  // it has moved
   }

@@ -22,7 +22,12 @@ struct Flight {
   Vector3d w{10, 30, 180};  // the start has the body's axes along E1, E2, E3
 
   explicit Flight(const test::Finished& run)
-      : m(run.parameter("m")), R(run.parameter("R")), g(run.parameter("g")), B(run.parameter("B")), rho(run.parameter("rho")), Cd(run.parameter("Cd")) {}
+      : m(run.parameter("m")),
+        R(run.parameter("R")),
+        g(run.parameter("g")),
+        B(run.parameter("B")),
+        rho(run.parameter("rho")),
+        Cd(run.parameter("Cd")) {}
   Vector3d acceleration(const Vector3d& v) const {
     const double A = std::acos(-1.0) * R * R;
     return Vector3d(0, 0, -g) + B * w.cross(v) - rho * A * Cd / (2 * m) * v.norm() * v;
@@ -31,8 +36,8 @@ struct Flight {
 
 }  // namespace
 
-// vdot = -g E3 + B w x v with constant w, eq. (8.59) with its signs put right: along w a free fall, across it v - v_s turns about w with
-// the rate B|w|, where v_s is the velocity for which lift and weight balance.
+// vdot = -g E3 + B w x v with constant w, eq. (8.59) with its signs put right: along w a free fall, across it v - v_s
+// turns about w with the rate B|w|, where v_s is the velocity for which lift and weight balance.
 TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
   const test::Finished run = test::run_model("R2_ball_in_flight", tighten);
   const Flight f(run);
@@ -43,14 +48,15 @@ TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
   double worst = 0, drift = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double t = run.rows.t[i];
-    const Vector3d x = x0 + (v0.dot(n) * t + gravity.dot(n) * t * t / 2) * n + steady * t + std::sin(turn * t) / turn * rest +
-                       (1 - std::cos(turn * t)) / turn * n.cross(rest);
+    const Vector3d x = x0 + (v0.dot(n) * t + gravity.dot(n) * t * t / 2) * n + steady * t +
+                       std::sin(turn * t) / turn * rest + (1 - std::cos(turn * t)) / turn * n.cross(rest);
     const Vector3d found(run.rows.at(i, "x1"), run.rows.at(i, "x2"), run.rows.at(i, "x3"));
     worst = std::max(worst, (found - x).norm());
-    for (int k = 0; k < 3; ++k) drift = std::max(drift, std::abs(run.rows.at(i, "ball.omega" + std::to_string(k + 1)) - f.w[k]));
+    for (int k = 0; k < 3; ++k)
+      drift = std::max(drift, std::abs(run.rows.at(i, "ball.omega" + std::to_string(k + 1)) - f.w[k]));
   }
   CHECK(worst < 1e-9);
-  CHECK(drift < 1e-8);  // of 180 rad/s
+  CHECK(drift < 1e-8);         // of 180 rad/s
   CHECK(run.final("x2") > 1);  // the lift bends the flight
 }
 
@@ -64,8 +70,8 @@ TEST_CASE("R2: with drag it follows an integration of vdot alone") {
   constexpr int steps = 4000;  // of the classical Runge-Kutta method: errors of 1e-13
   const double h = 2.0 / steps;
   for (int i = 0; i < steps; ++i) {
-    const Vector3d a1 = f.acceleration(v), v2 = v + h / 2 * a1, a2 = f.acceleration(v2), v3 = v + h / 2 * a2, a3 = f.acceleration(v3), v4 = v + h * a3,
-                   a4 = f.acceleration(v4);
+    const Vector3d a1 = f.acceleration(v), v2 = v + h / 2 * a1, a2 = f.acceleration(v2), v3 = v + h / 2 * a2,
+                   a3 = f.acceleration(v3), v4 = v + h * a3, a4 = f.acceleration(v4);
     x += h / 6 * (v + 2 * v2 + 2 * v3 + v4);
     v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
   }

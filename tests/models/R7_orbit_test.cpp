@@ -19,7 +19,8 @@ struct Attitude {
 Attitude attitude(const cli::SteadyMotions& all, const cli::SteadyMotion& point) {
   const auto value = [&](const std::string& name) {
     const auto& names = all.problem.flow->names();
-    return linear::to_double(point.l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
+    return linear::to_double(
+        point.l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
   };
   const double a = value("e0"), b = value("e1"), c = value("e2"), d = value("e3"), J[] = {0.003, 0.004, 0.005};
   const double Q[3][3] = {{a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
@@ -36,9 +37,12 @@ Attitude attitude(const cli::SteadyMotions& all, const cli::SteadyMotion& point)
 
 }  // namespace
 
-// Of the decoupled orbit (8.93): pitch s^2 = -3 W^2 (J_along - J_radial)/J_across, roll and yaw s^4 + (1 + 3 a + a b) W^2 s^2 + 4 a b W^4 = 0
-// with a = (J_across - J_radial)/J_along, b = (J_across - J_along)/J_radial. The orbit of the full force differs by J/(m R^2).
-TEST_CASE("R7_orbit: 24 attitudes rest against the orbit; the rate is Kepler's but for the second order; stable ones have J_across > J_along > J_radial") {
+// Of the decoupled orbit (8.93): pitch s^2 = -3 W^2 (J_along - J_radial)/J_across, roll and yaw s^4 + (1 + 3 a + a b)
+// W^2 s^2 + 4 a b W^4 = 0 with a = (J_across - J_radial)/J_along, b = (J_across - J_along)/J_radial. The orbit of the
+// full force differs by J/(m R^2).
+TEST_CASE(
+    "R7_orbit: 24 attitudes rest against the orbit; the rate is Kepler's but for the second order; stable ones have "
+    "J_across > J_along > J_radial") {
   cli::SteadyRequest request;
   request.model = test::model_path("R7_satellite_in_orbit");
   request.hold = {{"theta_dot", 1}};

@@ -16,15 +16,19 @@ TEST_CASE("R7: energy and H_O are conserved with the full attraction of second o
   CHECK(run.drift("energy") < 1e-11);
   double worst = 0;
   for (const char* name : {"HO1", "HO2", "HO3"}) {
-    for (std::size_t i = 0; i < run.rows.size(); ++i) worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+      worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
   }
   CHECK(worst < 1e-11);
-  for (const char* h : {"angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"}) CHECK(run.drift(h) < 1e-11);
-  // The orbit feels the body's attitude: R moves by more than Kepler's ellipse would at these moments of inertia of 0.5 %.
+  for (const char* h : {"angular_momentum.E1", "angular_momentum.E2", "angular_momentum.E3"})
+    CHECK(run.drift(h) < 1e-11);
+  // The orbit feels the body's attitude: R moves by more than Kepler's ellipse would at these moments of inertia of 0.5
+  // %.
   CHECK(std::abs(run.final("R") - 1) > 1e-4);
 }
 
-// (9.31) has the moment 3GM/R^3 c x Jc on the right, (9.32) the slope of U: the judge takes force and moment, the routes take U.
+// (9.31) has the moment 3GM/R^3 c x Jc on the right, (9.32) the slope of U: the judge takes force and moment, the
+// routes take U.
 TEST_CASE("R7: force and moment of (7.72), (9.31) and the potential (7.71), (9.32) give the same equations") {
   const model::Model model = model::read_model(test::model_path("R7_satellite"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);

@@ -17,10 +17,13 @@ TEST_CASE("R8: the constrained energies are (9.99)") {
   CHECK(same(two.potential, -(r8("m") * r8("g") * r8("L") * cos(n))));
 }
 
-TEST_CASE("R8: the joint's force is Newton's, the moment that stops the spin Euler's, and the motion is the same without the joint") {
+TEST_CASE(
+    "R8: the joint's force is Newton's, the moment that stops the spin Euler's, and the motion is the same without the "
+    "joint") {
   const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
   const Finished free = run_model("R8_pendulum_body", tighten), joint = run_model("R8_pendulum_body_joint", tighten);
-  for (const char* name : {"phi", "theta", "phi_dot", "theta_dot"}) CHECK(std::abs(free.final(name) - joint.final(name)) < 1e-9);
+  for (const char* name : {"phi", "theta", "phi_dot", "theta_dot"})
+    CHECK(std::abs(free.final(name) - joint.final(name)) < 1e-9);
   CHECK(free.drift("energy") < 1e-11);
   CHECK(free.drift("momentum.phi") < 1e-11);
   double greatest = 0;
@@ -30,7 +33,8 @@ TEST_CASE("R8: the joint's force is Newton's, the moment that stops the spin Eul
       greatest = std::max(greatest, std::abs(run->rows.at(i, "spin_moment")));
       if (run == &free) continue;
       for (const char* k : {"1", "2", "3"}) {
-        CHECK(std::abs(run->rows.at(i, std::string("reaction.joint.") + k) - run->rows.at(i, std::string("newton") + k)) < 1e-10);
+        CHECK(std::abs(run->rows.at(i, std::string("reaction.joint.") + k) -
+                       run->rows.at(i, std::string("newton") + k)) < 1e-10);
       }
     }
   }

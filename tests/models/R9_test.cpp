@@ -15,7 +15,8 @@ namespace {
 
 /// The arm by hand at constant rates: base s(t), axes, force (7.102), and the moment (7.103) with its missing terms.
 struct Arm {
-  static constexpr double m = 5, g = 9.81, L = 0.4, J1 = 0.3, J2 = 0.25, J3 = 0.1, a = 0.2, w = 3, dpsi = 1.5, dtheta = 0.8;
+  static constexpr double m = 5, g = 9.81, L = 0.4, J1 = 0.3, J2 = 0.25, J3 = 0.1, a = 0.2, w = 3, dpsi = 1.5,
+                          dtheta = 0.8;
   double psi, theta;
   Vector3d e1, e2, e3, velocity, force, moment;
 
@@ -25,10 +26,12 @@ struct Arm {
     e2 = {-std::sin(psi) * c, std::cos(psi) * c, s};
     e3 = {std::sin(psi) * s, -std::cos(psi) * s, c};
     velocity = {a * w * std::cos(w * t), -2 * a * w * std::sin(2 * w * t), -a * w * std::exp(-w * t)};
-    const Vector3d acceleration(-a * w * w * std::sin(w * t), -4 * a * w * w * std::cos(2 * w * t), a * w * w * std::exp(-w * t));
-    force = m * g * Vector3d::UnitZ() + m * acceleration + 2 * m * L * dpsi * dtheta * c * e1 + m * L * dpsi * dpsi * s * c * e2 -
-            m * L * (dtheta * dtheta + dpsi * dpsi * s * s) * e3;
-    const Vector3d H = J1 * dtheta * e1 + J2 * dpsi * s * e2 + J3 * dpsi * c * e3, turn = dtheta * e1 + dpsi * s * e2 + dpsi * c * e3;
+    const Vector3d acceleration(-a * w * w * std::sin(w * t), -4 * a * w * w * std::cos(2 * w * t),
+                                a * w * w * std::exp(-w * t));
+    force = m * g * Vector3d::UnitZ() + m * acceleration + 2 * m * L * dpsi * dtheta * c * e1 +
+            m * L * dpsi * dpsi * s * c * e2 - m * L * (dtheta * dtheta + dpsi * dpsi * s * s) * e3;
+    const Vector3d H = J1 * dtheta * e1 + J2 * dpsi * s * e2 + J3 * dpsi * c * e3,
+                   turn = dtheta * e1 + dpsi * s * e2 + dpsi * c * e3;
     moment = L * e3.cross(force) + turn.cross(H) + J2 * dpsi * dtheta * c * e2 - J3 * dpsi * dtheta * s * e3;
   }
 };
@@ -45,7 +48,9 @@ struct PayloadArm {
     const double psi = 0.8 * s, dpsi = 0.8 * k * c, ddpsi = -0.8 * k * k * s;
     const double theta = 1 + 0.4 * c, dtheta = -0.4 * k * s, ddtheta = -0.4 * k * k * c;
     const double phi = 0.9 * t * t / (T * T), dphi = 1.8 * t / (T * T), ddphi = 1.8 / (T * T);
-    const auto turn = [](double angle, const Vector3d& axis) { return Eigen::AngleAxisd(angle, axis).toRotationMatrix(); };
+    const auto turn = [](double angle, const Vector3d& axis) {
+      return Eigen::AngleAxisd(angle, axis).toRotationMatrix();
+    };
     const Eigen::Matrix3d shaft = turn(psi, Vector3d::UnitZ()), A = shaft * turn(theta, Vector3d::UnitY());
     axes = A * turn(phi, Vector3d::UnitZ());
     g2 = shaft.col(1);
@@ -53,7 +58,8 @@ struct PayloadArm {
     const Vector3d E3 = Vector3d::UnitZ(), wS = dpsi * E3, aS = ddpsi * E3;
     const Vector3d wA = wS + dtheta * g2, aA = aS + ddtheta * g2 + wS.cross(dtheta * g2);
     const Vector3d w = wA + dphi * g3, a = aA + ddphi * g3 + wA.cross(dphi * g3);
-    const auto rate = [](const Eigen::Matrix3d& Q, const Eigen::Matrix3d& J, const Vector3d& turning, const Vector3d& second) {
+    const auto rate = [](const Eigen::Matrix3d& Q, const Eigen::Matrix3d& J, const Vector3d& turning,
+                         const Vector3d& second) {
       const Eigen::Matrix3d now = Q * J * Q.transpose();
       return Vector3d(now * second + turning.cross(now * turning));
     };
@@ -62,7 +68,8 @@ struct PayloadArm {
     const Vector3d out = H * g3, arm = out + b * axes.col(0);
     position = L * E3 + arm;
     // H g3 turns with axle A, b e1 with the payload.
-    const Vector3d acceleration = aA.cross(out) + wA.cross(wA.cross(out)) + a.cross(arm - out) + w.cross(w.cross(arm - out));
+    const Vector3d acceleration =
+        aA.cross(out) + wA.cross(wA.cross(out)) + a.cross(arm - out) + w.cross(w.cross(arm - out));
     const Vector3d moment = arm.cross(m * (acceleration + g * E3)) + rate(axes, J, w, a);
     const Vector3d on_A = moment + rate(A, Vector3d(0.02, 0.01, 0.03).asDiagonal(), wA, aA);
     phi_moment = moment.dot(g3);
@@ -90,15 +97,18 @@ TEST_CASE("R9: the drives of the payload arm give the moments of Newton and Eule
     CAPTURE(t);
     const auto given = [&](const auto& self, const symbolic::Symbol& symbol) -> double {
       if (symbol.kind == symbolic::SymbolKind::time) return t;
-      return symbolic::evaluate(*m.dag, {m.parameter_value[symbol.index]}, [&](const symbolic::Symbol& q) { return self(self, q); })[0];
+      return symbolic::evaluate(*m.dag, {m.parameter_value[symbol.index]},
+                                [&](const symbolic::Symbol& q) { return self(self, q); })[0];
     };
-    const std::vector<double> found = symbolic::evaluate(*m.dag, roots, [&](const symbolic::Symbol& symbol) { return given(given, symbol); });
+    const std::vector<double> found =
+        symbolic::evaluate(*m.dag, roots, [&](const symbolic::Symbol& symbol) { return given(given, symbol); });
     const PayloadArm arm(t);
     CHECK(found[0] == doctest::Approx(arm.psi_moment).epsilon(1e-11));
     CHECK(found[1] == doctest::Approx(arm.theta_moment).epsilon(1e-11));
     CHECK(found[2] == doctest::Approx(arm.phi_moment).epsilon(1e-11));
     CHECK(found[3] == doctest::Approx(arm.power).epsilon(1e-10));
-    for (int k = 0; k < 3; ++k) CHECK(found[static_cast<std::size_t>(4 + k)] == doctest::Approx(arm.position[k]).epsilon(1e-12));
+    for (int k = 0; k < 3; ++k)
+      CHECK(found[static_cast<std::size_t>(4 + k)] == doctest::Approx(arm.position[k]).epsilon(1e-12));
   }
   // Part (d): back where it was, the payload has turned by phi(t1) - phi(t0) about g3(t0).
   const PayloadArm start(0), end(PayloadArm::T);
@@ -122,13 +132,15 @@ TEST_CASE("R9: inverse dynamics gives the force (7.102) at the base and the mome
     const auto parameter = [&](const symbolic::Symbol& symbol) -> double {
       if (symbol.kind == symbolic::SymbolKind::time) return t;
       const auto value = [&](const auto& self, const symbolic::Symbol& p) -> double {
-        return symbolic::evaluate(*m.dag, {m.parameter_value[p.index]}, [&](const symbolic::Symbol& q) { return self(self, q); })[0];
+        return symbolic::evaluate(*m.dag, {m.parameter_value[p.index]},
+                                  [&](const symbolic::Symbol& q) { return self(self, q); })[0];
       };
       return value(value, symbol);
     };
     const std::vector<double> found = symbolic::evaluate(*m.dag, roots, parameter);
     const Arm arm(t);
-    for (int k = 0; k < 3; ++k) CHECK(found[static_cast<std::size_t>(k)] == doctest::Approx(arm.force[k]).epsilon(1e-12));
+    for (int k = 0; k < 3; ++k)
+      CHECK(found[static_cast<std::size_t>(k)] == doctest::Approx(arm.force[k]).epsilon(1e-12));
     CHECK(found[3] == doctest::Approx(arm.moment[2]).epsilon(1e-11));
     CHECK(found[4] == doctest::Approx(arm.moment.dot(arm.e1)).epsilon(1e-11));
     CHECK(found[5] == doctest::Approx(arm.moment.dot(arm.e3)).epsilon(1e-11));

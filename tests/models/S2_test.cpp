@@ -60,15 +60,17 @@ TEST_CASE("S2: the multiplier form moves as y' = f(y) with the dependent velocit
 }
 
 TEST_CASE("S2: the start gives the velocity that the constraint fixes") {
-  const test::Finished run = test::run_model("S2_two_masses_pfaffian", [](cli::SimulationRequest& request) { request.overrides.t_end = 0.1; });
+  const test::Finished run =
+      test::run_model("S2_two_masses_pfaffian", [](cli::SimulationRequest& request) { request.overrides.t_end = 0.1; });
   CHECK(run.rows.at(0, "x1_dot") == doctest::Approx((0.3 - 0.5 * 0.1) / 0.64).epsilon(1e-15));
   REQUIRE(run.simulation.scene.solved.size() == 1);
   CHECK(run.simulation.scene.solved[0].starts_with("x1_dot = "));
 }
 
-TEST_CASE("S2: the multiplier, null space and Chaplygin forms agree to 45 digits at random points and to 1e-9 along a run") {
-  const std::unique_ptr<cli::Derived> derived =
-      cli::derive_model(test::model_path("S2_two_masses_pfaffian"), cli::ApproachChoice::automatic, system::Form::multipliers);
+TEST_CASE(
+    "S2: the multiplier, null space and Chaplygin forms agree to 45 digits at random points and to 1e-9 along a run") {
+  const std::unique_ptr<cli::Derived> derived = cli::derive_model(
+      test::model_path("S2_two_masses_pfaffian"), cli::ApproachChoice::automatic, system::Form::multipliers);
   const program::Program multipliers = cli::make_program(*derived, {});
   const verify::Certificate certificate = cli::certify(*derived, multipliers, {50, 20, 1, nullptr});
   CHECK(certificate.pass);
@@ -92,7 +94,8 @@ TEST_CASE("S2: the multiplier, null space and Chaplygin forms agree to 45 digits
     CHECK(other.simulation.program.form == form);
     REQUIRE(other.rows.size() == reference.rows.size());
     for (std::size_t i = 0; i < reference.rows.size(); ++i) {
-      for (const char* name : {"x1", "x2", "x1_dot", "x2_dot"}) CHECK(std::abs(other.rows.at(i, name) - reference.rows.at(i, name)) < 1e-9);
+      for (const char* name : {"x1", "x2", "x1_dot", "x2_dot"})
+        CHECK(std::abs(other.rows.at(i, name) - reference.rows.at(i, name)) < 1e-9);
       CHECK(std::abs(other.rows.at(i, "reaction.pair") - reference.rows.at(i, "reaction.pair")) < 1e-7);  // some 100 N
     }
   }

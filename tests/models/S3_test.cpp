@@ -10,12 +10,15 @@ namespace {
 struct Line {
   explicit Line(const Finished& run) {
     const auto p = [&](const char* name) { return run.parameter(name); };
-    m1 = p("m1"), m2 = p("m2"), k1 = p("k1"), k2 = p("k2"), c1 = p("c1"), c2 = p("c2"), P0 = p("P0"), w = p("w"), g = p("g");
+    m1 = p("m1"), m2 = p("m2"), k1 = p("k1"), k2 = p("k2"), c1 = p("c1"), c2 = p("c2"), P0 = p("P0"), w = p("w"),
+    g = p("g");
     mu_s = p("mu_s"), mu_d = p("mu_d");
   }
   /// What acts along the line without friction.
   double on1(double, const double* x) const { return -k1 * x[0] - k2 * (x[0] - x[1]) - c1 * x[2] - c2 * (x[2] - x[3]); }
-  double on2(double t, const double* x) const { return -k2 * (x[1] - x[0]) - c2 * (x[3] - x[2]) + P0 * std::sin(w * t); }
+  double on2(double t, const double* x) const {
+    return -k2 * (x[1] - x[0]) - c2 * (x[3] - x[2]) + P0 * std::sin(w * t);
+  }
   double m1, m2, k1, k2, c1, c2, P0, w, g, mu_s, mu_d;
 };
 
@@ -23,7 +26,8 @@ double sign(double v) { return v > 0 ? 1 : -1; }
 
 }  // namespace
 
-TEST_CASE("S3: at random states the equations are (3.68) with pull and dashpots, and the lines press with the weights") {
+TEST_CASE(
+    "S3: at random states the equations are (3.68) with pull and dashpots, and the lines press with the weights") {
   const Finished run = run_rough("S3_rough_line", "free");
   const Finished pulled = run_rough("S3_rough_line");
   for (const Finished* of : {&run, &pulled}) {
@@ -34,8 +38,10 @@ TEST_CASE("S3: at random states the equations are (3.68) with pull and dashpots,
       const double t = draw(0, 9);
       const double x[4] = {draw(-2, 2), draw(-2, 2), draw(-3, 3), draw(-3, 3)};
       REQUIRE(derived.slide(t, {x[0], x[1], x[2], x[3]}));
-      CHECK(derived.dx[2] == doctest::Approx(line.on1(t, x) / line.m1 - line.mu_d * line.g * sign(x[2])).epsilon(rounding).scale(30));
-      CHECK(derived.dx[3] == doctest::Approx(line.on2(t, x) / line.m2 - line.mu_d * line.g * sign(x[3])).epsilon(rounding).scale(30));
+      CHECK(derived.dx[2] ==
+            doctest::Approx(line.on1(t, x) / line.m1 - line.mu_d * line.g * sign(x[2])).epsilon(rounding).scale(30));
+      CHECK(derived.dx[3] ==
+            doctest::Approx(line.on2(t, x) / line.m2 - line.mu_d * line.g * sign(x[3])).epsilon(rounding).scale(30));
       CHECK(derived.output("reaction.line1.1") == doctest::Approx(0));
       CHECK(derived.output("reaction.line1.2") == doctest::Approx(line.m1 * line.g).epsilon(rounding));
       CHECK(derived.output("reaction.line2.2") == doctest::Approx(line.m2 * line.g).epsilon(rounding));
@@ -57,7 +63,9 @@ TEST_CASE("S3: let go, the second mass swings once while the first is held, and 
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("S3: pulled, each mass sticks and slides by itself: equations by hand from event to event, the static law in between") {
+TEST_CASE(
+    "S3: pulled, each mass sticks and slides by itself: equations by hand from event to event, the static law in "
+    "between") {
   const Finished run = run_rough("S3_rough_line");
   const Line line(run);
   const std::vector<run::RunEvent> events = events_of(run);

@@ -18,7 +18,8 @@ Six covariant(Read& s4, const std::string& q) {
   reading::Bridge bridge(s4.s.mechanics);
   const reading::Symbol by = s4(q).terms().begin()->first[0].atom->symbol;
   Six a;
-  for (std::size_t c = 0; c < 6; ++c) a[c] = bridge.derivative(bridge.sum((*s4.s.mechanics.place_position[1 + c / 3])[c % 3]), by);
+  for (std::size_t c = 0; c < 6; ++c)
+    a[c] = bridge.derivative(bridge.sum((*s4.s.mechanics.place_position[1 + c / 3])[c % 3]), by);
   return a;
 }
 
@@ -36,7 +37,8 @@ TEST_CASE("S4: the six covariant basis vectors are (3.71), and (3.72) is dual to
                                     {o, o, o, sp * c2, sp * s2, cp},
                                     {o, o, o, R * cp * c2, R * cp * s2, -R * sp},
                                     {o, o, o, -R * sp * s2, R * sp * c2, o}}};
-  const Sum x5 = over(cp * c2, R), y5 = over(cp * s2, R), z5 = over(sp, R), x6 = over(s2, R * sp), y6 = over(c2, R * sp);
+  const Sum x5 = over(cp * c2, R), y5 = over(cp * s2, R), z5 = over(sp, R), x6 = over(s2, R * sp),
+            y6 = over(c2, R * sp);
   const std::array<Six, 6> dual{{{c1, s1, o, o, o, o},
                                  {over(-s1, r), over(c1, r), o, o, o, o},
                                  {o, o, one, o, o, o},
@@ -61,7 +63,8 @@ TEST_CASE("S4: the kinetic energy is (3.73), and there are six equations") {
   CHECK(form.equations.size() == 6);
   const Sum m1 = s4("m1"), m2 = s4("m2"), r = s4("r1"), R = s4("R2"), cp = cos(s4("phi2")), sp = sin(s4("phi2"));
   const Sum c = cos(s4("theta2") - s4("theta1")), s = sin(s4("theta2") - s4("theta1"));
-  const Sum dr = s4("r1_dot"), dth1 = s4("theta1_dot"), dz = s4("z1_dot"), dR = s4("R2_dot"), dphi = s4("phi2_dot"), dth2 = s4("theta2_dot");
+  const Sum dr = s4("r1_dot"), dth1 = s4("theta1_dot"), dz = s4("z1_dot"), dR = s4("R2_dot"), dphi = s4("phi2_dot"),
+            dth2 = s4("theta2_dot");
   const Sum kinetic = half(m1 + m2) * (square(dr) + square(r * dth1) + square(dz)) +
                       half(m2) * (square(dR) + square(R * dphi) + square(R * sp * dth2)) +
                       m2 * cp * (dR * dz + dphi * dr * R * c + dphi * dth1 * r * R * s) -
@@ -81,7 +84,8 @@ TEST_CASE("S4: momentum, moment of momentum and energy are conserved") {
   for (const char* name : {"G1", "G2", "G3", "H1", "H2", "H3"}) {
     CAPTURE(name);
     double worst = 0;
-    for (std::size_t i = 0; i < run.rows.size(); ++i) worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+      worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
     CHECK(std::abs(run.rows.at(0, name)) > 1e-3);
     CHECK(worst < tolerance);
   }

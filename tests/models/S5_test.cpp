@@ -19,7 +19,8 @@ void tighten(cli::SimulationRequest& request) {
 
 }  // namespace
 
-TEST_CASE("S5: polar coordinates with rods eliminated and Cartesian ones with multipliers give one motion, one tension") {
+TEST_CASE(
+    "S5: polar coordinates with rods eliminated and Cartesian ones with multipliers give one motion, one tension") {
   const test::Finished polar = test::run_model("S5_double_pendulum", tighten);
   const test::Finished cartesian = test::run_model("S5_double_pendulum_cartesian", tighten);
   REQUIRE(polar.rows.size() == cartesian.rows.size());
@@ -124,12 +125,14 @@ initial = { phi1 = "pi/2", phi2 = "pi/2", theta1 = 0.8, theta2 = 0.4 }
   CHECK(spherical.final("phi1") == doctest::Approx(std::acos(0.0)).epsilon(1e-12));
 }
 
-TEST_CASE("S5: a constraint on the velocities of both masses holds, by either approach, and does the work that balances") {
+TEST_CASE(
+    "S5: a constraint on the velocities of both masses holds, by either approach, and does the work that balances") {
   const auto run = [](cli::ApproachChoice approach) {
     return test::run_model("S5_double_pendulum_pfaffian", [approach](cli::SimulationRequest& request) {
       tighten(request);
       request.approach = approach;
-      request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity3", "P2.velocity1", "P2.velocity2", "power"};
+      request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity3",
+                                   "P2.velocity1", "P2.velocity2", "power"};
     });
   };
   const test::Finished one = run(cli::ApproachChoice::one), two = run(cli::ApproachChoice::two);
@@ -137,7 +140,8 @@ TEST_CASE("S5: a constraint on the velocities of both masses holds, by either ap
   for (std::size_t i = 0; i < one.rows.size(); ++i) {
     const auto y = [&](const char* name) { return one.rows.at(i, name); };
     const double across = (y("P1.position1") * y("P2.velocity2") - y("P1.position2") * y("P2.velocity1")) / L1;
-    CHECK(std::abs(y("P1.velocity3") + across / 4 - c * std::sin(w * one.rows.t[i])) < 1e-11);  // rows lie between steps
+    CHECK(std::abs(y("P1.velocity3") + across / 4 - c * std::sin(w * one.rows.t[i])) <
+          1e-11);  // rows lie between steps
   }
   for (const auto& [key, value] : one.simulation.result.final) {
     const auto& shown = key;

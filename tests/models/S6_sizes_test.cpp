@@ -2,7 +2,6 @@
 // Chains of 1 to 20 links in absolute and in relative angles, every mass and length different: each route that applies
 // against the judge; runs that keep their energy; and the same motion in either kind of angle.
 #include <doctest/doctest.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -20,20 +19,24 @@ namespace {
 
 constexpr int longest = 20;
 
-/// The start hangs aslant: rod k at 0.3 + 0.05 k from the vertical, turning at 0.1 k; `relative` says it in other words.
+/// The start hangs aslant: rod k at 0.3 + 0.05 k from the vertical, turning at 0.1 k; `relative` says it in other
+/// words.
 std::string chain_text(int n, bool relative) {
   std::string mass, length, start;
   for (int k = 1; k <= n; ++k) {
     mass += fmt::format("{}\"m*{}/10\"", k > 1 ? ", " : "", 10 + 3 * (k % 4));
     length += fmt::format("{}\"L*{}/10\"", k > 1 ? ", " : "", 8 + (5 * k) % 7);
     const bool difference = relative && k > 1;
-    start += fmt::format("theta{0} = {1}\ntheta{0}_dot = {2}\n", k, difference ? "0.05" : fmt::format("\"0.3 + 0.05*{}\"", k),
+    start += fmt::format("theta{0} = {1}\ntheta{0}_dot = {2}\n", k,
+                         difference ? "0.05" : fmt::format("\"0.3 + 0.05*{}\"", k),
                          difference ? "0.1" : fmt::format("\"0.1*{}\"", k));
   }
-  return fmt::format("format = 1\n[parameters]\nm = \"1.3 kg\"\nL = \"0.7 m\"\ng = \"9.81 m/s^2\"\n[[chain]]\nname = \"link\"\nn = {}\n"
-                     "mass = [{}]\nlength = [{}]\nangles = \"{}\"\n[[force]]\ngravity = \"-g*E2\"\n[scene.default]\nt = [0, 1]\n"
-                     "outputs = [\"link{}.position1\", \"link{}.position2\"]\n[scene.default.initial]\n{}",
-                     n, mass, length, relative ? "relative" : "absolute", n, n, start);
+  return fmt::format(
+      "format = 1\n[parameters]\nm = \"1.3 kg\"\nL = \"0.7 m\"\ng = \"9.81 m/s^2\"\n[[chain]]\nname = \"link\"\nn = "
+      "{}\n"
+      "mass = [{}]\nlength = [{}]\nangles = \"{}\"\n[[force]]\ngravity = \"-g*E2\"\n[scene.default]\nt = [0, 1]\n"
+      "outputs = [\"link{}.position1\", \"link{}.position2\"]\n[scene.default.initial]\n{}",
+      n, mass, length, relative ? "relative" : "absolute", n, n, start);
 }
 
 test::Finished run_chain(int n, bool relative) {
@@ -60,7 +63,8 @@ TEST_CASE("S6: chains of 1 to 20 links in absolute and relative angles agree wit
       verify::Subjects subjects;
       // Nothing is eliminated, so that the approaches are one.
       for (const derive::RouteEntry& route : derive::routes()) {
-        if (auto system = route.derive(mechanics, system::Approach::two)) subjects.systems.push_back(std::move(*system));
+        if (auto system = route.derive(mechanics, system::Approach::two))
+          subjects.systems.push_back(std::move(*system));
       }
       for (const char* route : {"lagrange", "recursive", "articulated"}) {
         const auto of_route = [&](const system::EquationSystem& s) { return s.route == route; };

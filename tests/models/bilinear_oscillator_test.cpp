@@ -25,7 +25,9 @@ cli::SimulationRequest& tight(cli::SimulationRequest& request) {
 /// The same oscillator with other forces, written into the test's folder.
 std::string variant(const std::string& name, const std::string& forces, const std::string& initial = "x = 0.1") {
   std::string text = test::read_text(test::model_path("bilinear_oscillator"));
-  const auto replace = [&text](const std::string& from, const std::string& to) { text.replace(text.find(from), from.size(), to); };
+  const auto replace = [&text](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
   replace("-k1*max(0, x) - k2*min(0, x)", forces);
   replace("initial = { x = 0.1 }", "initial = { " + initial + " }");
   const std::string path = test::build_folder() + "/" + name + ".toml";
@@ -37,9 +39,8 @@ std::string variant(const std::string& name, const std::string& forces, const st
 
 TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and the kink was crossed twice in each") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const test::Finished run = test::run_model("bilinear_oscillator", [solver](cli::SimulationRequest& request) {
-      tight(request).overrides.solver = solver;
-    });
+    const test::Finished run = test::run_model(
+        "bilinear_oscillator", [solver](cli::SimulationRequest& request) { tight(request).overrides.solver = solver; });
     const run::RunResult& result = run.simulation.result;
     CAPTURE(solver);
     CHECK(result.outcome == eom::Outcome::done);
@@ -53,12 +54,13 @@ TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and th
   }
 }
 
-TEST_CASE("bilinear_oscillator: with the branch held, no step is refused for the kink; abs and if do as max and min do") {
+TEST_CASE(
+    "bilinear_oscillator: with the branch held, no step is refused for the kink; abs and if do as max and min do") {
   const test::Finished smooth = test::run_model(variant("linear", "-k1*x"), [](auto& request) { tight(request); });
   const test::Finished two = test::run_model("bilinear_oscillator", [](auto& request) { tight(request); });
-  for (const auto& [name, forces] : {std::pair{"with_abs", "-(k1 + k2)/2*x - (k1 - k2)/2*abs(x)"},
-                                     std::pair{"with_if", "if(x > 0, -k1*x, -k2*x)"},
-                                     std::pair{"with_sign", "-x*((k1 + k2)/2 + (k1 - k2)/2*sign(x))"}}) {
+  for (const auto& [name, forces] :
+       {std::pair{"with_abs", "-(k1 + k2)/2*x - (k1 - k2)/2*abs(x)"}, std::pair{"with_if", "if(x > 0, -k1*x, -k2*x)"},
+        std::pair{"with_sign", "-x*((k1 + k2)/2 + (k1 - k2)/2*sign(x))"}}) {
     const auto& shown = name;
     CAPTURE(shown);
     const test::Finished run = test::run_model(variant(name, forces), [](auto& request) { tight(request); });
@@ -102,8 +104,8 @@ TEST_CASE("bilinear_oscillator: a branch without a value beyond its surface is l
 }
 
 TEST_CASE("bilinear_oscillator: discontinuous friction slips by its closed form, and ends told where it would stick") {
-  // x'' = -(k/m) x - (F/m) sign(x_dot) with F/k = 0.03: each half period swings about +-0.03, from 0.1 to -0.04 and on to
-  // -0.02, where the spring is weaker than the friction.
+  // x'' = -(k/m) x - (F/m) sign(x_dot) with F/k = 0.03: each half period swings about +-0.03, from 0.1 to -0.04 and on
+  // to -0.02, where the spring is weaker than the friction.
   const std::string path = variant("dry", "-k1*x - 0.03[m]*k1*sign(x_dot)");
   const test::Finished run = test::run_model(path, [](auto& request) { tight(request); });
   const run::RunResult& result = run.simulation.result;

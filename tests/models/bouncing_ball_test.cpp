@@ -4,7 +4,8 @@
 using namespace eomgen;
 using namespace eomgen::test;
 
-TEST_CASE("bouncing_ball: bounces follow at e^k of the first fall, accumulate, and end in sliding that friction stops") {
+TEST_CASE(
+    "bouncing_ball: bounces follow at e^k of the first fall, accumulate, and end in sliding that friction stops") {
   const Finished run = run_rough("bouncing_ball");
   const double g = run.parameter("g"), e = run.parameter("e"), mu = run.parameter("mu_d"), first = std::sqrt(2 / g);
   const std::vector<run::RunEvent> events = events_of(run);
@@ -26,7 +27,8 @@ TEST_CASE("bouncing_ball: bounces follow at e^k of the first fall, accumulate, a
   CHECK(run.final("energy") == doctest::Approx(0).scale(1));
   CHECK(run.simulation.result.power_balance < 1e-9);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
-    if (run.rows.t[i] < zeno - 1e-6) CHECK(std::abs(run.rows.at(i, "x") - 3 * run.rows.t[i]) < by_hand);  // impacts are frictionless
+    if (run.rows.t[i] < zeno - 1e-6)
+      CHECK(std::abs(run.rows.at(i, "x") - 3 * run.rows.t[i]) < by_hand);  // impacts are frictionless
     CHECK(run.rows.at(i, "y") > -1e-12);
   }
 }
@@ -41,6 +43,7 @@ TEST_CASE("bouncing_ball: a plastic impact stays, an elastic one keeps the energ
 
   const Finished elastic = run_rough("bouncing_ball", "elastic");
   REQUIRE(events_of(elastic).size() == 6);
-  for (std::size_t i = 0; i < 6; ++i) CHECK(std::abs(events_of(elastic)[i].t - (2 * static_cast<double>(i) + 1) * fall) < by_hand);
+  for (std::size_t i = 0; i < 6; ++i)
+    CHECK(std::abs(events_of(elastic)[i].t - (2 * static_cast<double>(i) + 1) * fall) < by_hand);
   CHECK(elastic.final("energy") == doctest::Approx(g + 4.5).epsilon(1e-11));
 }

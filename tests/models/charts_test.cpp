@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs through the places where angles fail: against Euler parameters, straight lines, Jacobi's solution and what must be conserved.
+// Runs through the places where angles fail: against Euler parameters, straight lines, Jacobi's solution and what must
+// be conserved.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -17,11 +18,13 @@ constexpr std::array<double, 3> J{1, 1.3, 2.2}, H{0.949, 0, 1.1616};  // and the
 
 std::size_t exchanges(const test::Finished& run, const std::string& whose = "B") {
   std::size_t count = 0;
-  for (const run::RunEvent& event : run.simulation.result.events) count += event.kind == "chart" && event.name == whose ? 1 : 0;
+  for (const run::RunEvent& event : run.simulation.result.events)
+    count += event.kind == "chart" && event.name == whose ? 1 : 0;
   return count;
 }
 
-test::Finished run_text(const std::string& name, const std::string& text, const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+test::Finished run_text(const std::string& name, const std::string& text,
+                        const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);
@@ -43,8 +46,10 @@ const std::string omegas = "\"B.omega1\", \"B.omega2\", \"B.omega3\"";
 
 test::Finished thousand_turns(const rotations::Rotation& r, const std::string& solver) {
   // All axes of this body come near directions at the angle of (1, 1, 1) from E1, E2, E3 to H.
-  const Eigen::Vector3d of_body = Eigen::Vector3d(H[0], H[1], H[2]).normalized(), of_space = Eigen::Vector3d(1, 1, 1).normalized();
-  const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.3, of_space).toRotationMatrix() * Eigen::Quaterniond::FromTwoVectors(of_body, of_space).toRotationMatrix();
+  const Eigen::Vector3d of_body = Eigen::Vector3d(H[0], H[1], H[2]).normalized(),
+                        of_space = Eigen::Vector3d(1, 1, 1).normalized();
+  const Eigen::Matrix3d axes = Eigen::AngleAxisd(0.3, of_space).toRotationMatrix() *
+                               Eigen::Quaterniond::FromTwoVectors(of_body, of_space).toRotationMatrix();
   const test::Attitude written = *test::attitude_in(r, axes.transpose());
   std::string names;
   const std::string definitions = cosines(names);
@@ -53,10 +58,12 @@ test::Finished thousand_turns(const rotations::Rotation& r, const std::string& s
     request.overrides.rtol = request.overrides.atol = 1e-13;
     request.overrides.solver = solver;
   };
-  return run_text("charts_" + r.name, "[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 1.3, 2.2] }\nrotation = " + written.rotation + "\n[definitions]\n" +
-                                          definitions + "[scene.default]\nt = [0, 6200]\ninitial = { " + written.start +
-                                          ", \"B.omega\" = [0.949, 0, 0.528] }\noutputs = [" + names + omegas + "]\n",
-                  adjust);
+  return run_text(
+      "charts_" + r.name,
+      "[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 1.3, 2.2] }\nrotation = " + written.rotation +
+          "\n[definitions]\n" + definitions + "[scene.default]\nt = [0, 6200]\ninitial = { " + written.start +
+          ", \"B.omega\" = [0.949, 0, 0.528] }\noutputs = [" + names + omegas + "]\n",
+      adjust);
 }
 
 /// Energy and |H| of the rows, relative to the start; the largest difference of w from Jacobi's.
@@ -87,8 +94,10 @@ Kept kept(const test::Rows& rows) {
 
 }  // namespace
 
-TEST_CASE("charts: a thousand turns of a free body, in twelve sets of Euler angles with exchanges and in Euler parameters") {
-  const test::Finished reference = thousand_turns(*rotations::find("euler_parameters"), "tsit5");  // dop853 takes 13 times longer steps here, and is 4e-7 off
+TEST_CASE(
+    "charts: a thousand turns of a free body, in twelve sets of Euler angles with exchanges and in Euler parameters") {
+  const test::Finished reference = thousand_turns(*rotations::find("euler_parameters"),
+                                                  "tsit5");  // dop853 takes 13 times longer steps here, and is 4e-7 off
   CHECK(exchanges(reference) == 0);
   std::size_t sets = 0;
   for (const rotations::Rotation& r : rotations::registry()) {
@@ -117,7 +126,8 @@ TEST_CASE("charts: a thousand turns of a free body, in twelve sets of Euler angl
   CHECK(sets == 12);
 }
 
-TEST_CASE("charts: a turn that leads exactly through where the angles fail, reported in them and continuous but there") {
+TEST_CASE(
+    "charts: a turn that leads exactly through where the angles fail, reported in them and continuous but there") {
   for (const char* set : {"313", "321"}) {
     INFO(set);
     const bool symmetric = set[2] == '3';
@@ -125,16 +135,21 @@ TEST_CASE("charts: a turn that leads exactly through where the angles fail, repo
     const double rate = symmetric ? -1 : 1;
     char numbers[100];
     std::snprintf(numbers, sizeof numbers, "a = 0.3, b = %.17g, c = -0.4, b_dot = %g", start, rate);
-    const test::Finished run = run_text(std::string("charts_through_") + set,
-        std::string("[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [2, 2, 2] }\nrotation = { euler = \"") + set +
-        "\", angles = [\"a\", \"b\", \"c\"] }\n[scene.default]\nt = [0, 2]\nrtol = 1e-12\natol = 1e-13\nevery = 0.25\ninitial = { " + numbers + " }\n");
+    const test::Finished run = run_text(
+        std::string("charts_through_") + set,
+        std::string("[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [2, 2, 2] }\nrotation = { euler = \"") +
+            set +
+            "\", angles = [\"a\", \"b\", \"c\"] }\n[scene.default]\nt = [0, 2]\nrtol = 1e-12\natol = 1e-13\nevery = "
+            "0.25\ninitial = { " +
+            numbers + " }\n");
     REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
     CHECK(exchanges(run) == 2);
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
       const double t = run.rows.t[i];
-      if (t == 1) continue;  // there the angles have no values
+      if (t == 1) continue;               // there the angles have no values
       const double s = t < 1 ? 0 : M_PI;  // beyond it the same attitude with a positive sine or cosine
-      CHECK(run.rows.at(i, "b") == doctest::Approx(symmetric ? std::abs(1 - t) : M_PI / 2 - std::abs(1 - t)).epsilon(1e-11));
+      CHECK(run.rows.at(i, "b") ==
+            doctest::Approx(symmetric ? std::abs(1 - t) : M_PI / 2 - std::abs(1 - t)).epsilon(1e-11));
       CHECK(std::abs(std::remainder(run.rows.at(i, "a") - 0.3 - s, 2 * M_PI)) < 1e-10);
       CHECK(std::abs(std::remainder(run.rows.at(i, "c") + 0.4 - s, 2 * M_PI)) < 1e-10);
       CHECK(run.rows.at(i, "energy") == doctest::Approx(1).epsilon(1e-12));
@@ -142,9 +157,14 @@ TEST_CASE("charts: a turn that leads exactly through where the angles fail, repo
   }
 }
 
-TEST_CASE("charts: a start where the angles fail goes on in the second chart at once; without charts it does not go on") {
-  const std::string text = "[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] }\nrotation = { euler = \"313\", angles = [\"a\", \"b\", \"c\"] }\n"
-                           "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-13\ninitial = { a = 0.2, b_dot = 0.7, a_dot = 0.4, c_dot = 0.3 }\noutputs = [" + omegas + "]\n";
+TEST_CASE(
+    "charts: a start where the angles fail goes on in the second chart at once; without charts it does not go on") {
+  const std::string text =
+      "[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 2, 2.5] }\nrotation = { euler = \"313\", angles = "
+      "[\"a\", \"b\", \"c\"] }\n"
+      "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-13\ninitial = { a = 0.2, b_dot = 0.7, a_dot = 0.4, c_dot = "
+      "0.3 }\noutputs = [" +
+      omegas + "]\n";
   const test::Finished run = run_text("charts_start", text);
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   REQUIRE(exchanges(run) >= 2);
@@ -162,10 +182,14 @@ TEST_CASE("charts: a particle in spherical coordinates goes straight past the po
     // From (1, miss, 1) along -E1.
     const double R = std::sqrt(2 + miss * miss), s = std::hypot(1.0, miss);
     char numbers[300];
-    std::snprintf(numbers, sizeof numbers, "R = %.17g, phi = %.17g, theta = %.17g, R_dot = %.17g, phi_dot = %.17g, theta_dot = %.17g",
-                  R, std::atan2(s, 1), std::atan2(miss, 1), -1 / R, -1 / (R * R * s), miss / (s * s));
-    const test::Finished run = run_text("charts_line", std::string("[[particle]]\nname = \"P\"\nmass = 2\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
-        "[scene.default]\nt = [0, 2.5]\nrtol = 1e-12\natol = 1e-13\ninitial = { ") + numbers + " }\noutputs = [\"P.position1\", \"P.position2\", \"P.position3\"]\n");
+    std::snprintf(numbers, sizeof numbers,
+                  "R = %.17g, phi = %.17g, theta = %.17g, R_dot = %.17g, phi_dot = %.17g, theta_dot = %.17g", R,
+                  std::atan2(s, 1), std::atan2(miss, 1), -1 / R, -1 / (R * R * s), miss / (s * s));
+    const test::Finished run = run_text(
+        "charts_line",
+        std::string("[[particle]]\nname = \"P\"\nmass = 2\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
+                    "[scene.default]\nt = [0, 2.5]\nrtol = 1e-12\natol = 1e-13\ninitial = { ") +
+            numbers + " }\noutputs = [\"P.position1\", \"P.position2\", \"P.position3\"]\n");
     REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
     CHECK(exchanges(run, "P") == 2);
     for (std::size_t i = 0; i < run.rows.size(); ++i) {
@@ -181,35 +205,48 @@ TEST_CASE("charts: a particle in spherical coordinates goes straight past the po
 }
 
 TEST_CASE("charts: a pendulum on a sphere swings exactly through its lowest point, a pole of its coordinates") {
-  const test::Finished run = run_text("charts_pendulum", "[parameters]\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
-      "[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"rod\"\nholonomic = \"R - 1\"\n[scene.default]\nt = [0, 5]\nrtol = 1e-12\natol = 1e-13\n"
-      "initial = { phi = \"pi - 1\", theta = 0.4 }\noutputs = [\"P.position3\", \"reaction.rod\"]\n");
+  const test::Finished run =
+      run_text("charts_pendulum",
+               "[parameters]\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", "
+               "\"phi\", \"theta\"] }\n"
+               "[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"rod\"\nholonomic = \"R - "
+               "1\"\n[scene.default]\nt = [0, 5]\nrtol = 1e-12\natol = 1e-13\n"
+               "initial = { phi = \"pi - 1\", theta = 0.4 }\noutputs = [\"P.position3\", \"reaction.rod\"]\n");
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(run, "P") >= 8);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const test::Swing swing = test::pendulum_from_rest(1, std::sqrt(9.81), run.rows.t[i]);
     CHECK(std::abs(run.rows.at(i, "P.position3") + std::cos(swing.angle)) < 1e-9);
-    CHECK(std::abs(run.rows.at(i, "reaction.rod") + 9.81 * std::cos(swing.angle) + swing.rate * swing.rate) < 1e-8);  // inwards
+    CHECK(std::abs(run.rows.at(i, "reaction.rod") + 9.81 * std::cos(swing.angle) + swing.rate * swing.rate) <
+          1e-8);  // inwards
   }
   CHECK(run.drift("energy") < 1e-10);
 }
 
 TEST_CASE("charts: the multipliers of a joint are the same in both charts, and those of Euler parameters") {
   const auto model = [](const std::string& rotation, const std::string& start) {
-    return "[parameters]\ng = 9.81\n[[body]]\nname = \"B\"\nmass = 2\ninertia = { principal = [0.3, 0.5, 0.2] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
-           "rotation = " + rotation + "\n[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"joint\"\nholonomic = \"B - B.e3\"\n"
-           "[scene.default]\nt = [0, 4]\nrtol = 1e-12\natol = 1e-13\ninitial = { " + start + " }\noutputs = [\"reaction.joint\", " + omegas + "]\n";
+    return "[parameters]\ng = 9.81\n[[body]]\nname = \"B\"\nmass = 2\ninertia = { principal = [0.3, 0.5, 0.2] "
+           "}\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+           "rotation = " +
+           rotation +
+           "\n[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"joint\"\nholonomic = \"B - B.e3\"\n"
+           "[scene.default]\nt = [0, 4]\nrtol = 1e-12\natol = 1e-13\ninitial = { " +
+           start + " }\noutputs = [\"reaction.joint\", " + omegas + "]\n";
   };
   const std::string placed = "y = \"-sin(2.2)\", z = \"cos(2.2)\"";  // x3 axis turned about E1
-  const test::Attitude angles{"{ euler = \"313\", angles = [\"a\", \"b\", \"c\"] }", "b = 2.2, \"B.omega\" = [0.4, 0.1, 3], " + placed};
+  const test::Attitude angles{"{ euler = \"313\", angles = [\"a\", \"b\", \"c\"] }",
+                              "b = 2.2, \"B.omega\" = [0.4, 0.1, 3], " + placed};
   char start[300];
-  std::snprintf(start, sizeof start, "e0 = %.17g, e1 = %.17g, \"B.omega\" = [0.4, 0.1, 3], %s", std::cos(1.1), std::sin(1.1), placed.c_str());
+  std::snprintf(start, sizeof start, "e0 = %.17g, e1 = %.17g, \"B.omega\" = [0.4, 0.1, 3], %s", std::cos(1.1),
+                std::sin(1.1), placed.c_str());
   const test::Finished euler = run_text("charts_joint", model(angles.rotation, angles.start));
-  const test::Finished parameters = run_text("charts_joint_parameters", model("{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", start));
+  const test::Finished parameters =
+      run_text("charts_joint_parameters", model("{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", start));
   REQUIRE(euler.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(euler) >= 2);
   for (std::size_t i = 0; i < euler.rows.size(); ++i) {
-    for (const char* name : {"x", "y", "z", "B.omega1", "B.omega2", "B.omega3", "reaction.joint.1", "reaction.joint.2", "reaction.joint.3"}) {
+    for (const char* name : {"x", "y", "z", "B.omega1", "B.omega2", "B.omega3", "reaction.joint.1", "reaction.joint.2",
+                             "reaction.joint.3"}) {
       CHECK(std::abs(euler.rows.at(i, name) - parameters.rows.at(i, name)) < 1e-7);  // reactions up to 60 N
     }
   }
@@ -217,18 +254,25 @@ TEST_CASE("charts: the multipliers of a joint are the same in both charts, and t
   CHECK(euler.simulation.result.constraint_drift < 1e-12);
 }
 
-TEST_CASE("charts: a satellite that tumbles on an orbit over the poles exchanges both, and keeps energy and moment of momentum") {
+TEST_CASE(
+    "charts: a satellite that tumbles on an orbit over the poles exchanges both, and keeps energy and moment of "
+    "momentum") {
   std::string text = test::read_text(test::model_path("R7_satellite"));
   text = text.substr(0, text.find("[scene.default]"));
   text = text.substr(text.find("format = 1\n") + 11);
-  const test::Finished run = run_text("charts_satellite", text + "[scene.default]\nt = [0, 20]\nrtol = 1e-12\natol = 1e-13\noutputs = [\"HO1\", \"HO2\", \"HO3\"]\n"
-      "[scene.default.initial]\nR = 1\nphi = 1.2\nphi_dot = -1\ntheta_dot = 0.05\nn1 = 0.1\nn2 = 0.2\n\"S.omega\" = [0.3, 0.9, 0.2]\n");
+  const test::Finished run =
+      run_text("charts_satellite",
+               text +
+                   "[scene.default]\nt = [0, 20]\nrtol = 1e-12\natol = 1e-13\noutputs = [\"HO1\", \"HO2\", \"HO3\"]\n"
+                   "[scene.default.initial]\nR = 1\nphi = 1.2\nphi_dot = -1\ntheta_dot = 0.05\nn1 = 0.1\nn2 = "
+                   "0.2\n\"S.omega\" = [0.3, 0.9, 0.2]\n");
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(run, "S") >= 2);
   CHECK(exchanges(run, "S.position") >= 6);
   CHECK(run.drift("energy") < 1e-10);
   for (const char* name : {"HO1", "HO2", "HO3"}) {
-    for (std::size_t i = 0; i < run.rows.size(); ++i) CHECK(std::abs(run.rows.at(i, name) - run.rows.at(0, name)) < 1e-10);
+    for (std::size_t i = 0; i < run.rows.size(); ++i)
+      CHECK(std::abs(run.rows.at(i, name) - run.rows.at(0, name)) < 1e-10);
   }
 }
 

@@ -23,14 +23,18 @@ test::Finished motion(const std::string& scene, const std::string& solver, doubl
 
 double difference(const test::Finished& a, const test::Finished& b, bool with_r_dot = true) {
   double largest = with_r_dot ? std::abs(a.final("r_dot") - b.final("r_dot")) : 0;
-  for (const char* name : {"r", "theta", "theta_dot"}) largest = std::max(largest, std::abs(a.final(name) - b.final(name)));
+  for (const char* name : {"r", "theta", "theta_dot"})
+    largest = std::max(largest, std::abs(a.final(name) - b.final(name)));
   return largest;
 }
 
 }  // namespace
 
-TEST_CASE("elastic_pendulum: k = 1e10 on the smooth solution: fewer than 2000 steps to 1e-8, where dop853 needs more than 20000") {
-  // dop853 follows the oscillation of 1e5 rad/s whether there is any or not; what its tolerance lets into it shows in r_dot
+TEST_CASE(
+    "elastic_pendulum: k = 1e10 on the smooth solution: fewer than 2000 steps to 1e-8, where dop853 needs more than "
+    "20000") {
+  // dop853 follows the oscillation of 1e5 rad/s whether there is any or not; what its tolerance lets into it shows in
+  // r_dot
   const test::Finished resolved = motion("stiff", "dop853", 1e-9);
   CHECK(resolved.simulation.result.statistics.steps > 20'000);
   for (const char* solver : {"radau5", "rodas"}) {
@@ -45,13 +49,15 @@ TEST_CASE("elastic_pendulum: k = 1e10 on the smooth solution: fewer than 2000 st
     CHECK(difference(stiff, resolved, false) < 1e-8);
     CHECK(std::abs(stiff.final("r_dot")) < 1e-8);  // the smooth solution's is of the order m g/(k s)
     CHECK(stiff.error("max") < 1e-8);
-    MESSAGE(std::string(solver), ": ", result.statistics.steps, " steps, ", result.statistics.rhs_evaluations, " evaluations, ",
-            difference(stiff, resolved, false), " from dop853 with ", resolved.simulation.result.statistics.steps, " steps");
+    MESSAGE(std::string(solver), ": ", result.statistics.steps, " steps, ", result.statistics.rhs_evaluations,
+            " evaluations, ", difference(stiff, resolved, false), " from dop853 with ",
+            resolved.simulation.result.statistics.steps, " steps");
   }
 }
 
 TEST_CASE("elastic_pendulum: the scene 'stiff' names its solver") {
-  const test::Finished stiff = test::run_model("elastic_pendulum", [](cli::SimulationRequest& request) { request.scene = "stiff"; });
+  const test::Finished stiff =
+      test::run_model("elastic_pendulum", [](cli::SimulationRequest& request) { request.scene = "stiff"; });
   CHECK(stiff.simulation.result.solver == "radau5");
   CHECK(stiff.simulation.result.statistics.steps < 2000);
 }
@@ -72,7 +78,8 @@ TEST_CASE("elastic_pendulum: where the oscillation is part of the motion, all so
 
 TEST_CASE("elastic_pendulum: midpoint keeps the energy within bounds that do not grow; its error is of order 2") {
   const test::Finished reference = motion("stretched", "dop853", 1e-13);
-  const test::Finished coarse = motion("stretched", "midpoint", 1e-9, 1e-3), fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
+  const test::Finished coarse = motion("stretched", "midpoint", 1e-9, 1e-3),
+                       fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
   const double order = std::log2(difference(coarse, reference) / difference(fine, reference)) / 2;
   CHECK(std::abs(order - 2) < 0.3);
   const test::Finished longer = test::run_model("elastic_pendulum", [](cli::SimulationRequest& request) {

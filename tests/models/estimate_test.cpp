@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // error_estimate against the true error: within a factor of ten over seven decades of tolerance.
-#include <Eigen/Dense>
-
 #include <doctest/doctest.h>
 
+#include <Eigen/Dense>
 #include <cmath>
 #include <map>
 
@@ -31,7 +30,8 @@ void check_estimates(const std::string& model, const std::function<Values(const 
       overrides.rtol = overrides.atol = std::pow(10.0, -exponent);
       const run::RunResult result = cli::run_again(base.simulation, overrides);
       double error = 0;
-      for (const auto& [name, value] : truth) error = std::max(error, std::abs(test::value_of(result.final, name) - value));
+      for (const auto& [name, value] : truth)
+        error = std::max(error, std::abs(test::value_of(result.final, name) - value));
       const double estimate = test::value_of(result.error_estimate, "max");
       INFO(model, " ", solver, " 1e-", exponent, ": true ", error, ", estimated ", estimate);
       CHECK(estimate < factor * std::max(error, rounding_floor));
@@ -52,7 +52,8 @@ Values of_states(const test::Finished& run, const run::RunResult& result) {
 
 TEST_CASE("estimate: P2 against elliptic functions") {
   check_estimates("P2_planar_pendulum", [](const test::Finished& run) {
-    const test::Swing swing = test::pendulum_from_rest(1.0, std::sqrt(run.parameter("g") / run.parameter("L")), run.simulation.scene.t1);
+    const test::Swing swing =
+        test::pendulum_from_rest(1.0, std::sqrt(run.parameter("g") / run.parameter("L")), run.simulation.scene.t1);
     return Values{{"theta", swing.angle}, {"theta_dot", swing.rate}};
   });
 }
@@ -60,7 +61,8 @@ TEST_CASE("estimate: P2 against elliptic functions") {
 TEST_CASE("estimate: P14 against Kepler's equation") {
   check_estimates("P14_kepler_cartesian", [](const test::Finished& run) {
     const double inclination = 30 * std::acos(-1.0) / 180;
-    const test::Orbit o = test::kepler(run.parameter("GM"), run.parameter("a"), run.parameter("e"), inclination, run.simulation.scene.t1);
+    const test::Orbit o =
+        test::kepler(run.parameter("GM"), run.parameter("a"), run.parameter("e"), inclination, run.simulation.scene.t1);
     return Values{{"x", o.r[0]}, {"y", o.r[1]}, {"z", o.r[2]}, {"x_dot", o.v[0]}, {"y_dot", o.v[1]}, {"z_dot", o.v[2]}};
   });
 }

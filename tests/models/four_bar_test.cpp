@@ -43,7 +43,8 @@ guess = { psi = 0.3, beta = 1.5 }
 
 }  // namespace
 
-TEST_CASE("four_bar: of ten equations of spatial pins seven keep multipliers, and the motion is that of the planar linkage") {
+TEST_CASE(
+    "four_bar: of ten equations of spatial pins seven keep multipliers, and the motion is that of the planar linkage") {
   const std::string path = test::build_folder() + "/four_bar_planar.toml";
   write_text(path, planar);
   const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
@@ -71,6 +72,8 @@ TEST_CASE("four_bar: how the forces across the plane are shared is not told") {
   const std::array<bool, 6> in_the_plane{true, true, false, false, false, true};
   for (const mechanics::JointReaction& joint : joints) CHECK(joint.determined == in_the_plane);
   for (const auto& [name, value] : run.simulation.result.final) {
-    for (const char* hidden : {"reaction.B.3", "reaction.B.4", "reaction.B.5", "reaction.C.3", "reaction.C.4", "reaction.C.5"}) CHECK(name != hidden);
+    for (const char* hidden :
+         {"reaction.B.3", "reaction.B.4", "reaction.B.5", "reaction.C.3", "reaction.C.4", "reaction.C.5"})
+      CHECK(name != hidden);
   }
 }

@@ -17,7 +17,9 @@ constexpr double as_good_as_exact = 1e-18;
 
 program::Arguments<cln::cl_R> anywhere(const cli::Derived& derived, const program::Program& program) {
   const cln::float_format_t precision = cln::float_format(digits);
-  const auto value = [&](std::uint32_t k) { return cln::cl_float(symbolic::sample({symbolic::SymbolKind::extra, k, 0}, 1), precision); };
+  const auto value = [&](std::uint32_t k) {
+    return cln::cl_float(symbolic::sample({symbolic::SymbolKind::extra, k, 0}, 1), precision);
+  };
   program::Arguments<cln::cl_R> at;
   at.t = value(0);
   for (std::uint32_t i = 0; i < 2 * program.free.size(); ++i) at.x.push_back(value(i + 1));
@@ -27,7 +29,8 @@ program::Arguments<cln::cl_R> anywhere(const cli::Derived& derived, const progra
 
 }  // namespace
 
-TEST_CASE("in Euler parameters the Jacobian is that of the right-hand side in every direction, off the unit sphere too") {
+TEST_CASE(
+    "in Euler parameters the Jacobian is that of the right-hand side in every direction, off the unit sphere too") {
   for (const char* name : {"R1_free_body_euler_parameters", "R2_ball_in_flight", "R17_follower_force", "heavy_top"}) {
     CAPTURE(name);
     const auto derived = cli::derive_model(model_path(name), cli::ApproachChoice::automatic);
@@ -43,7 +46,8 @@ TEST_CASE("in Euler parameters the Jacobian is that of the right-hand side in ev
       auto above = base, below = base;
       pick(above) = pick(above) + step;
       pick(below) = pick(below) - step;
-      const auto right = program::interpret(program.functions[0], above, digits).results[0], left = program::interpret(program.functions[0], below, digits).results[0];
+      const auto right = program::interpret(program.functions[0], above, digits).results[0],
+                 left = program::interpret(program.functions[0], below, digits).results[0];
       double most = 0;
       for (std::size_t i = 0; i < n; ++i) {
         const cln::cl_R slope = (right[i] - left[i]) / (2 * step);
@@ -51,7 +55,9 @@ TEST_CASE("in Euler parameters the Jacobian is that of the right-hand side in ev
       }
       return most;
     };
-    for (std::size_t j = 0; j < n; ++j) CHECK(furthest(jac, j, [j](auto& a) -> cln::cl_R& { return a.x[j]; }) < as_good_as_exact);
-    for (std::size_t j = 0; j < base.p.size(); ++j) CHECK(furthest(jac_p, j, [j](auto& a) -> cln::cl_R& { return a.p[j]; }) < as_good_as_exact);
+    for (std::size_t j = 0; j < n; ++j)
+      CHECK(furthest(jac, j, [j](auto& a) -> cln::cl_R& { return a.x[j]; }) < as_good_as_exact);
+    for (std::size_t j = 0; j < base.p.size(); ++j)
+      CHECK(furthest(jac_p, j, [j](auto& a) -> cln::cl_R& { return a.p[j]; }) < as_good_as_exact);
   }
 }

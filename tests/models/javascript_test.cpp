@@ -56,13 +56,21 @@ Json values_of_c(const emit::LoadedModel& c, const program::Program& program, co
       if (function.name == "outputs") code = c.outputs(at.t, x, p, u, at.mode, a);
       if (function.name == "events") code = c.events(at.t, x, p, u, at.mode, a);
       if (code < 0) continue;
-      calls.push_back({{"name", function.name}, {"t", at.t}, {"x", at.x}, {"p", at.p}, {"u", at.u}, {"mode", at.mode}, {"code", code}, {"y", y}});
+      calls.push_back({{"name", function.name},
+                       {"t", at.t},
+                       {"x", at.x},
+                       {"p", at.p},
+                       {"u", at.u},
+                       {"mode", at.mode},
+                       {"code", code},
+                       {"y", y}});
     }
   }
   return calls;
 }
 
-// Prints for each model how far off it is: the largest difference over the largest entry of an array; 1 where codes differ.
+// Prints for each model how far off it is: the largest difference over the largest entry of an array; 1 where codes
+// differ.
 const char* const comparison = R"("use strict";
 const fs = require("fs");
 for (const {file, calls} of JSON.parse(fs.readFileSync("calls.json"))) {
@@ -85,7 +93,9 @@ for (const {file, calls} of JSON.parse(fs.readFileSync("calls.json"))) {
 
 }  // namespace
 
-TEST_CASE("javascript: every function gives what the C of the same program gives, of points, bodies, loops, kinks, contacts and chains") {
+TEST_CASE(
+    "javascript: every function gives what the C of the same program gives, of points, bodies, loops, kinks, contacts "
+    "and chains") {
   if (emit::run_process({"node", "--version"}).status != 0) {
     MESSAGE("skipped: there is no node");
     return;
@@ -93,16 +103,19 @@ TEST_CASE("javascript: every function gives what the C of the same program gives
   const TemporaryFolder folder;
   Json all = Json::array();
   std::vector<emit::EmittedFile> files{{"compare.js", comparison}};
-  for (const char* name : {"P2_planar_pendulum", "P4_moving_cone", "P7_moving_sphere", "P14_kepler_spherical", "S5_double_pendulum_cartesian", "S6_chain_6",
-                           "R1_free_body_euler_parameters", "R6_rolling_disk", "R6_rough_disk", "R10_lagrange_top", "R15_ball_joint", "R18_rodrigues",
-                           "bilinear_oscillator", "cart_pendulum", "knife_edge", "six_bar_spatial", "n_four_bar_2", "stick_slip_belt"}) {
+  for (const char* name :
+       {"P2_planar_pendulum", "P4_moving_cone", "P7_moving_sphere", "P14_kepler_spherical",
+        "S5_double_pendulum_cartesian", "S6_chain_6", "R1_free_body_euler_parameters", "R6_rolling_disk",
+        "R6_rough_disk", "R10_lagrange_top", "R15_ball_joint", "R18_rodrigues", "bilinear_oscillator", "cart_pendulum",
+        "knife_edge", "six_bar_spatial", "n_four_bar_2", "stick_slip_belt"}) {
     CAPTURE(name);
     const auto derived = cli::derive_model(model_path(name), cli::ApproachChoice::automatic);
     program::Request request;
     request.with = {"jac", "mass", "constraints", "events"};
     request.outputs = {"energy", "kinetic"};
     const program::Program program = cli::make_program(*derived, request);
-    const run::Scene scene = run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
+    const run::Scene scene =
+        run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
     const emit::EmissionContext context = cli::emission_context(*derived, program, scene, {});
     const cli::CompiledCode code = cli::compile(program, context);
     files.push_back(emit::emit(program, context, "javascript").front());

@@ -67,7 +67,9 @@ TEST_CASE("leaving_sphere: `stop` of a scene ends it at an event that is only re
   CHECK(run.simulation.result.events[0].kind == "stop");
 }
 
-TEST_CASE("leaving_sphere: the estimate of a run that an event ends has the time of the stop, within ten times of the truth") {
+TEST_CASE(
+    "leaving_sphere: the estimate of a run that an event ends has the time of the stop, within ten times of the "
+    "truth") {
   const test::Finished run = test::run_model("leaving_sphere", [](cli::SimulationRequest& request) {
     request.overrides.solver = "dopri5";
     request.overrides.rtol = request.overrides.atol = 1e-7;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the two balances of the dumbbell: theta_ddot = (-N cos + F sin)/(m L), x_c_ddot = F/(2 m), and y_A_ddot = 0 gives N.
+// From the two balances of the dumbbell: theta_ddot = (-N cos + F sin)/(m L), x_c_ddot = F/(2 m), and y_A_ddot = 0
+// gives N.
 #include "models/rough.hpp"
 
 using namespace eomgen;
@@ -16,7 +17,8 @@ struct Dumbbell {
   }
   /// x, theta and their rates, sliding with N > 0.
   void rates(const double* x, double* dx) const {
-    const double s = std::sin(x[1]), c = std::cos(x[1]), way = x[2] > 0 ? 1 : -1, N = normal(x[1], x[3], way), F = -way * mu * N;
+    const double s = std::sin(x[1]), c = std::cos(x[1]), way = x[2] > 0 ? 1 : -1, N = normal(x[1], x[3], way),
+                 F = -way * mu * N;
     dx[0] = x[2], dx[1] = x[3];
     dx[3] = (-N * c + F * s) / (m * L);
     dx[2] = F / (2 * m) + L / 2 * (dx[3] * s + x[3] * x[3] * c);  // x_c = x + L/2 cos(theta)
@@ -26,7 +28,9 @@ struct Dumbbell {
 
 }  // namespace
 
-TEST_CASE("painleve_dumbbell: above mu = 2 sqrt 2 it ends where a second solution appears, at tan(theta) = (mu + sqrt(mu^2 - 8))/2") {
+TEST_CASE(
+    "painleve_dumbbell: above mu = 2 sqrt 2 it ends where a second solution appears, at tan(theta) = (mu + sqrt(mu^2 - "
+    "8))/2") {
   const Finished run = run_rough("painleve_dumbbell");
   const Dumbbell d(run);
   CHECK(run.simulation.result.outcome == eom::Outcome::friction_many_solutions);
@@ -56,7 +60,9 @@ TEST_CASE("painleve_dumbbell: below it, nothing ends the run, which follows the 
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("painleve_dumbbell: dragged backwards at such an angle no force obeys the law, and below the critical mu one does") {
+TEST_CASE(
+    "painleve_dumbbell: dragged backwards at such an angle no force obeys the law, and below the critical mu one "
+    "does") {
   const Finished none = run_rough("painleve_dumbbell", "none");
   CHECK(none.simulation.result.outcome == eom::Outcome::friction_no_solution);
   CHECK(none.simulation.result.t == 0);

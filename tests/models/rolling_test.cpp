@@ -20,7 +20,8 @@ void tighten(cli::SimulationRequest& request) {
 
 double spread(const Finished& run, const std::string& name) {
   double worst = 0;
-  for (std::size_t i = 0; i < run.rows.size(); ++i) worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
+  for (std::size_t i = 0; i < run.rows.size(); ++i)
+    worst = std::max(worst, std::abs(run.rows.at(i, name) - run.rows.at(0, name)));
   return worst;
 }
 
@@ -38,7 +39,8 @@ TEST_CASE("rolling: R3: the sphere gains (5/7) g sin(b)/R t about E2 alone, eq. 
     CHECK(run.rows.at(i, "x2") == doctest::Approx(-R * t).epsilon(1e-9).scale(0.1));
     CHECK(run.rows.at(i, "reaction.contact.1") == doctest::Approx(-2 * m * down / 7).epsilon(1e-9));
     CHECK(run.rows.at(i, "reaction.contact.2") == doctest::Approx(0).epsilon(1e-9).scale(1));
-    CHECK(run.rows.at(i, "reaction.contact.3") == doctest::Approx(m * run.parameter("g") * std::cos(run.parameter("b"))).epsilon(1e-9));
+    CHECK(run.rows.at(i, "reaction.contact.3") ==
+          doctest::Approx(m * run.parameter("g") * std::cos(run.parameter("b"))).epsilon(1e-9));
   }
   CHECK(run.drift("energy") < 1e-10);
 }
@@ -51,7 +53,8 @@ TEST_CASE("rolling: R4: on a turntable the centre circles at 2/7 of its rate") {
   double worst = 0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const double s = std::sin(rate * run.rows.t[i]) / rate, c = (1 - std::cos(rate * run.rows.t[i])) / rate;
-    worst = std::max({worst, std::abs(run.rows.at(i, "x1") - (0.3 + v1 * s - v2 * c)), std::abs(run.rows.at(i, "x2") - (-0.1 + v2 * s + v1 * c))});
+    worst = std::max({worst, std::abs(run.rows.at(i, "x1") - (0.3 + v1 * s - v2 * c)),
+                      std::abs(run.rows.at(i, "x2") - (-0.1 + v2 * s + v1 * c))});
   }
   CHECK(worst < 1e-9);
   CHECK(run.rows.t.back() * rate > 2 * 3.1415);  // more than one turn
@@ -75,7 +78,8 @@ TEST_CASE("rolling: R6: the constraints are (9.79), two not integrable and one t
   CHECK(m.classification[1].integrable == mechanics::Integrable::no);
   CHECK(m.classification[2].integrable == mechanics::Integrable::yes);
   const reading::ReadingForm form = r6.form(system::Approach::one);
-  const Sum phi = r6("phi"), theta = r6("theta"), R = r6("R"), dphi = r6("phi_dot"), dtheta = r6("theta_dot"), dpsi = r6("psi_dot");
+  const Sum phi = r6("phi"), theta = r6("theta"), R = r6("R"), dphi = r6("phi_dot"), dtheta = r6("theta_dot"),
+            dpsi = r6("psi_dot");
   const Sum roll = dpsi + dphi * cos(theta), tip = dtheta * sin(theta);
   CHECK(same(form.constraints[0].rate, r6("x1_dot") + R * (roll * cos(phi) - tip * sin(phi))));
   CHECK(same(form.constraints[1].rate, r6("x2_dot") + R * (roll * sin(phi) + tip * cos(phi))));
@@ -89,11 +93,12 @@ TEST_CASE("rolling: R6: the disk keeps its energy to 1e-10 over 100 s") {
   CHECK(run.drift("energy") < 1e-10);
 }
 
-// Euler's equations about the centre along e1', e2'', e3 with the force of the plane from Newton's: of theta, its rate, w2 = phi_dot
-// sin(theta) and w3 alone.
+// Euler's equations about the centre along e1', e2'', e3 with the force of the plane from Newton's: of theta, its rate,
+// w2 = phi_dot sin(theta) and w3 alone.
 TEST_CASE("rolling: R6: the disk moves as Newton's and Euler's equations, integrated apart, say") {
   const Finished run = run_model("R6_rolling_disk", tighten);
-  const double m = run.parameter("m"), R = run.parameter("R"), g = run.parameter("g"), J = m * R * R / 4, J3 = m * R * R / 2;
+  const double m = run.parameter("m"), R = run.parameter("R"), g = run.parameter("g"), J = m * R * R / 4,
+               J3 = m * R * R / 2;
   using State = std::array<double, 4>;
   const auto rate = [&](const State& x) {
     const auto [theta, dtheta, w2, w3] = x;

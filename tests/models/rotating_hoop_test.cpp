@@ -7,7 +7,9 @@
 
 using namespace eomgen;
 
-TEST_CASE("rotating_hoop: beta_ddot = (w^2 cos(beta) - g/R) sin(beta), and m R^2 beta_dot^2/2 - m R^2 w^2 sin^2(beta)/2 + U stays") {
+TEST_CASE(
+    "rotating_hoop: beta_ddot = (w^2 cos(beta) - g/R) sin(beta), and m R^2 beta_dot^2/2 - m R^2 w^2 sin^2(beta)/2 + U "
+    "stays") {
   const test::Finished run = test::run_model("rotating_hoop", [](cli::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
@@ -22,6 +24,6 @@ TEST_CASE("rotating_hoop: beta_ddot = (w^2 cos(beta) - g/R) sin(beta), and m R^2
     drift = std::max(drift, std::abs(jacobi(i) - jacobi(0)));
     farthest = std::max(farthest, run.rows.at(i, "beta"));
   }
-  CHECK(drift < 1e-10 * m * g * R);  // a run at rtol 1e-12 over some twenty swings
+  CHECK(drift < 1e-10 * m * g * R);              // a run at rtol 1e-12 over some twenty swings
   CHECK(farthest > std::acos(g / (R * w * w)));  // it swings about the inclined place of rest
 }

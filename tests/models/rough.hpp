@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// For models with friction: what the derived code says at any state, and equations written by hand integrated beside a run.
+// For models with friction: what the derived code says at any state, and equations written by hand integrated beside a
+// run.
 #pragma once
 
 #include <doctest/doctest.h>
@@ -107,7 +108,9 @@ class AtState {
 /// Values between two bounds, the same in every run.
 class Draw {
  public:
-  double operator()(double lower, double upper) { return lower + (upper - lower) * std::uniform_real_distribution<>()(engine_); }
+  double operator()(double lower, double upper) {
+    return lower + (upper - lower) * std::uniform_real_distribution<>()(engine_);
+  }
 
  private:
   std::mt19937_64 engine_{7};

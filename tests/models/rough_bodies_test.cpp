@@ -11,9 +11,13 @@ namespace {
 
 struct Incline {
   explicit Incline(const Finished& run)
-      : R(run.parameter("R")), mg(run.parameter("m") * run.parameter("g") * std::cos(run.parameter("b"))),
-        down(run.parameter("g") * std::sin(run.parameter("b"))), drag(run.parameter("mu_d") * run.parameter("g") * std::cos(run.parameter("b"))),
-        mu_d(run.parameter("mu_d")), mu_s(run.parameter("mu_s")), b(run.parameter("b")) {}
+      : R(run.parameter("R")),
+        mg(run.parameter("m") * run.parameter("g") * std::cos(run.parameter("b"))),
+        down(run.parameter("g") * std::sin(run.parameter("b"))),
+        drag(run.parameter("mu_d") * run.parameter("g") * std::cos(run.parameter("b"))),
+        mu_d(run.parameter("mu_d")),
+        mu_s(run.parameter("mu_s")),
+        b(run.parameter("b")) {}
   double R, mg, down, drag, mu_d, mu_s, b;
 };
 
@@ -26,7 +30,8 @@ TEST_CASE("rough_bodies: R3: thrown down without spin the sphere slides until fr
   CHECK(events_of(run)[0].kind == "roll");
   CHECK(events_of(run)[0].name == "contact");
   // The point of contact slows down by (7/2) mu_d g cos b - g sin b.
-  const double t = 3 / (3.5 * k.drag - k.down), x = 3 * t + (k.down - k.drag) * t * t / 2, v = 3 + (k.down - k.drag) * t, left = 2 - t;
+  const double t = 3 / (3.5 * k.drag - k.down), x = 3 * t + (k.down - k.drag) * t * t / 2,
+               v = 3 + (k.down - k.drag) * t, left = 2 - t;
   CHECK(std::abs(events_of(run)[0].t - t) < 1e-12);
   CHECK(std::abs(run.final("x_dot") - (v + 5 * k.down / 7 * left)) < by_hand);
   CHECK(std::abs(run.final("x") - (x + v * left + 5 * k.down / 14 * left * left)) < by_hand);
@@ -56,7 +61,8 @@ TEST_CASE("rough_bodies: R3: rolling persists if and only if mu_s >= (2/7) tan(b
   CHECK(events_of(rolling).empty());
   CHECK(std::abs(rolling.final("x_dot") - (0.5 + 10 * k.down / 7)) < by_hand);
   const double limit = 2 * std::tan(k.b) / 7;
-  CHECK(events_of(run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 + 1e-12)}, {"mu_d", 0.05}}))).empty());
+  CHECK(events_of(run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 + 1e-12)}, {"mu_d", 0.05}})))
+            .empty());
   const Finished over = run_rough("R3_rough_incline", "default", with({{"mu_s", limit * (1 - 1e-12)}, {"mu_d", 0.05}}));
   REQUIRE(events_of(over).size() == 1);
   CHECK(events_of(over)[0].kind == "slip");
@@ -76,12 +82,13 @@ TEST_CASE("rough_bodies: R3: rolling at the start of an incline that is too stee
   CHECK(std::abs(run.final("theta_dot") - (5 + 5 * k.drag / k.R)) < 1e-9);  // of some 70 rad/s
 }
 
-// The slip velocity obeys that of a puck with mu = (7/2) mu_d: its stop is the closed form of rough_incline_puck. Elsewhere
-// v - (2/7) w has the acceleration (5/7) g sin b alone.
+// The slip velocity obeys that of a puck with mu = (7/2) mu_d: its stop is the closed form of rough_incline_puck.
+// Elsewhere v - (2/7) w has the acceleration (5/7) g sin b alone.
 TEST_CASE("rough_bodies: R3: thrown across the incline the sphere rolls when and as the closed form says") {
   const Finished run = run_rough("R3_rough_sphere");
   const Incline k(run);
-  const double w1 = -0.5 - 3 * k.R, w2 = 1.5 + 4 * k.R, w0 = std::hypot(w1, w2), ratio = 3.5 * k.mu_d / std::tan(k.b), psi = std::atan2(w2, w1);
+  const double w1 = -0.5 - 3 * k.R, w2 = 1.5 + 4 * k.R, w0 = std::hypot(w1, w2), ratio = 3.5 * k.mu_d / std::tan(k.b),
+               psi = std::atan2(w2, w1);
   REQUIRE(ratio > 1);
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
@@ -95,7 +102,9 @@ TEST_CASE("rough_bodies: R3: thrown across the incline the sphere rolls when and
   CHECK(run.simulation.result.power_balance < 1e-9);
 }
 
-TEST_CASE("rough_bodies: R3: a sphere that rolls aslant goes on rolling, and one at rest on a steep incline slides straight down") {
+TEST_CASE(
+    "rough_bodies: R3: a sphere that rolls aslant goes on rolling, and one at rest on a steep incline slides straight "
+    "down") {
   const Finished rolling = run_rough("R3_rough_sphere", "rolling");
   CHECK(events_of(rolling).empty());
   CHECK(std::abs(rolling.final("x2_dot") + 0.1) < by_hand);
@@ -109,21 +118,26 @@ TEST_CASE("rough_bodies: R3: a sphere that rolls aslant goes on rolling, and one
 }
 
 // Of the centre v_dot = F/m, of the slip w_dot = (7/2) F/m - W E3 x v, F = -mu_d m g w/|w|.
-TEST_CASE("rough_bodies: R4: on a rough turntable the sphere slides as the balances by hand say, then circles at 2/7 of the rate") {
+TEST_CASE(
+    "rough_bodies: R4: on a rough turntable the sphere slides as the balances by hand say, then circles at 2/7 of the "
+    "rate") {
   const Finished run = run_rough("R4_rough_turntable");
   const double W = run.parameter("W"), drag = run.parameter("mu_d") * run.parameter("g");
   REQUIRE(events_of(run).size() == 1);
   CHECK(events_of(run)[0].kind == "roll");
   const double stop = events_of(run)[0].t;
-  Hand hand([&](double, const double* x, double* dx) {
-    const double s = std::hypot(x[4], x[5]), a1 = -drag * x[4] / s, a2 = -drag * x[5] / s;
-    dx[0] = x[2], dx[1] = x[3], dx[2] = a1, dx[3] = a2;
-    dx[4] = 3.5 * a1 + W * x[3], dx[5] = 3.5 * a2 - W * x[2];
-  }, 0, {0.3, -0.1, 0, 0, -W * 0.1, -W * 0.3});
+  Hand hand(
+      [&](double, const double* x, double* dx) {
+        const double s = std::hypot(x[4], x[5]), a1 = -drag * x[4] / s, a2 = -drag * x[5] / s;
+        dx[0] = x[2], dx[1] = x[3], dx[2] = a1, dx[3] = a2;
+        dx[4] = 3.5 * a1 + W * x[3], dx[5] = 3.5 * a2 - W * x[2];
+      },
+      0, {0.3, -0.1, 0, 0, -W * 0.1, -W * 0.3});
   std::size_t i = 1;
   for (; run.rows.t[i] < stop - 1e-3; ++i) {
     hand.to(run.rows.t[i]);
-    for (const auto& [k, name] : {std::pair{0, "x1"}, {1, "x2"}, {2, "x1_dot"}, {3, "x2_dot"}, {4, "slip.contact.1"}, {5, "slip.contact.2"}}) {
+    for (const auto& [k, name] :
+         {std::pair{0, "x1"}, {1, "x2"}, {2, "x1_dot"}, {3, "x2_dot"}, {4, "slip.contact.1"}, {5, "slip.contact.2"}}) {
       CHECK(std::abs(run.rows.at(i, name) - hand.x[static_cast<std::size_t>(k)]) < by_hand);
     }
   }
@@ -133,7 +147,8 @@ TEST_CASE("rough_bodies: R4: on a rough turntable the sphere slides as the balan
   while (run.rows.t[first] <= stop) ++first;
   const double v1 = run.rows.at(first, "x1_dot"), v2 = run.rows.at(first, "x2_dot");
   for (std::size_t k = first; k < run.rows.size(); ++k) {
-    const double s = std::sin(rate * (run.rows.t[k] - run.rows.t[first])) / rate, c = (1 - std::cos(rate * (run.rows.t[k] - run.rows.t[first]))) / rate;
+    const double s = std::sin(rate * (run.rows.t[k] - run.rows.t[first])) / rate,
+                 c = (1 - std::cos(rate * (run.rows.t[k] - run.rows.t[first]))) / rate;
     CHECK(std::abs(run.rows.at(k, "x1") - (run.rows.at(first, "x1") + v1 * s - v2 * c)) < by_hand);
     CHECK(std::abs(run.rows.at(k, "x2") - (run.rows.at(first, "x2") + v2 * s + v1 * c)) < by_hand);
   }
@@ -151,13 +166,15 @@ namespace {
 
 /// Newton's and Euler's equations of the disk that slides, along e1', e2'', e3: x1, x2, v1, v2, phi, theta, w1, w2, w3.
 struct Disk {
-  explicit Disk(const Finished& run) : m(run.parameter("m")), R(run.parameter("R")), g(run.parameter("g")), mu(run.parameter("mu_d")) {}
+  explicit Disk(const Finished& run)
+      : m(run.parameter("m")), R(run.parameter("R")), g(run.parameter("g")), mu(run.parameter("mu_d")) {}
   std::array<double, 2> slip(const double* x) const {
     const double cp = std::cos(x[4]), sp = std::sin(x[4]), along = R * x[8], across = R * x[6] * std::sin(x[5]);
     return {x[2] + along * cp - across * sp, x[3] + along * sp + across * cp};
   }
   void rates(const double* x, double* dx) const {
-    const double J = m * R * R / 4, J3 = m * R * R / 2, cp = std::cos(x[4]), sp = std::sin(x[4]), c = std::cos(x[5]), s = std::sin(x[5]);
+    const double J = m * R * R / 4, J3 = m * R * R / 2, cp = std::cos(x[4]), sp = std::sin(x[4]), c = std::cos(x[5]),
+                 s = std::sin(x[5]);
     const auto [u1, u2] = slip(x);
     const double speed = std::hypot(u1, u2), d1 = u1 / speed, d2 = u2 / speed, turn = x[7] / s, W3 = turn * c;
     // K3 = N share along e3, m R (cos theta theta_ddot - w1^2 sin theta) = N - m g
@@ -173,7 +190,9 @@ struct Disk {
 
 }  // namespace
 
-TEST_CASE("rough_bodies: R6: the disk that is pushed along slides as Newton's and Euler's equations by hand say, until it rolls") {
+TEST_CASE(
+    "rough_bodies: R6: the disk that is pushed along slides as Newton's and Euler's equations by hand say, until it "
+    "rolls") {
   const Finished run = run_rough("R6_rough_disk", "thrown");
   const Disk disk(run);
   REQUIRE(!events_of(run).empty());
@@ -197,14 +216,17 @@ TEST_CASE("rough_bodies: R6: the disk that is pushed along slides as Newton's an
 
 TEST_CASE("rough_bodies: R6: the disk rolls as without friction until the plane cannot hold it, and slips there") {
   const Finished run = run_rough("R6_rough_disk");
-  const Finished held = run_rough("R6_rolling_disk", "default", [](cli::SimulationRequest& request) { request.overrides.t_end = 2; });
+  const Finished held =
+      run_rough("R6_rolling_disk", "default", [](cli::SimulationRequest& request) { request.overrides.t_end = 2; });
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[0].kind == "slip");
   CHECK(events_of(run)[1].kind == "roll");
   const double slips = events_of(run)[0].t, mu = run.parameter("mu_s");
   bool passed = false;
   for (std::size_t i = 0; i < held.rows.size(); ++i) {
-    const auto force = [&](const Finished& f, std::size_t row, const char* k) { return f.rows.at(row, std::string("reaction.contact.") + k); };
+    const auto force = [&](const Finished& f, std::size_t row, const char* k) {
+      return f.rows.at(row, std::string("reaction.contact.") + k);
+    };
     const bool holds = std::hypot(force(held, i, "1"), force(held, i, "2")) <= mu * force(held, i, "3");
     if (held.rows.t[i] > slips) {
       passed = passed || !holds;

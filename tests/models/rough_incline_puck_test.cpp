@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// With psi the angle between velocity and downhill, v sin(psi)/tan(psi/2)^k and v (k + cos psi) - g sin(beta) (1 - k^2) t are
-// constant, k = mu_d/tan(beta): time and place of the stop follow.
+// With psi the angle between velocity and downhill, v sin(psi)/tan(psi/2)^k and v (k + cos psi) - g sin(beta) (1 - k^2)
+// t are constant, k = mu_d/tan(beta): time and place of the stop follow.
 #include "models/rough.hpp"
 
 using namespace eomgen;
@@ -8,7 +8,8 @@ using namespace eomgen::test;
 
 TEST_CASE("rough_incline_puck: thrown across it stops where and when the closed form says") {
   const Finished run = run_rough("rough_incline_puck");
-  const double g = run.parameter("g"), beta = run.parameter("beta"), k = run.parameter("mu_d") / std::tan(beta), down = g * std::sin(beta);
+  const double g = run.parameter("g"), beta = run.parameter("beta"), k = run.parameter("mu_d") / std::tan(beta),
+               down = g * std::sin(beta);
   const double v0 = std::hypot(0.5, 1.5), psi0 = std::atan2(1.5, -0.5), u0 = std::tan(psi0 / 2);
   REQUIRE(k > 1);
   REQUIRE(events_of(run).size() == 1);
@@ -25,7 +26,8 @@ TEST_CASE("rough_incline_puck: thrown across it stops where and when the closed 
   CHECK(run.simulation.result.power_balance < 1e-9);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     if (run.rows.t[i] >= events_of(run)[0].t) continue;
-    const double vx = run.rows.at(i, "x_dot"), vy = run.rows.at(i, "y_dot"), v = std::hypot(vx, vy), f = run.parameter("mu_d") * run.parameter("m") * g * std::cos(beta);
+    const double vx = run.rows.at(i, "x_dot"), vy = run.rows.at(i, "y_dot"), v = std::hypot(vx, vy),
+                 f = run.parameter("mu_d") * run.parameter("m") * g * std::cos(beta);
     CHECK(run.rows.at(i, "friction.incline.1") == doctest::Approx(-f * vx / v).epsilon(1e-11).scale(1));
     CHECK(run.rows.at(i, "friction.incline.2") == doctest::Approx(-f * vy / v).epsilon(1e-11).scale(1));
   }

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Routh's reduction of shipped models against the judge, against (2.172) and (2.173), and along a run.
+#include "reading/routh.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include "derive/conserved.hpp"
 #include "derive/lagrange.hpp"
 #include "models/reading_of.hpp"
-#include "reading/routh.hpp"
 #include "support/simulation.hpp"
 #include "support/sum_values.hpp"
 #include "verify/certificate.hpp"
@@ -49,7 +50,8 @@ TEST_CASE("routh: of P9 with h is the single equation (2.172), with the energy (
   const Sum m = p9("m"), g = p9("g"), c = p9("c"), u = p9("u"), du = p9("u_dot"), ddu = p9("u_ddot");
   CHECK(same(form.momenta[0], m * square(c * u) * p9("theta_dot")));
   CHECK(same(form.rates[0], over(h, m * square(c * u))));
-  const Sum single = m * (square(u) + square(c)) * ddu + m * u * square(du) - over(square(h), m * u * u * u * square(c)) + m * g * u;
+  const Sum single =
+      m * (square(u) + square(c)) * ddu + m * u * square(du) - over(square(h), m * u * u * u * square(c)) + m * g * u;
   CHECK(same(form.equations[0].expanded - form.equations[0].force, single));
   REQUIRE(form.energy.has_value());
   CHECK(same(*form.energy, half(m) * (square(u) + square(c)) * square(du) + half(over(square(h), m * square(u * c))) +
@@ -57,8 +59,8 @@ TEST_CASE("routh: of P9 with h is the single equation (2.172), with the energy (
 }
 
 TEST_CASE("routh: the reduced equations vanish for the motion that the judge alone gives") {
-  for (const char* name : {"P9_paraboloid", "P1_spherical_pendulum", "P1_spherical_pendulum_varying", "P14_kepler_spherical",
-                           "P14_kepler_parabolic", "S5_spherical_double_pendulum"}) {
+  for (const char* name : {"P9_paraboloid", "P1_spherical_pendulum", "P1_spherical_pendulum_varying",
+                           "P14_kepler_spherical", "P14_kepler_parabolic", "S5_spherical_double_pendulum"}) {
     INFO(name);
     const model::Model model = model::read_model(model_path(name));
     mechanics::Mechanics m = mechanics::build_mechanics(model);
@@ -91,7 +93,8 @@ TEST_CASE("routh: integrated by itself P9's single equation moves as the full sy
   using symbolic::SymbolKind;
   const std::uint32_t u = form.equations[0].coordinate;
   Values at;
-  for (std::uint32_t i = 0; i < p9.s.model.parameters.size(); ++i) at[{SymbolKind::parameter, i, 0}] = run.simulation.scene.parameters[i];
+  for (std::uint32_t i = 0; i < p9.s.model.parameters.size(); ++i)
+    at[{SymbolKind::parameter, i, 0}] = run.simulation.scene.parameters[i];
   const double c = run.parameter("c"), h = run.parameter("m") * c * c * 2;  // u = 1, theta_dot = 2 at the start
   at[reading::momentum_symbol(form.cyclic[0])] = h;
   const auto f = [&](double, const double* x, double* dx) {

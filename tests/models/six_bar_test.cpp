@@ -51,5 +51,6 @@ TEST_CASE("six_bar: Sarrus' linkage is overconstrained by one, and moves along i
   CHECK(all.drift("energy") < 1e-11);
   CHECK(all.simulation.result.constraint_drift < 1e-13);
   // The pins may twist the plate against one another, whatever the motion is.
-  for (const mechanics::JointReaction& joint : m.joints) CHECK(joint.determined == std::array<bool, 6>{true, true, true, true, true, false});
+  for (const mechanics::JointReaction& joint : m.joints)
+    CHECK(joint.determined == std::array<bool, 6>{true, true, true, true, true, false});
 }

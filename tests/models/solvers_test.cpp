@@ -27,15 +27,16 @@ test::Finished motion(const std::string& model, const std::string& solver, doubl
 double difference(const test::Finished& a, const test::Finished& b) {
   double largest = 0;
   for (const model::Coordinate& c : a.simulation.derived->model.coordinates)
-    for (const std::string& name : {c.name, c.name + "_dot"}) largest = std::max(largest, std::abs(a.final(name) - b.final(name)));
+    for (const std::string& name : {c.name, c.name + "_dot"})
+      largest = std::max(largest, std::abs(a.final(name) - b.final(name)));
   return largest;
 }
 
 }  // namespace
 
 TEST_CASE("solvers: the implicit ones end where dop853 does, with df/dx from the equations") {
-  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
-                            "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
+  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust",
+                            "bilinear_oscillator", "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
     const test::Finished reference = motion(model, "dop853", 1.5);
@@ -89,7 +90,9 @@ TEST_CASE("solvers: auto hands a stiff spring to radau5 and says when, why, and 
   }
 }
 
-TEST_CASE("solvers: variational ones converge to dop853 with their order: free, with multipliers, moving constraints, damping, inputs") {
+TEST_CASE(
+    "solvers: variational ones converge to dop853 with their order: free, with multipliers, moving constraints, "
+    "damping, inputs") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane", "cart_pendulum"}) {
     const test::Finished reference = test::run_model(model, [&](cli::SimulationRequest& request) {
       request.overrides.solver = "dop853";
@@ -122,11 +125,13 @@ TEST_CASE("solvers: variational ones converge to dop853 with their order: free, 
 
 TEST_CASE("solvers: variational ones keep energy within bounds, and tell why they refuse a model") {
   const auto drift = [](double end) {
-    return test::run_model("S5_double_pendulum_cartesian", [&](cli::SimulationRequest& request) {
-      request.overrides.solver = "variational4";
-      request.overrides.step = 0.02;
-      request.overrides.t_end = end;
-    }).simulation.result.invariants.front();
+    return test::run_model("S5_double_pendulum_cartesian",
+                           [&](cli::SimulationRequest& request) {
+                             request.overrides.solver = "variational4";
+                             request.overrides.step = 0.02;
+                             request.overrides.t_end = end;
+                           })
+        .simulation.result.invariants.front();
   };
   const run::Invariant brief = drift(10), lasting = drift(200);
   CHECK(brief.name == "energy");
@@ -149,7 +154,9 @@ TEST_CASE("solvers: variational ones keep energy within bounds, and tell why the
   }
 }
 
-TEST_CASE("solvers: long runs of variational ones: angles that have gone far do not end the iteration, rounding does not add up in the momentum") {
+TEST_CASE(
+    "solvers: long runs of variational ones: angles that have gone far do not end the iteration, rounding does not add "
+    "up in the momentum") {
   const auto run = [](const char* model, const char* solver, double step, double end) {
     return test::run_model(model, [&](cli::SimulationRequest& request) {
       request.overrides.solver = solver;
@@ -166,13 +173,15 @@ TEST_CASE("solvers: long runs of variational ones: angles that have gone far do 
   for (const char* solver : {"midpoint", "variational2"}) {
     const test::Finished orbits = run("kepler_eccentric", solver, 0.0314159265, 6283);
     CHECK(orbits.simulation.result.outcome == eom::Outcome::done);
-    CHECK(orbits.drift("angular_momentum.E3") < 1e-13);  // 1e-14; corrections of Newton's iteration left out at a quarter of an ulp: 1e-12
+    CHECK(orbits.drift("angular_momentum.E3") <
+          1e-13);  // 1e-14; corrections of Newton's iteration left out at a quarter of an ulp: 1e-12
   }
 }
 
 TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, kinks, friction, impacts and rolling") {
-  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust", "bilinear_oscillator",
-                            "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian", "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {
+  for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane_gust",
+                            "bilinear_oscillator", "cart_pendulum", "knife_edge", "P7_moving_sphere_pfaffian",
+                            "R6_rolling_disk", "stick_slip_belt", "bouncing_ball", "P5_rough_sphere"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
     const test::Finished reference = motion(model, "dop853", 1.5), other = motion(model, "taylor", 1.5);
@@ -185,7 +194,8 @@ TEST_CASE("solvers: taylor ends where dop853 does, through constraints, tables, 
   }
 }
 
-TEST_CASE("solvers: taylor takes inputs that jump, refuses those that are expressions of t, and code without a series") {
+TEST_CASE(
+    "solvers: taylor takes inputs that jump, refuses those that are expressions of t, and code without a series") {
   const std::string folder = test::build_folder(), text = test::read_text(test::model_path("cart_pendulum"));
   test::write_text(folder + "/cart_table.toml", text + "inputs = { F = { t = [0, 0.7], value = [5, -3] } }\n");
   test::write_text(folder + "/cart_pushed.toml", text + "inputs = { F = \"3*sin(2*t)\" }\n");
@@ -195,12 +205,16 @@ TEST_CASE("solvers: taylor takes inputs that jump, refuses those that are expres
   const test::Finished first = motion("cart_pendulum", "dop853", 0.5);
   run::Overrides overrides;
   overrides.solver = "taylor";
-  CHECK_THROWS_WITH_AS(cli::run_again(first.simulation, overrides, false), doctest::Contains("compiled without its Taylor series"), Error);
+  CHECK_THROWS_WITH_AS(cli::run_again(first.simulation, overrides, false),
+                       doctest::Contains("compiled without its Taylor series"), Error);
 }
 
-TEST_CASE("solvers: ggl ends where dop853 with projection does, constraints at rounding and nothing projected; it tells why it refuses a model") {
+TEST_CASE(
+    "solvers: ggl ends where dop853 with projection does, constraints at rounding and nothing projected; it tells why "
+    "it refuses a model") {
   // among them a loop of bodies, constraints on velocities, and one that moves
-  for (const char* model : {"S5_double_pendulum_cartesian", "iftomm_pendulum", "four_bar_spatial_pins", "knife_edge", "P7_moving_sphere_pfaffian", "car_axis"}) {
+  for (const char* model : {"S5_double_pendulum_cartesian", "iftomm_pendulum", "four_bar_spatial_pins", "knife_edge",
+                            "P7_moving_sphere_pfaffian", "car_axis"}) {
     const std::string of_model = model;
     CAPTURE(of_model);
     const test::Finished reference = motion(model, "dop853", 1);
@@ -221,7 +235,8 @@ TEST_CASE("solvers: ggl ends where dop853 with projection does, constraints at r
       if (name.ends_with("_dot")) CHECK(std::abs(value - reference.final(name)) < 1e-7);
     }
   }
-  const std::pair<const char*, const char*> refused[] = {{"S5_double_pendulum", "no constraints with multipliers"}, {"bouncing_ball", "contacts"}};
+  const std::pair<const char*, const char*> refused[] = {{"S5_double_pendulum", "no constraints with multipliers"},
+                                                         {"bouncing_ball", "contacts"}};
   for (const auto& [model, why] : refused) {
     const std::string of_model = model;
     CAPTURE(of_model);
@@ -251,7 +266,8 @@ TEST_CASE("solvers: fixed implicit steps where components stay at rounding level
       for (const auto& [name, value] : found.final) {
         const auto& shown = name;
         CAPTURE(shown);
-        if (name.ends_with("_dot")) CHECK(std::abs(value - reference.final(name)) < (std::string(solver) == "midpoint" ? 1e-3 : 1e-8));
+        if (name.ends_with("_dot"))
+          CHECK(std::abs(value - reference.final(name)) < (std::string(solver) == "midpoint" ? 1e-3 : 1e-8));
       }
     }
   }

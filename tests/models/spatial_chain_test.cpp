@@ -2,7 +2,6 @@
 // Spatial chains of bodies on ball joints: runs keep their invariants, and the operations stay below those of the
 // recursive scheme in relative angles.
 #include <doctest/doctest.h>
-
 #include <fmt/format.h>
 
 #include "cli/pipeline.hpp"
@@ -18,14 +17,19 @@ namespace {
 std::string chain_text(int n) {
   std::string numbers, bodies;
   for (int k = 1; k <= n; ++k) {
-    numbers += fmt::format("m{0} = \"{1} kg\"\nL{0} = \"0.{2} m\"\nc{0} = \"0.{3} m\"\nA{0} = \"0.0{2} kg*m^2\"\nB{0} = \"0.0{4} kg*m^2\"\n"
-                           "C{0} = \"0.0{3} kg*m^2\"\n",
-                           k, 1 + k % 3, 4 + k % 4, 1 + k % 3, 5 + k % 4);
-    const std::string base = k == 1 ? "" : fmt::format("P{} ", k - 1), parent = k == 1 ? "" : fmt::format("relative_to = \"link{}\"\n", k - 1);
-    bodies += fmt::format("[[body]]\nname = \"link{0}\"\nmass = \"m{0}\"\ninertia = {{ principal = [\"A{0}\", \"B{0}\", \"C{0}\"] }}\n"
-                          "position = \"{1}-c{0}*link{0}.e3\"\n{2}rotation = {{ euler = \"321\", angles = [\"yaw{0}\", \"pitch{0}\", \"roll{0}\"] }}\n"
-                          "[[point]]\nname = \"P{0}\"\nposition = \"{1}-L{0}*link{0}.e3\"\n",
-                          k, base, parent);
+    numbers += fmt::format(
+        "m{0} = \"{1} kg\"\nL{0} = \"0.{2} m\"\nc{0} = \"0.{3} m\"\nA{0} = \"0.0{2} kg*m^2\"\nB{0} = \"0.0{4} "
+        "kg*m^2\"\n"
+        "C{0} = \"0.0{3} kg*m^2\"\n",
+        k, 1 + k % 3, 4 + k % 4, 1 + k % 3, 5 + k % 4);
+    const std::string base = k == 1 ? "" : fmt::format("P{} ", k - 1),
+                      parent = k == 1 ? "" : fmt::format("relative_to = \"link{}\"\n", k - 1);
+    bodies += fmt::format(
+        "[[body]]\nname = \"link{0}\"\nmass = \"m{0}\"\ninertia = {{ principal = [\"A{0}\", \"B{0}\", \"C{0}\"] }}\n"
+        "position = \"{1}-c{0}*link{0}.e3\"\n{2}rotation = {{ euler = \"321\", angles = [\"yaw{0}\", \"pitch{0}\", "
+        "\"roll{0}\"] }}\n"
+        "[[point]]\nname = \"P{0}\"\nposition = \"{1}-L{0}*link{0}.e3\"\n",
+        k, base, parent);
   }
   return "format = 1\n[parameters]\ng = \"9.81 m/s^2\"\n" + numbers + bodies + "[[force]]\ngravity = \"-g*E3\"\n";
 }

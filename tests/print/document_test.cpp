@@ -19,7 +19,8 @@ namespace {
 
 std::string document(const model::Model& model) {
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
-  return print::latex_document(m, reading::derive_reading(m, system::Approach::one), reading::derive_reading(m, system::Approach::two));
+  return print::latex_document(m, reading::derive_reading(m, system::Approach::one),
+                               reading::derive_reading(m, system::Approach::two));
 }
 
 model::Model hostile() {
@@ -42,14 +43,17 @@ force = "-csname*write18*E1"
 [[constraint]]
 name = "the_end"
 holonomic = "write18 - end_document"
-)", "hostile");
+)",
+                                "hostile");
 }
 
 bool compiles(const std::string& text, const std::string& name) {
   const fs::path folder = fs::path(test::build_folder()) / "print_test" / name;
   fs::create_directories(folder);
   std::ofstream(folder / "document.tex") << text;
-  const std::string command = "cd '" + folder.string() + "' && pdflatex -no-shell-escape -interaction=nonstopmode -halt-on-error document.tex > out.txt 2>&1";
+  const std::string command =
+      "cd '" + folder.string() +
+      "' && pdflatex -no-shell-escape -interaction=nonstopmode -halt-on-error document.tex > out.txt 2>&1";
   return std::system(command.c_str()) == 0 && fs::exists(folder / "document.pdf");
 }
 
@@ -82,15 +86,20 @@ std::size_t count(const std::string& text, const std::string& part) {
   return n;
 }
 
-std::string shipped(const std::string& name) { return document(model::read_model(test::source_folder() + "/models/" + name + ".toml")); }
+std::string shipped(const std::string& name) {
+  return document(model::read_model(test::source_folder() + "/models/" + name + ".toml"));
+}
 
 }  // namespace
 
 TEST_CASE("an equation that both approaches give stands once, over both columns") {
   const std::string text = shipped("P7_moving_sphere");
-  const std::string phi = "\\frac{d}{dt}\\left(m d^{2} \\dot{\\phi}\\right) - m d^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2} - m g d \\sin\\phi = 0";
+  const std::string phi =
+      "\\frac{d}{dt}\\left(m d^{2} \\dot{\\phi}\\right) - m d^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2} - m g "
+      "d \\sin\\phi = 0";
   CHECK(count(text, phi) == 1);
-  CHECK(text.find("$\\phi$ & \\multicolumn{2}{p{0.84\\linewidth}}{$\\displaystyle " + phi + "$} & (1)") != std::string::npos);
+  CHECK(text.find("$\\phi$ & \\multicolumn{2}{p{0.84\\linewidth}}{$\\displaystyle " + phi + "$} & (1)") !=
+        std::string::npos);
   // theta of the rolling disk has another one by Approach II, x3 none.
   const std::string disk = shipped("R6_rolling_disk");
   CHECK(count(disk, "$\\theta$ & \\multicolumn") == 0);
@@ -99,9 +108,12 @@ TEST_CASE("an equation that both approaches give stands once, over both columns"
 
 TEST_CASE("the document goes from the energies to the equations step by step, as (2.110)") {
   const std::string text = shipped("P7_moving_sphere");
-  for (const char* step : {"\\frac{\\partial T}{\\partial \\dot{\\phi}} = m R^{2} \\dot{\\phi}", "\\frac{d}{dt}\\left(\\frac{\\partial T}{\\partial \\dot{R}}\\right) = m \\ddot{R}",
-                           "\\frac{\\partial T}{\\partial \\phi} = m R^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2}", "\\frac{\\partial U}{\\partial \\phi} = -m g R \\sin\\phi",
-                           "Q_{\\theta} = D R^{2} \\sin\\phi", "Q_{\\theta} = D d^{2} \\sin\\phi"}) {
+  for (const char* step :
+       {"\\frac{\\partial T}{\\partial \\dot{\\phi}} = m R^{2} \\dot{\\phi}",
+        "\\frac{d}{dt}\\left(\\frac{\\partial T}{\\partial \\dot{R}}\\right) = m \\ddot{R}",
+        "\\frac{\\partial T}{\\partial \\phi} = m R^{2} \\sin\\phi\\, \\cos\\phi\\, \\dot{\\theta}^{2}",
+        "\\frac{\\partial U}{\\partial \\phi} = -m g R \\sin\\phi", "Q_{\\theta} = D R^{2} \\sin\\phi",
+        "Q_{\\theta} = D d^{2} \\sin\\phi"}) {
     CAPTURE(step);
     CHECK(text.find(step) != std::string::npos);
   }
@@ -125,7 +137,8 @@ TEST_CASE("words that are longer than a line may be broken, letter by letter") {
   CHECK(print::words("short words & more") == "short words \\& more");
   const std::string broken = print::words(std::string(40, 'x'));
   CHECK(count(broken, "\\hspace{0pt}") == 39);
-  CHECK(count(print::words("\xc3\xa4" + std::string(30, 'x')), "\xc3\xa4\\hspace{0pt}") == 1);  // a letter of two bytes is one
+  CHECK(count(print::words("\xc3\xa4" + std::string(30, 'x')), "\xc3\xa4\\hspace{0pt}") ==
+        1);  // a letter of two bytes is one
 }
 
 TEST_CASE("the document compiles with pdflatex, if it is installed") {
@@ -134,16 +147,20 @@ TEST_CASE("the document compiles with pdflatex, if it is installed") {
     return;
   }
   CHECK(compiles(document(model::read_model(test::source_folder() + "/models/P7_moving_sphere.toml")), "P7"));
-  CHECK(compiles(document(model::read_model(test::source_folder() + "/models/S5_spherical_double_pendulum.toml")), "S5"));
+  CHECK(
+      compiles(document(model::read_model(test::source_folder() + "/models/S5_spherical_double_pendulum.toml")), "S5"));
   CHECK(compiles(document(hostile()), "hostile"));
 }
 
 TEST_CASE("the document loads amssymb where a name needs it, and only there") {
-  std::string text = "format = 1\n[coordinates]\nx = { tex = '\\mathfrak{x}' }\ny = { tex = 'y^2' }\n[parameters]\nk = { value = 1, tex = '\\mathbb{K}_1' }\n"
-                     "[energy]\nkinetic = \"x_dot^2 + y_dot^2\"\npotential = \"k*x^2 + y^2\"\n";
+  std::string text =
+      "format = 1\n[coordinates]\nx = { tex = '\\mathfrak{x}' }\ny = { tex = 'y^2' }\n[parameters]\nk = { value = 1, "
+      "tex = '\\mathbb{K}_1' }\n"
+      "[energy]\nkinetic = \"x_dot^2 + y_dot^2\"\npotential = \"k*x^2 + y^2\"\n";
   const std::string with = document(model::read_model_text(text, "m.toml"));
   CHECK(with.find("\\usepackage{amssymb}") != std::string::npos);
-  for (const char* name : {"\\mathfrak{x}", "\\mathbb{K}_1"}) text.replace(text.find(name), std::string(name).size(), "z");
+  for (const char* name : {"\\mathfrak{x}", "\\mathbb{K}_1"})
+    text.replace(text.find(name), std::string(name).size(), "z");
   CHECK(document(model::read_model_text(text, "m.toml")).find("amssymb") == std::string::npos);
   if (std::system("command -v pdflatex > /dev/null 2>&1") == 0) CHECK(compiles(with, "amssymb"));
 }

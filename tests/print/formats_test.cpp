@@ -16,11 +16,13 @@ namespace {
 
 struct Printed {
   explicit Printed(const model::Model& read, system::Approach approach, std::vector<std::string> show = {"all"})
-      : model(read), mechanics(mechanics::build_mechanics(model)),
+      : model(read),
+        mechanics(mechanics::build_mechanics(model)),
         items(print::render(mechanics, reading::derive_reading(mechanics, approach), show)) {}
   std::vector<Item> of(const std::string& key) const {
     std::vector<Item> result;
-    std::copy_if(items.begin(), items.end(), std::back_inserter(result), [&](const Item& item) { return item.key == key; });
+    std::copy_if(items.begin(), items.end(), std::back_inserter(result),
+                 [&](const Item& item) { return item.key == key; });
     return result;
   }
   model::Model model;
@@ -50,8 +52,11 @@ bool well_formed(const std::string& xml) {
 
 template <class Form>  // a format or a style
 std::string expression(const std::string& is, const Form& form) {
-  const model::Model model = model::read_model_text("format = 1\n[parameters]\na = 1\nb = 2\nc = 3\n[coordinates]\nx = {}\ny = {}\n"
-                                                    "[definitions]\ne = \"" + is + "\"\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\n", "text");
+  const model::Model model = model::read_model_text(
+      "format = 1\n[parameters]\na = 1\nb = 2\nc = 3\n[coordinates]\nx = {}\ny = {}\n"
+      "[definitions]\ne = \"" +
+          is + "\"\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\n",
+      "text");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   return print::print(reading::arrange(reading::read(m, m.scalar_definition[0])), print::Notation(m), form);
 }
@@ -66,7 +71,8 @@ TEST_CASE("P7 reads as (2.111)") {
   CHECK(equations[0].role == "motion");
   CHECK(equations[0].text == "d/dt(m d^2 phi_dot) - m d^2 sin(phi) cos(phi) theta_dot^2 - m g d sin(phi) = 0");
   CHECK(equations[1].text == "d/dt(m d^2 sin^2(phi) theta_dot) = D d^2 sin(phi)");
-  CHECK(equations[1].latex == "\\frac{d}{dt}\\left(m d^{2} \\sin^{2}\\phi\\, \\dot{\\theta}\\right) = D d^{2} \\sin\\phi");
+  CHECK(equations[1].latex ==
+        "\\frac{d}{dt}\\left(m d^{2} \\sin^{2}\\phi\\, \\dot{\\theta}\\right) = D d^{2} \\sin\\phi");
   CHECK(equations[2].role == "constraint force");
   CHECK(equations[2].text == "d/dt(m d_dot) - m d phi_dot^2 - m d sin^2(phi) theta_dot^2 + m g cos(phi) = lambda");
   const auto reactions = one.of("reactions");
@@ -86,13 +92,14 @@ TEST_CASE("P7 by approach II reads as (2.109), without the constraint force") {
 TEST_CASE("common factors of parameters stand in front") {
   const Printed one(model::read_model(shipped("S5_double_pendulum")), system::Approach::two, {"equations"});
   CHECK(one.of("explicit")[0].text ==
-        "(m1 + m2) L1^2 theta1_ddot + m2 L1 L2 cos(theta1 - theta2) theta2_ddot + m2 L1 L2 sin(theta1 - theta2) theta2_dot^2"
+        "(m1 + m2) L1^2 theta1_ddot + m2 L1 L2 cos(theta1 - theta2) theta2_ddot + m2 L1 L2 sin(theta1 - theta2) "
+        "theta2_dot^2"
         " + (m1 + m2) L1 g sin(theta1) = 0");
 }
 
 TEST_CASE("what `all` shows is there in three formats, and MathML is well-formed") {
-  for (const char* name : {"P7_moving_sphere", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian", "P14_kepler_cartesian",
-                           "cart_pendulum", "S6_chain_6"}) {
+  for (const char* name : {"P7_moving_sphere", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian",
+                           "P14_kepler_cartesian", "cart_pendulum", "S6_chain_6"}) {
     for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
       const Printed printed(model::read_model(shipped(name)), approach);
       CHECK(printed.items.size() > 3);
@@ -101,7 +108,8 @@ TEST_CASE("what `all` shows is there in three formats, and MathML is well-formed
         CHECK_FALSE(item.text.empty());
         CHECK_FALSE(item.latex.empty());
         CHECK(well_formed(item.mathml));
-        CHECK(std::count(item.latex.begin(), item.latex.end(), '{') == std::count(item.latex.begin(), item.latex.end(), '}'));
+        CHECK(std::count(item.latex.begin(), item.latex.end(), '{') ==
+              std::count(item.latex.begin(), item.latex.end(), '}'));
       }
     }
   }
@@ -111,8 +119,11 @@ TEST_CASE("MathML: a gap stands between a function and its argument, and between
   using print::Format;
   const std::string gap = " lspace=\"0\" rspace=\"0.167em\"";
   const std::string applied = "<mo" + gap + ">&#x2061;</mo>", times = "<mo" + gap + ">&#x2062;</mo>";
-  const auto has = [](const std::string& text, const std::string& part) { return text.find(part) != std::string::npos; };
-  CHECK(has(expression("a*cos(x)", Format::mathml), "<mi>a</mi>" + times + "<mrow><mi>cos</mi>" + applied + "<mi>x</mi></mrow>"));
+  const auto has = [](const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+  };
+  CHECK(has(expression("a*cos(x)", Format::mathml),
+            "<mi>a</mi>" + times + "<mrow><mi>cos</mi>" + applied + "<mi>x</mi></mrow>"));
   CHECK(has(expression("sin(x)*y", Format::mathml), times + "<mrow><mi>sin</mi>"));  // y sin x
   // Nothing runs together where a bracket or two letters meet.
   CHECK(has(expression("sin(x + y)", Format::mathml), "<mi>sin</mi><mo>&#x2061;</mo><mrow><mo stretchy=\"false\">("));
@@ -139,19 +150,24 @@ TEST_CASE("brackets stand where they are needed, and only there") {
 
 TEST_CASE("lines are broken in brackets, and what cannot be broken is named") {
   const auto narrow = print::latex_style(10);
-  const model::Model model = model::read_model_text("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n", "text");
+  const model::Model model =
+      model::read_model_text("format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n", "text");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   const auto f = [](const char* word) { return reading::mark(word); };
-  const auto shown = [&](const reading::Formula& formula) { return print::print(formula, print::Notation(m), *narrow); };
+  const auto shown = [&](const reading::Formula& formula) {
+    return print::print(formula, print::Notation(m), *narrow);
+  };
   CHECK(shown(reading::product({f("p"), reading::sum({f("b"), f("c")})})) == "p (b + c)");
   CHECK(shown(reading::product({f("p"), reading::sum({f("b"), reading::negative(f("c")), f("d"), f("f")}), f("q")})) ==
         "\\begin{aligned}[t]\n&p \\bigl(b - c + d \\\\\n&\\quad{} + f\\bigr) q\n\\end{aligned}");
   CHECK(expression("a/sqrt(b*x + a*y + c)", *narrow) ==
-        "\\begin{aligned}[t]\n&\\frac{a}{\\sqrt{\\mathcal{S}_{1}}}, \\\\\n&\\mathcal{S}_{1} = b x + a y \\\\\n&\\quad{} + c\n\\end{aligned}");
+        "\\begin{aligned}[t]\n&\\frac{a}{\\sqrt{\\mathcal{S}_{1}}}, \\\\\n&\\mathcal{S}_{1} = b x + a y "
+        "\\\\\n&\\quad{} + c\n\\end{aligned}");
 }
 
 TEST_CASE("the language of model files can be pasted back") {
-  for (const char* text : {"a*x^2/(b + c) - 3/7*sin(x - y)*x_dot", "sqrt(x^2 + y^2)^(-3)", "atan2(x, y)*exp(-x^2)", "abs(x*y)^3/log(2 + x^2)"}) {
+  for (const char* text : {"a*x^2/(b + c) - 3/7*sin(x - y)*x_dot", "sqrt(x^2 + y^2)^(-3)", "atan2(x, y)*exp(-x^2)",
+                           "abs(x*y)^3/log(2 + x^2)"}) {
     const std::string once = expression(text, print::Format::language);
     CAPTURE(once);
     CHECK(expression(once, print::Format::language) == once);
@@ -173,7 +189,8 @@ potential = "lambda*T"
 [[constraint]]
 name = "c"
 holonomic = "T^2 - L*psi^2"
-)", "letters");
+)",
+                                                    "letters");
   const Printed printed(model, system::Approach::two);
   CHECK(printed.of("lagrangian")[0].latex.starts_with("\\tilde{\\mathcal{L}} = "));
   CHECK(printed.of("energies")[0].text.starts_with("kinetic~ = "));
@@ -223,7 +240,8 @@ TEST_CASE("by approach II no vector holds the multiplier of a constraint that is
   for (const char* name : {"P7_moving_sphere", "P4_moving_cone", "P8_smooth_helix"}) {
     CAPTURE(name);
     const model::Model model = model::read_model(shipped(name));
-    for (const Item& item : Printed(model, system::Approach::two, {"reactions"}).items) CHECK_MESSAGE(item.text.find("lambda") == std::string::npos, item.text);
+    for (const Item& item : Printed(model, system::Approach::two, {"reactions"}).items)
+      CHECK_MESSAGE(item.text.find("lambda") == std::string::npos, item.text);
   }
   const model::Model sphere = model::read_model(shipped("P7_moving_sphere"));
   CHECK_FALSE(Printed(sphere, system::Approach::one).of("reactions").empty());
@@ -231,7 +249,10 @@ TEST_CASE("by approach II no vector holds the multiplier of a constraint that is
 
 TEST_CASE("moments with numbers in them have one number in front") {
   const model::Model model = model::read_model_text(
-      "format = 1\n[parameters]\nm = 1\nl = 1\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = { cylinder = [\"l\", \"l\"] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
-      "rotation = { euler = \"313\", angles = [\"psi\", \"theta\", \"phi\"] }\n", "text");
-  for (const Item& item : Printed(model, system::Approach::two, {"energies"}).of("energies")) CHECK(item.text.find("1/2 (1/12") == std::string::npos);
+      "format = 1\n[parameters]\nm = 1\nl = 1\n[[body]]\nname = \"B\"\nmass = \"m\"\ninertia = { cylinder = [\"l\", "
+      "\"l\"] }\nposition = { cartesian = [\"x\", \"y\", \"z\"] }\n"
+      "rotation = { euler = \"313\", angles = [\"psi\", \"theta\", \"phi\"] }\n",
+      "text");
+  for (const Item& item : Printed(model, system::Approach::two, {"energies"}).of("energies"))
+    CHECK(item.text.find("1/2 (1/12") == std::string::npos);
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Everything that `derive` and `emit --target latex` print of every shipped model, set by pdflatex: no error, and no line
-// that runs over the margin by more than 5 pt. All in two documents, so that it takes seconds.
+// Everything that `derive` and `emit --target latex` print of every shipped model, set by pdflatex: no error, and no
+// line that runs over the margin by more than 5 pt. All in two documents, so that it takes seconds.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -49,7 +49,8 @@ Typeset typeset(const std::string& text, const std::string& name) {
   fs::create_directories(folder);
   std::ofstream(folder / "document.tex") << text;
   // A log line of 79 characters would break the words that are looked for.
-  const std::string command = "cd '" + folder.string() + "' && max_print_line=1000 pdflatex -no-shell-escape -interaction=nonstopmode "
+  const std::string command = "cd '" + folder.string() +
+                              "' && max_print_line=1000 pdflatex -no-shell-escape -interaction=nonstopmode "
                               "-halt-on-error document.tex > out.txt 2>&1";
   Typeset result;
   result.done = std::system(command.c_str()) == 0 && fs::exists(folder / "document.pdf");
@@ -79,14 +80,16 @@ void check(const Typeset& set) {
 
 TEST_CASE("a line that runs over the margin is seen") {
   if (!is_installed()) return;
-  const std::string wide = "\\documentclass{article}\n\\begin{document}\n% ITEM wide\n\\[\n\\hspace{2\\textwidth}x\n\\]\n\\end{document}\n";
+  const std::string wide =
+      "\\documentclass{article}\n\\begin{document}\n% ITEM wide\n\\[\n\\hspace{2\\textwidth}x\n\\]\n\\end{document}\n";
   CHECK(typeset(wide, "wide").overruns.size() == 1);
 }
 
 TEST_CASE("all that derive shows of every model fits on a page, in both approaches") {
   if (!is_installed()) return;
-  std::string text = "\\documentclass[10pt,a4paper]{article}\n\\usepackage{amsmath}\n\\usepackage[margin=20mm]{geometry}\n"
-                     "\\setlength{\\parindent}{0pt}\n\\allowdisplaybreaks\n\\begin{document}\n";
+  std::string text =
+      "\\documentclass[10pt,a4paper]{article}\n\\usepackage{amsmath}\n\\usepackage[margin=20mm]{geometry}\n"
+      "\\setlength{\\parindent}{0pt}\n\\allowdisplaybreaks\n\\begin{document}\n";
   for (const fs::path& path : shipped_models()) {
     const model::Model model = model::read_model(path.string());
     const mechanics::Mechanics m = mechanics::build_mechanics(model);
@@ -109,8 +112,8 @@ TEST_CASE("the document of every model fits on its pages") {
   for (const fs::path& path : shipped_models()) {
     const model::Model model = model::read_model(path.string());
     const mechanics::Mechanics m = mechanics::build_mechanics(model);
-    const std::string one =
-        print::latex_document(m, reading::derive_reading(m, system::Approach::one), reading::derive_reading(m, system::Approach::two));
+    const std::string one = print::latex_document(m, reading::derive_reading(m, system::Approach::one),
+                                                  reading::derive_reading(m, system::Approach::two));
     const std::string begin = "\\begin{document}\n", end = "\\end{document}\n";
     const std::size_t from = one.find(begin) + begin.size();
     if (text.empty()) text = one.substr(0, from);

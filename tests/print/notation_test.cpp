@@ -40,7 +40,8 @@ TEST_CASE("names become letters with indices and dots") {
 }
 
 TEST_CASE("names that are LaTeX commands stay words") {
-  for (const char* name : {"input", "write18", "end", "def", "newcommand", "catcode", "sin", "frac", "Alpha", "csname"}) {
+  for (const char* name :
+       {"input", "write18", "end", "def", "newcommand", "catcode", "sin", "frac", "Alpha", "csname"}) {
     const std::string text = in_latex(name);
     CAPTURE(text);
     CHECK(text.find('\\') == text.find("\\mathrm{"));
@@ -84,7 +85,8 @@ TEST_CASE("multipliers of joints are named by the joint and what they exert, whi
     for (std::size_t j = 0; j < m.joints.size(); ++j) {
       const mechanics::JointReaction& reaction = m.joints[j];
       for (std::uint32_t k = 0; k < reaction.equations(); ++k) {
-        const std::string shown = notation.multiplier(reaction.first + k).name, begin = "lambda_" + model.joints[j].name + "_";
+        const std::string shown = notation.multiplier(reaction.first + k).name,
+                          begin = "lambda_" + model.joints[j].name + "_";
         CAPTURE(shown);
         REQUIRE(shown.starts_with(begin));
         const bool force = shown[begin.size()] == 'F';

@@ -18,8 +18,8 @@ int main(int argc, char** argv) {
     const auto two = eomgen::reading::derive_reading(mechanics, eomgen::system::Approach::two);
     for (const auto& form : {one, two}) {
       for (const eomgen::print::Item& item : eomgen::print::render(mechanics, form, {"all"})) {
-        std::printf("%s|%s|%s|%s\n%s\n%s\n%s\n", item.key.c_str(), item.name.c_str(), item.coordinate.c_str(), item.role.c_str(),
-                    item.text.c_str(), item.latex.c_str(), item.mathml.c_str());
+        std::printf("%s|%s|%s|%s\n%s\n%s\n%s\n", item.key.c_str(), item.name.c_str(), item.coordinate.c_str(),
+                    item.role.c_str(), item.text.c_str(), item.latex.c_str(), item.mathml.c_str());
       }
     }
     std::printf("%s", eomgen::print::latex_document(mechanics, one, two).c_str());

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Kinks: with the sides of the state held the program is what it was, with others the branch goes on beyond its surface.
+// Kinks: with the sides of the state held the program is what it was, with others the branch goes on beyond its
+// surface.
+#include "program/kinks.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <set>
 
-#include "program/kinks.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/tolerances.hpp"
@@ -55,14 +57,16 @@ TEST_CASE("kinks: four surfaces of five kinks; held on the side where the state 
   for (std::uint64_t point = 1; point <= 20; ++point) {
     auto arguments = arguments_at<cln::cl_R>(system, point);
     const auto expected = program::interpret(plain.functions[0], arguments, 60).results[0];
-    CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0], expected) < tolerances::same_value);
+    CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0], expected) <
+          tolerances::same_value);
     const auto g = program::interpret(held.functions[1], arguments, 60).results[0];
     REQUIRE(g.size() == 4);
     for (const cln::cl_R& value : g) {
       arguments.side.push_back(cln::minusp(value) ? -1 : 1);
       negative += cln::minusp(value) ? 1 : 0;
     }
-    CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0], expected) < tolerances::same_value);
+    CHECK(difference(program::interpret(held.functions[0], arguments, 60).results[0], expected) <
+          tolerances::same_value);
   }
   CHECK(negative > 20);
   CHECK(negative < 60);  // of 80: the points do lie on both sides
@@ -92,7 +96,8 @@ TEST_CASE("kinks: a held branch goes on beyond its surface, and so does its Jaco
 TEST_CASE("kinks: more than mode has bits for follow the state") {
   const auto system = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) {
     Ref sum = dag.zero();
-    for (long k = 1; k <= 14; ++k) sum = dag.add(sum, dag.call(Op::abs, dag.sub(x, dag.constant(symbolic::Rational(k) / 10))));
+    for (long k = 1; k <= 14; ++k)
+      sum = dag.add(sum, dag.call(Op::abs, dag.sub(x, dag.constant(symbolic::Rational(k) / 10))));
     return sum;
   });
   const auto plain = build(system), held = build(system, {"events"});
@@ -103,7 +108,9 @@ TEST_CASE("kinks: more than mode has bits for follow the state") {
 }
 
 TEST_CASE("kinks: those of a contact's law are held, but not the speed whose sign the contact watches itself") {
-  auto s = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) { return dag.sub(dag.symbol({SymbolKind::friction, 0, 0}), x); });
+  auto s = one_mass([](symbolic::Dag& dag, Ref x, Ref, Ref, Ref) {
+    return dag.sub(dag.symbol({SymbolKind::friction, 0, 0}), x);
+  });
   symbolic::Dag& dag = *s.dag;
   const Ref x = dag.symbol({SymbolKind::coordinate, 0, 0}), v = dag.symbol({SymbolKind::coordinate, 0, 1});
   const Ref speed = dag.call(Op::abs, v), rough = dag.call(Op::abs, dag.sub(x, dag.one()));

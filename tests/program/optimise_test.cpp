@@ -41,9 +41,13 @@ symbolic::Ref random_expression(Maker& k, std::uint64_t seed) {
     const std::uint64_t r = program::scramble(seed, step);
     const symbolic::Ref a = refs[(r >> 8) % refs.size()], b = refs[(r >> 24) % refs.size()];
     switch (r % 11) {
-      case 0: case 1: refs.push_back(dag.add(a, b)); break;
-      case 2: case 3: refs.push_back(dag.sub(a, b)); break;
-      case 4: case 5: case 6: refs.push_back(dag.mul(a, b)); break;
+      case 0:
+      case 1: refs.push_back(dag.add(a, b)); break;
+      case 2:
+      case 3: refs.push_back(dag.sub(a, b)); break;
+      case 4:
+      case 5:
+      case 6: refs.push_back(dag.mul(a, b)); break;
       case 7: refs.push_back(dag.div(a, dag.add(dag.one(), dag.power(b, 2)))); break;
       case 8: refs.push_back(dag.call(Op::sin, a)); break;
       case 9: refs.push_back(dag.call(Op::cos, a)); break;
@@ -83,7 +87,8 @@ TEST_CASE("optimiser: the value of random expressions stays the same to 45 digit
   for (std::uint64_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
     Maker k;
-    program::WantedFunction wanted{"outputs", {{"y", {random_expression(k, seed), random_expression(k, seed + 1000)}}}, {}, {}};
+    program::WantedFunction wanted{
+        "outputs", {{"y", {random_expression(k, seed), random_expression(k, seed + 1000)}}}, {}, {}};
     system::EquationSystem system;
     system.free = {0, 1, 2};
     const auto raw = program::from_dag(*k.dag, wanted, system.free);
@@ -157,7 +162,8 @@ TEST_CASE("optimiser: huge powers and divisions by zero neither hang nor overflo
   symbolic::Dag& dag = *k.dag;
   const symbolic::Ref huge = dag.power(k.number(9).ref, 100000);
   const symbolic::Ref nested = dag.power(dag.add(dag.power(k.q(0).ref, 999999), dag.one()), 999999);
-  const symbolic::Ref by_zero = dag.div(k.q(0).ref, dag.sub(dag.mul(k.q(1).ref, k.q(0).ref), dag.mul(k.q(0).ref, k.q(1).ref)));
+  const symbolic::Ref by_zero =
+      dag.div(k.q(0).ref, dag.sub(dag.mul(k.q(1).ref, k.q(0).ref), dag.mul(k.q(0).ref, k.q(1).ref)));
   program::WantedFunction wanted{"outputs", {{"y", {huge, nested, by_zero}}}, {}, {}};
   const auto best = program::optimise({program::flatten(program::from_dag(dag, wanted, {0, 1}), false)});
   const auto function = program::schedule(best, "outputs", {{"y", 3}});

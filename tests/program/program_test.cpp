@@ -34,11 +34,13 @@ TEST_CASE("program: the Jacobian is that of the right-hand side, to 20 digits of
       return std::vector<cln::cl_R>(begin, begin + static_cast<std::ptrdiff_t>(n));
     };
     for (std::size_t j = 0; j < n; ++j) {
-      CHECK(difference(column(jac[0], j), quotient([j](auto& a) -> cln::cl_R& { return a.x[j]; })) < tolerances::difference_quotient);
+      CHECK(difference(column(jac[0], j), quotient([j](auto& a) -> cln::cl_R& { return a.x[j]; })) <
+            tolerances::difference_quotient);
     }
     CHECK(difference(jac[1], quotient([](auto& a) -> cln::cl_R& { return a.t; })) < tolerances::difference_quotient);
     for (std::size_t j = 0; j < jac_p.size() / n; ++j) {
-      CHECK(difference(column(jac_p, j), quotient([j](auto& a) -> cln::cl_R& { return a.p[j]; })) < tolerances::difference_quotient);
+      CHECK(difference(column(jac_p, j), quotient([j](auto& a) -> cln::cl_R& { return a.p[j]; })) <
+            tolerances::difference_quotient);
     }
   }
 }
@@ -102,7 +104,8 @@ TEST_CASE("program: the cheapest of several routes is taken, ties go to the firs
 }
 
 TEST_CASE("program: what does not exist is refused by name") {
-  const auto message = [](const std::vector<std::string>& with, const std::vector<std::string>& outputs) -> std::string {
+  const auto message = [](const std::vector<std::string>& with,
+                          const std::vector<std::string>& outputs) -> std::string {
     std::vector<system::EquationSystem> candidates{pendulum()};
     program::Request request;
     request.with = with;
@@ -114,7 +117,9 @@ TEST_CASE("program: what does not exist is refused by name") {
     }
     return "";
   };
-  CHECK(message({"rhs_batch"}, {}) == "there is no function `rhs_batch` / functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
+  CHECK(message({"rhs_batch"}, {}) ==
+        "there is no function `rhs_batch` / functions that can be asked for: jac, jac_p, mass, momenta, constraints, "
+        "reactions, outputs, events, taylor");
   CHECK(message({"jacobian"}, {}).starts_with("there is no function `jacobian`"));
   CHECK(message({}, {"energie"}) == "there is no output `energie` / outputs of this model: energy, kinetic, potential");
 }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A function with fewer results computes these, and nothing else.
+#include "program/restrict.hpp"
+
 #include <doctest/doctest.h>
 
-#include "program/restrict.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/tolerances.hpp"
@@ -18,9 +19,11 @@ TEST_CASE("restriction: entries in any order have their values, by fewer instruc
     const program::Function part = program::restricted(whole, places);
     CHECK(part.code.size() <= whole.code.size());
     const auto arguments = arguments_at<cln::cl_R>(system, 1);
-    const auto all = program::interpret(whole, arguments, 60).results[0], some = program::interpret(part, arguments, 60).results[0];
+    const auto all = program::interpret(whole, arguments, 60).results[0],
+               some = program::interpret(part, arguments, 60).results[0];
     REQUIRE(some.size() == places.size());
-    for (std::size_t i = 0; i < places.size(); ++i) CHECK(difference({all[places[i]]}, {some[i]}) < tolerances::same_value);
+    for (std::size_t i = 0; i < places.size(); ++i)
+      CHECK(difference({all[places[i]]}, {some[i]}) < tolerances::same_value);
     CHECK(program::restricted(whole, {0}).code.empty());  // a rate is in the state
   }
 }

@@ -149,13 +149,17 @@ TEST_CASE("solve: the pivot test sees a matrix that is singular, and only then")
   CHECK_FALSE(vanishes(0, 0.01));
 }
 
-TEST_CASE("the null space and Chaplygin forms give what the full system gives, multipliers too, without inertia in one direction too") {
+TEST_CASE(
+    "the null space and Chaplygin forms give what the full system gives, multipliers too, without inertia in one "
+    "direction too") {
   const Maker k;
   const auto square = [](Scalar x) { return x * x; };
   for (const bool massless : {false, true}) {
-    Scalar T = k.number(1, 2) * (k.p(0) * square(k.q(0, 1)) + k.p(1) * square(k.q(1, 1)) + k.q(0) * k.q(0, 1) * k.q(2, 1) + k.number(2) * square(k.q(2, 1)));
+    Scalar T = k.number(1, 2) * (k.p(0) * square(k.q(0, 1)) + k.p(1) * square(k.q(1, 1)) +
+                                 k.q(0) * k.q(0, 1) * k.q(2, 1) + k.number(2) * square(k.q(2, 1)));
     if (!massless) T = T + square(k.q(3, 1)) * k.p(0);
-    system::EquationSystem system = lagrange(k, 4, T, k.p(2) * k.q(0) * k.q(3) + square(k.q(1)), {k.q(1), k.number(1), k.q(0, 1), k.q(2)});
+    system::EquationSystem system =
+        lagrange(k, 4, T, k.p(2) * k.q(0) * k.q(3) + square(k.q(1)), {k.q(1), k.number(1), k.q(0, 1), k.q(2)});
     constrain(system, k, "a", k.q(0) * k.q(1) + square(k.q(3)) + k.q(2) * k.p(1));
     for (const bool second : {false, true}) {
       if (second) constrain(system, k, "b", k.cos(k.q(0)) + k.q(1) * k.q(3) - k.q(2));

@@ -158,8 +158,8 @@ inline system::EquationSystem massless() {
   const Scalar m = k.p(0), stiffness = k.p(1), half = k.number(1, 2);
   const Scalar T = half * m * (k.q(0, 1) * k.q(0, 1) + k.q(1, 1) * k.q(1, 1));
   const Scalar z = k.q(2);
-  auto system = lagrange(k, 3, T, half * stiffness * (z * z + k.q(0) * k.q(0)),
-                         {k.number(0), k.number(0), k.number(0)});
+  auto system =
+      lagrange(k, 3, T, half * stiffness * (z * z + k.q(0) * k.q(0)), {k.number(0), k.number(0), k.number(0)});
   constrain(system, k, "tie", z - k.q(0) * k.q(1));
   return system;
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The recurrences of Taylor series against the right-hand side itself: a polynomial of order p that follows the motion leaves a residual
-// x' - f(t, x) of order p. A wrong coefficient of order k leaves one of order k - 1.
+// The recurrences of Taylor series against the right-hand side itself: a polynomial of order p that follows the motion
+// leaves a residual x' - f(t, x) of order p. A wrong coefficient of order k leaves one of order k - 1.
+#include "program/taylor.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 
 #include "error.hpp"
 #include "program/systems.hpp"
-#include "program/taylor.hpp"
 #include "program/values.hpp"
 
 using namespace eomgen;
@@ -21,7 +22,8 @@ constexpr int digits = 70;
 using Number = cln::cl_R;
 
 /// c[k][i], by the interpreter: sums of products as their definition has them.
-std::vector<std::vector<Number>> coefficients(const program::Taylor& taylor, const program::Arguments<Number>& at, int order) {
+std::vector<std::vector<Number>> coefficients(const program::Taylor& taylor, const program::Arguments<Number>& at,
+                                              int order) {
   const auto start = program::interpret(taylor.start, at, digits).results;
   std::vector<std::vector<Number>> c{at.x, start[1]}, a(1), b(1);
   for (int k = 1; k < order; ++k) {
@@ -29,7 +31,8 @@ std::vector<std::vector<Number>> coefficients(const program::Taylor& taylor, con
     next.w = start[0];
     for (std::size_t i = 0; i < taylor.products; ++i) {
       Number sum = 0;
-      for (std::size_t j = 1; j < static_cast<std::size_t>(k); ++j) sum = sum + a[j][i] * b[static_cast<std::size_t>(k) - j][i];
+      for (std::size_t j = 1; j < static_cast<std::size_t>(k); ++j)
+        sum = sum + a[j][i] * b[static_cast<std::size_t>(k) - j][i];
       next.w.push_back(sum);
     }
     next.w.push_back(k == 1 ? 1 : 0);
@@ -44,7 +47,8 @@ std::vector<std::vector<Number>> coefficients(const program::Taylor& taylor, con
 }
 
 /// Largest |x' - f| of the polynomial at t + tau.
-double residual(const program::Function& rhs, const std::vector<std::vector<Number>>& c, program::Arguments<Number> at, const Number& tau) {
+double residual(const program::Function& rhs, const std::vector<std::vector<Number>>& c, program::Arguments<Number> at,
+                const Number& tau) {
   std::vector<Number> rate(at.x.size(), 0);
   for (std::size_t i = 0; i < at.x.size(); ++i) {
     Number x = 0;
@@ -70,7 +74,8 @@ void follows_the_motion(const system::EquationSystem& system, std::uint64_t poin
   const Number tau = cln::expt(cln::cl_RA(10), -4);
   const double coarse = residual(built.functions[0], c, at, tau), fine = residual(built.functions[0], c, at, tau / 4);
   CHECK(coarse < 1e-20);
-  if (coarse > 1e-55) CHECK(std::log2(coarse / fine) / 2 == doctest::Approx(order).epsilon(0.02));  // terms of the next order: tau
+  if (coarse > 1e-55)
+    CHECK(std::log2(coarse / fine) / 2 == doctest::Approx(order).epsilon(0.02));  // terms of the next order: tau
 }
 
 /// qddot = g of one coordinate.
@@ -88,7 +93,8 @@ system::EquationSystem one(const std::function<Scalar(const Maker&)>& g) {
 }  // namespace
 
 TEST_CASE("taylor: the recurrences of mechanical systems, the solve included") {
-  for (const auto& system : {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
+  for (const auto& system :
+       {pendulum(), double_pendulum(), cart_pendulum(), spherical_pendulum(), massless(), chain(3)}) {
     CAPTURE(system.free.size());
     for (const std::uint64_t point : std::initializer_list<std::uint64_t>{1, 4}) follows_the_motion(system, point);
   }
@@ -96,18 +102,23 @@ TEST_CASE("taylor: the recurrences of mechanical systems, the solve included") {
 
 TEST_CASE("taylor: the recurrence of every operation") {
   const auto call = [](Op op) {
-    return [op](const Maker& k) { return k.s(k.dag->call(op, (k.q(0) * k.number(2, 3) + k.q(0, 1) * k.t() * k.number(1, 7)).ref)); };
+    return [op](const Maker& k) {
+      return k.s(k.dag->call(op, (k.q(0) * k.number(2, 3) + k.q(0, 1) * k.t() * k.number(1, 7)).ref));
+    };
   };
-  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp, Op::log, Op::abs, Op::sign}) {
+  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp, Op::log,
+                      Op::abs, Op::sign}) {
     CAPTURE(static_cast<int>(op));
     follows_the_motion(one(call(op)), 2);
   }
   for (const Op op : {Op::asin, Op::acos}) {  // inside their domain
-    follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, (k.q(0) * k.t() * k.number(1, 3)).ref)); }), 2);
+    follows_the_motion(
+        one([op](const Maker& k) { return k.s(k.dag->call(op, (k.q(0) * k.t() * k.number(1, 3)).ref)); }), 2);
   }
   for (const Op op : {Op::atan2, Op::min, Op::max}) {
     CAPTURE(static_cast<int>(op));
-    follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.q(0).ref, (k.q(0, 1) * k.t()).ref)); }), 2);
+    follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.q(0).ref, (k.q(0, 1) * k.t()).ref)); }),
+                       2);
     follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.q(0).ref, k.p(0).ref)); }), 2);
     follows_the_motion(one([op](const Maker& k) { return k.s(k.dag->call(op, k.p(0).ref, k.q(0).ref)); }), 3);
   }
@@ -122,7 +133,9 @@ TEST_CASE("taylor: powers, quotients and branches, of what moves and of what doe
       [&](const Maker& k) { return pow(k, k.q(0) * k.t(), k.number(7, 3)); },
       [&](const Maker& k) { return k.q(0) / k.p(0) + k.p(1) / k.q(0) + k.q(0) / k.q(0, 1); },
       [&](const Maker& k) { return k.number(1) / (k.q(0) * k.q(0) * k.q(0)) - k.q(0) * k.q(0, 1) * k.p(2) * k.t(); },
-      [&](const Maker& k) { return k.s(k.dag->select(k.q(0).ref, k.p(0).ref, (k.q(0) * k.q(0)).ref, k.sin(k.q(0, 1)).ref)); },
+      [&](const Maker& k) {
+        return k.s(k.dag->select(k.q(0).ref, k.p(0).ref, (k.q(0) * k.q(0)).ref, k.sin(k.q(0, 1)).ref));
+      },
       [&](const Maker& k) { return k.s(k.dag->select(k.p(0).ref, k.q(0).ref, (k.q(0) * k.q(0)).ref, k.p(1).ref)); },
       [&](const Maker& k) { return k.sin(k.q(0)) * k.cos(k.q(0, 1)) + k.cos(k.q(0)) + k.t() * k.t(); },
       [&](const Maker& k) { return k.p(0) * k.q(0) + k.u(0); }};
@@ -136,7 +149,8 @@ TEST_CASE("taylor: powers, quotients and branches, of what moves and of what doe
 TEST_CASE("taylor: a program that is too large for series is told") {
   const auto built = build(chain(2));
   program::Function huge = built.functions[0];
-  const auto square = program::Instruction{Op::mul, {{program::Slot::state, 0}, {program::Slot::state, 0}}, 0, "", "", 0, 0};
+  const auto square =
+      program::Instruction{Op::mul, {{program::Slot::state, 0}, {program::Slot::state, 0}}, 0, "", "", 0, 0};
   for (std::uint32_t i = 0; i < 12000; ++i) {
     huge.code.push_back(square);
     huge.code.back().operands[1] = {program::Slot::value, static_cast<std::uint32_t>(huge.code.size() - 2)};

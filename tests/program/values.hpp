@@ -21,8 +21,10 @@ inline symbolic::Rational value_at(const symbolic::Symbol& s, std::uint64_t poin
 template <class Real>
 program::Arguments<Real> arguments_at(const system::EquationSystem& system, std::uint64_t point) {
   const auto number = [](const symbolic::Rational& value) -> Real {
-    if constexpr (std::is_same_v<Real, double>) return cln::double_approx(value);
-    else return value;
+    if constexpr (std::is_same_v<Real, double>)
+      return cln::double_approx(value);
+    else
+      return value;
   };
   program::Arguments<Real> arguments;
   arguments.t = number(value_at({symbolic::SymbolKind::time, 0, 0}, point));

@@ -23,7 +23,9 @@ class Dice {
   std::size_t below(std::size_t n) { return static_cast<std::size_t>(next() % n); }
   bool chance(int percent) { return below(100) < static_cast<std::size_t>(percent); }
   template <class T>
-  const T& pick(const std::vector<T>& from) { return from[below(from.size())]; }
+  const T& pick(const std::vector<T>& from) {
+    return from[below(from.size())];
+  }
   /// A decimal with two places from [low, high] hundredths.
   std::string decimal(int low, int high) {
     const int n = low + static_cast<int>(below(static_cast<std::size_t>(high - low + 1)));

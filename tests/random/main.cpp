@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// random_mechanisms PROGRAM FROM TO [N]: every seed's model through the program; a line for each that breaks a promise, and the sum.
-// Every N-th (each, if N is left out) is compiled, run and linearised too.
-// random_mechanisms PROGRAM --found FOLDER: the models that broke a promise once; run, if their name begins with run_; only checked, in a tenth of the time, with check_.
-// random_mechanisms PROGRAM --print SEED | --shrink SEED: the text of one; the smallest text that breaks the same promise.
+// random_mechanisms PROGRAM FROM TO [N]: every seed's model through the program; a line for each that breaks a promise,
+// and the sum. Every N-th (each, if N is left out) is compiled, run and linearised too. random_mechanisms PROGRAM
+// --found FOLDER: the models that broke a promise once; run, if their name begins with run_; only checked, in a tenth
+// of the time, with check_. random_mechanisms PROGRAM --print SEED | --shrink SEED: the text of one; the smallest text
+// that breaks the same promise.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -22,7 +23,8 @@ using namespace eomgen::random_models;
 std::uint64_t number(const char* text) { return std::strtoull(text, nullptr, 10); }
 
 // 0: all kept their promises, 1: some did not.
-int try_seeds(const std::string& program, const std::string& folder, std::uint64_t from, std::uint64_t to, std::uint64_t every) {
+int try_seeds(const std::string& program, const std::string& folder, std::uint64_t from, std::uint64_t to,
+              std::uint64_t every) {
   std::map<std::string, std::size_t> features;
   std::size_t tried = 0, refused = 0, failed = 0;
   double slowest = 0;
@@ -39,13 +41,17 @@ int try_seeds(const std::string& program, const std::string& folder, std::uint64
     slowest = std::max(slowest, trial.slowest);
     if (trial.findings.empty()) continue;
     ++failed;
-    for (const Finding& finding : trial.findings) std::printf("seed %llu: %s: %s\n", static_cast<unsigned long long>(seed), finding.command.c_str(), finding.what.c_str());
+    for (const Finding& finding : trial.findings)
+      std::printf("seed %llu: %s: %s\n", static_cast<unsigned long long>(seed), finding.command.c_str(),
+                  finding.what.c_str());
     std::fflush(stdout);
   }
   std::printf("features of those that are mechanisms:");
   for (const auto& [feature, count] : features) std::printf(" %s %zu;", feature.c_str(), count);
-  std::printf("\n%zu random mechanisms: %zu kept every promise, %zu are no mechanism and were refused, %zu failed; slowest command %.1f s\n", tried,
-              tried - refused - failed, refused, failed, slowest);
+  std::printf(
+      "\n%zu random mechanisms: %zu kept every promise, %zu are no mechanism and were refused, %zu failed; slowest "
+      "command %.1f s\n",
+      tried, tried - refused - failed, refused, failed, slowest);
   // A generator whose models are refused tests nothing.
   return failed == 0 && 4 * refused <= tried ? 0 : 1;
 }
@@ -63,7 +69,8 @@ int try_found(const std::string& program, const std::string& folder, const std::
     if (limits.only_checked) limits.seconds = seconds_of_a_check;
     const Trial trial = try_model(program, folder, text, limits);
     if (!trial.refusal.empty()) std::printf("%s: refused: %s\n", file.filename().c_str(), trial.refusal.c_str());
-    for (const Finding& finding : trial.findings) std::printf("%s: %s: %s\n", file.filename().c_str(), finding.command.c_str(), finding.what.c_str());
+    for (const Finding& finding : trial.findings)
+      std::printf("%s: %s: %s\n", file.filename().c_str(), finding.command.c_str(), finding.what.c_str());
     failed += trial.refusal.empty() && trial.findings.empty() ? 0 : 1;
   }
   std::printf("%zu models of former findings, %zu fail\n", files.size(), failed);
@@ -74,7 +81,10 @@ int try_found(const std::string& program, const std::string& folder, const std::
 
 int main(int count, char** words) {
   if (count != 4 && count != 5) {
-    std::fputs("usage: random_mechanisms PROGRAM FROM TO [N]\n       random_mechanisms PROGRAM --found FOLDER\n       random_mechanisms PROGRAM --print SEED\n       random_mechanisms PROGRAM --shrink SEED\n", stderr);
+    std::fputs(
+        "usage: random_mechanisms PROGRAM FROM TO [N]\n       random_mechanisms PROGRAM --found FOLDER\n       "
+        "random_mechanisms PROGRAM --print SEED\n       random_mechanisms PROGRAM --shrink SEED\n",
+        stderr);
     return 2;
   }
   const std::string program = std::filesystem::absolute(words[1]).string(), second = words[2];
@@ -88,7 +98,8 @@ int main(int count, char** words) {
   } else if (second == "--found") {
     status = try_found(program, folder, words[3]);
   } else {
-    status = try_seeds(program, folder, number(words[2]), number(words[3]), count == 5 ? std::max<std::uint64_t>(1, number(words[4])) : 1);
+    status = try_seeds(program, folder, number(words[2]), number(words[3]),
+                       count == 5 ? std::max<std::uint64_t>(1, number(words[4])) : 1);
   }
   std::filesystem::remove_all(folder);
   return status;

@@ -14,11 +14,11 @@ namespace {
 struct Place {
   std::string name;
   bool body = false;
-  bool spatial_rotation = false;      // more than one angle
-  std::vector<std::string> own;       // coordinates of its position
-  std::vector<std::string> angles;    // coordinates of its rotation
+  bool spatial_rotation = false;    // more than one angle
+  std::vector<std::string> own;     // coordinates of its position
+  std::vector<std::string> angles;  // coordinates of its rotation
   bool euler_parameters = false;
-  bool free_position = false;         // three (in a plane two) Cartesian coordinates of its own, from the origin
+  bool free_position = false;  // three (in a plane two) Cartesian coordinates of its own, from the origin
 };
 
 // The models of the seeds before it are what they were when these kinds were added: findings are told by their seeds.
@@ -36,8 +36,10 @@ class Builder {
     equal_ = dice_.chance(25);
     const std::size_t places = 1 + dice_.below(planar_ ? 5 : 4);
     for (std::size_t i = 0; i < places; ++i) {
-      if (dice_.chance(60)) add_body();
-      else add_particle();
+      if (dice_.chance(60))
+        add_body();
+      else
+        add_particle();
     }
     add_forces();
     add_energies();
@@ -68,8 +70,12 @@ class Builder {
     starts_.push_back({start, rate});
     return name;
   }
-  std::string length(int low = 40, int high = 150) { return coordinate(dice_.decimal(low, high), dice_.decimal(-60, 60)); }
-  std::string angle(int low = 30, int high = 120) { return coordinate(dice_.decimal(low, high), dice_.decimal(-90, 90)); }
+  std::string length(int low = 40, int high = 150) {
+    return coordinate(dice_.decimal(low, high), dice_.decimal(-60, 60));
+  }
+  std::string angle(int low = 30, int high = 120) {
+    return coordinate(dice_.decimal(low, high), dice_.decimal(-90, 90));
+  }
   std::string offset() { return coordinate(dice_.decimal(-120, 120), dice_.decimal(-60, 60)); }
 
   std::string function_of_time() {
@@ -86,7 +92,9 @@ class Builder {
   }
 
   // Where a place may be measured from: an earlier one, or the origin.
-  const Place* earlier(int percent) { return !places_.empty() && dice_.chance(percent) ? &places_[dice_.below(places_.size())] : nullptr; }
+  const Place* earlier(int percent) {
+    return !places_.empty() && dice_.chance(percent) ? &places_[dice_.below(places_.size())] : nullptr;
+  }
 
   // An axis of the ground or, in space, of a body.
   std::string direction() {
@@ -94,12 +102,14 @@ class Builder {
     return dice_.pick<std::string>({"E1", "E2", "E3", "-E3", "E1 + E2", "0.6*E1 - 0.8*E3", "2*E2"});
   }
   std::string body_axis(const Place& body) {
-    return body.name + (planar_ ? dice_.pick<std::string>({".e1", ".e2"}) : dice_.pick<std::string>({".e1", ".e2", ".e3"}));
+    return body.name +
+           (planar_ ? dice_.pick<std::string>({".e1", ".e2"}) : dice_.pick<std::string>({".e1", ".e2", ".e3"}));
   }
   std::string point_of(const Place& place) {
     if (!place.body || dice_.chance(40)) return place.name;
     feature("point on a body");
-    return place.name + " + " + value(20, 80) + "*" + body_axis(place) + (dice_.chance(30) ? " - " + value(10, 50) + "*" + body_axis(place) : "");
+    return place.name + " + " + value(20, 80) + "*" + body_axis(place) +
+           (dice_.chance(30) ? " - " + value(10, 50) + "*" + body_axis(place) : "");
   }
 
   std::string chart(Place& place) {
@@ -114,10 +124,12 @@ class Builder {
       switch (dice_.below(3)) {
         case 0:
           feature("cylindrical");
-          return "{ cylindrical = [\"" + own({dice_.chance(50) ? length() : value(40, 120)})[0] + "\", \"" + own({angle()})[0] + "\", \"0\"]" + tail;
+          return "{ cylindrical = [\"" + own({dice_.chance(50) ? length() : value(40, 120)})[0] + "\", \"" +
+                 own({angle()})[0] + "\", \"0\"]" + tail;
         case 1:
           feature("oblique");
-          return "{ oblique = " + list(own({offset(), offset()})) + ", angle = \"" + dice_.decimal(20, 60) + "\"" + tail;
+          return "{ oblique = " + list(own({offset(), offset()})) + ", angle = \"" + dice_.decimal(20, 60) + "\"" +
+                 tail;
         default: {
           feature("cartesian");
           place.free_position = from == nullptr;
@@ -129,17 +141,25 @@ class Builder {
       case 0: feature("cylindrical"); return "{ cylindrical = " + list(own({length(), angle(), offset()})) + tail;
       case 1:
         feature("spherical");
-        if (dice_.chance(50)) return "{ spherical = [\"" + value(40, 120) + "\", \"" + own({angle()})[0] + "\", \"" + own({angle()})[0] + "\"]" + tail;
+        if (dice_.chance(50))
+          return "{ spherical = [\"" + value(40, 120) + "\", \"" + own({angle()})[0] + "\", \"" + own({angle()})[0] +
+                 "\"]" + tail;
         return "{ spherical = " + list(own({length(), angle(), angle()})) + tail;
       case 2: feature("parabolic"); return "{ parabolic = " + list(own({length(), length(), angle()})) + tail;
-      case 3: feature("helical"); return "{ helical = " + list(own({angle(), length(), offset()})) + ", pitch = \"" + value(20, 60) + "\"" + tail;
-      case 4: feature("oblique"); return "{ oblique = " + list(own({offset(), offset(), offset()})) + ", angle = \"" + dice_.decimal(20, 60) + "\"" + tail;
+      case 3:
+        feature("helical");
+        return "{ helical = " + list(own({angle(), length(), offset()})) + ", pitch = \"" + value(20, 60) + "\"" + tail;
+      case 4:
+        feature("oblique");
+        return "{ oblique = " + list(own({offset(), offset(), offset()})) + ", angle = \"" + dice_.decimal(20, 60) +
+               "\"" + tail;
       case 5: {
         feature("entries that are expressions");
         const std::string moved = dice_.chance(50) ? function_of_time() : value(20, 60);
         const std::string x = own({offset()})[0], y = own({offset()})[0];
         coordinate_lines_ += x + " = {}\n";
-        return "{ cartesian = [\"" + x + " + " + moved + "\", \"" + y + "\", \"" + value(20, 60) + "*" + x + "\"]" + tail;
+        return "{ cartesian = [\"" + x + " + " + moved + "\", \"" + y + "\", \"" + value(20, 60) + "*" + x + "\"]" +
+               tail;
       }
       default: {
         feature("cartesian");
@@ -159,7 +179,8 @@ class Builder {
       feature("mass of time");
       mass += " + 0.1*t";
     }
-    place_lines_ += "[[particle]]\nname = \"" + place.name + "\"\nmass = \"" + mass + "\"\nposition = " + position + "\n";
+    place_lines_ +=
+        "[[particle]]\nname = \"" + place.name + "\"\nmass = \"" + mass + "\"\nposition = " + position + "\n";
     places_.push_back(place);
   }
 
@@ -172,7 +193,8 @@ class Builder {
     };
     if (planar_) {
       feature("rotation in the plane");
-      return "{ axis = \"" + (parent != nullptr ? parent->name + ".e3" : std::string("E3")) + "\", angle = \"" + turn({angle()})[0] + "\" }";
+      return "{ axis = \"" + (parent != nullptr ? parent->name + ".e3" : std::string("E3")) + "\", angle = \"" +
+             turn({angle()})[0] + "\" }";
     }
     switch (dice_.below(6)) {
       case 0: {
@@ -180,7 +202,8 @@ class Builder {
         feature("euler_parameters");
         body.euler_parameters = true;
         const std::vector<std::string> v{dice_.decimal(-40, 40), dice_.decimal(-40, 40), dice_.decimal(-40, 40)};
-        std::vector<std::string> e{coordinate("\"sqrt(1 - (" + v[0] + ")^2 - (" + v[1] + ")^2 - (" + v[2] + ")^2)\"", "")};
+        std::vector<std::string> e{
+            coordinate("\"sqrt(1 - (" + v[0] + ")^2 - (" + v[1] + ")^2 - (" + v[2] + ")^2)\"", "")};
         for (const std::string& start : v) e.push_back(coordinate(start, ""));
         spins_.push_back(body.name);
         return "{ euler_parameters = " + list(turn(e)) + " }";
@@ -191,7 +214,9 @@ class Builder {
         return "{ rodrigues = " + list(turn({offset(), offset(), offset()})) + " }";
       }
       case 2:
-        if (parent != nullptr && dice_.chance(60)) return "{ axis = \"" + parent->name + dice_.pick<std::string>({".e1", ".e2", ".e3"}) + "\", angle = \"" + turn({angle()})[0] + "\" }";
+        if (parent != nullptr && dice_.chance(60))
+          return "{ axis = \"" + parent->name + dice_.pick<std::string>({".e1", ".e2", ".e3"}) + "\", angle = \"" +
+                 turn({angle()})[0] + "\" }";
         parent = nullptr;
         return "{ axis = \"" + direction() + "\", angle = \"" + turn({angle()})[0] + "\" }";
       case 3:
@@ -202,7 +227,8 @@ class Builder {
         [[fallthrough]];
       default: {
         body.spatial_rotation = true;
-        const std::string set = dice_.pick<std::string>({"121", "131", "212", "232", "313", "323", "123", "132", "213", "231", "312", "321"});
+        const std::string set = dice_.pick<std::string>(
+            {"121", "131", "212", "232", "313", "323", "123", "132", "213", "231", "312", "321"});
         feature("euler " + set);
         return "{ euler = \"" + set + "\", angles = " + list(turn({angle(), angle(40, 110), angle()})) + " }";
       }
@@ -218,11 +244,10 @@ class Builder {
       case 3: return "{ box = [\"" + value(20, 60) + "\", \"" + value(20, 60) + "\", \"" + value(20, 60) + "\"] }";
       case 4: {
         const std::string a = value(20, 24);
-        return "{ principal = [\"" + a + "\", \"" + (dice_.chance(30) ? a : value(25, 29)) + "\", \"" + value(15, 19) + "\"] }";
+        return "{ principal = [\"" + a + "\", \"" + (dice_.chance(30) ? a : value(25, 29)) + "\", \"" + value(15, 19) +
+               "\"] }";
       }
-      default:
-        feature("full inertia tensor");
-        return "[[0.25, 0.02, -0.01], [0.02, 0.3, 0.03], [-0.01, 0.03, 0.2]]";
+      default: feature("full inertia tensor"); return "[[0.25, 0.02, -0.01], [0.02, 0.3, 0.03], [-0.01, 0.03, 0.2]]";
     }
   }
 
@@ -243,7 +268,8 @@ class Builder {
         coordinate_lines_ += coordinates_.back() + " = {}\n";
         body.own.push_back(coordinates_.back());
       } else {
-        position = "\"" + carrier->name + " + " + value(20, 90) + "*" + body_axis(*carrier) + " - " + value(20, 90) + "*" + body_axis(body) + "\"";
+        position = "\"" + carrier->name + " + " + value(20, 90) + "*" + body_axis(*carrier) + " - " + value(20, 90) +
+                   "*" + body_axis(body) + "\"";
       }
     } else if (dice_.chance(20)) {
       feature("body on a pivot");
@@ -252,8 +278,8 @@ class Builder {
       position = chart(body);
     }
     const std::string turned = rotation(body, parent);
-    place_lines_ += "[[body]]\nname = \"" + body.name + "\"\nmass = \"" + value(50, 300) + "\"\ninertia = " + inertia(body) + "\nposition = " + position +
-                    "\nrotation = " + turned + "\n";
+    place_lines_ += "[[body]]\nname = \"" + body.name + "\"\nmass = \"" + value(50, 300) +
+                    "\"\ninertia = " + inertia(body) + "\nposition = " + position + "\nrotation = " + turned + "\n";
     if (parent != nullptr) {
       feature("relative rotation");
       place_lines_ += "relative_to = \"" + parent->name + "\"\n";
@@ -281,20 +307,24 @@ class Builder {
     for (std::size_t k = 0; k < count; ++k) {
       const Place& a = places_[dice_.below(places_.size())];
       switch (dice_.below(9)) {
-        case 0: case 1: {
+        case 0:
+        case 1: {
           const std::string other = "\"" + value(150, 300) + "*E1\"";
           feature("spring");
-          force("spring = { between = [\"" + point_of(a) + "\", " + other + "], stiffness = \"" + value(100, 900) + "\", length = \"" + value(20, 120) + "\" }");
+          force("spring = { between = [\"" + point_of(a) + "\", " + other + "], stiffness = \"" + value(100, 900) +
+                "\", length = \"" + value(20, 120) + "\" }");
           break;
         }
         case 2:
           feature("damper");
-          force("damper = { between = [\"" + point_of(a) + "\", \"" + value(150, 300) + "*E2\"], coefficient = \"" + value(10, 90) + "\" }");
+          force("damper = { between = [\"" + point_of(a) + "\", \"" + value(150, 300) + "*E2\"], coefficient = \"" +
+                value(10, 90) + "\" }");
           break;
         case 3:
           if (a.angles.empty() || a.euler_parameters) break;
           feature("torsion");
-          force("torsion = { angle = \"" + dice_.pick(a.angles) + "\", stiffness = \"" + value(50, 400) + "\", coefficient = \"" + value(5, 50) + "\" }");
+          force("torsion = { angle = \"" + dice_.pick(a.angles) + "\", stiffness = \"" + value(50, 400) +
+                "\", coefficient = \"" + value(5, 50) + "\" }");
           break;
         case 4:
           if (!a.body) break;
@@ -304,15 +334,18 @@ class Builder {
         case 5:
           if (!a.body) break;
           feature("moment");
-          force("on = \"" + a.name + "\"\nmoment = \"" + scalar_of_time() + "*" + (planar_ ? "E3" : body_axis(a)) + "\"");
+          force("on = \"" + a.name + "\"\nmoment = \"" + scalar_of_time() + "*" + (planar_ ? "E3" : body_axis(a)) +
+                "\"");
           break;
         case 6:
           feature("force");
-          force("on = \"" + point_of(a) + "\"\nforce = \"" + scalar_of_time() + "*" + direction() + " - " + value(5, 40) + "*velocity(" + a.name + ")\"");
+          force("on = \"" + point_of(a) + "\"\nforce = \"" + scalar_of_time() + "*" + direction() + " - " +
+                value(5, 40) + "*velocity(" + a.name + ")\"");
           break;
         case 7:
           feature("drag");
-          force("drag = { on = \"" + a.name + "\", density = \"1.2\", area = \"" + value(10, 50) + "\", coefficient = \"0.47\" }");
+          force("drag = { on = \"" + a.name + "\", density = \"1.2\", area = \"" + value(10, 50) +
+                "\", coefficient = \"0.47\" }");
           break;
         default: {
           feature("generalized force");
@@ -327,7 +360,8 @@ class Builder {
     if (!dice_.chance(12)) return;
     feature("energy given");
     const std::string q = dice_.pick(coordinates_);
-    energy_ = "kinetic = \"1/2*" + value(20, 90) + "*" + q + "_dot^2\"\npotential = \"1/2*" + value(50, 300) + "*" + q + "^2\"\n";
+    energy_ = "kinetic = \"1/2*" + value(20, 90) + "*" + q + "_dot^2\"\npotential = \"1/2*" + value(50, 300) + "*" + q +
+              "^2\"\n";
   }
 
   void constraint(const std::string& kind, const std::string& line) {
@@ -350,18 +384,23 @@ class Builder {
   void add_joint_of_all_axes() {
     const bool universal = !planar_ && dice_.chance(70);
     // The place of the first and one of its angles follow from a universal joint.
-    const auto fits = [&](const Place& p) { return p.body && (!universal || (p.free_position && p.angles.size() == 3 && p.spatial_rotation)); };
+    const auto fits = [&](const Place& p) {
+      return p.body && (!universal || (p.free_position && p.angles.size() == 3 && p.spatial_rotation));
+    };
     const Place& a = one_of(fits);
     const Place& b = places_[dice_.below(places_.size())];
     if (!fits(a) || (&a != &b && !b.body)) return;
-    const std::string other = &a == &b ? "ground" : b.name, head = "[[joint]]\nname = \"j" + std::to_string(joints_ + 1) + "\"\n";
+    const std::string other = &a == &b ? "ground" : b.name,
+                      head = "[[joint]]\nname = \"j" + std::to_string(joints_ + 1) + "\"\n";
     const std::string bodies = "bodies = [\"" + other + "\", \"" + a.name + "\"]\n";
     std::size_t left = coordinates_.size();
     for (const Place& p : places_) left -= p.euler_parameters ? 1 : 0;
     if (left <= (universal ? 4u : planar_ ? 3u : 6u) || result_.constrained) return;
     if (universal) {
-      const std::string at = &a == &b ? "origin" : point_of(b), from = point_of(a), axis = &a == &b ? "E3" : body_axis(b);
-      joint_lines_ += head + "type = \"universal\"\n" + bodies + "at = [\"" + at + "\", \"" + from + "\"]\naxis = [\"" + axis + "\", \"" + body_axis(a) + "\"]\n";
+      const std::string at = &a == &b ? "origin" : point_of(b), from = point_of(a),
+                        axis = &a == &b ? "E3" : body_axis(b);
+      joint_lines_ += head + "type = \"universal\"\n" + bodies + "at = [\"" + at + "\", \"" + from + "\"]\naxis = [\"" +
+                      axis + "\", \"" + body_axis(a) + "\"]\n";
       for (const std::string& q : a.own) follows_.insert(q);
       follows_.insert(a.angles[1]);
     } else {
@@ -379,31 +418,41 @@ class Builder {
     }
     feature("dry friction");
     const std::string dynamic = dice_.decimal(10, 60);
-    return "friction = { static = \"" + (dice_.chance(50) ? dynamic : dice_.decimal(61, 90)) + "\", dynamic = \"" + dynamic + "\" }\n";
+    return "friction = { static = \"" + (dice_.chance(50) ? dynamic : dice_.decimal(61, 90)) + "\", dynamic = \"" +
+           dynamic + "\" }\n";
   }
 
   std::string one_sided() {
     feature("unilateral");
-    return std::string("holds = \"unilateral\"\n") + (dice_.chance(60) ? "restitution = \"" + value(0, 90) + "\"\n" : "");
+    return std::string("holds = \"unilateral\"\n") +
+           (dice_.chance(60) ? "restitution = \"" + value(0, 90) + "\"\n" : "");
   }
 
-  // At most three, as the program takes: a floor below the start of a place, a rough one through it, dry guides, a ball on rough ground.
+  // At most three, as the program takes: a floor below the start of a place, a rough one through it, dry guides, a ball
+  // on rough ground.
   void add_contacts() {
     const std::string up = planar_ ? "E2" : "E3";
     const std::size_t count = 1 + dice_.below(3);
     for (std::size_t k = 0; k < count; ++k) {
       const std::size_t kind = dice_.below(4);
-      const Place& a = one_of([&](const Place& p) { return p.free_position && (kind != 1 || !p.body) && (kind != 3 || (p.body && p.spatial_rotation)); });
+      const Place& a = one_of([&](const Place& p) {
+        return p.free_position && (kind != 1 || !p.body) && (kind != 3 || (p.body && p.spatial_rotation));
+      });
       const std::string height = a.free_position ? a.own.back() : "";
       switch (kind) {
         case 0:  // a floor below the start, of which nothing is known but for coordinates
-          if (height.empty()) contact("floor", "holonomic = \"dot(" + point_of(a) + ", " + up + ") + " + value(200, 400) + "\"\n" + one_sided());
+          if (height.empty())
+            contact("floor",
+                    "holonomic = \"dot(" + point_of(a) + ", " + up + ") + " + value(200, 400) + "\"\n" + one_sided());
           if (height.empty() || follows_.contains(height) || result_.constrained) break;
-          contact("floor", "holonomic = \"" + height + " - initial(" + height + ") + " + value(1, 30) + "\"\n" + one_sided());
+          contact("floor",
+                  "holonomic = \"" + height + " - initial(" + height + ") + " + value(1, 30) + "\"\n" + one_sided());
           break;
         case 1:  // a rough one through the start, level or not
           if (height.empty() || follows_.contains(height) || a.body || result_.constrained) break;
-          contact("rough surface", "holonomic = \"" + height + (dice_.chance(50) ? " - " + value(10, 40) + "*" + a.own[0] : std::string()) + " - " + value(10, 90) + "\"\n" + coulomb() +
+          contact("rough surface", "holonomic = \"" + height +
+                                       (dice_.chance(50) ? " - " + value(10, 40) + "*" + a.own[0] : std::string()) +
+                                       " - " + value(10, 90) + "\"\n" + coulomb() +
                                        (dice_.chance(30) ? one_sided() : std::string()));
           follows_.insert(height);
           break;
@@ -412,7 +461,8 @@ class Builder {
           if (is_euler_parameter(q) || !dry_.insert(q).second) break;
           feature("dry force");
           const std::string dynamic = dice_.decimal(10, 60);
-          force("dry = { coordinate = \"" + q + "\", normal = \"" + value(50, 300) + "\", static = \"" + (dice_.chance(50) ? dynamic : dice_.decimal(61, 90)) + "\", dynamic = \"" + dynamic + "\" }");
+          force("dry = { coordinate = \"" + q + "\", normal = \"" + value(50, 300) + "\", static = \"" +
+                (dice_.chance(50) ? dynamic : dice_.decimal(61, 90)) + "\", dynamic = \"" + dynamic + "\" }");
           break;
         }
         default: {
@@ -420,7 +470,9 @@ class Builder {
           rolling_ = true;
           const bool apart = dice_.chance(40);
           const std::string radius = apart ? dice_.decimal(1, 9) : value(20, 60);
-          contact("rough ball", std::string(dice_.chance(70) ? "rolling" : "sliding") + " = { body = \"" + a.name + "\", shape = { sphere = \"" + radius + "\" }, on = \"ground\" }\nfriction = { static = \"0.5\", dynamic = \"" +
+          contact("rough ball", std::string(dice_.chance(70) ? "rolling" : "sliding") + " = { body = \"" + a.name +
+                                    "\", shape = { sphere = \"" + radius +
+                                    "\" }, on = \"ground\" }\nfriction = { static = \"0.5\", dynamic = \"" +
                                     dice_.decimal(10, 50) + "\" }\n" + (apart ? one_sided() : std::string()));
           if (!apart) follows_.insert(height);
         }
@@ -450,33 +502,38 @@ class Builder {
       switch (dice_.below(6)) {
         case 0: {  // a joint as placed at the start; loops and bodies with coordinates of their own
           if (!a.body || (&a != &b && !b.body)) break;
-          const std::string type = planar_ ? "pin" : dice_.pick<std::string>({"ball", "pin", "universal", "cylindrical", "slider"});
+          const std::string type =
+              planar_ ? "pin" : dice_.pick<std::string>({"ball", "pin", "universal", "cylindrical", "slider"});
           const std::size_t equations = planar_ ? 2 : type == "ball" ? 3 : type == "pin" || type == "slider" ? 5 : 4;
           const std::string other = &a == &b ? "ground" : b.name;
           if (type == "universal" || !room(equations)) break;
           feature("joint " + type);
           result_.constrained = true;
-          joint_lines_ += "[[joint]]\nname = \"j" + std::to_string(++joints_) + "\"\ntype = \"" + type + "\"\nbodies = [\"" + other + "\", \"" + a.name +
-                          "\"]\nat = \"" + point_of(a) + "\"\n" + (type == "ball" ? "" : "axis = \"" + (planar_ ? "E3" : body_axis(a)) + "\"\n");
+          joint_lines_ += "[[joint]]\nname = \"j" + std::to_string(++joints_) + "\"\ntype = \"" + type +
+                          "\"\nbodies = [\"" + other + "\", \"" + a.name + "\"]\nat = \"" + point_of(a) + "\"\n" +
+                          (type == "ball" ? "" : "axis = \"" + (planar_ ? "E3" : body_axis(a)) + "\"\n");
           break;
         }
         case 1:
           if (!a.free_position || &a == &b || !room(1)) break;
           if (follows_.contains(a.own[0])) break;
           follows_.insert(a.own[0]);
-          constraint("distance", "holonomic = \"norm(" + a.name + " - " + b.name + ") - " + value(80, 200) + (dice_.chance(25) ? " - " + function_of_time() : "") + "\"");
+          constraint("distance", "holonomic = \"norm(" + a.name + " - " + b.name + ") - " + value(80, 200) +
+                                     (dice_.chance(25) ? " - " + function_of_time() : "") + "\"");
           break;
         case 2: {
           const std::string q = dice_.pick(coordinates_), r = dice_.pick(coordinates_);
           if (q == r || follows_.contains(q) || follows_.contains(r) || is_euler_parameter(q) || !room(1)) break;
           follows_.insert(q);
-          constraint("relation of coordinates", "holonomic = \"" + q + " - " + value(40, 90) + "*" + r + (dice_.chance(40) ? "^2" : "") + " - " + value(10, 60) + "\"");
+          constraint("relation of coordinates", "holonomic = \"" + q + " - " + value(40, 90) + "*" + r +
+                                                    (dice_.chance(40) ? "^2" : "") + " - " + value(10, 60) + "\"");
           break;
         }
         case 3: {
           const std::string q = dice_.pick(coordinates_), r = dice_.pick(coordinates_), s = dice_.pick(coordinates_);
           if (q == r || !room(1)) break;
-          constraint("velocity constraint", "velocity = \"" + q + "_dot*cos(" + s + ") - " + value(30, 90) + "*" + r + "_dot\"");
+          constraint("velocity constraint",
+                     "velocity = \"" + q + "_dot*cos(" + s + ") - " + value(30, 90) + "*" + r + "_dot\"");
           break;
         }
         case 4:
@@ -484,10 +541,14 @@ class Builder {
           constraint("knife edge", "velocity = \"dot(" + body_axis(a) + ", velocity(" + a.name + "))\"");
           break;
         default:
-          if (planar_ || !a.body || !a.free_position || !a.spatial_rotation || rolling_ || follows_.contains(a.own[2]) || !room(3)) break;
+          if (planar_ || !a.body || !a.free_position || !a.spatial_rotation || rolling_ ||
+              follows_.contains(a.own[2]) || !room(3))
+            break;
           rolling_ = true;
           follows_.insert(a.own[2]);
-          constraint("rolling", "rolling = { body = \"" + a.name + "\", shape = { " + dice_.pick<std::string>({"sphere", "sphere"}) + " = \"" + value(20, 60) + "\" }, on = \"ground\" }");
+          constraint("rolling", "rolling = { body = \"" + a.name + "\", shape = { " +
+                                    dice_.pick<std::string>({"sphere", "sphere"}) + " = \"" + value(20, 60) +
+                                    "\" }, on = \"ground\" }");
           break;
       }
     }
@@ -515,10 +576,13 @@ class Builder {
       }
       if (!value.empty()) start_ += (start_.empty() ? "" : ", ") + q + " = " + value;
       // Rates that constraints bind to one another are left to them: the start is at rest but for what is prescribed.
-      if (!rate.empty() && !result_.constrained && constraints_ == 0) start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + rate;
+      if (!rate.empty() && !result_.constrained && constraints_ == 0)
+        start_ += (start_.empty() ? "" : ", ") + q + "_dot = " + rate;
     }
     if (result_.constrained || constraints_ > 0) spins_.clear();
-    for (const std::string& body : spins_) start_ += (start_.empty() ? "" : ", ") + ("\"" + body + ".omega\" = [" + dice_.decimal(-90, 90) + ", " + dice_.decimal(-90, 90) + ", " + dice_.decimal(-90, 90) + "]");
+    for (const std::string& body : spins_)
+      start_ += (start_.empty() ? "" : ", ") + ("\"" + body + ".omega\" = [" + dice_.decimal(-90, 90) + ", " +
+                                                dice_.decimal(-90, 90) + ", " + dice_.decimal(-90, 90) + "]");
     t += "initial = { " + start_ + " }\n";
     if (!guess_.empty()) t += "guess = { " + guess_ + " }\n";
     return result_;
@@ -533,7 +597,8 @@ class Builder {
   std::vector<std::pair<std::string, std::string>> starts_;  // of each coordinate: value, rate
   std::set<std::string> dry_;                                // slide dry
   std::set<std::string> follows_;                            // from a constraint
-  std::string parameter_lines_, function_lines_, input_lines_, coordinate_lines_, energy_, place_lines_, force_lines_, constraint_lines_, joint_lines_, start_, guess_;
+  std::string parameter_lines_, function_lines_, input_lines_, coordinate_lines_, energy_, place_lines_, force_lines_,
+      constraint_lines_, joint_lines_, start_, guess_;
 };
 
 }  // namespace

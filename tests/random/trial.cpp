@@ -14,27 +14,29 @@ namespace {
 using test::ChildResult;
 using Json = nlohmann::json;
 
-// What a model may be refused for, by `check` or at the start of `run`: it is no mechanism, or none at its start. Everything else is a finding.
+// What a model may be refused for, by `check` or at the start of `run`: it is no mechanism, or none at its start.
+// Everything else is a finding.
 const std::vector<std::string>& refusals() {
   static const std::vector<std::string> texts{
-      "nothing is left to move",            // locked
-      "contradict",                         // constraints that cannot hold together
-      "follows from",                       // one that says what others say
-      "the start breaks constraint",        // an assembly that cannot be closed from its guess
+      "nothing is left to move",      // locked
+      "contradict",                   // constraints that cannot hold together
+      "follows from",                 // one that says what others say
+      "the start breaks constraint",  // an assembly that cannot be closed from its guess
       "cannot be satisfied",
-      "has no mass",                        // a coordinate that nothing with inertia moves along
+      "has no mass",  // a coordinate that nothing with inertia moves along
       "no inertia",
-      "changes no equation of motion",      // a force that does no work: friction at a pivot
-      "contains no velocity",               // a knife edge along an arm: its point never moves that way
+      "changes no equation of motion",  // a force that does no work: friction at a pivot
+      "contains no velocity",           // a knife edge along an arm: its point never moves that way
       "does not depend on any velocity",
-      "the forces are not determined",      // more directions in which friction can hold than the system has
+      "the forces are not determined",  // more directions in which friction can hold than the system has
   };
   return texts;
 }
 
 // A run may end early for what is true of the mechanism.
 const std::vector<std::string>& outcomes() {
-  static const std::vector<std::string> names{"chart_left", "singular_mass_matrix", "step_too_small", "friction_no_solution", "friction_many_solutions"};
+  static const std::vector<std::string> names{"chart_left", "singular_mass_matrix", "step_too_small",
+                                              "friction_no_solution", "friction_many_solutions"};
   return names;
 }
 
@@ -42,7 +44,8 @@ const std::vector<std::string>& outcomes() {
 constexpr double balance_tolerance = 1e-7, constraint_tolerance = 1e-8;
 
 bool among(const std::string& text, const std::vector<std::string>& parts) {
-  return std::any_of(parts.begin(), parts.end(), [&](const std::string& part) { return text.find(part) != std::string::npos; });
+  return std::any_of(parts.begin(), parts.end(),
+                     [&](const std::string& part) { return text.find(part) != std::string::npos; });
 }
 
 std::string message(const ChildResult& result) {
@@ -58,7 +61,8 @@ std::string message(const ChildResult& result) {
 
 class Attempt {
  public:
-  Attempt(const std::string& program, const std::string& folder, const Limits& limits) : program_(program), folder_(folder), limits_(limits) {}
+  Attempt(const std::string& program, const std::string& folder, const Limits& limits)
+      : program_(program), folder_(folder), limits_(limits) {}
 
   Trial operator()(const std::string& text) {
     std::ofstream(folder_ + "/m.toml", std::ios::binary) << text;
@@ -75,8 +79,12 @@ class Attempt {
   // Whether it did what it was asked for. A shell sets the limits: they die with the command.
   bool command(const std::string& name, const std::vector<std::string>& options) {
     test::ChildCommand call;
-    const std::string memory = limits_.megabytes > 0 ? "ulimit -v " + std::to_string(limits_.megabytes * 1024L) + "; " : "";
-    call.arguments = {"/bin/sh", "-c", "ulimit -t " + std::to_string(limits_.seconds) + "; " + memory + "exec \"$@\"", "sh", program_, name, "m.toml", "--json"};
+    const std::string memory =
+        limits_.megabytes > 0 ? "ulimit -v " + std::to_string(limits_.megabytes * 1024L) + "; " : "";
+    call.arguments = {
+        "/bin/sh", "-c",     "ulimit -t " + std::to_string(limits_.seconds) + "; " + memory + "exec \"$@\"",
+        "sh",      program_, name,
+        "m.toml",  "--json"};
     call.arguments.insert(call.arguments.end(), options.begin(), options.end());
     call.folder = folder_;
     call.limit = 30.0 * limits_.seconds;  // of the clock, on a machine that is busy
@@ -98,7 +106,8 @@ class Attempt {
 
   bool told_outcome() const {
     const Json document = Json::parse(result_.out, nullptr, false);
-    return !document.is_discarded() && document.contains("outcome") && among(document["outcome"].get<std::string>(), outcomes());
+    return !document.is_discarded() && document.contains("outcome") &&
+           among(document["outcome"].get<std::string>(), outcomes());
   }
 
   void inspect_run() {
@@ -107,9 +116,13 @@ class Attempt {
       trial_.findings.push_back({"run", "its JSON document cannot be read"});
       return;
     }
-    const auto number = [&](const char* key) { return document.contains(key) && document[key].is_number() ? document[key].get<double>() : 0.0; };
-    if (number("power_balance") > balance_tolerance) trial_.findings.push_back({"run", "power balance open: " + std::to_string(number("power_balance"))});
-    if (number("constraint_drift") > constraint_tolerance) trial_.findings.push_back({"run", "constraints drift: " + std::to_string(number("constraint_drift"))});
+    const auto number = [&](const char* key) {
+      return document.contains(key) && document[key].is_number() ? document[key].get<double>() : 0.0;
+    };
+    if (number("power_balance") > balance_tolerance)
+      trial_.findings.push_back({"run", "power balance open: " + std::to_string(number("power_balance"))});
+    if (number("constraint_drift") > constraint_tolerance)
+      trial_.findings.push_back({"run", "constraints drift: " + std::to_string(number("constraint_drift"))});
   }
 
   std::string program_, folder_;

@@ -39,8 +39,8 @@ struct Finding {
 /// What happened to a model: refused, and why; or what broke a promise.
 struct Trial {
   std::vector<Finding> findings;
-  std::string refusal;        // the model is no mechanism: its first message, told by `check` or by the start of `run`
-  double slowest = 0;         // seconds of the slowest command
+  std::string refusal;  // the model is no mechanism: its first message, told by `check` or by the start of `run`
+  double slowest = 0;   // seconds of the slowest command
 };
 
 /// Checks, derives with every item, verifies, emits, compiles, runs and linearises the model. `folder` has to be there.

@@ -23,7 +23,8 @@ const Equation& of(const ReadingForm& form, System& s, const std::string& coordi
 
 Sum residual(System& s, const Equation& equation) {
   Sum result = equation.expanded - equation.force;
-  for (const reading::MultiplierTerm& term : equation.multipliers) result -= s.symbol.multiplier(term.constraint) * term.slope;
+  for (const reading::MultiplierTerm& term : equation.multipliers)
+    result -= s.symbol.multiplier(term.constraint) * term.slope;
   return result;
 }
 
@@ -58,7 +59,8 @@ TEST_CASE("P7: approach I reads as (2.111), approach II as (2.109)") {
   CHECK(R.multipliers[0].slope == Sum(1));
   REQUIRE(one.reactions.size() == 1);
   REQUIRE(one.reactions[0].value);
-  CHECK(same(*one.reactions[0].value, m * v("d_ddot") - m * d * (square(sn) * square(dtheta) + square(dphi)) + m * g * cs));
+  CHECK(same(*one.reactions[0].value,
+             m * v("d_ddot") - m * d * (square(sn) * square(dtheta) + square(dphi)) + m * g * cs));
 }
 
 TEST_CASE("P7: energies are (2.105) and (2.106)") {
@@ -66,15 +68,17 @@ TEST_CASE("P7: energies are (2.105) and (2.106)") {
   const auto v = [&](const char* name) { return s.symbol(name); };
   const Sum sn = sin(v("phi"));
   const ReadingForm one = derive(s, system::Approach::one), two = derive(s, system::Approach::two);
-  CHECK(same(one.kinetic, half(v("m")) * (square(v("R_dot")) + square(v("R") * sn * v("theta_dot")) + square(v("R") * v("phi_dot")))));
+  CHECK(same(one.kinetic, half(v("m")) * (square(v("R_dot")) + square(v("R") * sn * v("theta_dot")) +
+                                          square(v("R") * v("phi_dot")))));
   CHECK(same(one.potential, v("m") * v("g") * v("R") * cos(v("phi"))));
-  CHECK(same(two.kinetic, half(v("m")) * (square(v("d_dot")) + square(v("d") * sn * v("theta_dot")) + square(v("d") * v("phi_dot")))));
+  CHECK(same(two.kinetic, half(v("m")) * (square(v("d_dot")) + square(v("d") * sn * v("theta_dot")) +
+                                          square(v("d") * v("phi_dot")))));
   CHECK(same(two.potential, v("m") * v("g") * v("d") * cos(v("phi"))));
 }
 
 TEST_CASE("constrained kinetic energies: T2 + T1 + T0 is T, and T1, T0 come from moving constraints only") {
-  for (const char* name : {"P7_moving_sphere", "P1_spherical_pendulum", "P1_spherical_pendulum_varying", "P2_planar_pendulum_varying",
-                           "S5_double_pendulum", "S1_two_masses", "cart_pendulum"}) {
+  for (const char* name : {"P7_moving_sphere", "P1_spherical_pendulum", "P1_spherical_pendulum_varying",
+                           "P2_planar_pendulum_varying", "S5_double_pendulum", "S1_two_masses", "cart_pendulum"}) {
     CAPTURE(name);
     System s(model::read_model(shipped(name)));
     const ReadingForm form = derive(s, system::Approach::two);
@@ -91,8 +95,9 @@ TEST_CASE("constrained kinetic energies: T2 + T1 + T0 is T, and T1, T0 come from
 }
 
 TEST_CASE("approach I and approach II give the same motion") {
-  for (const char* name : {"P1_spherical_pendulum", "P1_spherical_pendulum_varying", "P2_planar_pendulum", "P2_planar_pendulum_varying",
-                           "P7_moving_sphere", "S5_double_pendulum", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian"}) {
+  for (const char* name :
+       {"P1_spherical_pendulum", "P1_spherical_pendulum_varying", "P2_planar_pendulum", "P2_planar_pendulum_varying",
+        "P7_moving_sphere", "S5_double_pendulum", "S5_spherical_double_pendulum", "S5_double_pendulum_cartesian"}) {
     CAPTURE(name);
     System s(model::read_model(shipped(name)));
     const ReadingForm one = derive(s, system::Approach::one), two = derive(s, system::Approach::two);
@@ -110,7 +115,8 @@ TEST_CASE("P1: the tension of the rod is -lambda") {
   const ReadingForm form = derive(s, system::Approach::one);
   REQUIRE(form.reactions.size() == 1);
   // along the rod: weight component towards the centre and centripetal force
-  const Sum tension = v("m") * v("L") * (square(v("phi_dot")) + square(sin(v("phi")) * v("theta_dot"))) - v("m") * v("g") * cos(v("phi"));
+  const Sum tension = v("m") * v("L") * (square(v("phi_dot")) + square(sin(v("phi")) * v("theta_dot"))) -
+                      v("m") * v("g") * cos(v("phi"));
   CHECK(same(*form.reactions[0].value, -tension));
 }
 
@@ -119,7 +125,8 @@ TEST_CASE("P2: both constraint forces of a pendulum of varying length") {
   const auto v = [&](const char* name) { return s.symbol(name); };
   const ReadingForm form = derive(s, system::Approach::one);
   REQUIRE(form.reactions.size() == 2);
-  CHECK(same(*form.reactions[0].value, v("m") * v("L_ddot") - v("m") * v("L") * square(v("theta_dot")) - v("m") * v("g") * cos(v("theta"))));
+  CHECK(same(*form.reactions[0].value,
+             v("m") * v("L_ddot") - v("m") * v("L") * square(v("theta_dot")) - v("m") * v("g") * cos(v("theta"))));
   CHECK(form.reactions[1].value->is_zero());  // nothing pushes out of the plane
 }
 
@@ -130,10 +137,11 @@ TEST_CASE("S5: the planar double pendulum and the forces along its rods") {
   const Sum w1 = square(v("theta1_dot")), w2 = square(v("theta2_dot"));
   const ReadingForm form = derive(s, system::Approach::one);
   CHECK(same(residual(s, of(form, s, "theta1")),
-             (m1 + m2) * L1 * L1 * v("theta1_ddot") + m2 * L1 * L2 * (cos(t1 - t2) * v("theta2_ddot") + sin(t1 - t2) * w2) +
-                 (m1 + m2) * g * L1 * sin(t1)));
+             (m1 + m2) * L1 * L1 * v("theta1_ddot") +
+                 m2 * L1 * L2 * (cos(t1 - t2) * v("theta2_ddot") + sin(t1 - t2) * w2) + (m1 + m2) * g * L1 * sin(t1)));
   CHECK(same(residual(s, of(form, s, "theta2")),
-             m2 * L2 * L2 * v("theta2_ddot") + m2 * L1 * L2 * (cos(t1 - t2) * v("theta1_ddot") - sin(t1 - t2) * w1) + m2 * g * L2 * sin(t2)));
+             m2 * L2 * L2 * v("theta2_ddot") + m2 * L1 * L2 * (cos(t1 - t2) * v("theta1_ddot") - sin(t1 - t2) * w1) +
+                 m2 * g * L2 * sin(t2)));
   REQUIRE(form.reactions.size() == 2);
   // Newton for the second mass along its rod: acceleration of both masses, weight
   CHECK(same(*form.reactions[1].value,
@@ -158,7 +166,8 @@ TEST_CASE("pure energies: cart and pendulum with an input") {
   const auto v = [&](const char* name) { return s.symbol(name); };
   const ReadingForm form = derive(s, system::Approach::two);
   CHECK(same(residual(s, of(form, s, "x")),
-             (v("M") + v("m")) * v("x_ddot") + v("m") * v("l") * (cos(v("theta")) * v("theta_ddot") - sin(v("theta")) * square(v("theta_dot"))) -
+             (v("M") + v("m")) * v("x_ddot") +
+                 v("m") * v("l") * (cos(v("theta")) * v("theta_ddot") - sin(v("theta")) * square(v("theta_dot"))) -
                  v("F") + v("c") * v("x_dot")));
 }
 
@@ -179,7 +188,8 @@ position = "x*E1"
 [[force]]
 on = "P"
 force = "-c*x_dot*E1"
-)", "rocket"));
+)",
+                                  "rocket"));
   const auto v = [&](const char* name) { return s.symbol(name); };
   const ReadingForm form = derive(s, system::Approach::one);
   CHECK(same(residual(s, of(form, s, "x")), v("m") * v("x_ddot") + v("m_dot") * v("x_dot") + v("c") * v("x_dot")));
@@ -205,7 +215,8 @@ holonomic = "x - d"
 [[constraint]]
 name = "second"
 holonomic = "y - 3*x"
-)", "chain of constraints"));
+)",
+                                  "chain of constraints"));
   const auto v = [&](const char* name) { return s.symbol(name); };
   const ReadingForm form = derive(s, system::Approach::one);
   REQUIRE(form.reactions.size() == 2);

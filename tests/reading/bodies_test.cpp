@@ -46,7 +46,8 @@ bool is_canonical(const Sum& sum) {
 
 }  // namespace
 
-TEST_CASE("a rolling disk in Euler parameters: constraint and time derivative are canonical, and factors S/S are gone") {
+TEST_CASE(
+    "a rolling disk in Euler parameters: constraint and time derivative are canonical, and factors S/S are gone") {
   System s(model::read_model_text(rolling_disk, "disk"));
   const reading::ReadingForm form = reading::derive_reading(s.mechanics, system::Approach::two);
   std::size_t seen = 0;
@@ -57,7 +58,8 @@ TEST_CASE("a rolling disk in Euler parameters: constraint and time derivative ar
     CHECK(is_canonical(c.rate));
     CHECK(is_canonical(c.acceleration));
     // x1_dot, or x2_dot, stands alone.
-    CHECK(std::any_of(c.rate.terms().begin(), c.rate.terms().end(), [](const auto& term) { return term.first.size() == 1 && reading::is_one(term.second); }));
+    CHECK(std::any_of(c.rate.terms().begin(), c.rate.terms().end(),
+                      [](const auto& term) { return term.first.size() == 1 && reading::is_one(term.second); }));
   }
   CHECK(seen == 2);
 }

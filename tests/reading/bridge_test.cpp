@@ -2,11 +2,10 @@
 // Dag -> GiNaC -> sum -> Dag keeps the value of every function, and derivatives agree with the Dag's own.
 #include <doctest/doctest.h>
 
+#include "reading/by_name.hpp"
 #include "reading/ginac_bridge.hpp"
 #include "symbolic/calculus.hpp"
 #include "symbolic/evaluate.hpp"
-
-#include "reading/by_name.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -34,10 +33,16 @@ struct Nodes {
 
 std::vector<Ref> every_operation(Nodes& n) {
   symbolic::Dag& dag = n.dag;
-  std::vector<Ref> roots{dag.add(n.x, n.p), dag.sub(n.p, n.y), dag.div(n.x, dag.add(n.p, n.y)), dag.power(dag.add(n.x, n.p), 3),
-                         dag.power(dag.sub(n.x, n.p), -2), dag.pow(n.p, n.x), dag.pi(), dag.constant(symbolic::Rational(7) / 3)};
-  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::asin, Op::acos, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp,
-                      Op::log, Op::abs, Op::sign}) {
+  std::vector<Ref> roots{dag.add(n.x, n.p),
+                         dag.sub(n.p, n.y),
+                         dag.div(n.x, dag.add(n.p, n.y)),
+                         dag.power(dag.add(n.x, n.p), 3),
+                         dag.power(dag.sub(n.x, n.p), -2),
+                         dag.pow(n.p, n.x),
+                         dag.pi(),
+                         dag.constant(symbolic::Rational(7) / 3)};
+  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::asin, Op::acos, Op::atan, Op::sinh, Op::cosh, Op::tanh,
+                      Op::exp, Op::log, Op::abs, Op::sign}) {
     roots.push_back(dag.call(op, dag.mul(n.x, n.p)));
     roots.push_back(dag.call(op, dag.add(dag.mul(n.x, n.x), dag.mul(n.p, n.p))));
   }

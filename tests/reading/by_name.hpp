@@ -63,7 +63,8 @@ inline std::string shipped(const std::string& name) { return test::source_folder
 
 /// A model that outlives its mechanics.
 struct System {
-  explicit System(const model::Model& read) : model(read), mechanics(mechanics::build_mechanics(model)), symbol(mechanics) {}
+  explicit System(const model::Model& read)
+      : model(read), mechanics(mechanics::build_mechanics(model)), symbol(mechanics) {}
   model::Model model;
   mechanics::Mechanics mechanics;
   ByName symbol;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Frenet triad, curvature and torsion: the helix of the literature, curves with closed forms, and numerical
 // differentiation of the position in 80 digits.
+#include "reading/frenet.hpp"
+
 #include <doctest/doctest.h>
 
 #include <array>
@@ -8,7 +10,6 @@
 #include <functional>
 
 #include "reading/by_name.hpp"
-#include "reading/frenet.hpp"
 #include "symbolic/evaluate.hpp"
 
 using namespace eomgen;
@@ -59,7 +60,8 @@ Numbers by_differences(const std::function<Vector(const Real&)>& position) {
 
 struct Curve {
   explicit Curve(const std::string& text)
-      : model(model::read_model_text("format = 1\n" + text, "curve.toml")), mechanics(mechanics::build_mechanics(model)) {}
+      : model(model::read_model_text("format = 1\n" + text, "curve.toml")),
+        mechanics(mechanics::build_mechanics(model)) {}
 
   // Values by name: of parameters and coordinates.
   std::vector<Real> evaluate(const std::vector<symbolic::Ref>& roots, const std::map<std::string, Real>& values) const {
@@ -76,11 +78,13 @@ struct Curve {
   mechanics::Mechanics mechanics;
 };
 
-void check_near(const Curve& curve, const reading::Components& found, const Vector& expected, const std::map<std::string, Real>& at) {
+void check_near(const Curve& curve, const reading::Components& found, const Vector& expected,
+                const std::map<std::string, Real>& at) {
   for (std::size_t i = 0; i < 3; ++i) CHECK(cln::abs(curve.value(found[i], at) - expected[i]) < tolerance);
 }
 
-void check(const Curve& curve, const reading::Frenet& f, const Numbers& expected, const std::map<std::string, Real>& at) {
+void check(const Curve& curve, const reading::Frenet& f, const Numbers& expected,
+           const std::map<std::string, Real>& at) {
   check_near(curve, f.tangent.fixed, expected.tangent, at);
   REQUIRE(f.normal);
   REQUIRE(f.binormal);
@@ -100,7 +104,8 @@ const char* mass = "[parameters]\nm = 1\nA = { value = 2, positive = true }\nB =
 TEST_CASE("the triad, curvature and torsion of the helix are those of (2.130), put right, and (2.131)") {
   System s(model::read_model(shipped("P8_smooth_helix")));
   const reading::Frenet f = reading::frenet(s.mechanics);
-  const Sum R = s.symbol("R"), al = s.symbol("alpha"), th = s.symbol("theta"), root = reading::power(Sum(1) + square(al), reading::Rational(1) / 2);
+  const Sum R = s.symbol("R"), al = s.symbol("alpha"), th = s.symbol("theta"),
+            root = reading::power(Sum(1) + square(al), reading::Rational(1) / 2);
   CHECK(same(f.curvature, over(1, R * (Sum(1) + square(al)))));
   REQUIRE(f.torsion);
   CHECK(same(*f.torsion, over(al, R * (Sum(1) + square(al)))));
@@ -119,7 +124,8 @@ TEST_CASE("a curve of one free coordinate agrees with numerical differentiation 
                     "position = \"A*cos(q)*E1 + B*sin(q)*E2 + (q^2 + exp(B*q))*E3\"\n[[force]]\ngravity = \"-E3\"\n");
   const reading::Frenet f = reading::frenet(curve.mechanics);
   for (const long k : {-3, 1, 7}) {
-    const std::map<std::string, Real> at{{"A", number(7, 3)}, {"B", number(2, 5)}, {"m", number(1)}, {"q", number(k, 4)}};
+    const std::map<std::string, Real> at{
+        {"A", number(7, 3)}, {"B", number(2, 5)}, {"m", number(1)}, {"q", number(k, 4)}};
     const Numbers expected = by_differences([&](const Real& dq) -> Vector {
       std::map<std::string, Real> there = at;
       there["q"] = there["q"] + dq;
@@ -145,14 +151,17 @@ TEST_CASE("a curve that two constraints leave without fixing a coordinate: Vivia
       return {A * (1 + cln::cos(u)), A * cln::sin(u), 2 * A * cln::sin(u / 2)};
     };
     const Vector r = position(0);
-    const std::map<std::string, Real> at{{"A", A}, {"B", number(1)}, {"m", number(1)}, {"x", r[0]}, {"y", r[1]}, {"z", r[2]}};
+    const std::map<std::string, Real> at{{"A", A},    {"B", number(1)}, {"m", number(1)},
+                                         {"x", r[0]}, {"y", r[1]},      {"z", r[2]}};
     // The order of the constraints says which way along the curve; with it tangent and binormal change their signs.
     Numbers expected = by_differences(position);
-    const Real way = curve.value(f.tangent.fixed[0], at) * expected.tangent[0] + curve.value(f.tangent.fixed[1], at) * expected.tangent[1] +
+    const Real way = curve.value(f.tangent.fixed[0], at) * expected.tangent[0] +
+                     curve.value(f.tangent.fixed[1], at) * expected.tangent[1] +
                      curve.value(f.tangent.fixed[2], at) * expected.tangent[2];
     CHECK(cln::abs(cln::abs(way) - 1) < tolerance);
     if (way < 0) {
-      for (Vector* v : {&expected.tangent, &expected.binormal}) for (Real& x : *v) x = -x;
+      for (Vector* v : {&expected.tangent, &expected.binormal})
+        for (Real& x : *v) x = -x;
     }
     check(curve, f, expected, at);
     CHECK(cln::abs(expected.torsion - 6 * cln::cos(s / 2) / (A * (13 + 3 * cln::cos(s)))) < tolerance);
@@ -175,8 +184,9 @@ TEST_CASE("a straight line has a tangent and no curvature; a plane curve no tors
 }
 
 TEST_CASE("where no curve is left the Frenet triad is refused, and why") {
-  for (const auto& [name, why] : {std::pair{"P7_moving_sphere", "leave 2 degrees of freedom"}, std::pair{"S5_double_pendulum", "2 particles"},
-                                  std::pair{"cart_pendulum", "0 particles"}}) {
+  for (const auto& [name, why] :
+       {std::pair{"P7_moving_sphere", "leave 2 degrees of freedom"}, std::pair{"S5_double_pendulum", "2 particles"},
+        std::pair{"cart_pendulum", "0 particles"}}) {
     System s(model::read_model(shipped(name)));
     CHECK(reading::why_no_curve(s.mechanics).find(why) != std::string::npos);
     CHECK_THROWS_AS(reading::frenet(s.mechanics), Error);

@@ -64,8 +64,9 @@ TEST_CASE("G1: spherical coordinates") {
   REQUIRE(table.g.covariant_unit.size() == 3);
   CHECK(same(table.g.covariant_unit[table.at("theta")][2], R * sin(phi)));
   CHECK(same(table.g.contravariant_unit[table.at("theta")][2], over(1, R * sin(phi))));
-  CHECK(same(table.g.kinetic, half(table.s.symbol("m")) * (square(table.s.symbol("R_dot")) + square(R * table.s.symbol("phi_dot")) +
-                                                         square(R * sin(phi) * table.s.symbol("theta_dot")))));
+  CHECK(same(table.g.kinetic,
+             half(table.s.symbol("m")) * (square(table.s.symbol("R_dot")) + square(R * table.s.symbol("phi_dot")) +
+                                          square(R * sin(phi) * table.s.symbol("theta_dot")))));
 }
 
 TEST_CASE("G1: cylindrical and Cartesian coordinates") {
@@ -103,7 +104,8 @@ nu = {}
 name = "P"
 mass = "m"
 position = "r*cos(theta)*E1 + r*sin(theta)*E2 + (nu + alpha*r*theta)*E3"
-)", "helical"));
+)",
+                                  "helical"));
   const auto v = [&](const char* name) { return s.symbol(name); };
   const auto g = reading::configuration_space(s.mechanics);
   REQUIRE(g);
@@ -134,7 +136,8 @@ theta = {}
 name = "P"
 mass = "m"
 position = "u*v*cos(theta)*E1 + u*v*sin(theta)*E2 + (u^2 - v^2)/2*E3"
-)", "parabolic"));
+)",
+                                  "parabolic"));
   const Sum m = s.symbol("m"), u = s.symbol("u"), v = s.symbol("v");
   const auto g = reading::configuration_space(s.mechanics);
   REQUIRE(g);
@@ -164,13 +167,19 @@ TEST_CASE("singular sets are told per approach") {
 }
 
 TEST_CASE("a determinant of masses that vanishes nowhere is no singular set, one that does is") {
-  const std::string parameters = "format = 1\n[parameters]\nm = 1\nM = 2\nl = 1\nL = 1.5\nJ = 0.1\nK = 0.2\n[coordinates]\na = {}\nb = {}\n";
-  const auto body = [](const std::string& name, const std::string& mass, const std::string& inertia, const std::string& position, const std::string& angle) {
-    return "[[body]]\nname = \"" + name + "\"\nmass = \"" + mass + "\"\ninertia = \"" + inertia + "\"\nposition = \"" + position + "\"\nrotation = { axis = \"E3\", angle = \"" + angle + "\" }\n";
+  const std::string parameters =
+      "format = 1\n[parameters]\nm = 1\nM = 2\nl = 1\nL = 1.5\nJ = 0.1\nK = 0.2\n[coordinates]\na = {}\nb = {}\n";
+  const auto body = [](const std::string& name, const std::string& mass, const std::string& inertia,
+                       const std::string& position, const std::string& angle) {
+    return "[[body]]\nname = \"" + name + "\"\nmass = \"" + mass + "\"\ninertia = \"" + inertia + "\"\nposition = \"" +
+           position + "\"\nrotation = { axis = \"E3\", angle = \"" + angle + "\" }\n";
   };
-  System arm(model::read_model_text(parameters + body("A", "m", "J", "l*A.e1", "a") + body("B", "M", "K", "L*A.e1 + l*B.e1", "a + b"), "arm"));
+  System arm(model::read_model_text(
+      parameters + body("A", "m", "J", "l*A.e1", "a") + body("B", "M", "K", "L*A.e1 + l*B.e1", "a + b"), "arm"));
   CHECK(reading::singular_sets(arm.mechanics).empty());
   // Stretched or folded, an arm of two massless bars cannot move its mass along itself.
-  System folded(model::read_model_text(parameters + "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = \"l*(cos(a)*E1 + sin(a)*E2) + L*(cos(b)*E1 + sin(b)*E2)\"\n", "folded"));
+  System folded(model::read_model_text(parameters + "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = "
+                                                    "\"l*(cos(a)*E1 + sin(a)*E2) + L*(cos(b)*E1 + sin(b)*E2)\"\n",
+                                       "folded"));
   CHECK_FALSE(reading::singular_sets(folded.mechanics).empty());
 }

@@ -26,7 +26,8 @@ x = {}
 y = {}
 [energy]
 kinetic = "m*k*(a_dot^2 + b_dot^2 + phi_dot^2 + x_dot^2 + y_dot^2)/2"
-)", "symbols"));
+)",
+                                       "symbols"));
 }
 
 }  // namespace
@@ -100,7 +101,8 @@ TEST_CASE("zero test: proven, numerical, no") {
   CHECK(reading::zero_test(sin(Sum(3) * a) - Sum(3) * sin(a) + Sum(4) * power(sin(a), 3)) == reading::Zero::proven);
   CHECK(reading::zero_test(sin(a + b) - sin(a) * cos(b) - cos(a) * sin(b)) == reading::Zero::proven);
   CHECK(reading::zero_test(sin(a) - cos(a)) == reading::Zero::no);
-  const Sum hyperbolic = square(reading::call(symbolic::Op::cosh, {x})) - square(reading::call(symbolic::Op::sinh, {x})) - Sum(1);
+  const Sum hyperbolic =
+      square(reading::call(symbolic::Op::cosh, {x})) - square(reading::call(symbolic::Op::sinh, {x})) - Sum(1);
   CHECK(reading::zero_test(hyperbolic) == reading::Zero::numerical);
   CHECK(reading::zero_test(reading::call(symbolic::Op::log, {-square(x)})) == reading::Zero::unknown);
 }

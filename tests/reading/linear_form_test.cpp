@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // M, C, K, B of small deviations against slopes that are written by hand.
+#include "reading/linear_form.hpp"
+
 #include <doctest/doctest.h>
 
 #include "reading/by_name.hpp"
-#include "reading/linear_form.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -37,8 +38,10 @@ TEST_CASE("small deviations of a cart with a pendulum: M, C, K, B along any moti
   const reading::LinearForm f = reading::linear_form(s.mechanics);
   REQUIRE(f.why_not.empty());
   REQUIRE(f.coordinates.size() == 2);
-  const Sum M = s.symbol("M"), m = s.symbol("m"), l = s.symbol("l"), g = s.symbol("g"), k = s.symbol("k"), c = s.symbol("c");
-  const Sum th = s.symbol("th"), th_dot = s.symbol("th_dot"), th_ddot = s.symbol("th_ddot"), x_ddot = s.symbol("x_ddot");
+  const Sum M = s.symbol("M"), m = s.symbol("m"), l = s.symbol("l"), g = s.symbol("g"), k = s.symbol("k"),
+            c = s.symbol("c");
+  const Sum th = s.symbol("th"), th_dot = s.symbol("th_dot"), th_ddot = s.symbol("th_ddot"),
+            x_ddot = s.symbol("x_ddot");
   const Sum sine = reading::call(symbolic::Op::sin, {th}), cosine = reading::call(symbolic::Op::cos, {th});
   CHECK(f.along.mass[0] == M + m);
   CHECK(f.along.mass[1] == m * l * cosine);

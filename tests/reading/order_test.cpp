@@ -50,9 +50,9 @@ TEST_CASE("order: kinds first, then declaration") {
     const Sum x = s.symbol(a), y = s.symbol(b);
     return reading::compare(*x.terms().begin()->first[0].atom, *y.terms().begin()->first[0].atom) < 0;
   };
-  CHECK(before("m", "g"));          // parameters as declared
-  CHECK(before("g", "d"));          // parameters, functions of time
-  CHECK(before("d", "R"));          // functions of time, coordinates
+  CHECK(before("m", "g"));  // parameters as declared
+  CHECK(before("g", "d"));  // parameters, functions of time
+  CHECK(before("d", "R"));  // functions of time, coordinates
   CHECK(before("R", "phi"));
   CHECK(before("theta", "d_dot"));  // positions, rates
   CHECK(before("d_dot", "R_dot"));

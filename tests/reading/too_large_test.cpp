@@ -19,8 +19,8 @@ std::string relative_chain(int n) {
   for (int i = 1; i <= n; ++i) {
     angle += (i > 1 ? " + q" : "q") + std::to_string(i);
     const std::string before = i > 1 ? "P" + std::to_string(i - 1) + " + " : "";
-    text += "[[particle]]\nname = \"P" + std::to_string(i) + "\"\nmass = \"m\"\nposition = \"" + before + "l*sin(" + angle +
-            ")*E1 - l*cos(" + angle + ")*E2\"\n";
+    text += "[[particle]]\nname = \"P" + std::to_string(i) + "\"\nmass = \"m\"\nposition = \"" + before + "l*sin(" +
+            angle + ")*E1 - l*cos(" + angle + ")*E2\"\n";
   }
   return text + "[[force]]\ngravity = \"-g*E2\"\n";
 }

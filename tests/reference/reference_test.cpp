@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Reference runs against closed forms, and against themselves backwards.
+#include "reference/reference.hpp"
+
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -7,7 +9,6 @@
 #include "error.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
-#include "reference/reference.hpp"
 #include "support/elliptic.hpp"
 
 using namespace eomgen;
@@ -15,10 +16,12 @@ using namespace test_systems;
 
 namespace {
 
-constexpr double rounded = 1e-15;  // a result is rounded once to binary64; closed forms in binary64 are wrong by some units
+constexpr double rounded =
+    1e-15;  // a result is rounded once to binary64; closed forms in binary64 are wrong by some units
 constexpr double closed_form = 2e-14;
 
-reference::Problem problem(const program::Program& program, std::vector<double> x, std::vector<double> p, double t0, double t1) {
+reference::Problem problem(const program::Program& program, std::vector<double> x, std::vector<double> p, double t0,
+                           double t1) {
   return {program.functions.front(), std::move(x), std::move(p), t0, {{t1, {0, 0}}}, {t0 + (t1 - t0) / 3, t1}, nullptr};
 }
 
@@ -40,7 +43,8 @@ TEST_CASE("reference: a pendulum's closed form, at each time asked for, and 30 d
 TEST_CASE("reference: what is stiff or chaotic costs digits, and only those that are left are claimed") {
   const auto built = build(double_pendulum());
   const std::vector<double> p{1, 1, 1, 1, 9.81}, start{2.5, -2, 0, 0};  // errors grow by some e^(4 t)
-  const auto near = reference::solve(problem(built, start, p, 0, 1)), far = reference::solve(problem(built, start, p, 0, 6));
+  const auto near = reference::solve(problem(built, start, p, 0, 1)),
+             far = reference::solve(problem(built, start, p, 0, 6));
   CHECK(near.digits_at_end >= 30);
   CHECK(far.digits_at_end < near.digits_at_end);
   CHECK(far.digits_at_end >= 20);
@@ -54,7 +58,8 @@ TEST_CASE("reference: there and back again") {
   const std::vector<double> p{1, 2, 1, 0.5, 9.81}, start{0.5, -0.3, 0.25, 0};
   const auto there = reference::solve(problem(built, start, p, 0, 3));
   const auto back = reference::solve(problem(built, there.x[1], p, 3, 0));
-  for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(back.x[1][i] - start[i]) < 1e-12);  // the middle was rounded to binary64
+  for (std::size_t i = 0; i < 4; ++i)
+    CHECK(std::abs(back.x[1][i] - start[i]) < 1e-12);  // the middle was rounded to binary64
 }
 
 TEST_CASE("reference: inputs stand still on each piece") {
@@ -73,7 +78,8 @@ TEST_CASE("reference: inputs stand still on each piece") {
 }
 
 TEST_CASE("reference: where it cannot go on it says when and why") {
-  const Maker k;  // qddot = -sqrt(q) from rest at 1 meets 0, where the root is singular, at B(2/3, 1/2)/sqrt(3) = 1.49371
+  const Maker
+      k;  // qddot = -sqrt(q) from rest at 1 meets 0, where the root is singular, at B(2/3, 1/2)/sqrt(3) = 1.49371
   system::EquationSystem system;
   system.dag = k.dag;
   system.route = "lagrange";
@@ -81,5 +87,6 @@ TEST_CASE("reference: where it cannot go on it says when and why") {
   system.M = {k.dag->one()};
   system.f = {k.dag->neg(k.dag->call(Op::sqrt, k.q(0).ref))};
   const auto built = build(system);
-  CHECK_THROWS_WITH_AS(reference::solve(problem(built, {1, 0}, {0}, 0, 100)), doctest::Contains("the reference ends at t = 1.493"), Error);
+  CHECK_THROWS_WITH_AS(reference::solve(problem(built, {1, 0}, {0}, 0, 100)),
+                       doctest::Contains("the reference ends at t = 1.493"), Error);
 }

@@ -10,20 +10,24 @@ namespace {
 Real half_pi() { return cln::pi(cln::float_format(static_cast<std::uintptr_t>(digits))) / 2; }
 
 std::string three(const std::string& body_name, const std::string& prefix) {
-  return prefix + "1 = \"" + body_name + ".e1\"\n" + prefix + "2 = \"" + body_name + ".e2\"\n" + prefix + "3 = \"" + body_name + ".e3\"\n";
+  return prefix + "1 = \"" + body_name + ".e1\"\n" + prefix + "2 = \"" + body_name + ".e2\"\n" + prefix + "3 = \"" +
+         body_name + ".e3\"\n";
 }
 
 void same_axes(Turning& model) {
-  for (const char* k : {"1", "2", "3"}) CHECK(distance(model.vector(std::string("a") + k), model.vector(std::string("b") + k)) < exact);
+  for (const char* k : {"1", "2", "3"})
+    CHECK(distance(model.vector(std::string("a") + k), model.vector(std::string("b") + k)) < exact);
 }
 
 }  // namespace
 
-// Ex 5.8: about E1 by a quarter, then about E3 by a quarter, is about (1, 1, 1) by a third of a turn. In the axes that the body
-// carries the same two steps come in the other order.
+// Ex 5.8: about E1 by a quarter, then about E3 by a quarter, is about (1, 1, 1) by a third of a turn. In the axes that
+// the body carries the same two steps come in the other order.
 TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not the other way round") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") + body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
-                body("C", "{ axis = \"E1 + E2 + E3\", angle = \"p\" }") + "[definitions]\n" + three("B", "a") + three("C", "b"));
+  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
+                body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
+                body("C", "{ axis = \"E1 + E2 + E3\", angle = \"p\" }") + "[definitions]\n" + three("B", "a") +
+                three("C", "b"));
   model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
   model.at[{"p", 0}] = half_pi() * 4 / 3;
   same_axes(model);
@@ -31,13 +35,15 @@ TEST_CASE("F(pi/2, E3) F(pi/2, E1) = F(2 pi/3, (E1 + E2 + E3)/sqrt 3), and not t
   CHECK(distance(model.vector("a1"), model.vector("b1")) > 0.1);
 }
 
-// (5.100): of C = B A the Euler parameters are g0 = e0 f0 - e.f, g = e0 f + f0 e + f x e, with e of A and f of B; carried by the
-// body, A comes second.
+// (5.100): of C = B A the Euler parameters are g0 = e0 f0 - e.f, g = e0 f + f0 e + f x e, with e of A and f of B;
+// carried by the body, A comes second.
 TEST_CASE("Euler parameters of a composition are the product of the parameters") {
   Turning model(body("F", "{ euler_parameters = [\"f0\", \"f1\", \"f2\", \"f3\"] }") +
                 body("E", "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", "relative_to = \"F\"\n") +
-                body("G", "{ euler_parameters = [\"g0\", \"g1\", \"g2\", \"g3\"] }") + "[definitions]\n" + three("E", "a") + three("G", "b"));
-  const std::array<Real, 4> e{ratio(1, 11), ratio(2, 11), ratio(4, 11), ratio(10, 11)}, f{ratio(4, 5), ratio(-2, 5), ratio(1, 5), ratio(2, 5)};
+                body("G", "{ euler_parameters = [\"g0\", \"g1\", \"g2\", \"g3\"] }") + "[definitions]\n" +
+                three("E", "a") + three("G", "b"));
+  const std::array<Real, 4> e{ratio(1, 11), ratio(2, 11), ratio(4, 11), ratio(10, 11)},
+      f{ratio(4, 5), ratio(-2, 5), ratio(1, 5), ratio(2, 5)};
   const Numbers ev{e[1], e[2], e[3]}, fv{f[1], f[2], f[3]}, fxe = cross(fv, ev);
   std::array<Real, 4> g{e[0] * f[0] - dot(ev, fv), 0, 0, 0};
   for (std::size_t k = 0; k < 3; ++k) g[k + 1] = e[0] * fv[k] + f[0] * ev[k] + fxe[k];
@@ -52,11 +58,14 @@ TEST_CASE("Euler parameters of a composition are the product of the parameters")
 
 // (5.53), (5.47): one rotation about r by p, as parameters, as a Rodrigues vector, and as an angle about an axis.
 TEST_CASE("axis and angle, Euler parameters and the Rodrigues vector are the same rotation") {
-  const Real p = ratio(7, 5), tangent = cln::sin(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2) /
-                                        cln::cos(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2);
+  const Real p = ratio(7, 5),
+             tangent =
+                 cln::sin(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2) /
+                 cln::cos(p * Real(cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits)))) / 2);
   for (const bool parameters : {true, false}) {
     Turning model(body("A", "{ axis = \"E1 + 2*E2 - 2*E3\", angle = \"p\" }") +
-                  body("B", parameters ? "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }" : "{ rodrigues = [\"e1\", \"e2\", \"e3\"] }") +
+                  body("B", parameters ? "{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }"
+                                       : "{ rodrigues = [\"e1\", \"e2\", \"e3\"] }") +
                   "[definitions]\n" + three("A", "a") + three("B", "b"));
     model.at[{"p", 0}] = p;
     const Real length = parameters ? Real(1 / cln::sqrt(1 + tangent * tangent)) : Real(1);
@@ -67,18 +76,21 @@ TEST_CASE("axis and angle, Euler parameters and the Rodrigues vector are the sam
   }
 }
 
-// Ex 5.1: the 3-2-3 angles have g1 = -sin(theta) cos(psi) e1 + sin(theta) sin(psi) e2 + cos(theta) e3 and, in (5.87), the dual
-// basis with its first row -cosec(theta) cos(psi), cosec(theta) sin(psi), 0.
+// Ex 5.1: the 3-2-3 angles have g1 = -sin(theta) cos(psi) e1 + sin(theta) sin(psi) e2 + cos(theta) e3 and, in (5.87),
+// the dual basis with its first row -cosec(theta) cos(psi), cosec(theta) sin(psi), 0.
 TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
   const rotations::Rotation& r = *rotations::find("323");
   std::string text = body("B", written(r)) + "[definitions]\n";
-  const std::array<rotations::Components, 3> g{{{"-sin(n2)*cos(n3)", "sin(n2)*sin(n3)", "cos(n2)"}, {"sin(n3)", "cos(n3)", "0"}, {"0", "0", "1"}}};
-  const std::array<rotations::Components, 3> dual{
-      {{"-cos(n3)/sin(n2)", "sin(n3)/sin(n2)", "0"}, {"sin(n3)", "cos(n3)", "0"}, {"cos(n3)*cos(n2)/sin(n2)", "-sin(n3)*cos(n2)/sin(n2)", "1"}}};
+  const std::array<rotations::Components, 3> g{
+      {{"-sin(n2)*cos(n3)", "sin(n2)*sin(n3)", "cos(n2)"}, {"sin(n3)", "cos(n3)", "0"}, {"0", "0", "1"}}};
+  const std::array<rotations::Components, 3> dual{{{"-cos(n3)/sin(n2)", "sin(n3)/sin(n2)", "0"},
+                                                   {"sin(n3)", "cos(n3)", "0"},
+                                                   {"cos(n3)*cos(n2)/sin(n2)", "-sin(n3)*cos(n2)/sin(n2)", "1"}}};
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t k = 0; k < 3; ++k) {
       const std::string ik = std::to_string(i) + std::to_string(k);
-      text += "g" + ik + " = \"" + g[i][k] + " - (" + r.basis[i][k] + ")\"\nd" + ik + " = \"" + dual[i][k] + " - (" + r.dual[i][k] + ")\"\n";
+      text += "g" + ik + " = \"" + g[i][k] + " - (" + r.basis[i][k] + ")\"\nd" + ik + " = \"" + dual[i][k] + " - (" +
+              r.dual[i][k] + ")\"\n";
     }
   }
   Turning model(text);
@@ -96,7 +108,8 @@ TEST_CASE("3-2-3 angles have the bases of (5.86) and (5.87)") {
 
 TEST_CASE("axes on the way of Euler angles: e' after the first, e'' after the second") {
   Turning model(body("B", "{ euler = \"313\", angles = [\"n1\", \"n2\", \"n3\"] }") +
-                "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + n3_dot*B.e3'' - B.omega\"\n");
+                "[definitions]\na1 = \"B.e1'\"\na2 = \"B.e2''\"\na3 = \"B.e3'\"\nw = \"n1_dot*E3 + n2_dot*B.e1' + "
+                "n3_dot*B.e3'' - B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 4);
     model.at[{name, 1}] = ratio(name[1] - '0', 7);
@@ -108,8 +121,10 @@ TEST_CASE("axes on the way of Euler angles: e' after the first, e'' after the se
 
 // Ex 5.2: R = Q2 Q1^T of a body that turns about e1 of the one before it; w_R = w_2 - w_1, eq. (5.95), (5.96).
 TEST_CASE("the relative angular velocity of two bodies, along the axes between them and not its rate alone") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") + body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
-                "[definitions]\nr = \"n2_dot*A.e1\"\nw = \"omega(B) - omega(A)\"\n" + three("A", "a") + three("B", "b"));
+  Turning model(body("A", "{ axis = \"E3\", angle = \"n1\" }") +
+                body("B", "{ axis = \"A.e1\", angle = \"n2\" }", "relative_to = \"A\"\n") +
+                "[definitions]\nr = \"n2_dot*A.e1\"\nw = \"omega(B) - omega(A)\"\n" + three("A", "a") +
+                three("B", "b"));
   model.at[{"n1", 0}] = ratio(2, 3);
   model.at[{"n2", 0}] = ratio(-5, 4);
   model.at[{"n1", 1}] = ratio(3, 2);
@@ -125,7 +140,8 @@ TEST_CASE("the relative angular velocity of two bodies, along the axes between t
     }
     return sum;
   };
-  const Real one = cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits))), h = cln::expt(ratio(1, 10), 20);
+  const Real one = cln::cl_float(1, cln::float_format(static_cast<std::uintptr_t>(digits))),
+             h = cln::expt(ratio(1, 10), 20);
   Numbers axial{0, 0, 0};
   const Real n1 = model.at[{"n1", 0}];
   for (std::size_t k = 0; k < 3; ++k) {
@@ -154,8 +170,9 @@ TEST_CASE("the relative angular velocity of two bodies, along the axes between t
 
 // Ex 5.3 (g): a quarter about E3, then a quarter about E2: E1 -> E2 -> E2, E2 -> -E1 -> E3, E3 -> E3 -> E1.
 TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
-  Turning model(body("F", "{ axis = \"E2\", angle = \"n2\" }") + body("E", "{ axis = \"F.e3\", angle = \"n1\" }", "relative_to = \"F\"\n") +
-                "[definitions]\n" + three("E", "a"));
+  Turning model(body("F", "{ axis = \"E2\", angle = \"n2\" }") +
+                body("E", "{ axis = \"F.e3\", angle = \"n1\" }", "relative_to = \"F\"\n") + "[definitions]\n" +
+                three("E", "a"));
   model.at[{"n1", 0}] = model.at[{"n2", 0}] = half_pi();
   CHECK(distance(model.vector("a1"), {0, 1, 0}) < exact);
   CHECK(distance(model.vector("a2"), {0, 0, 1}) < exact);
@@ -164,9 +181,11 @@ TEST_CASE("a quarter about E3 and a quarter about E2 permute the axes") {
 
 // Ex 5.5: north, east, down at longitude l and latitude b: about E3 by l, then about the new e2 by -(pi/2 + b).
 TEST_CASE("north, east and down are two rotations from the fixed axes") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"l\" }") + body("B", "{ axis = \"A.e2\", angle = \"-pi/2 - b\" }", "relative_to = \"A\"\n") +
+  Turning model(body("A", "{ axis = \"E3\", angle = \"l\" }") +
+                body("B", "{ axis = \"A.e2\", angle = \"-pi/2 - b\" }", "relative_to = \"A\"\n") +
                 "[coordinates]\nb = \"rad\"\n[definitions]\n" + three("B", "a") +
-                "b1 = \"-cos(l)*sin(b)*E1 - sin(l)*sin(b)*E2 + cos(b)*E3\"\nb2 = \"-sin(l)*E1 + cos(l)*E2\"\nb3 = \"-cos(l)*cos(b)*E1 - sin(l)*cos(b)*E2 - sin(b)*E3\"\n");
+                "b1 = \"-cos(l)*sin(b)*E1 - sin(l)*sin(b)*E2 + cos(b)*E3\"\nb2 = \"-sin(l)*E1 + cos(l)*E2\"\nb3 = "
+                "\"-cos(l)*cos(b)*E1 - sin(l)*cos(b)*E2 - sin(b)*E3\"\n");
   model.at[{"l", 0}] = ratio(9, 4);
   model.at[{"b", 0}] = ratio(4, 5);
   same_axes(model);
@@ -174,7 +193,8 @@ TEST_CASE("north, east and down are two rotations from the fixed axes") {
 
 // Ex 5.6: (5.122), the angular velocity of a rotation about an axis that turns, as the Rodrigues formula has it (5.46).
 TEST_CASE("about an axis that turns: the corotational part and what the turning axis adds") {
-  Turning model(body("A", "{ axis = \"E3\", angle = \"p\" }") + body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
+  Turning model(body("A", "{ axis = \"E3\", angle = \"p\" }") +
+                body("C", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
                 "[definitions]\nw = \"omega(C)\"\na = \"n_dot*A.e1 - p_dot*(cos(n)*E3 - sin(n)*A.e2) + p_dot*E3\"\n"
                 "b = \"p_dot*(cos(n)*E3 - sin(n)*A.e2)\"\n");
   model.at[{"p", 0}] = ratio(2, 3);
@@ -188,8 +208,9 @@ TEST_CASE("about an axis that turns: the corotational part and what the turning 
 
 // Ex 5.7: (5.124), (5.125): polar axes.
 TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
-  Turning model(body("B", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") +
-                "b1 = \"cos(n)*E1 + sin(n)*E2\"\nb2 = \"-sin(n)*E1 + cos(n)*E2\"\nb3 = \"E3\"\nw = \"B.omega - n_dot*E3\"\n");
+  Turning model(
+      body("B", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") +
+      "b1 = \"cos(n)*E1 + sin(n)*E2\"\nb2 = \"-sin(n)*E1 + cos(n)*E2\"\nb3 = \"E3\"\nw = \"B.omega - n_dot*E3\"\n");
   model.at[{"n", 0}] = ratio(11, 4);
   model.at[{"n", 1}] = ratio(3, 4);
   same_axes(model);
@@ -198,7 +219,8 @@ TEST_CASE("about E3 the axes are e_r, e_theta, E3, and w is theta_dot E3") {
 
 // Ex 5.9, printed last: half a turn about E1, then half a turn about E2, is half a turn about E3.
 TEST_CASE("two half turns about axes at right angles are one about the third") {
-  Turning model(body("A", "{ axis = \"E2\", angle = \"n\" }") + body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
+  Turning model(body("A", "{ axis = \"E2\", angle = \"n\" }") +
+                body("B", "{ axis = \"A.e1\", angle = \"n\" }", "relative_to = \"A\"\n") +
                 body("C", "{ axis = \"E3\", angle = \"n\" }") + "[definitions]\n" + three("B", "a") + three("C", "b"));
   model.at[{"n", 0}] = 2 * half_pi();
   same_axes(model);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Inertia and Euler tensors: of homogeneous shapes, about any point, as the body turns. The references are integrals over the
-// volume, by quadratures that are exact for what is integrated. Ex 6.4-6.8.
+// Inertia and Euler tensors: of homogeneous shapes, about any point, as the body turns. The references are integrals
+// over the volume, by quadratures that are exact for what is integrated. Ex 6.4-6.8.
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -23,7 +23,8 @@ struct Weighted {
   double weight;  // sums to 1
 };
 
-// Three points of Gauss and Legendre on [-1, 1]: exact to degree five, of the squares of coordinates with room for r^2 dr.
+// Three points of Gauss and Legendre on [-1, 1]: exact to degree five, of the squares of coordinates with room for r^2
+// dr.
 const std::array<double, 3> gauss{-std::sqrt(0.6), 0.0, std::sqrt(0.6)}, gauss_weight{5.0 / 18, 8.0 / 18, 5.0 / 18};
 
 std::vector<Weighted> box(double a, double b, double c) {
@@ -31,7 +32,8 @@ std::vector<Weighted> box(double a, double b, double c) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t k = 0; k < 3; ++k)
-        points.push_back({{a / 2 * gauss[i], b / 2 * gauss[j], c / 2 * gauss[k]}, gauss_weight[i] * gauss_weight[j] * gauss_weight[k]});
+        points.push_back({{a / 2 * gauss[i], b / 2 * gauss[j], c / 2 * gauss[k]},
+                          gauss_weight[i] * gauss_weight[j] * gauss_weight[k]});
   return points;
 }
 
@@ -48,7 +50,8 @@ std::vector<Weighted> cylinder(double R, double L) {
   std::vector<Weighted> points;
   for (std::size_t i = 0; i < 3; ++i) {
     const double r = R * (1 + gauss[i]) / 2;
-    for (std::size_t j = 0; j < 3; ++j) add_circle(points, r, L / 2 * gauss[j], 2 * r / R * gauss_weight[i] * gauss_weight[j]);
+    for (std::size_t j = 0; j < 3; ++j)
+      add_circle(points, r, L / 2 * gauss[j], 2 * r / R * gauss_weight[i] * gauss_weight[j]);
   }
   return points;
 }
@@ -58,7 +61,8 @@ std::vector<Weighted> sphere(double R) {
   for (std::size_t i = 0; i < 3; ++i) {
     const double r = R * (1 + gauss[i]) / 2;
     for (std::size_t j = 0; j < 3; ++j) {
-      add_circle(points, r * std::sqrt(1 - gauss[j] * gauss[j]), r * gauss[j], 3 * r * r / (R * R) * gauss_weight[i] * gauss_weight[j]);
+      add_circle(points, r * std::sqrt(1 - gauss[j] * gauss[j]), r * gauss[j],
+                 3 * r * r / (R * R) * gauss_weight[i] * gauss_weight[j]);
     }
   }
   return points;
@@ -69,7 +73,8 @@ Tensor euler_tensor(const std::vector<Weighted>& points, double mass, const Poin
   Tensor E{};
   for (const Weighted& point : points)
     for (std::size_t i = 0; i < 3; ++i)
-      for (std::size_t k = 0; k < 3; ++k) E[i][k] += mass * point.weight * (point.at[i] - about[i]) * (point.at[k] - about[k]);
+      for (std::size_t k = 0; k < 3; ++k)
+        E[i][k] += mass * point.weight * (point.at[i] - about[i]) * (point.at[k] - about[k]);
   return E;
 }
 
@@ -81,8 +86,10 @@ struct Shape {
 };
 
 std::vector<Shape> shapes() {
-  return {{"{ sphere = \"1/2\" }", sphere(0.5)},           {"{ cylinder = [\"1/2\", \"3/4\"] }", cylinder(0.5, 0.75)},
-          {"{ disk = \"1/2\" }", cylinder(0.5, 0)},        {"{ rod = \"3/4\" }", box(0, 0, 0.75)},
+  return {{"{ sphere = \"1/2\" }", sphere(0.5)},
+          {"{ cylinder = [\"1/2\", \"3/4\"] }", cylinder(0.5, 0.75)},
+          {"{ disk = \"1/2\" }", cylinder(0.5, 0)},
+          {"{ rod = \"3/4\" }", box(0, 0, 0.75)},
           {"{ box = [\"1/2\", \"3/4\", \"1\"] }", box(0.5, 0.75, 1)}};
 }
 
@@ -94,12 +101,14 @@ Tensor inertia(const std::string& shape, const std::array<int, 3>& eighths) {
   for (std::size_t k = 0; k < 3; ++k) {
     position += (k > 0 ? " - (" : "-(") + std::to_string(eighths[k]) + "/8)*B.e" + std::to_string(k + 1);
   }
-  const model::Model model = model::read_model_text(
-      "format = 1\n[[body]]\nname = \"B\"\nmass = 3\ninertia = " + shape + "\nposition = \"" + position + "\"\nrotation = { euler = \"123\", angles = [\"a\", \"b\", \"c\"] }\n",
-      "shape.toml");
+  const model::Model model =
+      model::read_model_text("format = 1\n[[body]]\nname = \"B\"\nmass = 3\ninertia = " + shape + "\nposition = \"" +
+                                 position + "\"\nrotation = { euler = \"123\", angles = [\"a\", \"b\", \"c\"] }\n",
+                             "shape.toml");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   const auto kinetic = [&](const std::array<double, 3>& w) {  // at a = b = c = 0 the rates are the components of w
-    return symbolic::evaluate(*m.dag, {m.kinetic}, [&](const symbolic::Symbol& s) { return s.order == 1 ? w[s.index] : 0.0; })[0];
+    return symbolic::evaluate(*m.dag, {m.kinetic},
+                              [&](const symbolic::Symbol& s) { return s.order == 1 ? w[s.index] : 0.0; })[0];
   };
   Tensor J{};
   for (std::size_t i = 0; i < 3; ++i) {
@@ -120,13 +129,14 @@ TEST_CASE("inertia: of a sphere, a cylinder, a disk, a rod, a box, about the cen
   for (const Shape& shape : shapes()) {
     for (const std::array<int, 3>& eighths : {std::array<int, 3>{0, 0, 0}, {4, 0, 0}, {-3, 5, 2}}) {
       CAPTURE(std::string(shape.inertia));
-      if (std::string(shape.inertia).find("rod") != std::string::npos && eighths[0] == 0) continue;  // nothing turns about a rod's own axis
+      if (std::string(shape.inertia).find("rod") != std::string::npos && eighths[0] == 0)
+        continue;  // nothing turns about a rod's own axis
       const Point about{eighths[0] / 8.0, eighths[1] / 8.0, eighths[2] / 8.0};
       const Tensor J = inertia(shape.inertia, eighths), E = euler_tensor(shape.points, mass, about);
       for (std::size_t i = 0; i < 3; ++i) {
         for (std::size_t k = 0; k < 3; ++k) {
-          CHECK(std::abs(J[i][k] - ((i == k ? trace(E) : 0) - E[i][k])) < rounding);                   // J = tr(E) I - E
-          CHECK(std::abs(E[i][k] - ((i == k ? trace(J) / 2 : 0) - J[i][k])) < rounding);               // (6.43)
+          CHECK(std::abs(J[i][k] - ((i == k ? trace(E) : 0) - E[i][k])) < rounding);      // J = tr(E) I - E
+          CHECK(std::abs(E[i][k] - ((i == k ? trace(J) / 2 : 0) - J[i][k])) < rounding);  // (6.43)
         }
       }
     }
@@ -138,14 +148,18 @@ TEST_CASE("inertia: the cylinder of Ex 6.8 about a point off its axis") {
   const double R = 0.5, L = 0.75, x = 0.25, z = 0.375;
   const Tensor J = inertia("{ cylinder = [\"1/2\", \"3/4\"] }", {-2, 0, -3});
   const double across = mass * L * L / 12 + mass * R * R / 4;
-  const Tensor expected{{{across + mass * z * z, 0, -mass * x * z}, {0, across + mass * (x * x + z * z), 0}, {-mass * x * z, 0, mass * R * R / 2 + mass * x * x}}};
+  const Tensor expected{{{across + mass * z * z, 0, -mass * x * z},
+                         {0, across + mass * (x * x + z * z), 0},
+                         {-mass * x * z, 0, mass * R * R / 2 + mass * x * x}}};
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t k = 0; k < 3; ++k) CHECK(std::abs(J[i][k] - expected[i][k]) < rounding);
 }
 
-// (6.91), (6.97): Jdot = W J - J W and Edot = W E - E W, with W v = w x v; from J = sum lambda_i e_i (x) e_i by differences.
+// (6.91), (6.97): Jdot = W J - J W and Edot = W E - E W, with W v = w x v; from J = sum lambda_i e_i (x) e_i by
+// differences.
 TEST_CASE("inertia: the tensors turn with the body") {
-  Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") + "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"B.omega\"\n");
+  Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
+                "[definitions]\na1 = \"B.e1\"\na2 = \"B.e2\"\na3 = \"B.e3\"\nw = \"B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 5);
     model.at[{name, 1}] = ratio(2 * (name[1] - '0') - 3, 7);
@@ -182,7 +196,8 @@ TEST_CASE("inertia: the tensors turn with the body") {
 TEST_CASE("inertia: angular velocity, momentum and energy in 3-2-3 angles") {
   Turning model(body("B", "{ euler = \"323\", angles = [\"n1\", \"n2\", \"n3\"] }") +
                 "[definitions]\nw1 = \"dot(B.omega, B.e1) - (n2_dot*sin(n3) - n1_dot*sin(n2)*cos(n3))\"\n"
-                "w2 = \"dot(B.omega, B.e2) - (n2_dot*cos(n3) + n1_dot*sin(n3)*sin(n2))\"\nw3 = \"dot(B.omega, B.e3) - (n1_dot*cos(n2) + n3_dot)\"\nw = \"B.omega\"\n");
+                "w2 = \"dot(B.omega, B.e2) - (n2_dot*cos(n3) + n1_dot*sin(n3)*sin(n2))\"\nw3 = \"dot(B.omega, B.e3) - "
+                "(n1_dot*cos(n2) + n3_dot)\"\nw = \"B.omega\"\n");
   for (const char* name : {"n1", "n2", "n3"}) {
     model.at[{name, 0}] = ratio(name[1] - '0', 5);
     model.at[{name, 1}] = ratio(2 * (name[1] - '0') - 3, 7);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Every representation of rotations: its axes are orthonormal and right-handed, and what its file says of angular velocities,
-// bases and singular sets holds.
+// Every representation of rotations: its axes are orthonormal and right-handed, and what its file says of angular
+// velocities, bases and singular sets holds.
 #include <set>
 
 #include "rotations/turning.hpp"
@@ -51,7 +51,8 @@ TEST_CASE("rotations: there are the twelve sets of Euler angles, each once, and 
     CHECK(rotations::find(r.name) == &r);
     if (r.family == "euler") sets.insert(r.name);
   }
-  CHECK(sets == std::set<std::string>{"121", "131", "212", "232", "313", "323", "123", "132", "213", "231", "312", "321"});
+  CHECK(sets ==
+        std::set<std::string>{"121", "131", "212", "232", "313", "323", "123", "132", "213", "231", "312", "321"});
   CHECK(rotations::registry().size() == 16);
   CHECK(rotations::find("111") == nullptr);
 }
@@ -140,7 +141,8 @@ TEST_CASE("rotations: relative to another body angular velocities add up, in eve
       set(model, b, "b", 1);
       const Numbers w = model.vector("w");
       CHECK(distance(model.turning("a"), w) < difference);
-      CHECK(distance({dot(w, model.vector("a1")), dot(w, model.vector("a2")), dot(w, model.vector("a3"))}, model.own_rates(2)) < exact);
+      CHECK(distance({dot(w, model.vector("a1")), dot(w, model.vector("a2")), dot(w, model.vector("a3"))},
+                     model.own_rates(2)) < exact);
     }
   }
 }
@@ -148,7 +150,8 @@ TEST_CASE("rotations: relative to another body angular velocities add up, in eve
 TEST_CASE("rotations: an axis may be any vector that is fixed in the parent") {
   Turning model(body("B", "{ euler = \"321\", angles = [\"a\", \"b\", \"c\"] }") +
                 body("C", "{ axis = \"B.e1 - 3*B.e3\", angle = \"d\" }", "relative_to = \"B\"\n") +
-                "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\nof_B = \"dot(C.e1 - 3*C.e3, B.e1 - 3*B.e3)\"\n");
+                "[definitions]\na1 = \"C.e1\"\na2 = \"C.e2\"\na3 = \"C.e3\"\nw = \"omega(C)\"\nof_B = \"dot(C.e1 - "
+                "3*C.e3, B.e1 - 3*B.e3)\"\n");
   for (const char* name : {"a", "b", "c", "d"}) {
     model.at[{name, 0}] = ratio(name[0] - 'a' + 1, 3);
     model.at[{name, 1}] = ratio(7 - 2 * (name[0] - 'a'), 5);

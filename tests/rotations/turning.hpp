@@ -25,11 +25,13 @@ inline Numbers cross(const Numbers& a, const Numbers& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 inline double size(const Real& x) { return cln::double_approx(cln::abs(x)); }
-inline double distance(const Numbers& a, const Numbers& b) { return size(a[0] - b[0]) + size(a[1] - b[1]) + size(a[2] - b[2]); }
+inline double distance(const Numbers& a, const Numbers& b) {
+  return size(a[0] - b[0]) + size(a[1] - b[1]) + size(a[2] - b[2]);
+}
 
 constexpr int digits = 60;
-constexpr double exact = 1e-50;        // some hundred operations in 60 digits
-constexpr double difference = 1e-35;   // of central differences with steps of 1e-20
+constexpr double exact = 1e-50;       // some hundred operations in 60 digits
+constexpr double difference = 1e-35;  // of central differences with steps of 1e-20
 
 /// The rotation of a registry entry as a model writes it, with coordinates of the entries' names and a suffix.
 inline std::string written(const rotations::Rotation& r, const std::string& suffix = "") {
@@ -42,19 +44,23 @@ inline std::string written(const rotations::Rotation& r, const std::string& suff
 }
 
 inline std::string body(const std::string& name, const std::string& rotation, const std::string& more = "") {
-  return "[[body]]\nname = \"" + name + "\"\nmass = 1\ninertia = { principal = [1, 1, 1] }\nposition = { cartesian = [\"x" + name + "\", \"y" + name +
+  return "[[body]]\nname = \"" + name +
+         "\"\nmass = 1\ninertia = { principal = [1, 1, 1] }\nposition = { cartesian = [\"x" + name + "\", \"y" + name +
          "\", \"z" + name + "\"] }\nrotation = " + rotation + "\n" + more;
 }
 
 class Turning {
  public:
-  explicit Turning(const std::string& text) : model_(model::read_model_text("format = 1\n" + text, "turning.toml")), m_(mechanics::build_mechanics(model_)) {}
+  explicit Turning(const std::string& text)
+      : model_(model::read_model_text("format = 1\n" + text, "turning.toml")), m_(mechanics::build_mechanics(model_)) {}
 
   /// Values of coordinates (order 0) and rates (order 1) by name; everything else is 0.
   std::map<std::pair<std::string, int>, Real> at;
 
   Real scalar(const std::string& definition) { return value({m_.scalar_definition[index(definition)]})[0]; }
-  Numbers vector(const std::string& definition) { return numbers(mechanics::lower_vector(m_, model_.definitions[index(definition)].is)); }
+  Numbers vector(const std::string& definition) {
+    return numbers(mechanics::lower_vector(m_, model_.definitions[index(definition)].is));
+  }
   Numbers own_rates(std::size_t frame) { return numbers(m_.angular_velocity[frame]); }
   /// The vector a little later on the path q + h qdot.
   Numbers later(const std::string& definition, const Real& h) {
@@ -92,11 +98,14 @@ class Turning {
     return 0;
   }
   std::vector<Real> value(const std::vector<symbolic::Ref>& roots) {
-    return symbolic::evaluate(*m_.dag, roots, [this](const symbolic::Symbol& s) -> Real {
-      if (s.kind != symbolic::SymbolKind::coordinate) return ratio(1, 3);
-      const auto found = at.find({model_.coordinates[s.index].name, s.order});
-      return found == at.end() ? Real(0) : found->second;
-    }, digits);
+    return symbolic::evaluate(
+        *m_.dag, roots,
+        [this](const symbolic::Symbol& s) -> Real {
+          if (s.kind != symbolic::SymbolKind::coordinate) return ratio(1, 3);
+          const auto found = at.find({model_.coordinates[s.index].name, s.order});
+          return found == at.end() ? Real(0) : found->second;
+        },
+        digits);
   }
   Numbers numbers(const std::array<symbolic::Ref, 3>& v) {
     const std::vector<Real> x = value({v[0], v[1], v[2]});

@@ -14,7 +14,8 @@ std::string radial(double r, double r_dot) {
   return "format = 1\n[parameters]\nm = 1\nk = 4\nL = 0.5\n[[particle]]\nname = \"P\"\nmass = \"m\"\n"
          "position = { cylindrical = [\"r\", \"theta\"] }\n"
          "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = \"L\" }\n"
-         "[scene.default]\nt = [0, 10]\ninitial = { r = " + std::to_string(r) + ", r_dot = " + std::to_string(r_dot) + " }\n";
+         "[scene.default]\nt = [0, 10]\ninitial = { r = " +
+         std::to_string(r) + ", r_dot = " + std::to_string(r_dot) + " }\n";
 }
 
 test::Finished run_text(const std::string& text) {
@@ -39,20 +40,25 @@ TEST_CASE("run: one that stays inside is done") {
 }
 
 TEST_CASE("run: a start outside the range is refused") {
-  CHECK_THROWS_WITH_AS(run_text(radial(-1, 0)), doctest::Contains("the start has r = -1, outside its range (0, inf)"), Error);
+  CHECK_THROWS_WITH_AS(run_text(radial(-1, 0)), doctest::Contains("the start has r = -1, outside its range (0, inf)"),
+                       Error);
 }
 
 TEST_CASE("run: a bead on a turning wire goes through the centre, where its equation is regular") {
   const test::Finished finished = run_text(
-      "format = 1\n[parameters]\nm = 1\nw = 1\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
-      "[[constraint]]\nname = \"turn\"\nholonomic = \"theta - w*t\"\n[scene.default]\nt = [0, 2]\ninitial = { r = 0.5, r_dot = -1 }\n");
+      "format = 1\n[parameters]\nm = 1\nw = 1\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = "
+      "[\"r\", \"theta\"] }\n"
+      "[[constraint]]\nname = \"turn\"\nholonomic = \"theta - w*t\"\n[scene.default]\nt = [0, 2]\ninitial = { r = 0.5, "
+      "r_dot = -1 }\n");
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(std::abs(finished.final("r") - (0.5 * std::cosh(2.0) - std::sinh(2.0))) < 1e-7);
   // With a spring to the centre the distance is r on one side and -r on the other.
   const test::Finished spring = run_text(
-      "format = 1\n[parameters]\nm = 1\nw = 1\nk = 9\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
+      "format = 1\n[parameters]\nm = 1\nw = 1\nk = 9\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { "
+      "cylindrical = [\"r\", \"theta\"] }\n"
       "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = 0.1 }\n"
-      "[[constraint]]\nname = \"turn\"\nholonomic = \"theta - w*t\"\n[scene.default]\nt = [0, 2]\ninitial = { r = 0.5, r_dot = -1 }\n");
+      "[[constraint]]\nname = \"turn\"\nholonomic = \"theta - w*t\"\n[scene.default]\nt = [0, 2]\ninitial = { r = 0.5, "
+      "r_dot = -1 }\n");
   CHECK(spring.simulation.result.outcome == eom::Outcome::chart_left);
   CHECK(spring.simulation.result.detail.find("give it a wider one in [coordinates]") != std::string::npos);
 }

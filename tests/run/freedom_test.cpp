@@ -10,9 +10,11 @@ using namespace eomgen;
 namespace {
 
 std::string planar(const std::string& second) {
-  return "format = 1\n[parameters]\nm = 1\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n"
+  return "format = 1\n[parameters]\nm = 1\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", "
+         "\"y\"] }\n"
          "[[constraint]]\nname = \"a\"\nholonomic = \"x^2 + y^2 - 4\"\n"
-         "[[constraint]]\nname = \"b\"\nholonomic = \"" + second + "\"\n[scene.default]\ninitial = { x = 1.2, y = 1.6 }\n";
+         "[[constraint]]\nname = \"b\"\nholonomic = \"" +
+         second + "\"\n[scene.default]\ninitial = { x = 1.2, y = 1.6 }\n";
 }
 
 void check_refused(const std::string& text, const char* message) {
@@ -31,8 +33,9 @@ void check_refused(const std::string& text, const char* message) {
 }  // namespace
 
 TEST_CASE("freedom: as many constraints as coordinates leave nothing to integrate") {
-  check_refused(planar("x*y - 1.92"),
-                "there are as many constraints as coordinates: nothing is left to move, unless constraints repeat one another");
+  check_refused(
+      planar("x*y - 1.92"),
+      "there are as many constraints as coordinates: nothing is left to move, unless constraints repeat one another");
 }
 
 TEST_CASE("freedom: coordinates that are all prescribed leave nothing to integrate") {

@@ -13,7 +13,8 @@ namespace {
 
 constexpr double g = 9.81;
 
-test::Finished run_text(const std::string& name, const std::string& text, const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+test::Finished run_text(const std::string& name, const std::string& text,
+                        const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);
@@ -21,7 +22,8 @@ test::Finished run_text(const std::string& name, const std::string& text, const 
 
 std::string pendulum(const std::string& support) {
   return "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[coordinates]\nth = \"1\"\n[functions]\ns = \"" + support +
-         "\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"s + l*sin(th)\", \"-l*cos(th)\", 0]\n[[force]]\ngravity = \"-g*E2\"\n"
+         "\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"s + l*sin(th)\", \"-l*cos(th)\", "
+         "0]\n[[force]]\ngravity = \"-g*E2\"\n"
          "[scene.default]\nt = [0, 3]\ninitial = { th = 0.1 }\n";
 }
 
@@ -49,8 +51,9 @@ const run::RunEvent* impulse(const test::Finished& finished) {
 }
 
 std::string step_at_one(const std::string& potential, double speed) {
-  return "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n[energy]\npotential = \"" + potential +
-         "\"\n[scene.default]\nt = [0, 3]\ninitial = { x_dot = " + std::to_string(speed) + " }\n";
+  return "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", "
+         "0, 0]\n[energy]\npotential = \"" +
+         potential + "\"\n[scene.default]\nt = [0, 3]\ninitial = { x_dot = " + std::to_string(speed) + " }\n";
 }
 
 }  // namespace
@@ -60,7 +63,8 @@ TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an imp
     const char* support;
     double change;
   };
-  for (const Case& c : {Case{"a*abs(t - 1)", 2}, Case{"a*max(0, t - 1)", 1}, Case{"if(t < 1, 0, a*(t - 1))", 1}, Case{"3 - a*min(1, t)", 1}}) {
+  for (const Case& c : {Case{"a*abs(t - 1)", 2}, Case{"a*max(0, t - 1)", 1}, Case{"if(t < 1, 0, a*(t - 1))", 1},
+                        Case{"3 - a*min(1, t)", 1}}) {
     CAPTURE(std::string(c.support));
     const test::Finished finished = run_text("support", pendulum(c.support));
     const auto [th, th_dot] = expected(c.change);
@@ -77,9 +81,11 @@ TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an imp
 
 TEST_CASE("jumps: the same by a constraint with a multiplier") {
   const test::Finished finished = run_text(
-      "rod", "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n"
-             "[[constraint]]\nname = \"rod\"\nholonomic = \"(x - a*abs(t - 1))^2 + y^2 - l^2\"\n[scene.default]\nt = [0, 3]\n"
-             "initial = { x = \"1 + sin(0.1)\", y = \"-cos(0.1)\", x_dot = -1, y_dot = 0 }\n");
+      "rod",
+      "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = "
+      "[\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n"
+      "[[constraint]]\nname = \"rod\"\nholonomic = \"(x - a*abs(t - 1))^2 + y^2 - l^2\"\n[scene.default]\nt = [0, 3]\n"
+      "initial = { x = \"1 + sin(0.1)\", y = \"-cos(0.1)\", x_dot = -1, y_dot = 0 }\n");
   const auto [th, th_dot] = expected(2);
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(std::abs(finished.final("x") - (2 + std::sin(th))) < 1e-7);
@@ -111,8 +117,10 @@ TEST_CASE("jumps: a step of a potential ends the run where it is crossed, one th
 }
 
 TEST_CASE("jumps: a wire with a corner ends the run there") {
-  const test::Finished corner = run_text("corner", "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
-                                                   "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
+  const test::Finished corner = run_text("corner",
+                                         "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = "
+                                         "\"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
+                                         "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
   CHECK(corner.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(corner.simulation.result.detail.find("P.velocity2 jumps by -1 at t = 1") == 0);
 }

@@ -12,14 +12,17 @@ using namespace eomgen;
 namespace {
 
 /// Steps of size h along a motion that is known: position and velocity by its formula, acceleration by f.
-double largest_kick(double h, int steps, const std::function<void(double, double*)>& motion, const std::function<double(double)>& f, double& at) {
+double largest_kick(double h, int steps, const std::function<void(double, double*)>& motion,
+                    const std::function<double(double)>& f, double& at) {
   run::Kicks kicks(1, 1);
   for (int k = 0; k < steps; ++k) {
     const double t0 = k * h, t1 = (k + 1) * h;
     double x0[2], x1[2];
     motion(t0, x0);
     motion(t1, x1);
-    const eom::StepView step{t0, t1, x0, x1, &motion, [](const void* of, double t, double* x) { (*static_cast<const std::function<void(double, double*)>*>(of))(t, x); }};
+    const eom::StepView step{t0, t1, x0, x1, &motion, [](const void* of, double t, double* x) {
+                               (*static_cast<const std::function<void(double, double*)>*>(of))(t, x);
+                             }};
     kicks.see(step, [&](double, const double* x, double* dx) {
       dx[0] = x[1];
       dx[1] = f(x[0]);
@@ -36,16 +39,22 @@ double largest_kick(double h, int steps, const std::function<void(double, double
 TEST_CASE("kicks: vibrations with ten steps a period have none, at their start and end neither") {
   double at = 0;
   for (const double phase : {0.0, 0.4, 1.1, 2.0, 2.9}) {
-    CHECK(largest_kick(0.63, 200, [&](double t, double* x) { x[0] = std::sin(t + phase), x[1] = std::cos(t + phase); }, [](double q) { return -q; }, at) == 0);
+    CHECK(largest_kick(
+              0.63, 200, [&](double t, double* x) { x[0] = std::sin(t + phase), x[1] = std::cos(t + phase); },
+              [](double q) { return -q; }, at) == 0);
   }
 }
 
-TEST_CASE("kicks: a centre that is passed within one step changes the velocity by up to the force times the step, wherever in it") {
+TEST_CASE(
+    "kicks: a centre that is passed within one step changes the velocity by up to the force times the step, wherever "
+    "in it") {
   // q'' = -K sign(q) as a force that turns within 1e-9, seen along q = t - s, which the step leaps over.
   constexpr double h = 0.01, K = 3;
   for (const double s : {0.003, 0.5037, 0.9937}) {  // in the first step, in between, in the last
     double at = -1;
-    const double kick = largest_kick(h, 100, [&](double t, double* x) { x[0] = t - s, x[1] = 1; }, [](double q) { return -K * std::tanh(q / 1e-9); }, at);
+    const double kick = largest_kick(
+        h, 100, [&](double t, double* x) { x[0] = t - s, x[1] = 1; }, [](double q) { return -K * std::tanh(q / 1e-9); },
+        at);
     CAPTURE(s);
     CHECK(kick >= K * h);  // what is in doubt is at most 2 K h, and at least as much where the middle is on one side
     CHECK(kick <= 2.01 * K * h);

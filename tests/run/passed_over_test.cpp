@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is shorter than a step is met all the same: pulses of forces and inputs, bumps, events that follow one another fast.
+// What is shorter than a step is met all the same: pulses of forces and inputs, bumps, events that follow one another
+// fast.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -13,33 +14,42 @@ using namespace eomgen;
 
 namespace {
 
-test::Finished run_text(const std::string& name, const std::string& text, const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+test::Finished run_text(const std::string& name, const std::string& text,
+                        const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);
 }
 
 std::string particle(const std::string& force, const std::string& more) {
-  return "[parameters]\nm = 1\nF = 658\n[coordinates]\nx = \"m\"\n" + more + "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n[[force]]\ngeneralized = { x = \"" + force + "\" }\n";
+  return "[parameters]\nm = 1\nF = 658\n[coordinates]\nx = \"m\"\n" + more +
+         "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n[[force]]\ngeneralized = { x = \"" +
+         force + "\" }\n";
 }
 
 std::size_t count(const run::RunResult& result, const std::string& kind, const std::string& name) {
-  return static_cast<std::size_t>(std::count_if(result.events.begin(), result.events.end(), [&](const run::RunEvent& e) { return e.kind == kind && e.name == name; }));
+  return static_cast<std::size_t>(
+      std::count_if(result.events.begin(), result.events.end(),
+                    [&](const run::RunEvent& e) { return e.kind == kind && e.name == name; }));
 }
 
 }  // namespace
 
-TEST_CASE("passed over: a force of a millisecond in ten seconds changes the velocity by its integral, with every solver") {
+TEST_CASE(
+    "passed over: a force of a millisecond in ten seconds changes the velocity by its integral, with every solver") {
   struct Case {
     const char* force;
     double impulse, allowed;
     bool smooth;
   };
   constexpr double F = 658, w = 1e-3;
-  for (const Case& c : {Case{"F/(1 + ((t - 5.123)/0.001)^2)", F * w * (std::atan(4.877 / w) + std::atan(5.123 / w)), 1e-6, true}, Case{"if(abs(t - 5.123) < 0.0005, F, 0)", F * w, 1e-9, false},
-                        Case{"F*max(0, 1 - abs(t - 5.123)/0.001)", F * w, 1e-9, false}}) {
+  for (const Case& c :
+       {Case{"F/(1 + ((t - 5.123)/0.001)^2)", F * w * (std::atan(4.877 / w) + std::atan(5.123 / w)), 1e-6, true},
+        Case{"if(abs(t - 5.123) < 0.0005, F, 0)", F * w, 1e-9, false},
+        Case{"F*max(0, 1 - abs(t - 5.123)/0.001)", F * w, 1e-9, false}}) {
     CAPTURE(std::string(c.force));
-    const test::Finished finished = run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n", [](auto& request) { request.every_solver = true; });
+    const test::Finished finished = run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n",
+                                             [](auto& request) { request.every_solver = true; });
     CHECK(std::abs(finished.final("x_dot") - c.impulse) < c.allowed);
     for (const eom::MethodInfo& method : eom::methods()) {
       if (method.constrained || (method.variational && !c.smooth)) continue;
@@ -57,11 +67,12 @@ TEST_CASE("passed over: a force of a millisecond in ten seconds changes the velo
 }
 
 TEST_CASE("passed over: conditions in inputs are met, narrow ones too") {
-  const std::string text = particle("u", "[inputs]\nu = { default = 0 }\n") +
-                           "[scene.default]\nt = [0, 10]\ninputs = { u = \"if(t < 5, 0, if(t < 5.001, 1000, 0))\" }\n"
-                           "[scene.kink]\nfrom = \"default\"\ninputs = { u = \"max(0, t - 9)\" }\n"
-                           "[scene.pulses]\nfrom = \"default\"\ninputs = { u = \"if(cos(2*pi*t) > 0.9999, 1, 0)\" }\n"
-                           "[scene.table]\nfrom = \"default\"\ninputs = { u = { t = [0, 5, 5.001], value = [0, 1000, 0] } }\n";
+  const std::string text =
+      particle("u", "[inputs]\nu = { default = 0 }\n") +
+      "[scene.default]\nt = [0, 10]\ninputs = { u = \"if(t < 5, 0, if(t < 5.001, 1000, 0))\" }\n"
+      "[scene.kink]\nfrom = \"default\"\ninputs = { u = \"max(0, t - 9)\" }\n"
+      "[scene.pulses]\nfrom = \"default\"\ninputs = { u = \"if(cos(2*pi*t) > 0.9999, 1, 0)\" }\n"
+      "[scene.table]\nfrom = \"default\"\ninputs = { u = { t = [0, 5, 5.001], value = [0, 1000, 0] } }\n";
   const auto end = [&](const std::string& scene) {
     const test::Finished finished = run_text("input", text, [&](auto& request) { request.scene = scene; });
     CHECK(finished.simulation.result.outcome == eom::Outcome::done);
@@ -70,13 +81,17 @@ TEST_CASE("passed over: conditions in inputs are met, narrow ones too") {
   CHECK(std::abs(end("default") - 1) < 1e-9);
   CHECK(std::abs(end("table") - 1) < 1e-9);
   CHECK(std::abs(end("kink") - 0.5) < 1e-9);
-  CHECK(std::abs(end("pulses") - 10 * std::acos(0.9999) / std::numbers::pi) < 1e-9);  // half of the first, nine whole ones, half of the last
+  CHECK(std::abs(end("pulses") - 10 * std::acos(0.9999) / std::numbers::pi) <
+        1e-9);  // half of the first, nine whole ones, half of the last
 }
 
 TEST_CASE("passed over: of a free particle, whose steps are long, every event is told") {
-  const std::string text = "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, 0]\n"
-                           "[[event]]\nname = \"time\"\nwhen = \"sin(5*t + 1)\"\n[[event]]\nname = \"place\"\nwhen = \"sin(50*x + 1)\"\n"
-                           "[[event]]\nname = \"narrow\"\nwhen = \"abs(x - 3.3333) - 1e-5\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1.1 }\n";
+  const std::string text =
+      "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", 0, "
+      "0]\n"
+      "[[event]]\nname = \"time\"\nwhen = \"sin(5*t + 1)\"\n[[event]]\nname = \"place\"\nwhen = \"sin(50*x + 1)\"\n"
+      "[[event]]\nname = \"narrow\"\nwhen = \"abs(x - 3.3333) - 1e-5\"\n[scene.default]\nt = [0, 10]\ninitial = { "
+      "x_dot = 1.1 }\n";
   const test::Finished finished = run_text("events", text);
   const run::RunResult& result = finished.simulation.result;
   CHECK(result.outcome == eom::Outcome::done);
@@ -86,30 +101,40 @@ TEST_CASE("passed over: of a free particle, whose steps are long, every event is
 }
 
 TEST_CASE("passed over: a narrow region of force is met by a particle that crosses it within a step") {
-  const test::Finished finished = run_text("barrier", particle("if(abs(x - 3.3) < 0.01, -20, 0)", "") + "[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n");
+  const test::Finished finished = run_text("barrier", particle("if(abs(x - 3.3) < 0.01, -20, 0)", "") +
+                                                          "[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n");
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(std::abs(finished.final("x_dot") - std::sqrt(1 - 2 * 20 * 0.02)) < 1e-7);
 }
 
 TEST_CASE("passed over: a bump that is narrower than a step is hit") {
-  const test::Finished finished = run_text(
-      "bump", "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"x\", \"y\", 0]\n[[constraint]]\nname = \"floor\"\n"
-              "holonomic = \"y - 0.1[m]/(1 + ((x - 3.7[m])/0.025[m])^2)\"\nholds = \"unilateral\"\nrestitution = 1\n[scene.default]\nt = [0, 5]\ninitial = { x = 0, y = 0.05, x_dot = 2, y_dot = 0 }\n");
+  const test::Finished finished =
+      run_text("bump",
+               "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = "
+               "\"m\"\nposition = [\"x\", \"y\", 0]\n[[constraint]]\nname = \"floor\"\n"
+               "holonomic = \"y - 0.1[m]/(1 + ((x - 3.7[m])/0.025[m])^2)\"\nholds = \"unilateral\"\nrestitution = "
+               "1\n[scene.default]\nt = [0, 5]\ninitial = { x = 0, y = 0.05, x_dot = 2, y_dot = 0 }\n");
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(count(finished.simulation.result, "contact", "floor") == 1);
   CHECK(std::abs(finished.final("x_dot")) < 1.99);
 }
 
-TEST_CASE("passed over: barriers that are narrow in the state and have no tails throw back, with every solver that chooses its steps") {
+TEST_CASE(
+    "passed over: barriers that are narrow in the state and have no tails throw back, with every solver that chooses "
+    "its steps") {
   struct Case {
     const char* potential;
     double x, x_dot;  // at t = 10, of a particle that comes from 0 with speed 1 and meets it at 3
   };
-  // A bump of any width throws back at 3 but for its own width; a step of 0.3 beyond 1/2 J is passed, and slows it down.
-  for (const Case& c : {Case{"5*exp(-((x - 3)/1e-5)^2)", -4, -1}, Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1}, Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
+  // A bump of any width throws back at 3 but for its own width; a step of 0.3 beyond 1/2 J is passed, and slows it
+  // down.
+  for (const Case& c : {Case{"5*exp(-((x - 3)/1e-5)^2)", -4, -1}, Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1},
+                        Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
     CAPTURE(std::string(c.potential));
     const test::Finished finished =
-        run_text("narrow", "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"" + std::string(c.potential) + "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",
+        run_text("narrow",
+                 "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"" + std::string(c.potential) +
+                     "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",
                  [](auto& request) { request.every_solver = true; });
     for (const eom::MethodInfo& method : eom::methods()) {
       if (method.constrained || method.variational || !method.adaptive) continue;

@@ -26,7 +26,9 @@ run::Clock clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) 
   return run::look_at_time(system, {}, {}, 0, t1);
 }
 
-Ref number(Dag& dag, long numerator, long denominator = 1) { return dag.constant(symbolic::Rational(numerator) / denominator); }
+Ref number(Dag& dag, long numerator, long denominator = 1) {
+  return dag.constant(symbolic::Rational(numerator) / denominator);
+}
 
 }  // namespace
 
@@ -34,7 +36,8 @@ TEST_CASE("ranges: every operation keeps values and slopes between its bounds") 
   Dag dag;
   const Ref t = dag.symbol({symbolic::SymbolKind::time, 0, 0}), half = number(dag, 1, 2);
   std::vector<Ref> functions;
-  for (const Op op : {Op::sin, Op::cos, Op::tan, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp, Op::abs}) functions.push_back(dag.call(op, dag.mul(t, number(dag, 7, 3))));
+  for (const Op op : {Op::sin, Op::cos, Op::tan, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp, Op::abs})
+    functions.push_back(dag.call(op, dag.mul(t, number(dag, 7, 3))));
   for (const Op op : {Op::sqrt, Op::log}) functions.push_back(dag.call(op, dag.add(dag.power(t, 2), half)));
   for (const Op op : {Op::asin, Op::acos}) functions.push_back(dag.call(op, dag.div(t, number(dag, 3))));
   functions.push_back(dag.call(Op::atan2, dag.call(Op::sin, t), dag.call(Op::cos, t)));
@@ -71,7 +74,8 @@ TEST_CASE("ranges: every operation keeps values and slopes between its bounds") 
 
 TEST_CASE("clock: kinks of time are found however near to one another, each to the last digit and none twice") {
   const run::Clock pulse = clock_of([](Dag& dag, Ref t) {  // if(|t - 5.123| < 1e-7, 1, 0), and |t - 2|
-    const Ref inside = dag.select(dag.call(Op::abs, dag.sub(t, number(dag, 5123, 1000))), number(dag, 1, 10'000'000), dag.one(), dag.zero());
+    const Ref inside = dag.select(dag.call(Op::abs, dag.sub(t, number(dag, 5123, 1000))), number(dag, 1, 10'000'000),
+                                  dag.one(), dag.zero());
     return dag.add(inside, dag.call(Op::abs, dag.sub(t, number(dag, 2))));
   });
   REQUIRE(pulse.breaks.size() == 4);  // the middle of the pulse too, where |t - 5.123| has its kink
@@ -86,7 +90,8 @@ TEST_CASE("clock: kinks of time are found however near to one another, each to t
   });
   CHECK(periodic.breaks.size() == 64);  // 32 maxima in 200 rad
   CHECK(periodic.incomplete.empty());
-  const run::Clock touches = clock_of([](Dag& dag, Ref t) { return dag.call(Op::abs, dag.power(dag.sub(t, number(dag, 3)), 2)); });
+  const run::Clock touches =
+      clock_of([](Dag& dag, Ref t) { return dag.call(Op::abs, dag.power(dag.sub(t, number(dag, 3)), 2)); });
   CHECK(touches.breaks.empty());
   CHECK(touches.bounds.empty());
 }

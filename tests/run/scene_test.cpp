@@ -63,12 +63,15 @@ TEST_CASE("scene: the guess chooses between the closures") {
   CHECK(resolve(rod + "initial = { x = 1.2 }\nguess = { y = -3 }\n").q[1] == doctest::Approx(-1.6).epsilon(rounding));
 }
 
-TEST_CASE("scene: where constraints can be met in several ways those follow that they feel most, the others stay, and it is told") {
+TEST_CASE(
+    "scene: where constraints can be met in several ways those follow that they feel most, the others stay, and it is "
+    "told") {
   const std::string guess = "guess = { x = 0.55, y = -1.35 }\n";
   const run::Scene scene = resolve(rod + guess);
   CHECK(scene.q[0] == 0.55);
   CHECK(scene.q[1] == doctest::Approx(-std::sqrt(4 - 0.55 * 0.55)).epsilon(rounding));
-  CHECK(std::count(scene.solved.begin(), scene.solved.end(), "x = 0.55 (chosen: the constraints can be met in several ways)") == 1);
+  CHECK(std::count(scene.solved.begin(), scene.solved.end(),
+                   "x = 0.55 (chosen: the constraints can be met in several ways)") == 1);
   const run::Scene named = resolve(rod + guess + "solve = [\"x\"]\n");
   CHECK(named.q[0] == doctest::Approx(std::sqrt(4 - 1.35 * 1.35)).epsilon(rounding));
   CHECK(named.q[1] == -1.35);

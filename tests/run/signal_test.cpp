@@ -10,7 +10,8 @@ using symbolic::Op;
 
 TEST_CASE("signal: an expression of t and parameters has the value of its formula") {
   symbolic::Dag dag;
-  const symbolic::Ref t = dag.symbol({symbolic::SymbolKind::time, 0, 0}), a = dag.symbol({symbolic::SymbolKind::parameter, 1, 0});
+  const symbolic::Ref t = dag.symbol({symbolic::SymbolKind::time, 0, 0}),
+                      a = dag.symbol({symbolic::SymbolKind::parameter, 1, 0});
   const symbolic::Ref u = dag.add(dag.mul(a, dag.call(Op::sin, dag.mul(dag.pi(), t))), dag.power(t, 3));
   const run::Signal signal(dag, u, {7, 2.5});
   CHECK(signal(0.3, 0.3) == doctest::Approx(2.5 * std::sin(std::acos(-1.0) * 0.3) + 0.027).epsilon(1e-15));

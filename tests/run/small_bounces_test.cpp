@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Contacts at the ends of what numbers hold: bounces too low to follow, a start next to the floor, speeds whose squares overflow.
+// Contacts at the ends of what numbers hold: bounces too low to follow, a start next to the floor, speeds whose squares
+// overflow.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -15,9 +16,12 @@ namespace {
 Rational ten_to(long exponent) { return cln::expt(Rational(10), cln::cl_I(exponent)); }
 
 const char* const ball =
-    "format = 1\n[parameters]\nm = 1\ng = 9.81\nh = \"1 m\"\nv = \"3 m/s\"\ne = { value = 0.5, unit = \"1\" }\nmu = { value = 0.1, unit = \"1\" }\n"
-    "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n"
-    "[[constraint]]\nname = \"floor\"\nholonomic = \"y\"\nholds = \"unilateral\"\nrestitution = \"e\"\nfriction = { static = \"mu\", dynamic = \"mu\" }\n"
+    "format = 1\n[parameters]\nm = 1\ng = 9.81\nh = \"1 m\"\nv = \"3 m/s\"\ne = { value = 0.5, unit = \"1\" }\nmu = { "
+    "value = 0.1, unit = \"1\" }\n"
+    "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[[force]]\ngravity = "
+    "\"-g*E2\"\n"
+    "[[constraint]]\nname = \"floor\"\nholonomic = \"y\"\nholds = \"unilateral\"\nrestitution = \"e\"\nfriction = { "
+    "static = \"mu\", dynamic = \"mu\" }\n"
     "[scene.default]\nt = [0, 3]\ninitial = { y = \"h\", x_dot = \"v\" }\n";
 
 const test::Finished& made() {
@@ -37,7 +41,8 @@ run::RunResult with(std::map<std::string, Rational> parameters) {
 
 }  // namespace
 
-TEST_CASE("small bounces: with any coefficient of restitution the ball comes to lie on the floor and slides on from then") {
+TEST_CASE(
+    "small bounces: with any coefficient of restitution the ball comes to lie on the floor and slides on from then") {
   constexpr double g = 9.81, mu = 0.1, v = 3;
   const double falls = std::sqrt(2 / g);
   for (const long exponent : {-1L, -2L, -3L, -5L, -6L, -7L, -8L, -10L, -14L, -100L, -300L}) {

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The judge of stress: right results are kept, coarse ones told, and a run that is wrong and says it is right is silent.
+// The judge of stress: right results are kept, coarse ones told, and a run that is wrong and says it is right is
+// silent.
+#include "stress/stress.hpp"
+
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-
-#include "stress/stress.hpp"
 
 using namespace eomgen;
 
@@ -41,7 +42,9 @@ struct Oscillator {
     scene.qdot = {0};
     scene.lower = {-std::numeric_limits<double>::infinity()};
     scene.upper = {std::numeric_limits<double>::infinity()};
-    request.run = [this](const run::Scene& s) { return run::RunRequest{code, s, {"x", "x_dot"}, {}, {}, false, true, 0, {}, {}, nullptr}; };
+    request.run = [this](const run::Scene& s) {
+      return run::RunRequest{code, s, {"x", "x_dot"}, {}, {}, false, true, 0, {}, {}, nullptr};
+    };
     request.solvers = {"dopri5", "dop853", "radau5", "rk4"};
     request.seconds_limit = 1e9;  // no row may depend on how busy the machine is
   }
@@ -71,7 +74,9 @@ TEST_CASE("stress: a motion that is easy is kept by solvers that control their e
 
 TEST_CASE("stress: a result that is wrong and comes with a small estimate is silent") {
   Oscillator o;
-  o.request.progress = [](const std::string&) { rate = 1.001; };  // from here on the runs, no longer what they are held against
+  o.request.progress = [](const std::string&) {
+    rate = 1.001;
+  };  // from here on the runs, no longer what they are held against
   for (const stress::Row& row : stress::judge({.name = "another motion"}, o.scene, o.request, o.why)) {
     CAPTURE(row.solver);
     CHECK(row.verdict == stress::Verdict::silent);
@@ -80,7 +85,9 @@ TEST_CASE("stress: a result that is wrong and comes with a small estimate is sil
   }
 }
 
-TEST_CASE("stress: where no motion exists an outcome other than done is told, and done is silent; a parameter that is no number is told") {
+TEST_CASE(
+    "stress: where no motion exists an outcome other than done is told, and done is silent; a parameter that is no "
+    "number is told") {
   Oscillator o;
   const stress::Case test{.name = "p = nan", .without_value = true};
   const auto all = [&](stress::Verdict verdict) {
@@ -96,7 +103,9 @@ TEST_CASE("stress: where no motion exists an outcome other than done is told, an
   all(stress::Verdict::told);
 }
 
-TEST_CASE("stress: budgets are steps: a run beyond them is told, and a motion that is not known to its end is judged as far as it is") {
+TEST_CASE(
+    "stress: budgets are steps: a run beyond them is told, and a motion that is not known to its end is judged as far "
+    "as it is") {
   Oscillator o;
   o.request.solvers = {"dopri5"};
   o.scene.t1 = 3000;
@@ -106,7 +115,8 @@ TEST_CASE("stress: budgets are steps: a run beyond them is told, and a motion th
   CHECK(rows[0].note.find("until t = ") == 0);
   CHECK(rows[0].verdict != stress::Verdict::silent);
   o.scene.t1 = 300;
-  o.scene.rtol = o.scene.atol = 1e-15;  // dop853 and radau5 come to the end at their tolerances, dopri5 at this one does not
+  o.scene.rtol = o.scene.atol =
+      1e-15;  // dop853 and radau5 come to the end at their tolerances, dopri5 at this one does not
   o.request.steps_limit = 50000;
   const std::vector<stress::Row> slower = stress::judge({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(slower.size() == 1);
@@ -136,8 +146,10 @@ TEST_CASE("stress: where the clock ends a tight run nothing is judged, and that 
 
 TEST_CASE("stress: variations are those that a model has constants for") {
   const model::Model model = model::read_model_text(
-      "format = 1\n[parameters]\nm = \"2 kg\"\nk = \"8 N/m\"\nL = \"1 m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
-      "[[force]]\nspring = { between = [\"origin\", \"P\"], stiffness = \"k\", length = \"L\" }\n[scene.default]\nt = [0, 1]\ninitial = { r = 1, theta_dot = 1 }\n",
+      "format = 1\n[parameters]\nm = \"2 kg\"\nk = \"8 N/m\"\nL = \"1 m\"\n[[particle]]\nname = \"P\"\nmass = "
+      "\"m\"\nposition = { cylindrical = [\"r\", \"theta\"] }\n"
+      "[[force]]\nspring = { between = [\"origin\", \"P\"], stiffness = \"k\", length = \"L\" }\n[scene.default]\nt = "
+      "[0, 1]\ninitial = { r = 1, theta_dot = 1 }\n",
       "spring.toml");
   const mechanics::Mechanics m = mechanics::build_mechanics(model);
   run::Scene scene;
@@ -147,8 +159,11 @@ TEST_CASE("stress: variations are those that a model has constants for") {
   scene.lower = {0, -std::numeric_limits<double>::infinity()};
   scene.upper = {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   const std::vector<stress::Case> all = stress::cases(m, scene, false);
-  const auto has = [&](const std::string& name) { return std::any_of(all.begin(), all.end(), [&](const stress::Case& c) { return c.name == name; }); };
-  for (const char* name : {"as it is", "m x 1e-09", "m x 1e+09", "k x 1e+12", "r at 0 + 1e-15", "speed x 1e+06", "rtol 1e-15", "span x 100", "from rest", "m = nan", "L = inf"}) {
+  const auto has = [&](const std::string& name) {
+    return std::any_of(all.begin(), all.end(), [&](const stress::Case& c) { return c.name == name; });
+  };
+  for (const char* name : {"as it is", "m x 1e-09", "m x 1e+09", "k x 1e+12", "r at 0 + 1e-15", "speed x 1e+06",
+                           "rtol 1e-15", "span x 100", "from rest", "m = nan", "L = inf"}) {
     CAPTURE(std::string(name));
     CHECK(has(name));
   }

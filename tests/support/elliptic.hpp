@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Jacobi's elliptic functions by the arithmetic-geometric mean (Abramowitz & Stegun 16.4), for closed forms of pendulums.
+// Jacobi's elliptic functions by the arithmetic-geometric mean (Abramowitz & Stegun 16.4), for closed forms of
+// pendulums.
 #pragma once
 
 #include <cmath>

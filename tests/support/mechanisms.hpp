@@ -10,8 +10,10 @@
 
 namespace eomgen::test {
 
-/// An axle, its centre of mass ahead of the hub, on two wheels L and R that roll with radii `left` and `right`; at the given height.
-inline std::string wheels_on_one_axle(const std::string& height, const std::string& left = "R", const std::string& right = "R") {
+/// An axle, its centre of mass ahead of the hub, on two wheels L and R that roll with radii `left` and `right`; at the
+/// given height.
+inline std::string wheels_on_one_axle(const std::string& height, const std::string& left = "R",
+                                      const std::string& right = "R") {
   std::string text = R"toml(format = 1
 [parameters]
 M = "5 kg"
@@ -23,7 +25,8 @@ J = "0.09 kg*m^2"
 J1 = "0.05 kg*m^2"
 [[point]]
 name = "hub"
-position = { cartesian = ["x", "y", ")toml" + height + R"toml("] }
+position = { cartesian = ["x", "y", ")toml" +
+                     height + R"toml("] }
 [[body]]
 name = "axle"
 mass = "M"
@@ -33,39 +36,53 @@ rotation = { axis = "E3", angle = "th" }
 )toml";
   for (const std::string side : {"L", "R"}) {
     const bool is_left = side == "L";
-    text += "[[body]]\nname = \"" + std::string(is_left ? "L" : "Rw") + "\"\nmass = \"m\"\ninertia = { principal = [\"J1\", \"J\", \"J1\"] }\nposition = \"hub " +
-            (is_left ? "+" : "-") + " a*axle.e2\"\nrelative_to = \"axle\"\nrotation = { axis = \"axle.e2\", angle = \"" + (is_left ? "p" : "s") + "\" }\n";
+    text += "[[body]]\nname = \"" + std::string(is_left ? "L" : "Rw") +
+            "\"\nmass = \"m\"\ninertia = { principal = [\"J1\", \"J\", \"J1\"] }\nposition = \"hub " +
+            (is_left ? "+" : "-") +
+            " a*axle.e2\"\nrelative_to = \"axle\"\nrotation = { axis = \"axle.e2\", angle = \"" +
+            (is_left ? "p" : "s") + "\" }\n";
   }
   text += "[[constraint]]\nname = \"left\"\nrolling = { body = \"L\", at = \"-(" + left + ")*E3\", on = \"ground\" }\n";
-  text += "[[constraint]]\nname = \"right\"\nrolling = { body = \"Rw\", at = \"-(" + right + ")*E3\", on = \"ground\" }\n";
-  return text + "[scene.default]\nt = [0, 2]\ninitial = { x_dot = 1, th_dot = 0.5, th = 0 }\nrtol = 1e-11\natol = 1e-13\n";
+  text +=
+      "[[constraint]]\nname = \"right\"\nrolling = { body = \"Rw\", at = \"-(" + right + ")*E3\", on = \"ground\" }\n";
+  return text +
+         "[scene.default]\nt = [0, 2]\ninitial = { x_dot = 1, th_dot = 0.5, th = 0 }\nrtol = 1e-11\natol = 1e-13\n";
 }
 
-/// Bricard's orthogonal six-bar loop: hinges a1 to a6, each at right angles to the next, bars of one length along their products; a1 and a2
-/// are held. Starts along the edges of a cube.
+/// Bricard's orthogonal six-bar loop: hinges a1 to a6, each at right angles to the next, bars of one length along their
+/// products; a1 and a2 are held. Starts along the edges of a cube.
 inline std::string bricard_by_products() {
   std::string text = "format = 1\n[parameters]\nm = \"1 kg\"\nL = \"1 m\"\ng = \"9.81 m/s^2\"\n[coordinates]\n";
   for (const std::string k : {"3", "4", "5", "6"}) {
     for (const std::string x : {"x", "y", "z"}) text += x + k + " = \"1\"\n";
   }
   text += "[definitions]\na1 = \"E3\"\na2 = \"E1\"\nP1 = \"L*E2\"\n";
-  for (const std::string k : {"3", "4", "5", "6"}) text += "a" + k + " = \"x" + k + "*E1 + y" + k + "*E2 + z" + k + "*E3\"\n";
+  for (const std::string k : {"3", "4", "5", "6"})
+    text += "a" + k + " = \"x" + k + "*E1 + y" + k + "*E2 + z" + k + "*E3\"\n";
   for (int k = 2; k <= 5; ++k) {
     const std::string i = std::to_string(k);
-    text += "P" + i + " = \"P" + std::to_string(k - 1) + (k % 2 == 1 ? " + " : " - ") + "L*cross(a" + i + ", a" + std::to_string(k + 1) + ")\"\n";
+    text += "P" + i + " = \"P" + std::to_string(k - 1) + (k % 2 == 1 ? " + " : " - ") + "L*cross(a" + i + ", a" +
+            std::to_string(k + 1) + ")\"\n";
   }
-  for (const std::string k : {"2", "3", "4", "5"}) text += "[[particle]]\nname = \"M" + k + "\"\nmass = \"m\"\nposition = \"P" + k + "\"\n";
+  for (const std::string k : {"2", "3", "4", "5"})
+    text += "[[particle]]\nname = \"M" + k + "\"\nmass = \"m\"\nposition = \"P" + k + "\"\n";
   for (const std::string k : {"2", "3", "4", "5"}) {
-    text += "[[particle]]\nname = \"N" + k + "\"\nmass = \"m\"\nposition = \"P" + k + " + L*a" + std::string(1, static_cast<char>(k[0] + 1)) + "\"\n";
+    text += "[[particle]]\nname = \"N" + k + "\"\nmass = \"m\"\nposition = \"P" + k + " + L*a" +
+            std::string(1, static_cast<char>(k[0] + 1)) + "\"\n";
   }
   text += "[[force]]\ngravity = \"-g*E3\"\n";
-  const auto constrain = [&text](const std::string& name, const std::string& psi) { text += "[[constraint]]\nname = \"" + name + "\"\nholonomic = \"" + psi + "\"\n"; };
+  const auto constrain = [&text](const std::string& name, const std::string& psi) {
+    text += "[[constraint]]\nname = \"" + name + "\"\nholonomic = \"" + psi + "\"\n";
+  };
   for (const std::string k : {"3", "4", "5", "6"}) constrain("unit" + k, "dot(a" + k + ", a" + k + ") - 1");
-  for (int k = 2; k <= 5; ++k) constrain("right" + std::to_string(k), "dot(a" + std::to_string(k) + ", a" + std::to_string(k + 1) + ")");
+  for (int k = 2; k <= 5; ++k)
+    constrain("right" + std::to_string(k), "dot(a" + std::to_string(k) + ", a" + std::to_string(k + 1) + ")");
   constrain("right6", "dot(a6, a1)");
   constrain("closed", "P5 - L*cross(a6, a1)");
-  return text + "[scene.default]\nt = [0, 1]\ninitial = { x3 = 0, y3 = -1, z3 = 0, x4 = 0, y4 = 0, z4 = -1, x5 = -1, y5 = 0, z5 = 0, x6 = 0, y6 = 1, z6 = 0 }\n"
-                "rtol = 1e-11\natol = 1e-13\noutputs = [\"M3.position1\", \"M3.position2\", \"M3.position3\"]\n";
+  return text +
+         "[scene.default]\nt = [0, 1]\ninitial = { x3 = 0, y3 = -1, z3 = 0, x4 = 0, y4 = 0, z4 = -1, x5 = -1, y5 = 0, "
+         "z5 = 0, x6 = 0, y6 = 1, z6 = 0 }\n"
+         "rtol = 1e-11\natol = 1e-13\noutputs = [\"M3.position1\", \"M3.position2\", \"M3.position3\"]\n";
 }
 
 /// The same loop as particles at distances: both ends of each bar, and a point on each hinge.
@@ -94,7 +111,8 @@ inline std::string bricard_by_distances() {
       if (!p.held) start += (start.empty() ? "" : ", ") + x + " = " + value;
     }
     text += p.held ? "[[point]]\nname = \"" + p.name + "\"\nposition = [" + position + "]\n"
-                   : "[[particle]]\nname = \"" + p.name + "\"\nmass = \"m\"\nposition = { cartesian = [" + position + "] }\n";
+                   : "[[particle]]\nname = \"" + p.name + "\"\nmass = \"m\"\nposition = { cartesian = [" + position +
+                         "] }\n";
   }
   text += "[[force]]\ngravity = \"-g*E3\"\n";
   std::set<std::string> seen;
@@ -106,16 +124,16 @@ inline std::string bricard_by_distances() {
         int square = 0;
         for (std::size_t i = 0; i < 3; ++i) square += (p.at[i] - q.at[i]) * (p.at[i] - q.at[i]);
         if ((p.held && q.held) || !seen.insert(p.name + q.name).second) continue;
-        text += "[[constraint]]\nname = \"d" + p.name + q.name + "\"\nholonomic = \"dot(" + p.name + " - " + q.name + ", " + p.name + " - " + q.name + ") - " +
-                std::to_string(square) + "*L^2\"\n";
+        text += "[[constraint]]\nname = \"d" + p.name + q.name + "\"\nholonomic = \"dot(" + p.name + " - " + q.name +
+                ", " + p.name + " - " + q.name + ") - " + std::to_string(square) + "*L^2\"\n";
       }
     }
   }
   return text + "[scene.default]\nt = [0, 1]\ninitial = { " + start + " }\nrtol = 1e-11\natol = 1e-13\n";
 }
 
-/// Bennett's loop: two arms that turn about fixed hinges, and what a coupler between their tips says in scalar products: four equations for two
-/// coordinates, of which one is independent.
+/// Bennett's loop: two arms that turn about fixed hinges, and what a coupler between their tips says in scalar
+/// products: four equations for two coordinates, of which one is independent.
 inline std::string bennett_by_products() {
   return R"toml(format = 1
 [parameters]

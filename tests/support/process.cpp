@@ -104,7 +104,8 @@ void Child::read_until(std::chrono::steady_clock::time_point end, ChildResult& r
 
 ChildResult Child::finish() {
   ChildResult result;
-  const auto length = std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(limit_));
+  const auto length =
+      std::chrono::duration_cast<std::chrono::steady_clock::duration>(std::chrono::duration<double>(limit_));
   read_until(start_ + length, result);
   int status = 0;
   struct rusage used {};

@@ -1,4 +1,3 @@
-#include "support/folders.hpp"
 #include "support/schema.hpp"
 
 #include <algorithm>
@@ -11,6 +10,8 @@
 #include <valijson/schema_parser.hpp>
 #include <valijson/validation_results.hpp>
 #include <valijson/validator.hpp>
+
+#include "support/folders.hpp"
 
 namespace support {
 namespace {

@@ -75,7 +75,9 @@ inline Finished run_model(const std::string& name, const std::function<void(cli:
   cli::SimulationRequest request;
   request.model = name.ends_with(".toml") ? name : model_path(name);
   Rows rows;
-  request.begin = [&rows](const cli::Derived&, const run::Scene&, const std::vector<std::string>& names) { rows.names = names; };
+  request.begin = [&rows](const cli::Derived&, const run::Scene&, const std::vector<std::string>& names) {
+    rows.names = names;
+  };
   request.row = [&rows](double t, std::span<const double> y) {
     rows.t.push_back(t);
     rows.y.emplace_back(y.begin(), y.end());

@@ -15,7 +15,8 @@ inline constexpr double order_condition = 1e-13;
 inline constexpr double dense_order_condition = 1e-11;
 // The same of Rosenbrock methods, published with 16 digits: coefficients up to 150, inverted and multiplied once more.
 inline constexpr double rosenbrock_condition = 1e-12;
-// Weights sum to 1 but for half a unit in the last place of 1: an error of each step's length that no step size lessens.
+// Weights sum to 1 but for half a unit in the last place of 1: an error of each step's length that no step size
+// lessens.
 inline constexpr double weight_sum = epsilon / 2;
 // The end state of a run at rtol 1e-12 over a few periods: errors of some 1000 steps add up.
 inline constexpr double closed_form = 1e-8;

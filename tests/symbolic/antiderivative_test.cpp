@@ -16,13 +16,16 @@ namespace {
 struct Letters {
   Dag dag;
   Symbol x_symbol{SymbolKind::coordinate, 0, 0};
-  Scalar x{&dag, dag.symbol(x_symbol)}, y{&dag, dag.symbol({SymbolKind::coordinate, 1, 0})}, a{&dag, dag.symbol({SymbolKind::parameter, 0, 0})};
+  Scalar x{&dag, dag.symbol(x_symbol)}, y{&dag, dag.symbol({SymbolKind::coordinate, 1, 0})},
+      a{&dag, dag.symbol({SymbolKind::parameter, 0, 0})};
   Scalar number(long n) { return {&dag, dag.integer(n)}; }
   Scalar f(Op op, Scalar u) { return {&dag, dag.call(op, u.ref)}; }
   Scalar power(Scalar u, long n) { return {&dag, dag.power(u.ref, n)}; }
 
   double value(Ref r, double at) {
-    return evaluate(dag, {r}, [&](const Symbol& s) { return s == x_symbol ? at : s.kind == SymbolKind::parameter ? 0.7 : 1.3; })[0];
+    return evaluate(dag, {r}, [&](const Symbol& s) {
+      return s == x_symbol ? at : s.kind == SymbolKind::parameter ? 0.7 : 1.3;
+    })[0];
   }
 };
 
@@ -32,11 +35,28 @@ TEST_CASE("antiderivatives: their slope, by differences, is the integrand") {
   Letters l;
   const Scalar x = l.x, y = l.y, a = l.a;
   const Scalar s = l.f(Op::sin, a * x + y), c = l.f(Op::cos, a * x + y), e = l.f(Op::exp, l.number(-2) * x);
-  const std::vector<Scalar> integrands{
-      a * y, x, l.power(x, 3) * y, a / x, y / l.power(x, 2), s, l.power(s, 2), l.power(c, 3) * s, x * c, l.power(x, 2) * e, s * e,
-      x * l.f(Op::exp, x * x), x / l.f(Op::sqrt, x * x + y * y), l.f(Op::tan, x), l.number(1) / (x * x + y * y),
-      x / (x * x + l.number(1)), x / (x * x + y * y), (x - y) / (l.power(x - y, 2) + a), (l.number(2) * x + y) / (x * x + y * x + a),
-      l.number(1) / l.power(l.f(Op::cos, x), 2), (x + y) * (x - y), l.f(Op::sinh, x) + l.f(Op::cosh, a * x)};
+  const std::vector<Scalar> integrands{a * y,
+                                       x,
+                                       l.power(x, 3) * y,
+                                       a / x,
+                                       y / l.power(x, 2),
+                                       s,
+                                       l.power(s, 2),
+                                       l.power(c, 3) * s,
+                                       x * c,
+                                       l.power(x, 2) * e,
+                                       s * e,
+                                       x * l.f(Op::exp, x * x),
+                                       x / l.f(Op::sqrt, x * x + y * y),
+                                       l.f(Op::tan, x),
+                                       l.number(1) / (x * x + y * y),
+                                       x / (x * x + l.number(1)),
+                                       x / (x * x + y * y),
+                                       (x - y) / (l.power(x - y, 2) + a),
+                                       (l.number(2) * x + y) / (x * x + y * x + a),
+                                       l.number(1) / l.power(l.f(Op::cos, x), 2),
+                                       (x + y) * (x - y),
+                                       l.f(Op::sinh, x) + l.f(Op::cosh, a * x)};
   for (const Scalar& integrand : integrands) {
     const std::optional<Ref> F = antiderivative(l.dag, integrand.ref, l.x_symbol);
     REQUIRE(F);
@@ -86,7 +106,8 @@ TEST_CASE("zeros: identities of angles, exponentials and fractions are proven, w
       l.power(sin(x), 4) - l.power(one - l.power(cos(x), 2), 2),
       l.power(root(x * x + y), 3) - root(x * x + y) * (x * x + y),
       x / root(x * x + y) - x * root(x * x + y) / (x * x + y),
-      one / (root(l.number(3)) * (root(l.number(3)) * (one + l.power(x / root(l.number(3)), 2)))) - one / (x * x + l.number(3)),
+      one / (root(l.number(3)) * (root(l.number(3)) * (one + l.power(x / root(l.number(3)), 2)))) -
+          one / (x * x + l.number(3)),
       l.power(root(one + root(x)) * y, 2) * (root(x) - one) - y * y * (x - one)};
   for (const Scalar& zero : zeros) CHECK(is_proven_zero(l.dag, zero.ref));
   const Scalar small{&l.dag, l.dag.constant(Rational(1) / cln::expt(Rational(10), 60))};

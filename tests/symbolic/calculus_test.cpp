@@ -14,7 +14,8 @@ namespace {
 const Symbol x_symbol{SymbolKind::coordinate, 0, 0};
 
 cln::cl_R value(const Dag& dag, Ref f, const cln::cl_R& x) {
-  return evaluate(dag, {f}, [&](const Symbol&) -> cln::cl_R { return x; }, 120)[0];
+  return evaluate(
+      dag, {f}, [&](const Symbol&) -> cln::cl_R { return x; }, 120)[0];
 }
 
 }  // namespace

@@ -72,19 +72,39 @@ TEST_CASE("dag: the rules keep the value of random expressions to 40 digits") {
       const std::size_t a = random(refs.size()), b = random(refs.size());
       if (cln::abs(values[a]) > 1000 || cln::abs(values[b]) > 1000) continue;
       switch (random(7)) {
-        case 0: refs.push_back(dag.add(refs[a], refs[b])); values.push_back(values[a] + values[b]); break;
-        case 1: refs.push_back(dag.sub(refs[a], refs[b])); values.push_back(values[a] - values[b]); break;
-        case 2: refs.push_back(dag.mul(refs[a], refs[b])); values.push_back(values[a] * values[b]); break;
+        case 0:
+          refs.push_back(dag.add(refs[a], refs[b]));
+          values.push_back(values[a] + values[b]);
+          break;
+        case 1:
+          refs.push_back(dag.sub(refs[a], refs[b]));
+          values.push_back(values[a] - values[b]);
+          break;
+        case 2:
+          refs.push_back(dag.mul(refs[a], refs[b]));
+          values.push_back(values[a] * values[b]);
+          break;
         case 3:
           if (cln::abs(values[b]) < cln::cl_R(Rational(1) / 100)) break;
-          refs.push_back(dag.div(refs[a], refs[b])); values.push_back(values[a] / values[b]); break;
-        case 4: refs.push_back(dag.neg(refs[a])); values.push_back(-values[a]); break;
-        case 5: refs.push_back(dag.power(refs[a], 2)); values.push_back(values[a] * values[a]); break;
-        default: refs.push_back(dag.call(Op::sin, refs[a])); values.push_back(cln::sin(values[a])); break;
+          refs.push_back(dag.div(refs[a], refs[b]));
+          values.push_back(values[a] / values[b]);
+          break;
+        case 4:
+          refs.push_back(dag.neg(refs[a]));
+          values.push_back(-values[a]);
+          break;
+        case 5:
+          refs.push_back(dag.power(refs[a], 2));
+          values.push_back(values[a] * values[a]);
+          break;
+        default:
+          refs.push_back(dag.call(Op::sin, refs[a]));
+          values.push_back(cln::sin(values[a]));
+          break;
       }
     }
-    const auto result =
-        evaluate(dag, refs, [&](const Symbol& s) -> cln::cl_R { return leaves[s.index]; }, 60);
+    const auto result = evaluate(
+        dag, refs, [&](const Symbol& s) -> cln::cl_R { return leaves[s.index]; }, 60);
     for (std::size_t i = 0; i < refs.size(); ++i) {
       const cln::cl_R scale = cln::abs(values[i]) + 1;
       CHECK(cln::abs(result[i] - values[i]) / scale < cln::cl_R(cln::expt(Rational(1) / 10, 40)));

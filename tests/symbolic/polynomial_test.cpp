@@ -19,7 +19,9 @@ struct Symbols {
 };
 
 cln::cl_R value(const Dag& dag, Ref f) {
-  return evaluate(dag, {f}, [](const Symbol& x) -> cln::cl_R { return cln::cl_R(Rational(static_cast<long>(x.index) + 3) / 7); }, 50)[0];
+  return evaluate(
+      dag, {f}, [](const Symbol& x) -> cln::cl_R { return cln::cl_R(Rational(static_cast<long>(x.index) + 3) / 7); },
+      50)[0];
 }
 
 }  // namespace
@@ -39,7 +41,8 @@ TEST_CASE("expansion: the velocity square in spherical coordinates has three ter
   const Scalar R = x.s(x.q(0)), sp = x.sine(1), cp = x.cosine(1), st = x.sine(2), ct = x.cosine(2);
   Derivation ddt = total_time(dag, 3, 0);
   Ref square = dag.zero();
-  for (const Scalar component : {R * sp * ct, R * sp * st, R * cp}) square = dag.add(square, dag.power(ddt(component.ref), 2));
+  for (const Scalar component : {R * sp * ct, R * sp * st, R * cp})
+    square = dag.add(square, dag.power(ddt(component.ref), 2));
   const auto rate = [&](std::uint32_t i) { return x.s(dag.symbol({SymbolKind::coordinate, i, 1})); };
   const Scalar expected = rate(0) * rate(0) + R * R * rate(1) * rate(1) + R * R * sp * sp * rate(2) * rate(2);
   Expander expand(dag);

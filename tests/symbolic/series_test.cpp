@@ -14,7 +14,8 @@ const Symbol x_symbol{SymbolKind::coordinate, 0, 0}, y_symbol{SymbolKind::coordi
 
 // x(s) = 0.4 + 0.3 s - 0.1 s^2, y(s) = 0.7 - 0.2 s
 cln::cl_R curve(const Symbol& symbol, std::size_t k) {
-  const Rational x[] = {Rational(2) / 5, Rational(3) / 10, Rational(-1) / 10}, y[] = {Rational(7) / 10, Rational(-1) / 5};
+  const Rational x[] = {Rational(2) / 5, Rational(3) / 10, Rational(-1) / 10},
+                 y[] = {Rational(7) / 10, Rational(-1) / 5};
   if (symbol == x_symbol) return k < 3 ? cln::cl_R(x[k]) : cln::cl_R(0);
   return k < 2 ? cln::cl_R(y[k]) : cln::cl_R(0);
 }
@@ -25,7 +26,8 @@ TEST_CASE("series: the power series of every function sums to its value along th
   Dag dag;
   const Ref x = dag.symbol(x_symbol), y = dag.symbol(y_symbol), two = dag.integer(2);
   std::vector<Ref> roots;
-  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::asin, Op::acos, Op::atan, Op::sinh, Op::cosh, Op::tanh, Op::exp, Op::log, Op::abs, Op::sign}) {
+  for (const Op op : {Op::sqrt, Op::sin, Op::cos, Op::tan, Op::asin, Op::acos, Op::atan, Op::sinh, Op::cosh, Op::tanh,
+                      Op::exp, Op::log, Op::abs, Op::sign}) {
     roots.push_back(dag.call(op, x));
     roots.push_back(dag.mul(y, dag.call(op, dag.mul(x, y))));
   }
@@ -40,12 +42,15 @@ TEST_CASE("series: the power series of every function sums to its value along th
   constexpr std::size_t orders = 30;
   for (std::size_t k = 0; k < orders; ++k) series.extend(curve);
   const cln::cl_R s = cln::cl_float(cln::cl_R(Rational(1) / 50), cln::float_format(digits));
-  const auto at = [&](const Symbol& symbol) -> cln::cl_R { return curve(symbol, 0) + s * (curve(symbol, 1) + s * curve(symbol, 2)); };
+  const auto at = [&](const Symbol& symbol) -> cln::cl_R {
+    return curve(symbol, 0) + s * (curve(symbol, 1) + s * curve(symbol, 2));
+  };
   const std::vector<cln::cl_R> exact = evaluate(dag, roots, at, digits);
   for (std::size_t r = 0; r < roots.size(); ++r) {
     cln::cl_R sum = 0;
     for (std::size_t k = orders; k-- > 0;) sum = sum * s + series[r][k];
     INFO("root ", r);
-    CHECK(cln::abs(sum - exact[r]) < cln::cl_R(cln::expt(Rational(1) / 10, 30)));  // s^30 over the radius of convergence, 1/2 and more
+    CHECK(cln::abs(sum - exact[r]) <
+          cln::cl_R(cln::expt(Rational(1) / 10, 30)));  // s^30 over the radius of convergence, 1/2 and more
   }
 }

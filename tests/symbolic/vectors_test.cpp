@@ -16,7 +16,8 @@ Ref coordinate(Dag& dag, std::uint32_t i) { return dag.symbol({SymbolKind::coord
 
 TEST_CASE("vectors: a cross product is normal to both factors, and its square is Lagrange's identity") {
   Dag dag;
-  const Vec3 a{coordinate(dag, 0), coordinate(dag, 1), coordinate(dag, 2)}, b{coordinate(dag, 3), coordinate(dag, 4), coordinate(dag, 5)};
+  const Vec3 a{coordinate(dag, 0), coordinate(dag, 1), coordinate(dag, 2)},
+      b{coordinate(dag, 3), coordinate(dag, 4), coordinate(dag, 5)};
   const Vec3 c = cross(dag, a, b);
   CHECK(dag.is_zero(tidy(dag, dot(dag, a, c))));
   CHECK(dag.is_zero(tidy(dag, dot(dag, b, c))));
@@ -32,7 +33,8 @@ TEST_CASE("vectors: a matrix and its transpose, applied") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1);
   const std::vector<Rational> C{1, 2, 0, Rational(-1) / 3};  // rows (1, 2) and (0, -1/3)
-  CHECK(applied(dag, C, {x, y}) == std::vector<Ref>{dag.add(x, dag.mul(dag.integer(2), y)), dag.mul(dag.constant(C[3]), y)});
+  CHECK(applied(dag, C, {x, y}) ==
+        std::vector<Ref>{dag.add(x, dag.mul(dag.integer(2), y)), dag.mul(dag.constant(C[3]), y)});
   CHECK(transposed_applied(dag, C, {x, y}) ==
         std::vector<Ref>{x, dag.add(dag.mul(dag.integer(2), x), dag.mul(dag.constant(C[3]), y))});
 }
@@ -69,7 +71,8 @@ TEST_CASE("expansion: tidy keeps what the budget does not cover, simpler takes t
 TEST_CASE("dag: kinks are found wherever they stand") {
   Dag dag;
   const Ref x = coordinate(dag, 0), y = coordinate(dag, 1), one = dag.one();
-  for (const Ref kink : {dag.call(Op::abs, x), dag.call(Op::sign, x), dag.call(Op::min, x, y), dag.call(Op::max, x, y), dag.select(x, y, one, y)}) {
+  for (const Ref kink : {dag.call(Op::abs, x), dag.call(Op::sign, x), dag.call(Op::min, x, y), dag.call(Op::max, x, y),
+                         dag.select(x, y, one, y)}) {
     CHECK(dag.has_kinks({y, dag.call(Op::sin, dag.add(kink, y))}));
   }
   CHECK_FALSE(dag.has_kinks({dag.call(Op::sqrt, x), dag.div(one, y), dag.call(Op::atan2, x, y)}));

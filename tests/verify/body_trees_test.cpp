@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Trees of bodies: which routes take them, that what these give is what d'Alembert's principle asks, and that what a route has solved is
-// what its own M and f say.
+// Trees of bodies: which routes take them, that what these give is what d'Alembert's principle asks, and that what a
+// route has solved is what its own M and f say.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -43,8 +43,10 @@ shake = "L/10*sin(w*t)"
 gravity = "-g*E3"
 )toml";
 
-std::string body(const std::string& name, const std::string& position, const std::string& rotation, const std::string& parent = "") {
-  return "[[body]]\nname = \"" + name + "\"\nmass = \"m1\"\ninertia = { principal = [\"J1\", \"J2\", \"J3\"] }\nposition = " + position +
+std::string body(const std::string& name, const std::string& position, const std::string& rotation,
+                 const std::string& parent = "") {
+  return "[[body]]\nname = \"" + name +
+         "\"\nmass = \"m1\"\ninertia = { principal = [\"J1\", \"J2\", \"J3\"] }\nposition = " + position +
          "\nrotation = " + rotation + "\n" + (parent.empty() ? "" : "relative_to = \"" + parent + "\"\n");
 }
 
@@ -52,8 +54,8 @@ std::string euler(const std::string& set, const std::string& n) {
   return "{ euler = \"" + set + "\", angles = [\"" + n + "1\", \"" + n + "2\", \"" + n + "3\"] }";
 }
 
-/// A cart that is shaken, a body of full inertia on a ball joint, another on a pin of it, one more that is told by absolute angles, a slider on
-/// that one and a particle that is told by absolute directions.
+/// A cart that is shaken, a body of full inertia on a ball joint, another on a pin of it, one more that is told by
+/// absolute angles, a slider on that one and a particle that is told by absolute directions.
 const std::string mixed = parameters + R"toml([coordinates]
 s = "m"
 [[particle]]
@@ -96,15 +98,20 @@ on = "B"
 
 /// Ball joints in every kind of angles with springs at the joints, which pass moments to the body before.
 std::string ball_joints(const std::string& first, const std::string& second) {
-  return parameters + body("A", "\"b*A.e1 - L*A.e3\"", euler(first, "a")) + body("B", "\"A - L*A.e3 + b*B.e2\"", euler(second, "c"), "A") +
-         "[[force]]\ntorsion = { angle = \"c1\", stiffness = \"kt\" }\n[[force]]\ntorsion = { angle = \"c2\", stiffness = \"kt\" }\n"
-         "[[force]]\ntorsion = { angle = \"c3\", stiffness = \"kt\", coefficient = \"ct\" }\n[[force]]\nmoment = \"M*A.e1\"\non = \"A\"\n";
+  return parameters + body("A", "\"b*A.e1 - L*A.e3\"", euler(first, "a")) +
+         body("B", "\"A - L*A.e3 + b*B.e2\"", euler(second, "c"), "A") +
+         "[[force]]\ntorsion = { angle = \"c1\", stiffness = \"kt\" }\n[[force]]\ntorsion = { angle = \"c2\", "
+         "stiffness = \"kt\" }\n"
+         "[[force]]\ntorsion = { angle = \"c3\", stiffness = \"kt\", coefficient = \"ct\" }\n[[force]]\nmoment = "
+         "\"M*A.e1\"\non = \"A\"\n";
 }
 
 /// A ring that turns as it is told, a rotor in it, and a body on the rotor by a Rodrigues vector.
-const std::string gimbals = parameters + "[coordinates]\nbeta = \"rad\"\n[[frame]]\nname = \"ring\"\nrotation = { axis = \"E3\", angle = \"w*t\" }\n" +
-                            body("rotor", "\"b*rotor.e1\"", "{ axis = \"ring.e1\", angle = \"beta\" }", "ring") +
-                            body("rider", "\"rotor + L*rotor.e2 + b*rider.e3\"", "{ rodrigues = [\"l1\", \"l2\", \"l3\"] }", "rotor");
+const std::string gimbals =
+    parameters +
+    "[coordinates]\nbeta = \"rad\"\n[[frame]]\nname = \"ring\"\nrotation = { axis = \"E3\", angle = \"w*t\" }\n" +
+    body("rotor", "\"b*rotor.e1\"", "{ axis = \"ring.e1\", angle = \"beta\" }", "ring") +
+    body("rider", "\"rotor + L*rotor.e2 + b*rider.e3\"", "{ rodrigues = [\"l1\", \"l2\", \"l3\"] }", "rotor");
 
 struct Result {
   verify::Certificate certificate;
@@ -156,16 +163,20 @@ void check_both_routes(const std::string& text) {
 
 TEST_CASE("body trees: pins, ball joints, sliders and particles on a cart that is shaken") { check_both_routes(mixed); }
 TEST_CASE("body trees: ball joints with springs in angles of both kinds") {
-  for (const auto& [first, second] : std::map<std::string, std::string>{{"321", "123"}, {"313", "121"}, {"232", "213"}}) {
+  for (const auto& [first, second] :
+       std::map<std::string, std::string>{{"321", "123"}, {"313", "121"}, {"232", "213"}}) {
     const auto& shown = first;
     CAPTURE(shown);
     check_both_routes(ball_joints(first, second));
   }
 }
-TEST_CASE("body trees: a rotor in a driven ring, and a body on it by a Rodrigues vector") { check_both_routes(gimbals); }
+TEST_CASE("body trees: a rotor in a driven ring, and a body on it by a Rodrigues vector") {
+  check_both_routes(gimbals);
+}
 
 TEST_CASE("body trees: a loop that is closed by a constraint keeps its multipliers") {
-  const Result result = verified(parameters + body("A", "\"-L*A.e3\"", euler("321", "a")) + body("B", "\"A - L*A.e3 - L*B.e3\"", euler("321", "c"), "A") +
+  const Result result = verified(parameters + body("A", "\"-L*A.e3\"", euler("321", "a")) +
+                                 body("B", "\"A - L*A.e3 - L*B.e3\"", euler("321", "c"), "A") +
                                  "[[constraint]]\nname = \"loop\"\nholonomic = \"dot(B - L*B.e3, E1) - L/2\"\n");
   INFO(result.certificate.summary());
   CHECK(result.certificate.pass);
@@ -189,11 +200,15 @@ TEST_CASE("body trees: one angle of two bodies, and a position across the axes")
 
 // The points of the judge have unit length, which is what the routes solve for.
 TEST_CASE("body trees: Euler parameters of a free body, and of one that hangs on another") {
-  const std::string four = R"({ euler_parameters = ["p0", "p1", "p2", "p3"] })", more = R"({ euler_parameters = ["r0", "r1", "r2", "r3"] })";
-  const std::string on_two = parameters + body("A", "\"b*A.e1 - L*A.e3\"", four) + body("B", "\"A - L*A.e3 + b*B.e2\"", more, "A") +
-                             "[[force]]\nmoment = \"M*A.e1 + M*E2\"\non = \"B\"\n[[force]]\nforce = \"M/L*A.e2\"\non = \"B\"\n";
-  const std::string with_angles = parameters + body("A", "\"b*A.e1 - L*A.e3\"", euler("321", "a")) + body("B", "\"A - L*A.e3 + b*B.e2\"", more, "A");
-  for (const std::string& text : {parameters + body("A", "{ cartesian = [\"x\", \"y\", \"z\"] }", four), on_two, with_angles}) {
+  const std::string four = R"({ euler_parameters = ["p0", "p1", "p2", "p3"] })",
+                    more = R"({ euler_parameters = ["r0", "r1", "r2", "r3"] })";
+  const std::string on_two =
+      parameters + body("A", "\"b*A.e1 - L*A.e3\"", four) + body("B", "\"A - L*A.e3 + b*B.e2\"", more, "A") +
+      "[[force]]\nmoment = \"M*A.e1 + M*E2\"\non = \"B\"\n[[force]]\nforce = \"M/L*A.e2\"\non = \"B\"\n";
+  const std::string with_angles = parameters + body("A", "\"b*A.e1 - L*A.e3\"", euler("321", "a")) +
+                                  body("B", "\"A - L*A.e3 + b*B.e2\"", more, "A");
+  for (const std::string& text :
+       {parameters + body("A", "{ cartesian = [\"x\", \"y\", \"z\"] }", four), on_two, with_angles}) {
     const Result result = verified(text);
     INFO(result.certificate.summary());
     CHECK(result.certificate.pass);

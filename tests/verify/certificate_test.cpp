@@ -32,9 +32,8 @@ Certificate with_fault(const model::Model& model, const std::string& route, syst
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
   subjects.systems = all_routes(m);
-  const auto chosen = std::find_if(subjects.systems.begin(), subjects.systems.end(), [&](const EquationSystem& s) {
-    return s.route == route && s.approach == approach;
-  });
+  const auto chosen = std::find_if(subjects.systems.begin(), subjects.systems.end(),
+                                   [&](const EquationSystem& s) { return s.route == route && s.approach == approach; });
   REQUIRE(chosen != subjects.systems.end());
   fault(*m.dag, *chosen);
   return certify(m, subjects, {50, 3, 1});
@@ -138,23 +137,30 @@ TEST_CASE("certificate: reactions of the wrong sign fail, eliminated or with a m
 
 TEST_CASE("certificate: a wrong entry of M, A, b or gamma fails and is named") {
   const auto culprit = std::string("lagrange II");
-  const auto lagrange_two = [](auto fault) { return with_fault(rod_pendulum(), "lagrange", system::Approach::two, fault); };
-  check_only_blames(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.M[0] = dag.mul(dag.integer(2), s.M[0]); }), culprit);
+  const auto lagrange_two = [](auto fault) {
+    return with_fault(rod_pendulum(), "lagrange", system::Approach::two, fault);
+  };
+  check_only_blames(
+      lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.M[0] = dag.mul(dag.integer(2), s.M[0]); }), culprit);
   check_only_blames(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.A[1] = dag.neg(s.A[1]); }), culprit);
   check_only_blames(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.b[0] = dag.one(); }), culprit);
-  check_only_blames(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.gamma[0] = dag.neg(s.gamma[0]); }), culprit);
+  check_only_blames(lagrange_two([](symbolic::Dag& dag, EquationSystem& s) { s.gamma[0] = dag.neg(s.gamma[0]); }),
+                    culprit);
 }
 
 TEST_CASE("certificate: wrong energies, power and outputs fail and are named") {
-  const auto lagrange_one = [](auto fault) { return with_fault(moving_sphere(), "lagrange", system::Approach::one, fault); };
+  const auto lagrange_one = [](auto fault) {
+    return with_fault(moving_sphere(), "lagrange", system::Approach::one, fault);
+  };
   const auto half = [](symbolic::Dag& dag, Ref& r) { r = dag.div(r, dag.integer(2)); };
   check_only_blames(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.energy); }), "lagrange I");
   check_only_blames(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.potential); }), "lagrange I");
   check_only_blames(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) { half(dag, s.power); }), "lagrange I");
   check_only_blames(lagrange_one([&](symbolic::Dag& dag, EquationSystem& s) {
-    for (system::Output& o : s.outputs)
-      if (o.name == "R_dot") half(dag, o.value);
-  }), "lagrange I");
+                      for (system::Output& o : s.outputs)
+                        if (o.name == "R_dot") half(dag, o.value);
+                    }),
+                    "lagrange I");
 }
 
 namespace {
@@ -163,7 +169,8 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
   mechanics::Mechanics m = mechanics::build_mechanics(model);
   Subjects subjects;
   subjects.systems = all_routes(m);
-  // phi_ddot = theta_dot^2 sin cos + g/d sin - 2 d_dot/d phi_dot; theta_ddot = D/(m sin) - 2 (d_dot/d + phi_dot cot) theta_dot
+  // phi_ddot = theta_dot^2 sin cos + g/d sin - 2 d_dot/d phi_dot; theta_ddot = D/(m sin) - 2 (d_dot/d + phi_dot cot)
+  // theta_dot
   const auto by_hand = [](auto t, const auto& x, const auto& p, const auto& sine, const auto& cosine, auto off) {
     using Number = std::decay_t<decltype(t)>;
     const Number d = p[3] + p[4] * sine(p[5] * t), ddot = p[4] * p[5] * cosine(p[5] * t);
@@ -171,13 +178,18 @@ const Certificate& certificate_with(Certificate& keep, const model::Model& model
     return std::vector<Number>{x[2], x[3], x[3] * x[3] * s * c + p[1] / d * s - 2 * ddot / d * x[2],
                                p[2] / (p[0] * s) - 2 * (ddot / d + x[2] * c / s) * x[3] + off};
   };
-  subjects.compiled.push_back({"emitted code", [=](double t, const auto& x, const auto& p, const auto&, int) {
-    return std::optional(by_hand(t, x, p, [](double a) { return std::sin(a); }, [](double a) { return std::cos(a); }, error));
-  }});
+  subjects.compiled.push_back(
+      {"emitted code", [=](double t, const auto& x, const auto& p, const auto&, int) {
+         return std::optional(by_hand(
+             t, x, p, [](double a) { return std::sin(a); }, [](double a) { return std::cos(a); }, error));
+       }});
   subjects.programs.push_back({"program", [=](const Real& t, const auto& x, const auto& p, const auto&, int) {
-    const Real off = cln::rational(Real(error));  // exact: a binary64 would bring its precision along
-    return by_hand(t, x, p, [](const Real& a) { return Real(cln::sin(a)); }, [](const Real& a) { return Real(cln::cos(a)); }, off);
-  }});
+                                 const Real off =
+                                     cln::rational(Real(error));  // exact: a binary64 would bring its precision along
+                                 return by_hand(
+                                     t, x, p, [](const Real& a) { return Real(cln::sin(a)); },
+                                     [](const Real& a) { return Real(cln::cos(a)); }, off);
+                               }});
   symbolic::Dag& dag = *m.dag;
   std::vector<Ref> residuals;  // M qddot - f, right or wrong, in place of a reading form
   const EquationSystem& s = subjects.systems.back();
@@ -224,7 +236,8 @@ TEST_CASE("certificate: the same seed gives the same certificate") {
   const auto differences = [&](std::uint64_t seed) {
     mechanics::Mechanics m = mechanics::build_mechanics(model);
     std::vector<double> values;
-    for (const Comparison& row : verify::verify(m, {50, 3, seed}).comparisons) values.push_back(row.max_relative_difference);
+    for (const Comparison& row : verify::verify(m, {50, 3, seed}).comparisons)
+      values.push_back(row.max_relative_difference);
     return values;
   };
   CHECK(differences(1) == differences(1));

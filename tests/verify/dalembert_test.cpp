@@ -67,10 +67,11 @@ TEST_CASE("judge: the particle on a moving sphere obeys (2.109) in spherical coo
     const Real &R = s.q[0], &Rd = s.qdot[0], &Rdd = s.qddot[0], &pd = s.qdot[1], &pdd = s.qddot[1], &td = s.qdot[2],
                &tdd = s.qddot[2];
     const Real sp = cln::sin(s.q[1]), cp = cln::cos(s.q[1]);
-    check_rows(judge.dalembert(s, {lambda}),
-               {mass * (Rdd - R * pd * pd - R * sp * sp * td * td) + mass * g * cp - lambda,
-                mass * (R * R * pdd + 2 * R * Rd * pd - R * R * sp * cp * td * td) - mass * g * R * sp,
-                mass * (R * R * sp * sp * tdd + 2 * R * Rd * sp * sp * td + 2 * R * R * sp * cp * pd * td) - D * R * R * sp});
+    check_rows(
+        judge.dalembert(s, {lambda}),
+        {mass * (Rdd - R * pd * pd - R * sp * sp * td * td) + mass * g * cp - lambda,
+         mass * (R * R * pdd + 2 * R * Rd * pd - R * R * sp * cp * td * td) - mass * g * R * sp,
+         mass * (R * R * sp * sp * tdd + 2 * R * Rd * sp * sp * td + 2 * R * R * sp * cp * pd * td) - D * R * R * sp});
   }
 }
 

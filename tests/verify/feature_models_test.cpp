@@ -214,7 +214,8 @@ gravity = "-9.81*E3*(1 + W*t/50)"
 )toml");
 }
 
-TEST_CASE("features: constraints on velocities: a vector, a list, moving ones, beside holonomic ones that keep multipliers") {
+TEST_CASE(
+    "features: constraints on velocities: a vector, a list, moving ones, beside holonomic ones that keep multipliers") {
   check_passes(R"toml(
 [parameters]
 m = 2

@@ -50,7 +50,8 @@ initial = { x = 1, y = 0.3 }
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   const verify::Certificate c = verify::verify(mechanics, {50, 2, 1});
   Checked result{c.pass, 0, derive::integral_states(mechanics).size()};
-  for (const verify::Comparison& row : c.comparisons) result.worst = std::max(result.worst, row.max_relative_difference);
+  for (const verify::Comparison& row : c.comparisons)
+    result.worst = std::max(result.worst, row.max_relative_difference);
   return result;
 }
 
@@ -58,15 +59,44 @@ initial = { x = 1, y = 0.3 }
 
 TEST_CASE("integrals: what the rules know is written in closed form, and agrees with quadrature to 45 digits") {
   bool active = false;
-  for (const std::string integral :
-       {"integral(1)", "integral(a*t^3 - b*t + 2)", "integral(sin(w*t + b))", "integral(t^2*cos(w*t))", "integral(t^3*sin(w*t + b))",
-        "integral(exp(-b*t))", "integral(t^2*exp(-b*t))", "integral(exp(-b*t)*cos(w*t + a))", "integral(t^2*exp(b*t)*sin(w*t))",
-        "integral(sin(w*t)^2)", "integral(sin(w*t)*cos(a*t))", "integral(cos(w*t)^3)", "integral(1/(a*t + b))", "integral(t/(a*t + b)^2)",
-        "integral(t^2/(a*t + b))", "integral(sqrt(a*t + b))", "integral(t*(a*t + b)^(2/3))", "integral((a*t + b)^20)",
-        "integral(1/sqrt(a*t + 1))", "integral(sinh(w*t)*cosh(b*t))", "integral(2^t)", "integral((t + exp(-t))*(t - exp(-t)))",
-        "integral(f)", "integral(s)", "integral(f_dot)", "integral(f*f_dot)", "integral(integral(f))", "integral(t*integral(exp(-t)))",
-        "integral(t/(t^2 + b^2))", "integral(1/(t^2 + 3))", "integral(t*exp(-b*t^2))", "integral(t/(t^2 - 40))", "integral(t/sqrt(t^2 + a))",
-        "integral(f_dot/(2 + f))", "integral((2*t + 1)/(t^2 + t - 90))", "integral(exp(b*t)/exp(w*t))", "integral(ddt(s*t))", "integral(1/(t*(t*t)))"}) {
+  for (const std::string integral : {"integral(1)",
+                                     "integral(a*t^3 - b*t + 2)",
+                                     "integral(sin(w*t + b))",
+                                     "integral(t^2*cos(w*t))",
+                                     "integral(t^3*sin(w*t + b))",
+                                     "integral(exp(-b*t))",
+                                     "integral(t^2*exp(-b*t))",
+                                     "integral(exp(-b*t)*cos(w*t + a))",
+                                     "integral(t^2*exp(b*t)*sin(w*t))",
+                                     "integral(sin(w*t)^2)",
+                                     "integral(sin(w*t)*cos(a*t))",
+                                     "integral(cos(w*t)^3)",
+                                     "integral(1/(a*t + b))",
+                                     "integral(t/(a*t + b)^2)",
+                                     "integral(t^2/(a*t + b))",
+                                     "integral(sqrt(a*t + b))",
+                                     "integral(t*(a*t + b)^(2/3))",
+                                     "integral((a*t + b)^20)",
+                                     "integral(1/sqrt(a*t + 1))",
+                                     "integral(sinh(w*t)*cosh(b*t))",
+                                     "integral(2^t)",
+                                     "integral((t + exp(-t))*(t - exp(-t)))",
+                                     "integral(f)",
+                                     "integral(s)",
+                                     "integral(f_dot)",
+                                     "integral(f*f_dot)",
+                                     "integral(integral(f))",
+                                     "integral(t*integral(exp(-t)))",
+                                     "integral(t/(t^2 + b^2))",
+                                     "integral(1/(t^2 + 3))",
+                                     "integral(t*exp(-b*t^2))",
+                                     "integral(t/(t^2 - 40))",
+                                     "integral(t/sqrt(t^2 + a))",
+                                     "integral(f_dot/(2 + f))",
+                                     "integral((2*t + 1)/(t^2 + t - 90))",
+                                     "integral(exp(b*t)/exp(w*t))",
+                                     "integral(ddt(s*t))",
+                                     "integral(1/(t*(t*t)))"}) {
     CAPTURE(integral);
     active = !active;
     const Checked found = check(integral, active);
@@ -77,10 +107,11 @@ TEST_CASE("integrals: what the rules know is written in closed form, and agrees 
 }
 
 TEST_CASE("integrals: every other one is a state, alone or inside of another, and agrees with quadrature") {
-  const std::pair<std::string, std::size_t> all[] = {{"integral(exp(-t^2))", 1},       {"integral(sin(w*t^2))", 1},
-                                                     {"integral(sqrt(1 + s^2))", 1},   {"integral(sin(t)/t)", 1},
-                                                     {"integral(integral(exp(-s)))", 2}, {"integral(t) + integral(tanh(f))", 1},
-                                                     {"integral(log(a*t + b))", 1},    {"integral(1/(t^2 + b))", 1},     {"integral(abs(t - 1)*sign(t - 1))", 1},    {"integral(sqrt(t)*exp(-t))", 1}};
+  const std::pair<std::string, std::size_t> all[] = {
+      {"integral(exp(-t^2))", 1},      {"integral(sin(w*t^2))", 1},        {"integral(sqrt(1 + s^2))", 1},
+      {"integral(sin(t)/t)", 1},       {"integral(integral(exp(-s)))", 2}, {"integral(t) + integral(tanh(f))", 1},
+      {"integral(log(a*t + b))", 1},   {"integral(1/(t^2 + b))", 1},       {"integral(abs(t - 1)*sign(t - 1))", 1},
+      {"integral(sqrt(t)*exp(-t))", 1}};
   for (const auto& [integral, states] : all) {
     const auto& shown = integral;
     CAPTURE(shown);
@@ -109,5 +140,6 @@ TEST_CASE("integrals: the quadrature knows pi, log 2 and a kink to as many digit
   }
   const verify::Precision precision(60);
   const verify::GaussLegendre quadrature(50, precision);
-  CHECK_THROWS_AS(quadrature([](const Real& x) { return 1 / x; }, precision.round(Real(-1)), precision.round(Real(2))), verify::Singular);
+  CHECK_THROWS_AS(quadrature([](const Real& x) { return 1 / x; }, precision.round(Real(-1)), precision.round(Real(2))),
+                  verify::Singular);
 }

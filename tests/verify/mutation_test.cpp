@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Small changes made to emitted C, as a slip of the generator or of an editor would make them: the self test of the file, or `verify`, has to
-// notice them. Many changed copies of a file go into one library, each under names of its own.
+// Small changes made to emitted C, as a slip of the generator or of an editor would make them: the self test of the
+// file, or `verify`, has to notice them. Many changed copies of a file go into one library, each under names of its
+// own.
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
@@ -32,9 +33,11 @@ struct Change {
 
 class Mutator {
  public:
-  Mutator(std::string source, const std::string& header, std::string name, std::uint64_t seed) : source_(std::move(source)), name_(std::move(name)), engine_(seed) {
+  Mutator(std::string source, const std::string& header, std::string name, std::uint64_t seed)
+      : source_(std::move(source)), name_(std::move(name)), engine_(seed) {
     const std::size_t sizes = header.find("enum {");
-    source_ = std::regex_replace(source_, std::regex("#include \"[^\n]*\n"), header.substr(sizes, header.find("};", sizes) + 2 - sizes));
+    source_ = std::regex_replace(source_, std::regex("#include \"[^\n]*\n"),
+                                 header.substr(sizes, header.find("};", sizes) + 2 - sizes));
     functions();
   }
 
@@ -77,9 +80,12 @@ class Mutator {
     REQUIRE(last != std::string::npos);
     const std::regex head("\n(?:static |static inline )?int " + name_ + "_(\\w+)\\([^{]*\\)\n\\{\n");
     for (std::sregex_iterator it(source_.begin(), source_.end(), head), none; it != none; ++it) {
-      const std::size_t begin = static_cast<std::size_t>(it->position() + it->length()), end = source_.find("\n}\n", begin);
+      const std::size_t begin = static_cast<std::size_t>(it->position() + it->length()),
+                        end = source_.find("\n}\n", begin);
       const std::string function = (*it)[1];
-      if (begin > last || function == "abi" || function.find("sincos") != std::string::npos || function.starts_with("taylor_sums") || function == "taylor") continue;  // loops may not end
+      if (begin > last || function == "abi" || function.find("sincos") != std::string::npos ||
+          function.starts_with("taylor_sums") || function == "taylor")
+        continue;  // loops may not end
       functions_.emplace_back(begin, end);
     }
     REQUIRE(functions_.size() > 4);
@@ -87,10 +93,13 @@ class Mutator {
 
   std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
 
-  std::vector<std::pair<std::size_t, std::string>> all(const std::string& pattern, std::size_t begin, std::size_t end) const {
+  std::vector<std::pair<std::size_t, std::string>> all(const std::string& pattern, std::size_t begin,
+                                                       std::size_t end) const {
     std::vector<std::pair<std::size_t, std::string>> result;
     const std::regex wanted(pattern);
-    for (std::sregex_iterator it(source_.begin() + static_cast<std::ptrdiff_t>(begin), source_.begin() + static_cast<std::ptrdiff_t>(end), wanted), none;
+    for (std::sregex_iterator it(source_.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 source_.begin() + static_cast<std::ptrdiff_t>(end), wanted),
+         none;
          it != none; ++it) {
       result.emplace_back(begin + static_cast<std::size_t>(it->position()), it->str());
     }
@@ -99,20 +108,35 @@ class Mutator {
 
   std::optional<Change> any(std::size_t begin, std::size_t end) {
     switch (below(6)) {
-      case 0: return exchanged(all(" \\+ | - ", begin, end), [](const std::string& s) { return s == " + " ? " - " : " + "; }, "sign");
-      case 1: return exchanged(all("[\\w\\])]\\*[\\w(]", begin, end), [](const std::string& s) { return fmt::format("{}+{}", s[0], s[2]); }, "product");
-      case 2: return exchanged(all("\\b[xpuw]\\[\\d+\\]", begin, end), [](const std::string& s) {
-          const int index = std::stoi(s.substr(2));
-          return fmt::format("{}[{}]", s[0], index > 0 ? index - 1 : index + 1);
-        }, "index");
-      case 3: return exchanged(all("\\b\\d+\\.\\d+\\b", begin, end), [](const std::string& s) { return s == "0.0" ? "1.0" : fmt::format("(1.5*{})", s); }, "constant");
-      case 4: return exchanged(all(" = -", begin, end), [](const std::string&) { return " = "; }, "leading sign");
+      case 0:
+        return exchanged(
+            all(" \\+ | - ", begin, end), [](const std::string& s) { return s == " + " ? " - " : " + "; }, "sign");
+      case 1:
+        return exchanged(
+            all("[\\w\\])]\\*[\\w(]", begin, end),
+            [](const std::string& s) { return fmt::format("{}+{}", s[0], s[2]); }, "product");
+      case 2:
+        return exchanged(
+            all("\\b[xpuw]\\[\\d+\\]", begin, end),
+            [](const std::string& s) {
+              const int index = std::stoi(s.substr(2));
+              return fmt::format("{}[{}]", s[0], index > 0 ? index - 1 : index + 1);
+            },
+            "index");
+      case 3:
+        return exchanged(
+            all("\\b\\d+\\.\\d+\\b", begin, end),
+            [](const std::string& s) { return s == "0.0" ? "1.0" : fmt::format("(1.5*{})", s); }, "constant");
+      case 4:
+        return exchanged(
+            all(" = -", begin, end), [](const std::string&) { return " = "; }, "leading sign");
       default: return operand(begin, end);
     }
   }
 
   template <class By>
-  std::optional<Change> exchanged(const std::vector<std::pair<std::size_t, std::string>>& places, const By& by, const char* what) {
+  std::optional<Change> exchanged(const std::vector<std::pair<std::size_t, std::string>>& places, const By& by,
+                                  const char* what) {
     if (places.empty()) return std::nullopt;
     const auto& [at, text] = places[below(places.size())];
     return Change{at, text.size(), by(text), what};
@@ -171,15 +195,18 @@ struct Subject {
 
 Subject subject(const std::string& model) {
   Subject s;
-  s.derived = cli::derive_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml", cli::ApproachChoice::automatic);
+  s.derived =
+      cli::derive_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml", cli::ApproachChoice::automatic);
   program::Request request;
   request.with = {"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
   request.outputs = {"energy", "kinetic", "power"};
   for (const system::Output& output : s.derived->candidates.front().outputs) {
-    if (output.name.find("position") != std::string::npos || output.name.find("velocity") != std::string::npos) request.outputs.push_back(output.name);
+    if (output.name.find("position") != std::string::npos || output.name.find("velocity") != std::string::npos)
+      request.outputs.push_back(output.name);
   }
   s.program = cli::make_program(*s.derived, request);
-  const run::Scene scene = run::resolve_scene(s.derived->mechanics, s.derived->candidates.front(), s.derived->model.scene("default"), {});
+  const run::Scene scene =
+      run::resolve_scene(s.derived->mechanics, s.derived->candidates.front(), s.derived->model.scene("default"), {});
   s.context = cli::emission_context(*s.derived, s.program, scene, {});
   s.name = emit::mangled_id(s.context.id);
   const std::vector<emit::EmittedFile> files = emit::emit(s.program, s.context, "c");
@@ -189,13 +216,15 @@ Subject subject(const std::string& model) {
 }
 
 /// The library with the file as it is (NAME_m) and all changed ones (NAME_m0, NAME_m1, ..).
-std::string library(const Folder& folder, const Subject& s, const Mutator& mutator, const std::vector<Change>& changes) {
+std::string library(const Folder& folder, const Subject& s, const Mutator& mutator,
+                    const std::vector<Change>& changes) {
   std::ofstream out(folder.path / (s.name + ".c"));
   out << mutator.changed({0, 0, "", ""}, s.name + "_m");
   for (std::size_t k = 0; k < changes.size(); ++k) out << mutator.changed(changes[k], fmt::format("{}_m{}", s.name, k));
   out.close();
   const std::string library = (folder.path / (s.name + ".so")).string();
-  const emit::Finished finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared", "-o", library, (folder.path / (s.name + ".c")).string(), "-lm"});
+  const emit::Finished finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared", "-o",
+                                                     library, (folder.path / (s.name + ".c")).string(), "-lm"});
   INFO(finished.output);
   REQUIRE(finished.status == 0);
   return library;
@@ -222,7 +251,8 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
   for (std::size_t point = 0; point < 3 * modes.size(); ++point) {
     verify::At at{exactly(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
     for (const double x : s.context.start) at.x.push_back(exactly(x) + random() / 2);
-    for (const emit::Quantity& p : s.context.parameters) at.p.push_back(exactly(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));
+    for (const emit::Quantity& p : s.context.parameters)
+      at.p.push_back(exactly(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));
     for (const emit::Quantity& u : s.context.inputs) at.u.push_back(exactly(u.value) + random());
     for (const std::string& function : program::abi_function_names(s.program)) {
       const auto of_a = a.call(function, at), of_b = b.call(function, at);
@@ -244,12 +274,14 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
 
 }  // namespace
 
-TEST_CASE("small changes to emitted code: at least 98 % of those that change a value are noticed by the self test or by verify") {
+TEST_CASE(
+    "small changes to emitted code: at least 98 % of those that change a value are noticed by the self test or by "
+    "verify") {
   const Folder folder;
   std::size_t changing = 0, by_self_test = 0, noticed = 0;
   std::string missed;
-  for (const char* model : {"cart_pendulum", "P7_moving_sphere", "S5_double_pendulum_cartesian", "leaving_sphere", "rough_incline_puck", "bilinear_oscillator",
-                            "R13_sleigh", "R11_constant_moment"}) {
+  for (const char* model : {"cart_pendulum", "P7_moving_sphere", "S5_double_pendulum_cartesian", "leaving_sphere",
+                            "rough_incline_puck", "bilinear_oscillator", "R13_sleigh", "R11_constant_moment"}) {
     CAPTURE(model);
     const Subject s = subject(model);
     Mutator mutator(s.source, s.header, s.name, 11);
@@ -273,7 +305,8 @@ TEST_CASE("small changes to emitted code: at least 98 % of those that change a v
         ++noticed;
         continue;
       }
-      missed += fmt::format("\n{}: {} -> '{}' in{}", model, changes[k].what, changes[k].by, mutator.line_at(changes[k]));
+      missed +=
+          fmt::format("\n{}: {} -> '{}' in{}", model, changes[k].what, changes[k].by, mutator.line_at(changes[k]));
     }
   }
   MESSAGE(fmt::format("{} changes, {} noticed, {} of them by the self test", changing, noticed, by_self_test));

@@ -132,7 +132,9 @@ TEST_CASE("solve: pivots, scales over many orders of magnitude, and tells a sing
   CHECK(near(large.x()[1], 3, 55));
 }
 
-TEST_CASE("solve: entries whose size no binary64 number has, products of starts of 1e-300 or speeds of 1e300, are scaled all the same") {
+TEST_CASE(
+    "solve: entries whose size no binary64 number has, products of starts of 1e-300 or speeds of 1e300, are scaled all "
+    "the same") {
   const Precision p(60);
   const auto r = [&](double value) { return p.round(cln::rational(Real(value))); };
   for (const double scale : {1e-300, 1e-160, 1e160, 1e300}) {
@@ -146,7 +148,9 @@ TEST_CASE("solve: entries whose size no binary64 number has, products of starts 
 
 TEST_CASE("solve: large systems, whole or in parts that do not hang together, have all digits") {
   const Precision p(60);
-  const auto entry = [&](std::size_t i, std::size_t k) { return p.round(Real(1) / (1 + static_cast<int>((7 * i + 3 * k) % 11)) + (i == k ? 5 : 0)); };
+  const auto entry = [&](std::size_t i, std::size_t k) {
+    return p.round(Real(1) / (1 + static_cast<int>((7 * i + 3 * k) % 11)) + (i == k ? 5 : 0));
+  };
   for (const std::size_t part : {std::size_t{40}, std::size_t{20}, std::size_t{1}}) {  // blocks of this size
     constexpr std::size_t n = 40;
     std::vector<Real> A(n * n, Real(0)), b(n, Real(0));

@@ -41,8 +41,9 @@ inline model::Model cart_pendulum() {
   const Formula F = input(m, "F");
   const Formula x = coordinate(m, "x"), theta = coordinate(m, "theta");
   const Formula x_dot = rate(x), theta_dot = rate(theta);
-  m.energy.kinetic = ((M + mass) / 2 * (x_dot ^ 2) + mass * l * x_dot * theta_dot * cos(theta) +
-                      mass * (l ^ 2) / 2 * (theta_dot ^ 2)).id;
+  m.energy.kinetic =
+      ((M + mass) / 2 * (x_dot ^ 2) + mass * l * x_dot * theta_dot * cos(theta) + mass * (l ^ 2) / 2 * (theta_dot ^ 2))
+          .id;
   m.energy.potential = (-(mass * g * l * cos(theta))).id;
   force(m, model::Generalized{{{0, (F - c * x_dot).id}}});
   default_scene(m);
@@ -55,7 +56,8 @@ inline model::Model chain(int n) {
   m.id = "chain";
   Formula position{};
   for (int i = 1; i <= n; ++i) {
-    const Formula mass = parameter(m, "m" + std::to_string(i), i), l = parameter(m, "l" + std::to_string(i), Rational(1) / i);
+    const Formula mass = parameter(m, "m" + std::to_string(i), i),
+                  l = parameter(m, "l" + std::to_string(i), Rational(1) / i);
     const Formula angle = coordinate(m, "th" + std::to_string(i));
     const Formula rod = vector(l * sin(angle), -(l * cos(angle)), number(m, 0));
     position = place(m, "P" + std::to_string(i), i == 1 ? rod : position + rod, mass);

@@ -65,7 +65,8 @@ generalized = { a = "M0" }
 [scene.default]
 t = [0, 1]
 initial = { a_dot = 1 }
-)toml", seed);
+)toml",
+                 seed);
   }
 }
 
@@ -111,7 +112,8 @@ generalized = {{ x = "F*exp(-((t - 5)/w)^2)" }}
 [scene.default]
 t = [0, 10]
 initial = {{ x = 0 }}
-)toml", width));
+)toml",
+                             width));
   }
   for (const char* far : {"1e-9", "1e8", "1e12"}) {
     CAPTURE(far);
@@ -129,12 +131,14 @@ spring = {{ between = ["P", "d*E1"], stiffness = "k", length = "d" }}
 [scene.default]
 t = [0, 1]
 initial = {{ x = 0.5, y = 1 }}
-)toml", far));
+)toml",
+                             far));
   }
 }
 
 TEST_CASE("sound models: the branch of `if` that is not taken need not have a value") {
-  for (const char* force : {"if(x > 0, sqrt(x), 0)", "if(x > 0, sqrt(x), -sqrt(-x))", "if(x > 0, log(x), 1/(x - 1))", "if(x < 0, 0, x^1.5)"}) {
+  for (const char* force : {"if(x > 0, sqrt(x), 0)", "if(x > 0, sqrt(x), -sqrt(-x))", "if(x > 0, log(x), 1/(x - 1))",
+                            "if(x < 0, 0, x^1.5)"}) {
     CAPTURE(force);
     check_passes(fmt::format(R"toml(
 [coordinates]
@@ -148,7 +152,8 @@ generalized = {{ x = "{}" }}
 [scene.default]
 t = [0, 1]
 initial = {{ x = 0.1, x_dot = -2 }}
-)toml", force));
+)toml",
+                             force));
   }
 }
 

@@ -96,8 +96,8 @@ position = "(A + C)/2"
 )toml";
 
 std::string chain(int n, const std::string& angles) {
-  return parameters + "[[chain]]\nname = \"link\"\nn = " + std::to_string(n) + "\nmass = \"m1\"\nlength = \"L1\"\nangles = \"" +
-         angles + "\"\n[[force]]\ngravity = \"-g*E2\"\n";
+  return parameters + "[[chain]]\nname = \"link\"\nn = " + std::to_string(n) +
+         "\nmass = \"m1\"\nlength = \"L1\"\nangles = \"" + angles + "\"\n[[force]]\ngravity = \"-g*E2\"\n";
 }
 
 std::set<std::string> routes_that_agree(const std::string& text) {
@@ -124,7 +124,9 @@ void check_tree_routes(const std::string& text, bool recursive, bool articulated
 TEST_CASE("trees: a planar tree on a shaken table, with springs, dampers and inputs") {
   check_tree_routes(planar_tree, true, true);
 }
-TEST_CASE("trees: a cart in space carries planar rods and a free particle") { check_tree_routes(spatial_tree, true, true); }
+TEST_CASE("trees: a cart in space carries planar rods and a free particle") {
+  check_tree_routes(spatial_tree, true, true);
+}
 TEST_CASE("trees: a mass that varies has no tensions that are told by accelerations alone") {
   check_tree_routes(growing_mass, true, false);
 }
@@ -155,7 +157,8 @@ TEST_CASE("quasi-coordinates: the running sums of relative angles, and nothing w
 
 namespace {
 
-// Four rods with particles at their ends, by energies alone: one velocity written out, one particle with y before x, one with signs the other way round.
+// Four rods with particles at their ends, by energies alone: one velocity written out, one particle with y before x,
+// one with signs the other way round.
 const std::string energies_of_rods = parameters + R"toml([coordinates]
 a1 = "rad"
 a2 = "rad"
@@ -175,7 +178,8 @@ potential = "k*L1^2/2*((a1 - a2)^2 + (a2 - a3)^2 + (a3 - a4)^2) + g*(m0*y1 + m1*
 )toml";
 
 const std::string squares_of_rods =
-    "m0/2*(ddt(x1)^2 + ddt(y1)^2) + m1/2*(L1*sin(a1)*a1_dot + L2*sin(a2)*a2_dot)^2 + m1/2*ddt(y2)^2 + m2/2*(ddt(y3)^2 + ddt(x3)^2)"
+    "m0/2*(ddt(x1)^2 + ddt(y1)^2) + m1/2*(L1*sin(a1)*a1_dot + L2*sin(a2)*a2_dot)^2 + m1/2*ddt(y2)^2 + m2/2*(ddt(y3)^2 "
+    "+ ddt(x3)^2)"
     " + m3/2*((-ddt(x4))^2 + ddt(0 - y4)^2)";
 
 }  // namespace
@@ -185,7 +189,8 @@ TEST_CASE("trees: a kinetic energy that is a sum of squares of velocities of poi
 }
 
 TEST_CASE("trees: what is no such sum, or no tree, is left to other routes") {
-  for (const char* more : {" + m0*L1^2/2*a2_dot^2", " + m0*L1^2/4*a1_dot*a2_dot", " + m0/2*(sin(a1)*sin(a2)*L1*a1_dot)^2"}) {
+  for (const char* more :
+       {" + m0*L1^2/2*a2_dot^2", " + m0*L1^2/4*a1_dot*a2_dot", " + m0/2*(sin(a1)*sin(a2)*L1*a1_dot)^2"}) {
     CAPTURE(more);
     check_tree_routes(energies_of_rods + "kinetic = \"" + squares_of_rods + more + "\"\n", false, false);
   }

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "bench/bench.hpp"
+
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -7,7 +9,6 @@
 #include <cmath>
 #include <optional>
 
-#include "bench/bench.hpp"
 #include "bench/libraries.hpp"
 #include "cli/bench_report.hpp"
 #include "cli/commands/commands.hpp"
@@ -24,8 +25,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t looks = 100;    // at the error along the run
-constexpr int fewest_digits = 8;      // of a reference that is worth the name
+constexpr std::size_t looks = 100;  // at the error along the run
+constexpr int fewest_digits = 8;    // of a reference that is worth the name
 
 struct Options {
   std::string model, scene = "default", csv, svg, approach = "auto", form = "auto";
@@ -53,7 +54,8 @@ class Status {
 
 /// What the reference cannot follow is told before anything is measured.
 void require_smooth(const Simulation& simulation, const run::RunRequest& request) {
-  if (!simulation.program.contacts.empty()) unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
+  if (!simulation.program.contacts.empty())
+    unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
   for (const run::Signal& signal : simulation.scene.inputs) {
     if (signal.moves()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
   }
@@ -64,17 +66,26 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   options.interrupt = request.interrupt;
   const eom::Result end = trial.run(options, {});
   for (const std::size_t crossings : trial.kink_crossings) {
-    if (crossings > 0) unsupported("the motion crosses a kink (abs, sign, min, max, if)", "shorten the run (--t-end), or smooth the law");
+    if (crossings > 0)
+      unsupported("the motion crosses a kink (abs, sign, min, max, if)",
+                  "shorten the run (--t-end), or smooth the law");
   }
   if (end.outcome == eom::Outcome::done) return;
-  throw Error("bench", {}, fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
-              "give an end before that: --t-end", end.outcome == eom::Outcome::stopped_by_event ? Fault::input : Fault::numerical);
+  throw Error("bench", {},
+              fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
+              "give an end before that: --t-end",
+              end.outcome == eom::Outcome::stopped_by_event ? Fault::input : Fault::numerical);
 }
 
-reference::Problem problem_of(const Simulation& simulation, const run::RunRequest& request, const std::vector<double>& times) {
+reference::Problem problem_of(const Simulation& simulation, const run::RunRequest& request,
+                              const std::vector<double>& times) {
   const run::Scene& scene = simulation.scene;
-  reference::Problem problem{simulation.program.functions.front(), run::Integration(request, "dop853").initial_state(), scene.parameters,
-                             scene.t0, {}, times};
+  reference::Problem problem{simulation.program.functions.front(),
+                             run::Integration(request, "dop853").initial_state(),
+                             scene.parameters,
+                             scene.t0,
+                             {},
+                             times};
   problem.interrupt = request.interrupt;
   problem.coordinates = simulation.program.free.size();
   for (const program::Function& function : simulation.program.functions) {
@@ -93,27 +104,34 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
   double from = scene.t0;
   for (const double end : ends) {
     problem.pieces.push_back({end, {}});
-    for (const run::Signal& signal : scene.inputs) problem.pieces.back().u.push_back(signal((from + end) / 2, (from + end) / 2));
+    for (const run::Signal& signal : scene.inputs)
+      problem.pieces.back().u.push_back(signal((from + end) / 2, (from + end) / 2));
     from = end;
   }
   return problem;
 }
 
-std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, const run::Code& code, std::vector<std::pair<std::string, std::string>>& left_out) {
+std::vector<std::string> solvers_for(const Options& options, const run::Scene& scene, const run::Code& code,
+                                     std::vector<std::pair<std::string, std::string>>& left_out) {
   std::vector<std::string> known{eom::Automatic::name}, chosen;
   for (const eom::MethodInfo& method : eom::methods()) {
-    if (!method.constrained || !options.solvers.empty() || run::unfit(method.name, code).empty()) known.emplace_back(method.name);
+    if (!method.constrained || !options.solvers.empty() || run::unfit(method.name, code).empty())
+      known.emplace_back(method.name);
   }
   for (const std::string& name : options.solvers) {
     if (std::find(known.begin(), known.end(), name) == known.end())
       throw Error("bench", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
   }
   for (const std::string& name : known) {
-    if (!options.solvers.empty() && std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end()) continue;
+    if (!options.solvers.empty() &&
+        std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end())
+      continue;
     std::string why = run::unfit(name, scene);
     if (why.empty()) why = run::unfit(name, code);
-    if (why.empty()) chosen.push_back(name);
-    else left_out.emplace_back(name, why);
+    if (why.empty())
+      chosen.push_back(name);
+    else
+      left_out.emplace_back(name, why);
   }
   return chosen;
 }
@@ -147,7 +165,8 @@ int execute(const Options& options, const Common& common) {
   require_smooth(simulation, request);
   const run::Scene& scene = simulation.scene;
   std::vector<double> times;
-  for (std::size_t k = 1; k < looks; ++k) times.push_back(scene.t0 + (scene.t1 - scene.t0) * static_cast<double>(k) / looks);
+  for (std::size_t k = 1; k < looks; ++k)
+    times.push_back(scene.t0 + (scene.t1 - scene.t0) * static_cast<double>(k) / looks);
   times.push_back(scene.t1);
 
   Status status;
@@ -169,7 +188,8 @@ int execute(const Options& options, const Common& common) {
   measured.progress = [&status](const std::string& solver) { status.show(solver); };
   const std::vector<bench::Row> rows = bench::measure(measured);
   status.show("");
-  const BenchReport report{simulation, reference, rows, request.state_names, std::move(left_out), "code compiled with -O2", seconds};
+  const BenchReport report{
+      simulation, reference, rows, request.state_names, std::move(left_out), "code compiled with -O2", seconds};
   if (!options.csv.empty()) write_text(options.csv, report.csv());
   const model::Model& model = simulation.derived->model;
   if (!options.svg.empty()) write_text(options.svg, bench::diagram(rows, model.title.empty() ? model.id : model.title));
@@ -192,7 +212,9 @@ Execute declare_bench(CLI::App& app) {
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   add_list(app, "--solver", options->solvers, "only these solvers");
-  app.add_option("--seconds", options->seconds, "what takes longer is interrupted")->check(positive_number())->capture_default_str();
+  app.add_option("--seconds", options->seconds, "what takes longer is interrupted")
+      ->check(positive_number())
+      ->capture_default_str();
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
   add_place(app, "-o,--out,--csv", options->csv, "the table as a CSV file");
   add_place(app, "--plot,--svg", options->svg, "error over run time as an SVG plot");

@@ -5,8 +5,8 @@
 
 #include "cli/charts.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/examination.hpp"
 #include "cli/decimal.hpp"
+#include "cli/examination.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/watch.hpp"
@@ -32,7 +32,8 @@ json constraints_of(const mechanics::Mechanics& m) {
     const mechanics::Classification& found = m.classification[k];
     std::string use = "keeps a multiplier";
     for (const mechanics::FixedCoordinate& fixed : m.fixed) {
-      if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
+      if (m.constraints[fixed.constraint].label == c.label)
+        use = "fixes " + m.model->coordinates[fixed.coordinate].name;
     }
     if (c.need == mechanics::Need::identity) use = "holds identically, without a multiplier";
     if (c.need == mechanics::Need::redundant) use = "follows from the others, without a multiplier; watched";
@@ -47,10 +48,15 @@ json constraints_of(const mechanics::Mechanics& m) {
       integral = shown(m, i.psi) + " = constant";
       for (const std::uint32_t part : i.of) of.push_back(m.constraints[part].label);
     }
-    result.push_back({{"name", c.label}, {"kind", c.holonomic() ? "holonomic" : "velocity"},
-                      {"integrable", mechanics::name(found.integrable)}, {"integral", integral}, {"redundant", !m.holds(static_cast<std::uint32_t>(k))},
+    result.push_back({{"name", c.label},
+                      {"kind", c.holonomic() ? "holonomic" : "velocity"},
+                      {"integrable", mechanics::name(found.integrable)},
+                      {"integral", integral},
+                      {"redundant", !m.holds(static_cast<std::uint32_t>(k))},
                       {"determined", joint ? json(nullptr) : json(c.determined)},
-                      {"use", use}, {"reason", found.reason}, {"integral_of", of}});
+                      {"use", use},
+                      {"reason", found.reason},
+                      {"integral_of", of}});
   }
   return result;
 }
@@ -63,9 +69,12 @@ json joints_of(const mechanics::Mechanics& m) {
     for (std::size_t j = 0; j < model::joint_components; ++j) {
       (m.joints[i].determined[j] ? determined : open).push_back(fmt::format("reaction.{}.{}", joint.name, j + 1));
     }
-    result.push_back({{"name", joint.name}, {"type", joint.type},
+    result.push_back({{"name", joint.name},
+                      {"type", joint.type},
                       {"bodies", {m.model->frames[joint.frames[0]].name, m.model->frames[joint.frames[1]].name}},
-                      {"axes", m.model->frames[joint.axes].name}, {"reactions", determined}, {"undetermined", open}});
+                      {"axes", m.model->frames[joint.axes].name},
+                      {"reactions", determined},
+                      {"undetermined", open}});
   }
   return result;
 }
@@ -77,9 +86,13 @@ json forces_of(mechanics::Mechanics& m) {
     for (const derive::DomainCondition& c : force.domain) domain.push_back(shown(m, c.expression) + " " + c.relation);
     std::string reason = force.reason;
     if (force.work) reason += ", of " + shown(m, *force.work) + " each time";
-    result.push_back({{"name", force.name}, {"conservative", derive::name(force.conservative)},
-                      {"potential", force.potential ? json(shown(m, *force.potential)) : json(nullptr)}, {"domain", domain},
-                      {"many_valued", force.many_valued}, {"in_energy", force.in_energy}, {"reason", reason}});
+    result.push_back({{"name", force.name},
+                      {"conservative", derive::name(force.conservative)},
+                      {"potential", force.potential ? json(shown(m, *force.potential)) : json(nullptr)},
+                      {"domain", domain},
+                      {"many_valued", force.many_valued},
+                      {"in_energy", force.in_energy},
+                      {"reason", reason}});
   }
   return result;
 }
@@ -90,8 +103,14 @@ json contacts_of(const mechanics::Mechanics& m) {
     const std::size_t equations = contact.constraints.size();
     json slip = json::array();
     for (const symbolic::Ref w : contact.slip) slip.push_back(shown(m, w));
-    result.push_back({{"name", contact.name}, {"kind", equations == 0 ? "coordinate" : equations == 1 ? "surface" : "curve"},
-                      {"law", contact.dimensions() == 0 ? "none" : contact.width ? "smooth" : "coulomb"}, {"slip", slip},
+    result.push_back({{"name", contact.name},
+                      {"kind", equations == 0   ? "coordinate"
+                               : equations == 1 ? "surface"
+                                                : "curve"},
+                      {"law", contact.dimensions() == 0 ? "none"
+                              : contact.width           ? "smooth"
+                                                        : "coulomb"},
+                      {"slip", slip},
                       {"unilateral", contact.unilateral}});
   }
   return result;
@@ -100,8 +119,10 @@ json contacts_of(const mechanics::Mechanics& m) {
 json singular_of(const mechanics::Mechanics& m, json& left_out) {
   json result = json::array();
   for (const print::Item& item : print::render_singular(m)) {
-    if (item.left_out.empty()) result.push_back({{"set", item.text}, {"approach", item.role}});
-    else left_out.push_back({{"what", "singular sets: " + item.name}, {"why", item.left_out}});
+    if (item.left_out.empty())
+      result.push_back({{"set", item.text}, {"approach", item.role}});
+    else
+      left_out.push_back({{"what", "singular sets: " + item.name}, {"why", item.left_out}});
   }
   return result;
 }
@@ -111,8 +132,12 @@ json charts_of_model(const mechanics::Mechanics& m) {
   for (const model::SwitchedChart& chart : charts_of(m)) {
     json angles = json::array();
     for (const std::uint32_t q : chart.angles) angles.push_back(m.model->coordinates[q].name);
-    result.push_back({{"of", chart.of}, {"own", chart.own}, {"second", chart.second}, {"angles", angles},
-                      {"exchanged", chart.refusal.empty()}, {"reason", chart.refusal}});
+    result.push_back({{"of", chart.of},
+                      {"own", chart.own},
+                      {"second", chart.second},
+                      {"angles", angles},
+                      {"exchanged", chart.refusal.empty()},
+                      {"reason", chart.refusal}});
   }
   return result;
 }
@@ -132,12 +157,18 @@ void fill_in(const model::Model& model, json& found) {
   }
   found["dof"] = m.freedom();
   for (const model::Parameter& p : model.parameters) {
-    found["parameters"].push_back({{"name", p.name}, {"unit", p.unit.text}, {"value", value_of(m, m.parameter_value[found["parameters"].size()])}, {"written", p.written}});
+    found["parameters"].push_back({{"name", p.name},
+                                   {"unit", p.unit.text},
+                                   {"value", value_of(m, m.parameter_value[found["parameters"].size()])},
+                                   {"written", p.written}});
     every_unit = every_unit && p.unit.dimension.has_value();
   }
   for (const model::Input& input : model.inputs) {
-    found["inputs"].push_back({{"name", input.name}, {"unit", input.unit.text},
-                               {"default", input.fallback == model::no_node ? "0" : value_of(m, mechanics::lower_scalar(m, input.fallback))}});
+    found["inputs"].push_back(
+        {{"name", input.name},
+         {"unit", input.unit.text},
+         {"default",
+          input.fallback == model::no_node ? "0" : value_of(m, mechanics::lower_scalar(m, input.fallback))}});
     every_unit = every_unit && input.unit.dimension.has_value();
   }
   found["units"] = every_unit ? "checked" : "checked where they are given";
@@ -148,7 +179,9 @@ void fill_in(const model::Model& model, json& found) {
   found["forces"] = forces_of(m);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
   for (const derive::Conserved& c : derive::conserved_quantities(m, system)) {
-    found["conserved"].push_back({{"name", c.name}, {"title", c.title}, {"expression", shown(m, c.expression)},
+    found["conserved"].push_back({{"name", c.name},
+                                  {"title", c.title},
+                                  {"expression", shown(m, c.expression)},
                                   {"certainty", derive::name(c.certainty)}});
   }
   found["singular"] = singular_of(m, found["left_out"]);
@@ -159,14 +192,15 @@ void fill_in(const model::Model& model, json& found) {
 json examine(const model::Model& model, bool* interrupted) {
   const work::Stage stage("examining the model");
   json found{{"format", 1}, {"model", model.id}, {"title", model.title}};
-  for (const char* key : {"coordinates", "dof", "parameters", "inputs", "constraints", "joints", "forces", "contacts", "conserved", "singular", "charts",
-                          "units", "warnings", "left_out"}) {
+  for (const char* key : {"coordinates", "dof", "parameters", "inputs", "constraints", "joints", "forces", "contacts",
+                          "conserved", "singular", "charts", "units", "warnings", "left_out"}) {
     found[key] = json::array();
   }
   found["dof"] = 0;
   found["units"] = "checked where they are given";
   for (const Warning& w : model.warnings) {
-    found["warnings"].push_back({{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
+    found["warnings"].push_back(
+        {{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
   }
   try {
     fill_in(model, found);
@@ -183,7 +217,8 @@ std::string text(const json& value) { return value.get<std::string>(); }
 
 /// "48.85 deg", as the author has it; a bare number with the unit that it was given.
 std::string as_written(const json& parameter) {
-  const std::string value = text(parameter["value"]), written = text(parameter["written"]), unit = text(parameter["unit"]);
+  const std::string value = text(parameter["value"]), written = text(parameter["written"]),
+                    unit = text(parameter["unit"]);
   const bool bare = written.find_first_not_of("0123456789.+-eE") == std::string::npos;
   return bare || written.empty() ? fmt::format("{} {}", value, unit) : written;
 }
@@ -201,8 +236,8 @@ void print_joints(const json& found) {
   for (const json& j : found["joints"]) {
     std::string open;
     for (const json& name : j["undetermined"]) open += (open.empty() ? "" : ", ") + text(name);
-    fmt::print("  {:<20} {} of {} and {}{}\n", text(j["name"]), text(j["type"]), text(j["bodies"][0]), text(j["bodies"][1]),
-               open.empty() ? "" : "; the motion does not determine " + open);
+    fmt::print("  {:<20} {} of {} and {}{}\n", text(j["name"]), text(j["type"]), text(j["bodies"][0]),
+               text(j["bodies"][1]), open.empty() ? "" : "; the motion does not determine " + open);
   }
 }
 
@@ -211,17 +246,20 @@ void print_readable(const json& found) {
   fmt::print("{}{}{}\n", text(found["model"]), text(found["title"]).empty() ? "" : ": ", text(found["title"]));
   heading("coordinates");
   for (const json& c : found["coordinates"]) {
-    fmt::print("  {:<20} {}{}\n", text(c["name"]), text(c["unit"]), c["eliminated"].get<bool>() ? "  (fixed by a constraint)" : "");
+    fmt::print("  {:<20} {}{}\n", text(c["name"]), text(c["unit"]),
+               c["eliminated"].get<bool>() ? "  (fixed by a constraint)" : "");
   }
   fmt::print("  {} degree{} of freedom\n", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s");
   heading("parameters");
   for (const json& p : found["parameters"]) fmt::print("  {:<20} {}\n", text(p["name"]), as_written(p));
   if (!found["inputs"].empty()) heading("inputs");
-  for (const json& u : found["inputs"]) fmt::print("  {:<20} {}  ({} where a scene gives none)\n", text(u["name"]), text(u["unit"]), text(u["default"]));
+  for (const json& u : found["inputs"])
+    fmt::print("  {:<20} {}  ({} where a scene gives none)\n", text(u["name"]), text(u["unit"]), text(u["default"]));
   if (!found["constraints"].empty()) heading("constraints");
   for (const json& c : found["constraints"]) {
     const bool holonomic = c["kind"] == "holonomic";
-    fmt::print("  {:<20} {}({}, {})\n", text(c["name"]), holonomic ? text(c["integral"]) + "   " : "", text(c["kind"]), text(c["use"]));
+    fmt::print("  {:<20} {}({}, {})\n", text(c["name"]), holonomic ? text(c["integral"]) + "   " : "", text(c["kind"]),
+               text(c["use"]));
     if (holonomic) continue;
     fmt::print("  {:<20}   integrable: {} ({})\n", "", text(c["integrable"]), text(c["reason"]));
     if (!c["integral"].is_null()) fmt::print("  {:<20}   {}{}\n", "", text(c["integral"]), from_others(c));
@@ -230,8 +268,10 @@ void print_readable(const json& found) {
   if (!found["forces"].empty()) heading("forces");
   for (const json& f : found["forces"]) {
     fmt::print("  {:<20} conservative: {}", text(f["name"]), text(f["conservative"]));
-    if (!f["potential"].is_null()) fmt::print(", {}U = {}", f["many_valued"].get<bool>() ? "locally " : "", text(f["potential"]));
-    for (const json& condition : f["domain"]) fmt::print("{}{}", &condition == &f["domain"].front() ? " where " : ", ", text(condition));
+    if (!f["potential"].is_null())
+      fmt::print(", {}U = {}", f["many_valued"].get<bool>() ? "locally " : "", text(f["potential"]));
+    for (const json& condition : f["domain"])
+      fmt::print("{}{}", &condition == &f["domain"].front() ? " where " : ", ", text(condition));
     if (!text(f["reason"]).empty()) fmt::print(" ({})", text(f["reason"]));
     fmt::print("\n");
   }
@@ -239,8 +279,11 @@ void print_readable(const json& found) {
   for (const json& c : found["contacts"]) {
     std::string slip;
     for (const json& w : c["slip"]) slip += (slip.empty() ? ", slip " : "; ") + text(w);
-    const std::string law = c["law"] == "none" ? "no friction" : c["law"] == "smooth" ? "the smooth law of friction" : "Coulomb's law";
-    fmt::print("  {:<20} {}, {}{}{}\n", text(c["name"]), text(c["kind"]), law, slip, c["unilateral"].get<bool>() ? "; can be left" : "");
+    const std::string law = c["law"] == "none"     ? "no friction"
+                            : c["law"] == "smooth" ? "the smooth law of friction"
+                                                   : "Coulomb's law";
+    fmt::print("  {:<20} {}, {}{}{}\n", text(c["name"]), text(c["kind"]), law, slip,
+               c["unilateral"].get<bool>() ? "; can be left" : "");
   }
   if (!found["conserved"].empty()) heading("conserved");
   for (const json& c : found["conserved"]) {
@@ -255,7 +298,8 @@ void print_readable(const json& found) {
   for (const json& c : found["charts"]) {
     const bool exchanged = c["exchanged"].get<bool>();
     fmt::print("  {:<20} {}{}\n", text(c["of"]), text(c["own"]),
-               exchanged ? fmt::format(", and {} near where it fails", text(c["second"])) : " everywhere: " + text(c["reason"]));
+               exchanged ? fmt::format(", and {} near where it fails", text(c["second"]))
+                         : " everywhere: " + text(c["reason"]));
   }
   fmt::print("\nunits: {}\n", text(found["units"]));
 }

@@ -13,8 +13,8 @@
 #include "cli/usage.hpp"
 #include "cli/watch.hpp"
 #include "derive/lagrange.hpp"
-#include "model/names.hpp"
 #include "mechanics/dependent.hpp"
+#include "model/names.hpp"
 #include "print/notation.hpp"
 #include "print/render.hpp"
 
@@ -29,8 +29,9 @@ struct Options {
 };
 
 const std::vector<std::string>& show_keys() {
-  static const std::vector<std::string> keys{"basis", "metric", "christoffel", "line_element", "frenet", "energies", "lagrangian",
-                                             "equations", "constraints", "reactions", "friction", "conserved", "singular", "routh", "linear", "all"};
+  static const std::vector<std::string> keys{
+      "basis",       "metric",    "christoffel", "line_element", "frenet",   "energies", "lagrangian", "equations",
+      "constraints", "reactions", "friction",    "conserved",    "singular", "routh",    "linear",     "all"};
   return keys;
 }
 
@@ -77,8 +78,8 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
   json result{{"format", 1}, {"approach", approach}, {"equations", json::array()}, {"reactions", json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : show_keys()) {
-    const bool wanted = std::find(show.begin(), show.end(), key) != show.end() ||
-                        (all && key != "linear" && key != "routh");
+    const bool wanted =
+        std::find(show.begin(), show.end(), key) != show.end() || (all && key != "linear" && key != "routh");
     if (wanted && key != "all") result[key] = json::array();  // also where there turns out to be nothing to show
   }
   for (const print::Item& item : items) {
@@ -99,17 +100,25 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
 
 /// What stands there.
 std::string heading_of(const print::Item& item) {
-  const auto named = [&](const std::string& what) { return item.name.empty() ? what : fmt::format("{} '{}'", what, item.name); };
+  const auto named = [&](const std::string& what) {
+    return item.name.empty() ? what : fmt::format("{} '{}'", what, item.name);
+  };
   if (item.key == "equations" || item.key == "explicit") {
-    return (item.role == "motion" ? "equations of motion" : "equations that give the constraint forces") + std::string(item.key == "explicit" ? ", written out" : "");
+    return (item.role == "motion" ? "equations of motion" : "equations that give the constraint forces") +
+           std::string(item.key == "explicit" ? ", written out" : "");
   }
-  if (item.key == "constraints") return item.role == "function of time" ? "functions of time" : fmt::format("{}, {}", named("constraint"), item.role);
-  if (item.key == "reactions") return item.role.empty() ? "multipliers" : fmt::format("{} on '{}'", item.role, item.name);
+  if (item.key == "constraints")
+    return item.role == "function of time" ? "functions of time"
+                                           : fmt::format("{}, {}", named("constraint"), item.role);
+  if (item.key == "reactions")
+    return item.role.empty() ? "multipliers" : fmt::format("{} on '{}'", item.role, item.name);
   if (item.key == "friction") {  // a contact that can be left is no friction
-    const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") || item.role == "impact" || item.role == "normal force";
+    const bool of_contact = item.role.starts_with("touches") || item.role.starts_with("is apart") ||
+                            item.role == "impact" || item.role == "normal force";
     return fmt::format("{}, {}", named(of_contact ? "contact" : "friction at"), item.role);
   }
-  if (item.key == "singular") return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
+  if (item.key == "singular")
+    return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
   if (item.key == "conserved") return "conserved, " + item.role;
   if (item.role.empty()) return item.key;
   return item.key + ": " + item.role;
@@ -120,13 +129,19 @@ json legend(const mechanics::Mechanics& m, const reading::ReadingForm& form) {
   json result = json::array();
   const print::Notation notation(m);
   const auto stands = [&](std::uint32_t k) {
-    const auto has = [k](const reading::Equation& e) { return std::any_of(e.multipliers.begin(), e.multipliers.end(), [k](const auto& term) { return term.constraint == k; }); };
+    const auto has = [k](const reading::Equation& e) {
+      return std::any_of(e.multipliers.begin(), e.multipliers.end(),
+                         [k](const auto& term) { return term.constraint == k; });
+    };
     return form.by_parts || std::any_of(form.equations.begin(), form.equations.end(), has);
   };
   for (const print::MultiplierMeaning& meaning : print::multiplier_meanings(m)) {
     if (!stands(meaning.constraint)) continue;
     const print::Glyph glyph = notation.multiplier(meaning.constraint);
-    result.push_back({{"name", glyph.name}, {"of", m.constraints[meaning.constraint].label}, {"meaning", meaning.text}, {"latex", print::latex(glyph)}});
+    result.push_back({{"name", glyph.name},
+                      {"of", m.constraints[meaning.constraint].label},
+                      {"meaning", meaning.text},
+                      {"latex", print::latex(glyph)}});
   }
   return result;
 }
@@ -144,12 +159,15 @@ std::string readable(const std::vector<print::Item>& items, const std::string& a
   if (!left_out.empty()) text += "\nleft out\n";
   for (const work::LeftOut& l : left_out) text += fmt::format("  {}: {}\n", l.what, l.why);
   if (!multipliers.empty()) text += "\nwhich multiplier is which\n";
-  for (const json& entry : multipliers) text += fmt::format("  {}: {}\n", entry["name"].get<std::string>(), entry["meaning"].get<std::string>());
+  for (const json& entry : multipliers)
+    text += fmt::format("  {}: {}\n", entry["name"].get<std::string>(), entry["meaning"].get<std::string>());
   return text;
 }
 
-void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
-  const bool wanted = std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
+void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show,
+                   std::vector<print::Item>& items) {
+  const bool wanted =
+      std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
@@ -174,21 +192,26 @@ void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& 
 }
 
 // Only on request: n^2 entries of four matrices, twice.
-void add_linear(const mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items) {
+void add_linear(const mechanics::Mechanics& mechanics, const std::vector<std::string>& show,
+                std::vector<print::Item>& items) {
   if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
-  for (print::Item& item : print::render_linear(mechanics, reading::linear_form(mechanics))) items.push_back(std::move(item));
+  for (print::Item& item : print::render_linear(mechanics, reading::linear_form(mechanics)))
+    items.push_back(std::move(item));
 }
 
 int execute(const Options& options, const Common& common) {
   require_keys(options.show);
   require_format(options.format);
   const ApproachChoice choice = approach_choice(options.approach);
-  if (!options.document.empty()) require_places({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
+  if (!options.document.empty())
+    require_places({{"--document", options.document, ".tex"}}, locate_model(options.model), common.json);
   const work::Stage stage("deriving the equations");
   model::Model model = load_model(options.model);
   mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
   // Approach I shows the constraint forces too, so it is what `auto` means wherever something is eliminated.
-  const bool one = choice == ApproachChoice::one || (choice == ApproachChoice::automatic && !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
+  const bool one = choice == ApproachChoice::one ||
+                   (choice == ApproachChoice::automatic &&
+                    !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
   bool interrupted = false, written = false;
@@ -211,7 +234,9 @@ int execute(const Options& options, const Common& common) {
   const work::Kept kept;
   std::vector<work::LeftOut> left_out = left_out_of(items, form);
   if (interrupted) left_out.push_back({"what is not shown", "interrupted"});
-  const bool about_forces = std::any_of(options.show.begin(), options.show.end(), [](const auto& key) { return key == "equations" || key == "reactions" || key == "all"; });
+  const bool about_forces = std::any_of(options.show.begin(), options.show.end(), [](const auto& key) {
+    return key == "equations" || key == "reactions" || key == "all";
+  });
   const json multipliers = about_forces ? legend(mechanics, form) : json::array();
   if (common.json) {
     json result = to_json(items, system::name(approach), options.show, left_out);

@@ -45,9 +45,14 @@ json to_json(const SteadyMotions& found, const Options& options) {
     json values = json::object(), eigenvalues = json::array();
     for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = shown(point.l.z[i]);
     for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
-    points.push_back({{"kind", linear::name(point.l.kind)}, {"values", values}, {"eigenvalues", eigenvalues},
-                      {"structural_zeros", point.l.structural_zeros}, {"stable", to_json(point.verdict)}, {"reason", point.verdict.reason},
-                      {"family", point.family}, {"off", point.l.off}});
+    points.push_back({{"kind", linear::name(point.l.kind)},
+                      {"values", values},
+                      {"eigenvalues", eigenvalues},
+                      {"structural_zeros", point.l.structural_zeros},
+                      {"stable", to_json(point.verdict)},
+                      {"reason", point.verdict.reason},
+                      {"family", point.family},
+                      {"off", point.l.off}});
   }
   for (const HeldValue& h : found.held) held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
   return {{"format", 1},
@@ -62,9 +67,14 @@ json to_json(const SteadyMotions& found, const Options& options) {
 }
 
 std::string text(const SteadyMotion& point, const std::vector<std::string>& names) {
-  std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), to_text(point.verdict), point.verdict.reason);
-  if (point.family > 0) out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
-  if (point.l.off > 0) out += fmt::format("  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n", point.l.off);
+  std::string out =
+      fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), to_text(point.verdict), point.verdict.reason);
+  if (point.family > 0)
+    out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
+  if (point.l.off > 0)
+    out += fmt::format(
+        "  but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one\n",
+        point.l.off);
   for (std::size_t i = 0; i < names.size(); ++i) {
     const bool rest = point.l.kind == linear::Kind::equilibrium && 2 * i >= names.size();  // rates, all 0
     if (!rest) out += fmt::format("  {:<24} {:>24}\n", names[i], shown(point.l.z[i]));
@@ -80,15 +90,20 @@ std::string text(const SteadyMotion& point, const std::vector<std::string>& name
 }
 
 std::string text(const SteadyMotions& found, const Options& options) {
-  std::string out = fmt::format("{}, scene {}: {} found\n", found.problem.derived->model.id, found.problem.scene.name,
-                                found.points.empty() ? "no equilibrium and no steady motion" : fmt::format("{} equilibria and steady motions", found.points.size()));
+  std::string out =
+      fmt::format("{}, scene {}: {} found\n", found.problem.derived->model.id, found.problem.scene.name,
+                  found.points.empty() ? "no equilibrium and no steady motion"
+                                       : fmt::format("{} equilibria and steady motions", found.points.size()));
   for (const HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
   for (const SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
   if (found.search.refused > 0) {
-    out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n", found.search.refused, found.search.reason);
+    out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n",
+                       found.search.refused, found.search.reason);
   }
-  return out + fmt::format("\nsearch            {} starts, of which {} led to one; what a coordinate system does not cover is not found\ncertificate       {}\n",
-                           options.starts, found.search.converged, found.problem.certificate);
+  return out + fmt::format(
+                   "\nsearch            {} starts, of which {} led to one; what a coordinate system does not cover is "
+                   "not found\ncertificate       {}\n",
+                   options.starts, found.search.converged, found.problem.certificate);
 }
 
 int execute(const Options& options, const Common& common) {
@@ -126,10 +141,13 @@ int execute(const Options& options, const Common& common) {
 Execute declare_equilibria(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")->capture_default_str();
+  app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")
+      ->capture_default_str();
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   add_list(app, "--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
-  app.add_option("--starts", options->starts, "how many starts the search has")->check(whole_number(1, 100000))->capture_default_str();
+  app.add_option("--starts", options->starts, "how many starts the search has")
+      ->check(whole_number(1, 100000))
+      ->capture_default_str();
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -19,8 +19,8 @@
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
 #include "derive/conserved.hpp"
-#include "derive/prescribed_forces.hpp"
 #include "derive/lagrange.hpp"
+#include "derive/prescribed_forces.hpp"
 #include "model/names.hpp"
 #include "run/jumps.hpp"
 #include "symbolic/evaluate.hpp"
@@ -44,7 +44,8 @@ std::vector<std::string> chosen_constraints(const mechanics::Mechanics& m, const
     std::vector<std::string> labels = derive::prescribing_constraints(m);
     if (!labels.empty()) return labels;
     throw Error("inverse", Where{m.model->file, 0, 0, 1, ""}, "no constraint of this model prescribes a motion",
-                "add one that reads coordinate = function of time, such as [[constraint]] name = \"drive\", holonomic = \"R - f\", "
+                "add one that reads coordinate = function of time, such as [[constraint]] name = \"drive\", holonomic "
+                "= \"R - f\", "
                 "or name others with --constraint");
   }
   std::vector<std::string> labels, known;
@@ -76,9 +77,7 @@ class Table {
     }
     ++rows_;
   }
-  void finish(eom::Outcome outcome) {
-    csv_->finish(outcome);
-  }
+  void finish(eom::Outcome outcome) { csv_->finish(outcome); }
   const std::vector<std::string>& columns() const { return columns_; }
   const std::pair<double, double>& range(std::size_t column) const { return range_[column]; }
   std::size_t rows() const { return rows_; }
@@ -97,7 +96,8 @@ struct Answer {
   std::string detail, certificate, file;
 };
 
-std::vector<std::string> columns_of(const model::Model& model, const std::vector<std::string>& forces, const run::Scene& scene) {
+std::vector<std::string> columns_of(const model::Model& model, const std::vector<std::string>& forces,
+                                    const run::Scene& scene) {
   std::vector<std::string> columns;
   const auto add = [&](const std::string& name) {
     if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
@@ -111,7 +111,8 @@ std::vector<std::string> columns_of(const model::Model& model, const std::vector
   return columns;
 }
 
-std::vector<std::string> force_columns(mechanics::Mechanics& m, system::EquationSystem& system, const std::vector<std::string>& labels) {
+std::vector<std::string> force_columns(mechanics::Mechanics& m, system::EquationSystem& system,
+                                       const std::vector<std::string>& labels) {
   std::vector<std::string> names = derive::add_prescribed_forces(m, system, labels);
   for (const std::string& label : labels) names.push_back("reaction." + label);
   return names;
@@ -137,7 +138,8 @@ class Prescribed {
     result.table.emplace(result.file, columns);
     t_ = scene_.t0;
     for (const std::string& name : result.table->columns()) {
-      const auto output = std::find_if(system_.outputs.begin(), system_.outputs.end(), [&](const auto& o) { return o.name == name; });
+      const auto output =
+          std::find_if(system_.outputs.begin(), system_.outputs.end(), [&](const auto& o) { return o.name == name; });
       // What is 0 is shown as 0, not as the rounding of terms that cancel.
       const bool nothing = derive::vanishing(*m_.dag, {output->value}) != derive::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);
@@ -158,7 +160,8 @@ class Prescribed {
   }
 
  private:
-  std::vector<double> values_at(double t, const double* integrals, const std::vector<symbolic::Ref>& expressions) const {
+  std::vector<double> values_at(double t, const double* integrals,
+                                const std::vector<symbolic::Ref>& expressions) const {
     const double side = std::nextafter(t, scene_.t1 + 1);
     return symbolic::evaluate(*m_.dag, expressions, [&](const symbolic::Symbol& s) -> double {
       switch (s.kind) {
@@ -201,13 +204,16 @@ class Prescribed {
     for (const run::Break& at : scene_.clock.breaks) {
       std::vector<double> before, after, x = integrals_;
       const double side = (at.before + at.after) / 2;
-      for (const run::Signal& input : scene_.inputs) before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
+      for (const run::Signal& input : scene_.inputs)
+        before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
       const run::Jumps::Told told = scene_.jumps->cross({at.before, x, before.data()}, at.after, after.data(), x);
       if (told.undetermined.empty() && !told.velocities) continue;
       result.outcome = eom::Outcome::jump_undetermined;
       result.detail = !told.undetermined.empty() ? told.undetermined
-                                                 : fmt::format("{} jumps at t = {:.15g}: the forces there are an impulse, which no row shows; make it a motion that takes some time",
-                                                               told.what.empty() ? "a velocity" : told.what, at.after);
+                                                 : fmt::format(
+                                                       "{} jumps at t = {:.15g}: the forces there are an impulse, "
+                                                       "which no row shows; make it a motion that takes some time",
+                                                       told.what.empty() ? "a velocity" : told.what, at.after);
       return;
     }
   }
@@ -240,7 +246,8 @@ void along_a_run(const Options& options, const run::Overrides& overrides, std::u
   request.seed = seed;
   request.prepare = [&](Derived& derived) {
     const std::vector<std::string> labels = chosen_constraints(derived.mechanics, options.constraints);
-    for (system::EquationSystem& system : derived.candidates) result.forces = force_columns(derived.mechanics, system, labels);
+    for (system::EquationSystem& system : derived.candidates)
+      result.forces = force_columns(derived.mechanics, system, labels);
     return result.forces;
   };
   std::vector<std::size_t> index;
@@ -272,21 +279,31 @@ json to_json(const Answer& answer, const model::Model& model, const std::string&
     if (std::find(answer.forces.begin(), answer.forces.end(), name) == answer.forces.end()) continue;
     extremes[name] = {{"min", answer.table->range(i).first}, {"max", answer.table->range(i).second}};
   }
-  return {{"format", 1}, {"model", model.id}, {"scene", scene}, {"columns", columns}, {"file", answer.file},
-          {"rows", answer.table->rows()}, {"forces", extremes}, {"outcome", eom::name(answer.outcome)},
-          {"detail", answer.detail}, {"certificate", answer.certificate}};
+  return {{"format", 1},
+          {"model", model.id},
+          {"scene", scene},
+          {"columns", columns},
+          {"file", answer.file},
+          {"rows", answer.table->rows()},
+          {"forces", extremes},
+          {"outcome", eom::name(answer.outcome)},
+          {"detail", answer.detail},
+          {"certificate", answer.certificate}};
 }
 
 std::string readable(const json& found) {
-  std::string out = fmt::format("model        {}, scene {}\n", found["model"].get<std::string>(), found["scene"].get<std::string>());
+  std::string out =
+      fmt::format("model        {}, scene {}\n", found["model"].get<std::string>(), found["scene"].get<std::string>());
   out += fmt::format("certificate  {}\n", found["certificate"].get<std::string>());
-  out += fmt::format("outcome      {}{}{}\n\n", found["outcome"].get<std::string>(), found["detail"] == "" ? "" : ": ", found["detail"].get<std::string>());
+  out += fmt::format("outcome      {}{}{}\n\n", found["outcome"].get<std::string>(), found["detail"] == "" ? "" : ": ",
+                     found["detail"].get<std::string>());
   out += fmt::format("  {:<28} {:>24} {:>24}\n", "force", "least", "greatest");
   for (const auto& [name, range] : found["forces"].items()) {
     const auto shown = [](const json& x) { return x.is_null() ? std::string("-") : shortest(x.get<double>()); };
     out += fmt::format("  {:<28} {:>24} {:>24}\n", name, shown(range["min"]), shown(range["max"]));
   }
-  return out + fmt::format("\nwrote {} ({} rows)\n", found["file"].get<std::string>(), found["rows"].get<std::size_t>());
+  return out +
+         fmt::format("\nwrote {} ({} rows)\n", found["file"].get<std::string>(), found["rows"].get<std::size_t>());
 }
 
 int execute(const Options& options, const Common& common) {
@@ -325,13 +342,17 @@ Execute declare_inverse(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  add_list(app, "--constraint", options->constraints, "constraints whose forces are asked for; without it those that prescribe a coordinate");
+  add_list(app, "--constraint", options->constraints,
+           "constraints whose forces are asked for; without it those that prescribe a coordinate");
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the motion")->check(finite_number());
   app.add_option("--every", options->every, "interval of the rows")->check(positive_number());
-  app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")->check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")->check(number_not_negative());
-  app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")->check(whole_number(1, 1'000'000'000'000'000));
+  app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")
+      ->check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")
+      ->check(number_not_negative());
+  app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")
+      ->check(whole_number(1, 1'000'000'000'000'000));
   add_place(app, "-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   return [options](const Common& common) { return execute(*options, common); };

@@ -48,7 +48,12 @@ struct Answer {
   }
   std::size_t accidental() const { return l.spectrum.zeros - l.structural_zeros; }
   std::string what() const {
-    const std::string off = l.off > 0 ? fmt::format(" but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one", l.off) : "";
+    const std::string off =
+        l.off > 0
+            ? fmt::format(
+                  " but for roundings: parameters and inputs that differ by {:.1g} of themselves would make it one",
+                  l.off)
+            : "";
     switch (l.kind) {
       case linear::Kind::equilibrium: return "an equilibrium" + off;
       case linear::Kind::steady: return "a steady motion" + off + ": only coordinates that nothing feels advance";
@@ -92,8 +97,8 @@ json to_json(const Answer& a) {
           {"certificate", a.problem.certificate}};
 }
 
-std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>& A, const std::vector<std::string>& rows,
-                        const std::vector<std::string>& columns) {
+std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>& A,
+                        const std::vector<std::string>& rows, const std::vector<std::string>& columns) {
   std::size_t width = 4;
   for (const std::string& name : rows) width = std::max(width, name.size());
   std::string out = fmt::format("\n{:<{}}", title, width + 2);
@@ -109,16 +114,20 @@ std::string matrix_text(const char* title, const linear::Matrix<linear::Precise>
 
 std::string text(const Answer& a) {
   const auto& chart = a.l.symmetry.chart;
-  std::string out = fmt::format("{}, scene {}, t = {}: {}\n\n", a.problem.derived->model.id, a.problem.scene.name, a.problem.t, a.what());
-  for (const std::size_t i : chart.independent) out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], shown(a.l.z[i]));
+  std::string out = fmt::format("{}, scene {}, t = {}: {}\n\n", a.problem.derived->model.id, a.problem.scene.name,
+                                a.problem.t, a.what());
+  for (const std::size_t i : chart.independent)
+    out += fmt::format("  {:<24} {:>24}\n", a.problem.flow->names()[i], shown(a.l.z[i]));
   for (const std::size_t i : chart.dependent) {
     out += fmt::format("  {:<24} {:>24}   follows from the constraints\n", a.problem.flow->names()[i], shown(a.l.z[i]));
   }
   out += matrix_text("A", a.l.A, a.states(), a.states());
   if (!a.inputs().empty()) out += matrix_text("B", a.l.B, a.states(), a.inputs());
   out += "\neigenvalues\n";
-  for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i) out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
-  out += fmt::format("\nzeros             {} structural (there for all parameters), {} at these parameters only\n", a.l.structural_zeros, a.accidental());
+  for (std::size_t i = 0; i < a.l.spectrum.values.size(); ++i)
+    out += fmt::format("  {}\n", eigenvalue_text(a.l.spectrum, i));
+  out += fmt::format("\nzeros             {} structural (there for all parameters), {} at these parameters only\n",
+                     a.l.structural_zeros, a.accidental());
   if (!a.ignorable().empty()) out += fmt::format("nothing feels     {}\n", fmt::join(a.ignorable(), ", "));
   return out + fmt::format("certificate       {}\n", a.problem.certificate);
 }
@@ -126,10 +135,12 @@ std::string text(const Answer& a) {
 int execute(const Options& options, const Common& common) {
   run::Overrides overrides;
   overrides.parameters = parse_assignments("linearize", options.set);
-  const SteadyProblem problem = steady_problem("linearize", options.model, options.scene, overrides, options.at, common.seed);
+  const SteadyProblem problem =
+      steady_problem("linearize", options.model, options.scene, overrides, options.at, common.seed);
   try {
     const work::Stage stage("linearising");
-    const linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, common.seed);
+    const linear::Linearisation l =
+        linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, common.seed);
     const Answer answer{problem, l};
     if (common.json) {
       print_document(to_json(answer));
@@ -150,7 +161,8 @@ Execute declare_linearize(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")->check(finite_number());
+  app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")
+      ->check(finite_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -23,23 +23,41 @@ json registries() {
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     json slots = json::array();
     for (const coordinates::Slot& slot : system->slots) slots.push_back(slot.name);
-    coordinates.push_back({{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
+    coordinates.push_back(
+        {{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
   }
   // Defined by the model itself, so it is no entry of that registry.
-  coordinates.push_back({{"name", "custom"}, {"title", "coordinates that a model defines, by x(q) or by q(x)"}, {"slots", json::array()}, {"singular", ""}});
-  for (const derive::RouteEntry& route : derive::routes()) routes.push_back({{"name", route.name}, {"title", route.title}});
+  coordinates.push_back({{"name", "custom"},
+                         {"title", "coordinates that a model defines, by x(q) or by q(x)"},
+                         {"slots", json::array()},
+                         {"singular", ""}});
+  for (const derive::RouteEntry& route : derive::routes())
+    routes.push_back({{"name", route.name}, {"title", route.title}});
   for (const eom::MethodInfo& method : eom::methods()) {
-    solvers.push_back({{"name", method.name}, {"order", method.order}, {"dense_order", method.dense_order}, {"adaptive", method.adaptive}, {"implicit", method.implicit}, {"series", method.series}, {"variational", method.variational}, {"constrained", method.constrained}});
+    solvers.push_back({{"name", method.name},
+                       {"order", method.order},
+                       {"dense_order", method.dense_order},
+                       {"adaptive", method.adaptive},
+                       {"implicit", method.implicit},
+                       {"series", method.series},
+                       {"variational", method.variational},
+                       {"constrained", method.constrained}});
   }
-  for (const emit::TargetEntry& target : emit::targets()) targets.push_back({{"name", target.name}, {"title", target.title}});
+  for (const emit::TargetEntry& target : emit::targets())
+    targets.push_back({{"name", target.name}, {"title", target.title}});
   // A document comes from the reading form, not from a program, so it is no entry of that registry.
-  targets.push_back({{"name", "latex"}, {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
+  targets.push_back(
+      {{"name", "latex"}, {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;
   json rotations = json::array();
   for (const rotations::Rotation& rotation : rotations::registry()) {
     json entries = json::array();
     for (const rotations::Entry& entry : rotation.entries) entries.push_back(entry.name);
-    rotations.push_back({{"name", rotation.name}, {"title", rotation.title}, {"family", rotation.family}, {"entries", entries}, {"singular", rotation.singular}});
+    rotations.push_back({{"name", rotation.name},
+                         {"title", rotation.title},
+                         {"family", rotation.family},
+                         {"entries", entries},
+                         {"singular", rotation.singular}});
   }
   result["rotations"] = rotations;
   result["joints"] = json::array();
@@ -63,11 +81,13 @@ int execute(const Common& common) {
     fmt::print("{}:\n", key);
     if (entries.empty()) fmt::print("  none yet\n");
     for (const json& entry : entries) {
-      const std::string title = entry.contains("title") ? entry["title"].get<std::string>()
-                                                        : fmt::format("order {}, {}{}", entry["order"].get<int>(),
-                                                                      entry["adaptive"].get<bool>() ? "chooses its steps" : "needs --step",
-                                                                      entry["implicit"].get<bool>() ? ", implicit" : "") +
-                                                          (entry["constrained"].get<bool>() ? ", for models with constraints, which it keeps itself" : "");
+      const std::string title =
+          entry.contains("title")
+              ? entry["title"].get<std::string>()
+              : fmt::format("order {}, {}{}", entry["order"].get<int>(),
+                            entry["adaptive"].get<bool>() ? "chooses its steps" : "needs --step",
+                            entry["implicit"].get<bool>() ? ", implicit" : "") +
+                    (entry["constrained"].get<bool>() ? ", for models with constraints, which it keeps itself" : "");
       fmt::print("  {:<14} {}\n", entry["name"].get<std::string>(), title);
     }
   }

@@ -48,7 +48,9 @@ OpenFile readable(const std::string& path) {
   std::string text(1 << 18, '\0');
   for (ssize_t n; (n = ::read(file.descriptor(), text.data(), text.size())) != 0;) {
     if (n < 0 && errno == EINTR) continue;
-    if (n < 0) fail(fmt::format("cannot read {}: {}", model::quote(path), std::strerror(errno)), "name the tables that sweep --shard wrote");
+    if (n < 0)
+      fail(fmt::format("cannot read {}: {}", model::quote(path), std::strerror(errno)),
+           "name the tables that sweep --shard wrote");
     copy.write(std::string_view(text).substr(0, static_cast<std::size_t>(n)));
   }
   return copy;
@@ -98,16 +100,20 @@ class Tables {
   /// Every run of every shard, and each once.
   void require_all() {
     for (std::size_t shard = 1; shard <= note_.shard.count; ++shard) {
-      if (!tables_.contains(shard)) fail(fmt::format("shard {}/{} is missing", shard, note_.shard.count), "name the tables of all shards");
+      if (!tables_.contains(shard))
+        fail(fmt::format("shard {}/{} is missing", shard, note_.shard.count), "name the tables of all shards");
     }
     const std::size_t lines = rows_.size();
     rows_.sort();
-    if (rows_.size() < lines) fail(fmt::format("{} lines are of runs that another line has", lines - rows_.size()), "make the shards again in which a run comes twice");
+    if (rows_.size() < lines)
+      fail(fmt::format("{} lines are of runs that another line has", lines - rows_.size()),
+           "make the shards again in which a run comes twice");
     if (rows_.size() == note_.runs) return;
     std::size_t run = 0;
     while (run < rows_.size() && rows_.run(run) == run) ++run;
     fail(fmt::format("run {} is missing, and {} of {} in all", run, note_.runs - rows_.size(), note_.runs),
-         fmt::format("sweep --shard {}/{} goes on where it was interrupted", run % note_.shard.count + 1, note_.shard.count));
+         fmt::format("sweep --shard {}/{} goes on where it was interrupted", run % note_.shard.count + 1,
+                     note_.shard.count));
   }
 
   std::size_t runs() const { return rows_.size(); }
@@ -121,20 +127,27 @@ class Tables {
  private:
   ShardNote begun(const std::string& path, const std::string& line) {
     const std::optional<ShardNote> note = read_shard_note(line);
-    if (!note) fail(fmt::format("{} is not the table of a shard", model::quote(path)), "name the tables that sweep --shard wrote");
+    if (!note)
+      fail(fmt::format("{} is not the table of a shard", model::quote(path)),
+           "name the tables that sweep --shard wrote");
     if (tables_.empty()) note_ = *note;
     if (note->key != note_.key || note->shard.count != note_.shard.count || note->runs != note_.runs) {
       fail(fmt::format("{} and {} are of different sweeps", model::quote(tables_.begin()->second), model::quote(path)),
            "merge the shards of one sweep: the same model, options and number of shards");
     }
     const auto [place, fresh] = tables_.emplace(note->shard.number, path);
-    if (!fresh) fail(fmt::format("{} and {} are the same shard", model::quote(place->second), model::quote(path)), "name each shard once");
+    if (!fresh)
+      fail(fmt::format("{} and {} are the same shard", model::quote(place->second), model::quote(path)),
+           "name each shard once");
     return *note;
   }
-  void take(const std::string& path, std::string_view line, const Shard& shard, std::uint32_t file, std::uint64_t offset) {
+  void take(const std::string& path, std::string_view line, const Shard& shard, std::uint32_t file,
+            std::uint64_t offset) {
     std::size_t run = 0;
     if (!reads_as_row(line, header_, run) || run >= note_.runs || !shard.has(run)) {
-      fail(fmt::format("{} has a line that is no run of that shard: {}", model::quote(path), model::quote(std::string(line.substr(0, 60)))), "make that shard again");
+      fail(fmt::format("{} has a line that is no run of that shard: {}", model::quote(path),
+                       model::quote(std::string(line.substr(0, 60)))),
+           "make that shard again");
     }
     rows_.add(run, file, offset, line.size());
   }
@@ -153,10 +166,12 @@ int execute(const Options& options, const Common& common) {
     tables.require_all();
     tables.write(options.out);
   } catch (const std::system_error& error) {
-    throw Error("merge", {}, error.what(), "see to space on that disk and to your rights there", emit::fault_of_writing(error.code()));
+    throw Error("merge", {}, error.what(), "see to space on that disk and to your rights there",
+                emit::fault_of_writing(error.code()));
   }
   if (common.json) {
-    nlohmann::ordered_json found{{"format", 1}, {"shards", tables.shards()}, {"runs", tables.runs()}, {"file", options.out}};
+    nlohmann::ordered_json found{
+        {"format", 1}, {"shards", tables.shards()}, {"runs", tables.runs()}, {"file", options.out}};
     if (options.statistics) found["statistics"] = to_json(tables.statistics());
     print_document(found);
   } else {

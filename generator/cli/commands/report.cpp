@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// One page that holds all: the model, its equations, what they were checked against, a run, plots and an animation. No other file, no network.
+// One page that holds all: the model, its equations, what they were checked against, a run, plots and an animation. No
+// other file, no network.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -37,7 +38,9 @@ struct Options {
 constexpr double rows_of_a_page = 400;
 constexpr std::size_t longest_formula = 60000, longest_formulas = 350000;  // bytes of MathML
 
-std::string text(const Json& value) { return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump(); }
+std::string text(const Json& value) {
+  return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
+}
 
 // What a reader looks for first: the mechanism, moving. The script fills in the controls, which do nothing without it.
 void add_head(Html& html, const model::Model& model, bool moving) {
@@ -51,7 +54,8 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
   html.heading(2, "Coordinates and parameters");
   std::vector<std::vector<std::string>> coordinates, parameters, forces;
   for (const Json& c : found["coordinates"]) {
-    coordinates.push_back({text(c["name"]), text(c["unit"]), c["eliminated"].get<bool>() ? "fixed by a constraint" : ""});
+    coordinates.push_back(
+        {text(c["name"]), text(c["unit"]), c["eliminated"].get<bool>() ? "fixed by a constraint" : ""});
   }
   for (const Json& p : found["parameters"]) parameters.push_back({text(p["name"]), text(p["value"]), text(p["unit"])});
   html.table({"coordinate", "unit", ""}, coordinates);
@@ -69,7 +73,9 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
 // A page that is opened anywhere stays small: what is longer than a reader follows is left to `derive`.
 void add_formula(Html& html, const std::string& mathml, std::size_t& room) {
   if (mathml.size() > std::min(longest_formula, room)) {
-    html.paragraph(fmt::format("Left out: {} kB of formula, more than a page shows. `eomgen derive` writes it.", (mathml.size() + 999) / 1000), "quiet");
+    html.paragraph(fmt::format("Left out: {} kB of formula, more than a page shows. `eomgen derive` writes it.",
+                               (mathml.size() + 999) / 1000),
+                   "quiet");
     return;
   }
   room -= mathml.size();
@@ -82,16 +88,21 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
   const reading::ReadingForm form = reading::derive_reading(m, approach);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(approach)));
   std::size_t room = longest_formulas;
-  const std::vector<std::pair<std::string, std::string>> sections{
-      {"constraints", "Constraints and functions of time"}, {"energies", "Energies"}, {"equations", "Equations of motion"},
-      {"reactions", "Constraint forces"},                   {"friction", "Contacts"},  {"singular", "Where the equations fail"}};
+  const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},
+                                                                  {"energies", "Energies"},
+                                                                  {"equations", "Equations of motion"},
+                                                                  {"reactions", "Constraint forces"},
+                                                                  {"friction", "Contacts"},
+                                                                  {"singular", "Where the equations fail"}};
   for (const auto& [key, title] : sections) {
     const std::vector<print::Item> items = print::render(m, form, {key});
     if (items.empty()) continue;
     html.heading(3, title);
     std::string before;
     for (const print::Item& item : items) {
-      const std::string what = item.key == "explicit" ? "written out" : item.key == "singular" ? "approach " + item.role : item.role;
+      const std::string what = item.key == "explicit"   ? "written out"
+                               : item.key == "singular" ? "approach " + item.role
+                                                        : item.role;
       if (what != before && !what.empty()) html.paragraph(what, "quiet");
       before = what;
       add_formula(html, item.mathml, room);
@@ -110,7 +121,8 @@ void add_certificate(Html& html, const verify::Certificate& certificate) {
   html.paragraph(certificate.summary());
   std::vector<std::vector<std::string>> rows;
   for (const verify::Comparison& c : certificate.comparisons) {
-    rows.push_back({c.a, c.b, fmt::format("{:.1e}", c.max_relative_difference), fmt::format("{:.0e}", c.tolerance), c.shares_code ? "shares code" : "independent"});
+    rows.push_back({c.a, c.b, fmt::format("{:.1e}", c.max_relative_difference), fmt::format("{:.0e}", c.tolerance),
+                    c.shares_code ? "shares code" : "independent"});
   }
   html.markup("<details><summary>The comparisons, one by one</summary>");
   html.table({"this", "against", "largest difference", "allowed", ""}, rows, {2, 3});
@@ -120,21 +132,27 @@ void add_certificate(Html& html, const verify::Certificate& certificate) {
 void add_run(Html& html, const Simulation& simulation, const Json& run, const std::string& plots) {
   html.heading(2, "The run: scene " + simulation.scene.name);
   html.markup("<section id=\"plots\">\n" + plots + "</section>");
-  html.table({"", ""}, {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
-                        {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
-                        {"tolerances", fmt::format("rtol {}, atol {}", simulation.scene.rtol, simulation.scene.atol)},
-                        {"steps", fmt::format("{} accepted, {} rejected, {} evaluations", text(run["steps"]), text(run["rejected"]), text(run["rhs_evaluations"]))}});
+  html.table({"", ""},
+             {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
+              {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
+              {"tolerances", fmt::format("rtol {}, atol {}", simulation.scene.rtol, simulation.scene.atol)},
+              {"steps", fmt::format("{} accepted, {} rejected, {} evaluations", text(run["steps"]),
+                                    text(run["rejected"]), text(run["rhs_evaluations"]))}});
   std::vector<std::vector<std::string>> rows;
   const Json& estimate = run["error_estimate"];
   for (const auto& [name, value] : run["final"].items()) {
     if (name.starts_with(drawn_prefix)) continue;
-    rows.push_back({name, text(value), estimate.is_object() && estimate.contains(name) ? fmt::format("{:.1e}", estimate[name].get<double>()) : ""});
+    rows.push_back(
+        {name, text(value),
+         estimate.is_object() && estimate.contains(name) ? fmt::format("{:.1e}", estimate[name].get<double>()) : ""});
   }
   html.heading(3, "At the end");
   html.table({"", "value", "estimated error"}, rows, {1, 2});
   rows.clear();
   for (const auto& [name, i] : run["invariants"].items()) {
-    rows.push_back({name, text(i["initial"]), i["max_relative_drift"].is_null() ? "" : fmt::format("{:.1e}", i["max_relative_drift"].get<double>())});
+    rows.push_back(
+        {name, text(i["initial"]),
+         i["max_relative_drift"].is_null() ? "" : fmt::format("{:.1e}", i["max_relative_drift"].get<double>())});
   }
   if (!rows.empty()) {
     html.heading(3, "Kept");
@@ -169,7 +187,8 @@ int execute(const Options& options, const Common& common) {
   request.prepare = [&](Derived& derived) {
     drawing.emplace(derived);
     outputs = drawing->outputs();
-    curves = panels(derived.model, run::expand_outputs(derived.mechanics, derived.candidates.front(), derived.model.scene(options.scene).outputs));
+    curves = panels(derived.model, run::expand_outputs(derived.mechanics, derived.candidates.front(),
+                                                       derived.model.scene(options.scene).outputs));
     for (const Panel& panel : curves) {
       for (const std::string& name : panel.names) {
         if (std::find(outputs.begin(), outputs.end(), name) == outputs.end()) outputs.push_back(name);
@@ -177,7 +196,9 @@ int execute(const Options& options, const Common& common) {
     }
     return outputs;
   };
-  request.begin = [&](const Derived&, const run::Scene&, const std::vector<std::string>& names) { recorded.begin(names); };
+  request.begin = [&](const Derived&, const run::Scene&, const std::vector<std::string>& names) {
+    recorded.begin(names);
+  };
   request.row = [&](double t, std::span<const double> y) { recorded.row(t, y); };
   const Simulation simulation = simulate(request);
   const model::Model& model = simulation.derived->model;
@@ -192,12 +213,18 @@ int execute(const Options& options, const Common& common) {
   add_run(html, simulation, run, recorded.plots(curves));
   add_model(html, model, examine(model));
   add_certificate(html, simulation.certificate);
-  write_text(file, page({model.title.empty() ? model.id : model.title, html.text(), moving.is_null() ? "" : moving.dump(), live.script, live.name}));
+  write_text(file, page({model.title.empty() ? model.id : model.title, html.text(),
+                         moving.is_null() ? "" : moving.dump(), live.script, live.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
-    print_document({{"format", 1}, {"model", model.id}, {"scene", simulation.scene.name}, {"outcome", eom::name(outcome)}, {"file", file}});
+    print_document({{"format", 1},
+                    {"model", model.id},
+                    {"scene", simulation.scene.name},
+                    {"outcome", eom::name(outcome)},
+                    {"file", file}});
   } else {
-    print_readable(fmt::format("wrote {} (outcome of the run: {})\n", file, eom::name(outcome)), is_standard_output(file));
+    print_readable(fmt::format("wrote {} (outcome of the run: {})\n", file, eom::name(outcome)),
+                   is_standard_output(file));
   }
   return outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event ? 0 : 3;
 }

@@ -54,8 +54,8 @@ run::Overrides overrides_of(const Options& options) {
 /// Rows to the CSV file and to the plot.
 class Rows {
  public:
-  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const model::Model& model, const run::Scene& scene,
-       const std::vector<std::string>& code) {
+  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const model::Model& model,
+       const run::Scene& scene, const std::vector<std::string>& code) {
     if (!panels.empty()) plot_.emplace(panels, model, code);
     for (const model::Coordinate& c : model.coordinates) {
       columns_.push_back(c.name);
@@ -69,7 +69,8 @@ class Rows {
     const double every = row_interval(scene);
     require_size(scene.t0, scene.t1, every, csv.empty() ? 0 : columns_.size(), yes);
     // A plot has no use for more points than it can show, and they are kept in memory.
-    stride_ = std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / most_points));
+    stride_ =
+        std::max<std::uint64_t>(1, static_cast<std::uint64_t>(expected_rows(scene.t0, scene.t1, every) / most_points));
     if (!csv.empty()) csv_.emplace(csv, columns_);
   }
 
@@ -129,7 +130,8 @@ Simulation simulate_until_interrupted(const SimulationRequest& request) {
     return simulate(request);
   } catch (const Error&) {
     if (!Interrupt::flag()) throw;
-    throw Error("run", {}, "interrupted before the run began", "nothing was computed that could be kept", Fault::numerical);
+    throw Error("run", {}, "interrupted before the run began", "nothing was computed that could be kept",
+                Fault::numerical);
   }
 }
 
@@ -141,14 +143,16 @@ std::vector<std::string> plotted_outputs(const Options& options, Derived& derive
     wanted.push_back({item.substr(0, comma), {}});
     if (comma != std::string::npos && comma + 1 < item.size()) wanted.push_back({item.substr(comma + 1), {}});
   }
-  return wanted.empty() ? std::vector<std::string>{} : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted);
+  return wanted.empty() ? std::vector<std::string>{}
+                        : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted);
 }
 
 constexpr double pixels_of_a_unit = 2;  // of a PNG: sharp where screens are fine
 
 bool is_png(const std::string& path) {
   std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return ending == ".png";
 }
 
@@ -171,8 +175,10 @@ int execute(const Options& options, const Common& common) {
   request.approach = approach_choice(options.approach);
   request.form = form_choice(options.form);
   request.estimate = !options.no_error_estimate;
-  request.charts = !options.no_charts && options.sensitivity.empty();  // derivatives are those of the model's own coordinates
-  if (!options.sensitivity.empty()) request.with.assign(std::begin(sensitivity_functions), std::end(sensitivity_functions));
+  request.charts =
+      !options.no_charts && options.sensitivity.empty();  // derivatives are those of the model's own coordinates
+  if (!options.sensitivity.empty())
+    request.with.assign(std::begin(sensitivity_functions), std::end(sensitivity_functions));
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
@@ -182,13 +188,16 @@ int execute(const Options& options, const Common& common) {
   request.max_steps = options.max_steps;
   std::optional<Rows> rows;
   if (!options.plot_of.empty() && options.plot.empty()) {
-    throw Error("run", {}, "--plot-of says what is plotted, and there is no plot", "add --plot F.svg, or --plot - for characters");
+    throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",
+                "add --plot F.svg, or --plot - for characters");
   }
   request.prepare = [&options](Derived& derived) { return plotted_outputs(options, derived); };
   if (!options.out.empty() || !options.plot.empty()) {
     request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
       std::vector<Panel> panels;
-      if (!options.plot.empty()) panels = options.plot_of.empty() ? coordinate_panels(derived.model) : chosen_panels(derived.model, options.plot_of);
+      if (!options.plot.empty())
+        panels =
+            options.plot_of.empty() ? coordinate_panels(derived.model) : chosen_panels(derived.model, options.plot_of);
       rows.emplace(options.out, panels, options.yes, derived.model, scene, names);
     };
     request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
@@ -202,7 +211,8 @@ int execute(const Options& options, const Common& common) {
   if (!options.plot.empty()) {
     const std::string title = model.title.empty() ? model.id : model.title;
     const bool terminal = options.plot == "-";
-    std::string plot = terminal ? rows->plot().characters(title, simulation.result, terminal_columns()) : rows->plot().svg(title, simulation.result);
+    std::string plot = terminal ? rows->plot().characters(title, simulation.result, terminal_columns())
+                                : rows->plot().svg(title, simulation.result);
     if (is_png(options.plot)) plot = png(drawn(plot, pixels_of_a_unit));
     files.push_back({options.plot, std::nullopt, write_text(options.plot, plot)});
   }
@@ -210,15 +220,18 @@ int execute(const Options& options, const Common& common) {
   const bool ended = outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event;
   RunReport report{simulation, request.estimate, {}, std::move(files)};
   if (!options.sensitivity.empty() && ended && simulation.scene.t1 == simulation.scene.t0) {
-    throw Error("run", {}, "nothing moves between t0 and t0: there are no derivatives of the end", "give a later --t-end, or leave --sensitivity out");
+    throw Error("run", {}, "nothing moves between t0 and t0: there are no derivatives of the end",
+                "give a later --t-end, or leave --sensitivity out");
   }
-  if (!options.sensitivity.empty() && ended) report.sensitivities = sensitivities(simulation, request, options.sensitivity);
+  if (!options.sensitivity.empty() && ended)
+    report.sensitivities = sensitivities(simulation, request, options.sensitivity);
   if (common.json) {
     print_document(report.json());
   } else {
     const bool taken = is_standard_output(options.out) || is_standard_output(options.plot);
     print_readable(report.text(), taken);
-    if (!options.sensitivity.empty() && !ended) print_readable("\nsensitivities     none: the run did not come to its end\n", taken);
+    if (!options.sensitivity.empty() && !ended)
+      print_readable("\nsensitivities     none: the run did not come to its end\n", taken);
   }
   return ended && (!report.sensitivities || report.sensitivities->outcome == eom::Outcome::done) ? 0 : 3;
 }
@@ -235,14 +248,20 @@ Execute declare_run(CLI::App& app) {
   app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
   app.add_option("--max-step", options->max_step, "the longest step where steps are chosen")->check(positive_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")->check(whole_number(1, 1'000'000'000'000'000));
+  app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")
+      ->check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
   add_place(app, "-o,--out", options->out, "the table, a CSV file");
-  add_place(app, "--plot", options->plot, "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
-  app.add_option("--plot-of", options->plot_of, "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")->allow_extra_args(false)->take_all();
+  add_place(app, "--plot", options->plot,
+            "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
+  app.add_option("--plot-of", options->plot_of,
+                 "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")
+      ->allow_extra_args(false)
+      ->take_all();
   app.add_flag("--yes", options->yes, "writes a table however large it is");
-  add_list(app, "--sensitivity", options->sensitivity, "derivatives of the end by these parameters and values of the start");
+  add_list(app, "--sensitivity", options->sensitivity,
+           "derivatives of the end by these parameters and values of the start");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();

@@ -59,14 +59,16 @@ class Variation {
     for (const auto& [p, factor] : test.factor) {
       overrides.parameters[derived.model.parameters[p].name] = exactly(simulation_.scene.parameters[p] * factor);
     }
-    for (const auto& [p, value] : test.value) {  // what follows from them is computed anew, and a start that they break is refused
+    for (const auto& [p, value] :
+         test.value) {  // what follows from them is computed anew, and a start that they break is refused
       if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = exactly(value);
     }
     if (test.rtol) {
       overrides.rtol = *test.rtol;
       overrides.atol = *test.rtol * (simulation_.scene.rtol > 0 ? simulation_.scene.atol / simulation_.scene.rtol : 1);
     }
-    run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(simulation_.scene.name), overrides);
+    run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                          derived.model.scene(simulation_.scene.name), overrides);
     for (const auto& [p, value] : test.value) {
       if (!std::isfinite(value)) scene.parameters[p] = value;
     }
@@ -80,7 +82,8 @@ class Variation {
       if (test.zeros && scene.q[i] == 0) scene.q[i] = *test.zeros;
       if (test.zeros && scene.qdot[i] == 0) scene.qdot[i] = *test.zeros;
     }
-    if (constrained && !kept.empty() && !stress::meet_constraints(scene, run_request(derived, scene, code_, false), kept)) {
+    if (constrained && !kept.empty() &&
+        !stress::meet_constraints(scene, run_request(derived, scene, code_, false), kept)) {
       why = "the constraints allow no start there";
       return std::nullopt;
     }
@@ -100,7 +103,8 @@ class Variation {
     const std::vector<double> x = integration.initial_state();
     double largest = 0;
     for (const double v : x) largest = std::max(largest, std::abs(v));
-    return integration.constraint_defect(scene.t0, x.data()) > run::start_tolerance * std::max(1.0, largest) * std::max(1.0, speed);
+    return integration.constraint_defect(scene.t0, x.data()) >
+           run::start_tolerance * std::max(1.0, largest) * std::max(1.0, speed);
   }
 
   const Simulation& simulation_;
@@ -119,7 +123,11 @@ void repeat_constraints(const model::Model& given, std::vector<Row>& rows, std::
     const std::string test = fmt::format("constraint {} twice", given.constraints[c].name);
     try {
       mechanics::build_mechanics(model);
-      rows.push_back({.test = test, .solver = "none", .verdict = Verdict::silent, .outcome = "accepted", .note = "a constraint that repeats another is taken for one more"});
+      rows.push_back({.test = test,
+                      .solver = "none",
+                      .verdict = Verdict::silent,
+                      .outcome = "accepted",
+                      .note = "a constraint that repeats another is taken for one more"});
     } catch (const Error& error) {
       left_out.push_back({test, "refused: " + error.message()});
     }
@@ -137,45 +145,75 @@ Json of(const stress::Audit& audit) {
   Json denominators = Json::array();
   for (const stress::Denominator& d : audit.denominators) {
     const bool seen = d.smallest != stress::no_value;
-    denominators.push_back({{"expression", d.expression}, {"zero", d.zero}, {"test", d.test}, {"smallest", seen ? Json(d.smallest) : Json(nullptr)},
-                            {"largest", seen ? Json(d.largest) : Json(nullptr)}, {"case", d.at}});
+    denominators.push_back({{"expression", d.expression},
+                            {"zero", d.zero},
+                            {"test", d.test},
+                            {"smallest", seen ? Json(d.smallest) : Json(nullptr)},
+                            {"largest", seen ? Json(d.largest) : Json(nullptr)},
+                            {"case", d.at}});
   }
-  return {{"states", audit.states}, {"denominators", denominators}, {"mass_condition", of(audit.mass_condition)},
-          {"scaled_mass_condition", of(audit.scaled_mass_condition)}, {"pivot_cancellation", of(audit.pivot)}, {"digits_lost", of(audit.digits_lost)},
+  return {{"states", audit.states},
+          {"denominators", denominators},
+          {"mass_condition", of(audit.mass_condition)},
+          {"scaled_mass_condition", of(audit.scaled_mass_condition)},
+          {"pivot_cancellation", of(audit.pivot)},
+          {"digits_lost", of(audit.digits_lost)},
           {"without_value", audit.without_digits}};
 }
 
-Json document(const Simulation& simulation, const std::vector<Row>& rows, const std::vector<LeftOut>& left_out, const stress::Audit& audit) {
+Json document(const Simulation& simulation, const std::vector<Row>& rows, const std::vector<LeftOut>& left_out,
+              const stress::Audit& audit) {
   Json list = Json::array(), without = Json::array();
   std::map<Verdict, std::size_t> count;
   for (const Row& row : rows) {
     ++count[row.verdict];
-    list.push_back({{"case", row.test}, {"solver", row.solver}, {"verdict", stress::name(row.verdict)}, {"error", number(row.error)},
-                    {"estimate", number(row.estimate)}, {"condition", number(row.condition)}, {"seconds", row.seconds}, {"outcome", row.outcome}, {"note", row.note}});
+    list.push_back({{"case", row.test},
+                    {"solver", row.solver},
+                    {"verdict", stress::name(row.verdict)},
+                    {"error", number(row.error)},
+                    {"estimate", number(row.estimate)},
+                    {"condition", number(row.condition)},
+                    {"seconds", row.seconds},
+                    {"outcome", row.outcome},
+                    {"note", row.note}});
   }
   for (const LeftOut& l : left_out) without.push_back({{"case", l.test}, {"reason", l.reason}});
-  return {{"format", 1}, {"model", simulation.derived->model.id}, {"scene", simulation.scene.name}, {"rows", list}, {"left_out", without},
-          {"kept", count[Verdict::kept]}, {"told", count[Verdict::told]}, {"silent", count[Verdict::silent]},
-          {"denominator_audit", of(audit)}, {"verdict", count[Verdict::silent] == 0 ? "pass" : "fail"}};
+  return {{"format", 1},
+          {"model", simulation.derived->model.id},
+          {"scene", simulation.scene.name},
+          {"rows", list},
+          {"left_out", without},
+          {"kept", count[Verdict::kept]},
+          {"told", count[Verdict::told]},
+          {"silent", count[Verdict::silent]},
+          {"denominator_audit", of(audit)},
+          {"verdict", count[Verdict::silent] == 0 ? "pass" : "fail"}};
 }
 
 void print_audit(const Json& audit) {
-  const auto value = [](const Json& v, const char* format) { return v.is_null() ? std::string("none") : fmt::format(fmt::runtime(format), v.get<double>()); };
+  const auto value = [](const Json& v, const char* format) {
+    return v.is_null() ? std::string("none") : fmt::format(fmt::runtime(format), v.get<double>());
+  };
   fmt::print("denominator audit, {} states\n", audit["states"].get<std::size_t>());
-  for (const auto& [key, what] : {std::pair{"mass_condition", "condition of the mass matrix"}, {"scaled_mass_condition", "with its diagonal scaled to 1"},
-                                  {"pivot_cancellation", "largest cancellation in a pivot"}, {"digits_lost", "digits lost, of 16"}}) {
+  for (const auto& [key, what] : {std::pair{"mass_condition", "condition of the mass matrix"},
+                                  {"scaled_mass_condition", "with its diagonal scaled to 1"},
+                                  {"pivot_cancellation", "largest cancellation in a pivot"},
+                                  {"digits_lost", "digits lost, of 16"}}) {
     const Json& extreme = audit[key];
-    if (!extreme.is_null()) fmt::print("  {:<32}{:>10}  {}\n", what, value(extreme["value"], "{:.3g}"), extreme["case"].get<std::string>());
+    if (!extreme.is_null())
+      fmt::print("  {:<32}{:>10}  {}\n", what, value(extreme["value"], "{:.3g}"), extreme["case"].get<std::string>());
   }
   if (!audit["denominators"].empty()) fmt::print("  {:<32}{:>10}\n", "divided by, zero where", "least");
   for (const Json& d : audit["denominators"]) {
-    fmt::print("  {:<32}{:>10}  {}; {}\n", d["zero"].get<std::string>(), value(d["smallest"], "{:.2g}"), d["case"].get<std::string>(), d["test"].get<std::string>());
+    fmt::print("  {:<32}{:>10}  {}; {}\n", d["zero"].get<std::string>(), value(d["smallest"], "{:.2g}"),
+               d["case"].get<std::string>(), d["test"].get<std::string>());
   }
   fmt::print("\n");
 }
 
 void print_readable(const Json& found, const std::vector<std::string>& solvers) {
-  fmt::print("model  {}, scene {}\n\n  {:<28}", found["model"].get<std::string>(), found["scene"].get<std::string>(), "case");
+  fmt::print("model  {}, scene {}\n\n  {:<28}", found["model"].get<std::string>(), found["scene"].get<std::string>(),
+             "case");
   for (const std::string& solver : solvers) fmt::print(" {:>9}", solver);
   std::string test;
   std::size_t column = 0;
@@ -190,16 +228,20 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
     fmt::print(" {:>9}", row["verdict"] == "silent" ? "SILENT" : row["verdict"].get<std::string>());
   }
   fmt::print("\n\n");
-  for (const Json& l : found["left_out"]) fmt::print("left out: {}: {}\n", l["case"].get<std::string>(), l["reason"].get<std::string>());
+  for (const Json& l : found["left_out"])
+    fmt::print("left out: {}: {}\n", l["case"].get<std::string>(), l["reason"].get<std::string>());
   print_audit(found["denominator_audit"]);
   for (const Json& row : found["rows"]) {
     if (row["verdict"] != "silent") continue;
-    const auto shown = [&](const char* key) { return row[key].is_null() ? std::string("none") : fmt::format("{:.2e}", row[key].get<double>()); };
-    fmt::print("silent: {}, {}: error {}, estimate {}, condition {}, outcome {} {}\n", row["case"].get<std::string>(), row["solver"].get<std::string>(),
-               shown("error"), shown("estimate"), shown("condition"), row["outcome"].get<std::string>(), row["note"].get<std::string>());
+    const auto shown = [&](const char* key) {
+      return row[key].is_null() ? std::string("none") : fmt::format("{:.2e}", row[key].get<double>());
+    };
+    fmt::print("silent: {}, {}: error {}, estimate {}, condition {}, outcome {} {}\n", row["case"].get<std::string>(),
+               row["solver"].get<std::string>(), shown("error"), shown("estimate"), shown("condition"),
+               row["outcome"].get<std::string>(), row["note"].get<std::string>());
   }
-  fmt::print("{}: {} kept, {} told, {} silent\n", found["verdict"].get<std::string>(), found["kept"].get<std::size_t>(), found["told"].get<std::size_t>(),
-             found["silent"].get<std::size_t>());
+  fmt::print("{}: {} kept, {} told, {} silent\n", found["verdict"].get<std::string>(), found["kept"].get<std::size_t>(),
+             found["told"].get<std::size_t>(), found["silent"].get<std::size_t>());
 }
 
 std::vector<std::string> chosen_solvers(const Options& options) {
@@ -208,10 +250,13 @@ std::vector<std::string> chosen_solvers(const Options& options) {
     known.emplace_back(method.name);
   }
   for (const std::string& name : options.solvers) {
-    if (std::find(known.begin(), known.end(), name) == known.end()) throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
   }
   if (options.solvers.empty()) return known;
-  std::erase_if(known, [&](const std::string& name) { return std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end(); });
+  std::erase_if(known, [&](const std::string& name) {
+    return std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end();
+  });
   return known;
 }
 
@@ -246,7 +291,9 @@ int execute(const Options& options, const Common& common) {
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) request.progress = [](const std::string& what) { tell(fmt::format("\r{:60}\r{}", "", what)); };
   stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
-  request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) { auditor.see(test.name, scene, code, samples); };
+  request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) {
+    auditor.see(test.name, scene, code, samples);
+  };
   std::vector<Row> rows;
   std::vector<LeftOut> left_out;
   for (const stress::Case& test : stress::cases(simulation.derived->mechanics, simulation.scene, options.quick)) {
@@ -282,8 +329,12 @@ Execute declare_stress(CLI::App& app) {
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
   add_list(app, "--solver", options->solvers, "only these solvers");
-  app.add_option("--steps", options->steps, "what takes more is ended, and told")->check(CLI::Range(std::size_t{100}, std::size_t{1000000000}))->capture_default_str();
-  app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")->check(positive_number())->capture_default_str();
+  app.add_option("--steps", options->steps, "what takes more is ended, and told")
+      ->check(CLI::Range(std::size_t{100}, std::size_t{1000000000}))
+      ->capture_default_str();
+  app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")
+      ->check(positive_number())
+      ->capture_default_str();
   app.add_flag("--quick", options->quick, "a few variations of each kind");
   return [options](const Common& common) { return execute(*options, common); };
 }

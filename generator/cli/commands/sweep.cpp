@@ -1,5 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many runs of one scene over a grid of parameters: compiled once, run by several processes, and gone on with after an interruption.
+// Many runs of one scene over a grid of parameters: compiled once, run by several processes, and gone on with after an
+// interruption.
+#include "cli/sweep/sweep.hpp"
+
 #include <fmt/format.h>
 
 #include <memory>
@@ -8,7 +11,6 @@
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/sweep/sweep.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
@@ -16,8 +18,9 @@ namespace {
 
 nlohmann::ordered_json document(const SweepOptions& options, const model::Model& model, const Sweep& sweep) {
   const Sweep::Counts counts = sweep.counts();
-  nlohmann::ordered_json found = {{"format", 1}, {"model", model.id}, {"scene", options.scene}, {"runs", sweep.runs()}, {"done", counts.done},
-                                  {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.place()}};
+  nlohmann::ordered_json found = {
+      {"format", 1},         {"model", model.id},       {"scene", options.scene},     {"runs", sweep.runs()},
+      {"done", counts.done}, {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.place()}};
   if (options.shard) found["shard"] = *options.shard;
   return found;
 }
@@ -32,8 +35,9 @@ int execute(const SweepOptions& options, const Common& common) {
     if (options.statistics) found["statistics"] = to_json(sweep.statistics());
     print_document(found);
   } else {
-    std::string text = fmt::format("model  {}, scene {}\nruns   {}: {} done, {} failed", model.id, options.scene, found["runs"].get<std::size_t>(),
-                                   found["done"].get<std::size_t>(), found["failed"].get<std::size_t>());
+    std::string text = fmt::format("model  {}, scene {}\nruns   {}: {} done, {} failed", model.id, options.scene,
+                                   found["runs"].get<std::size_t>(), found["done"].get<std::size_t>(),
+                                   found["failed"].get<std::size_t>());
     if (found["resumed"] != 0) text += fmt::format(" ({} of them were there)", found["resumed"].get<std::size_t>());
     text += fmt::format("\nwrote  {}\n", found["file"].get<std::string>());
     if (options.statistics) text += "\n" + to_text(sweep.statistics());
@@ -48,11 +52,17 @@ int execute(const SweepOptions& options, const Common& common) {
 Execute declare_sweep(CLI::App& app) {
   auto options = std::make_shared<SweepOptions>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  add_list(app, "--grid", options->grid, "PARAMETER=FROM:TO:COUNT, PARAMETER=FROM:TO:log:COUNT or PARAMETER=a,b,c; may be repeated", '\0');
-  add_list(app, "--sample", options->sample, "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
-  app.add_option("--samples", options->samples, "how many, at every point of the grid")->check(whole_number(1, most_points));
-  app.add_option("--design", options->design, "of samples: random, latin (hypercube) or sobol; without it random. All follow from --seed");
-  app.add_option("--points", options->points, "a CSV file: a line that names parameters, then lines of their values; each is a point, or goes with every point of the grid");
+  add_list(app, "--grid", options->grid,
+           "PARAMETER=FROM:TO:COUNT, PARAMETER=FROM:TO:log:COUNT or PARAMETER=a,b,c; may be repeated", '\0');
+  add_list(app, "--sample", options->sample,
+           "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
+  app.add_option("--samples", options->samples, "how many, at every point of the grid")
+      ->check(whole_number(1, most_points));
+  app.add_option("--design", options->design,
+                 "of samples: random, latin (hypercube) or sobol; without it random. All follow from --seed");
+  app.add_option("--points", options->points,
+                 "a CSV file: a line that names parameters, then lines of their values; each is a point, or goes with "
+                 "every point of the grid");
   app.add_option("--shard", options->shard, "NUMBER/COUNT: only these runs; eomgen merge joins the tables");
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
   app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
@@ -62,11 +72,14 @@ Execute declare_sweep(CLI::App& app) {
   app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
   add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the runs")->check(finite_number());
-  add_place(app, "-o,--out", options->out, "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
+  add_place(app, "-o,--out", options->out,
+            "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
   add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
-  app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")->check(whole_number(1, 1024));
+  app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")
+      ->check(whole_number(1, 1024));
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");
-  app.add_flag("--ensemble", options->ensemble, "many runs side by side in the lanes of vector registers, without error estimates");
+  app.add_flag("--ensemble", options->ensemble,
+               "many runs side by side in the lanes of vector registers, without error estimates");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

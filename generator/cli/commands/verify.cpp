@@ -28,14 +28,24 @@ json to_json(const verify::Certificate& certificate) {
   json routes = json::array(), reasons = json::object(), left_out = json::array();
   for (const work::LeftOut& l : certificate.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
   for (const verify::Comparison& c : certificate.comparisons) {
-    routes.push_back({{"a", c.a}, {"b", c.b}, {"shares_code", c.shares_code},
-                      {"max_relative_difference", c.max_relative_difference}, {"tolerance", c.tolerance},
-                      {"digits_agreed", c.digits_agreed}, {"pass", c.pass}});
+    routes.push_back({{"a", c.a},
+                      {"b", c.b},
+                      {"shares_code", c.shares_code},
+                      {"max_relative_difference", c.max_relative_difference},
+                      {"tolerance", c.tolerance},
+                      {"digits_agreed", c.digits_agreed},
+                      {"pass", c.pass}});
   }
   for (const auto& [reason, count] : certificate.rejected) reasons[reason] = count;
-  return {{"format", 1}, {"routes", routes}, {"points", certificate.points}, {"digits", certificate.options.digits},
-          {"rejected", certificate.rejections()}, {"rejected_reasons", reasons},
-          {"summary", certificate.summary()}, {"verdict", certificate.verdict()}, {"left_out", left_out}};
+  return {{"format", 1},
+          {"routes", routes},
+          {"points", certificate.points},
+          {"digits", certificate.options.digits},
+          {"rejected", certificate.rejections()},
+          {"rejected_reasons", reasons},
+          {"summary", certificate.summary()},
+          {"verdict", certificate.verdict()},
+          {"left_out", left_out}};
 }
 
 void print_readable(const verify::Certificate& certificate) {
@@ -66,8 +76,8 @@ program::Program with_every_function(Derived& derived) {
   }
 }
 
-/// Where the constraints fix the whole motion there is nothing to integrate and no code: the routes and the reading forms are held
-/// against the judge, their constraint forces above all.
+/// Where the constraints fix the whole motion there is nothing to integrate and no code: the routes and the reading
+/// forms are held against the judge, their constraint forces above all.
 std::optional<verify::Certificate> certify_prescribed(const Options& options, std::uint64_t seed) {
   const model::Model model = load_model(options.model);
   std::size_t equations = 0;
@@ -119,7 +129,9 @@ int execute(const Options& options, const Common& common) {
 Execute declare_verify(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--digits", options->digits, "decimal digits of the arithmetic")->check(whole_number(20, 300))->capture_default_str();
+  app.add_option("--digits", options->digits, "decimal digits of the arithmetic")
+      ->check(whole_number(20, 300))
+      ->capture_default_str();
   app.add_option("--points", options->points, "random states")->check(whole_number(1, 10000))->capture_default_str();
   app.add_flag("--no-compile", options->no_compile, "leave the emitted code out, which needs a C compiler");
   return [options](const Common& common) { return execute(*options, common); };

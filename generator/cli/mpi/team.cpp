@@ -22,7 +22,8 @@ void await(MPI_Request& request) {
 }
 
 int whole(std::size_t count) {
-  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max())) throw std::length_error("more pieces of a table than MPI counts");
+  if (count > static_cast<std::size_t>(std::numeric_limits<int>::max()))
+    throw std::length_error("more pieces of a table than MPI counts");
   return static_cast<int>(count);
 }
 
@@ -57,7 +58,9 @@ bool MpiTeam::await_go() {
 
 void MpiTeam::go(std::optional<std::uint64_t> run) { tell(run ? Phase::work : Phase::nothing, run.value_or(0)); }
 
-std::optional<std::uint64_t> MpiTeam::gone() const { return phase_ == Phase::work ? std::optional(run_) : std::nullopt; }
+std::optional<std::uint64_t> MpiTeam::gone() const {
+  return phase_ == Phase::work ? std::optional(run_) : std::nullopt;
+}
 
 void MpiTeam::leave(int code) {
   if (leads() && phase_ == Phase::waiting) return tell(Phase::stop, 0);
@@ -136,7 +139,8 @@ std::vector<std::uint64_t> MpiTeam::offsets(std::uint64_t begin, const std::vect
     std::exclusive_scan(halves.begin(), halves.end(), half_places.begin(), 0);
     all.resize(static_cast<std::size_t>(places.back()) + static_cast<std::size_t>(counts.back()));
   }
-  MPI_Gatherv(mine.data(), count, MPI_UINT64_T, all.data(), counts.data(), places.data(), MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  MPI_Gatherv(mine.data(), count, MPI_UINT64_T, all.data(), counts.data(), places.data(), MPI_UINT64_T, 0,
+              MPI_COMM_WORLD);
   std::vector<std::uint64_t> where(all.size() / 2), own(pieces.size());
   std::vector<std::size_t> order(where.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -145,7 +149,8 @@ std::vector<std::uint64_t> MpiTeam::offsets(std::uint64_t begin, const std::vect
     where[i] = begin;
     begin += all[2 * i + 1];
   }
-  MPI_Scatterv(where.data(), halves.data(), half_places.data(), MPI_UINT64_T, own.data(), count / 2, MPI_UINT64_T, 0, MPI_COMM_WORLD);
+  MPI_Scatterv(where.data(), halves.data(), half_places.data(), MPI_UINT64_T, own.data(), count / 2, MPI_UINT64_T, 0,
+               MPI_COMM_WORLD);
   return own;
 }
 
@@ -162,7 +167,8 @@ std::string MpiTeam::agreed(const std::string& why) {
   return told;
 }
 
-std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces, const std::function<std::string(std::size_t)>& text) {
+std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces,
+                           const std::function<std::string(std::size_t)>& text) {
   std::string place = path, why;
   int length = static_cast<int>(place.size());
   MPI_Bcast(&length, 1, MPI_INT, 0, MPI_COMM_WORLD);
@@ -181,7 +187,8 @@ std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const s
   note(MPI_File_open(MPI_COMM_WORLD, place.c_str(), MPI_MODE_WRONLY, MPI_INFO_NULL, &file));
   why = agreed(why);
   if (!why.empty()) return why;
-  // As many rounds as the one with most pieces needs: all write at the same time, and the file system sees large requests.
+  // As many rounds as the one with most pieces needs: all write at the same time, and the file system sees large
+  // requests.
   const std::uint64_t mine = pieces.size();
   std::uint64_t rounds = 0;
   MPI_Allreduce(&mine, &rounds, 1, MPI_UINT64_T, MPI_MAX, MPI_COMM_WORLD);
@@ -189,10 +196,12 @@ std::string MpiTeam::write(const std::string& path, std::uint64_t begin, const s
     const bool has = round < mine && why.empty();
     const std::string bytes = has ? text(round) : std::string();
     MPI_Status status;
-    note(MPI_File_write_at_all(file, has ? static_cast<MPI_Offset>(where[round]) : 0, bytes.data(), static_cast<int>(bytes.size()), MPI_CHAR, &status));
+    note(MPI_File_write_at_all(file, has ? static_cast<MPI_Offset>(where[round]) : 0, bytes.data(),
+                               static_cast<int>(bytes.size()), MPI_CHAR, &status));
     int written = 0;
     MPI_Get_count(&status, MPI_CHAR, &written);
-    if (why.empty() && written != static_cast<int>(bytes.size())) why = fmt::format("cannot write {}: the disk is full", place);
+    if (why.empty() && written != static_cast<int>(bytes.size()))
+      why = fmt::format("cannot write {}: the disk is full", place);
   }
   note(MPI_File_close(&file));
   return agreed(why);

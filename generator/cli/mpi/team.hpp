@@ -7,7 +7,8 @@
 
 namespace eomgen::cli {
 
-/// All processes of MPI_COMM_WORLD. Where one waits for others it sleeps in between, so that more processes than processors do no harm.
+/// All processes of MPI_COMM_WORLD. Where one waits for others it sleeps in between, so that more processes than
+/// processors do no harm.
 class MpiTeam : public Team {
  public:
   MpiTeam(int& argc, char**& argv);
@@ -28,7 +29,8 @@ class MpiTeam : public Team {
   void hand_out(std::vector<Stretch> open, std::uint64_t least, const std::atomic<bool>& stop) override;
   std::optional<Stretch> next() override;
   std::uint64_t sum(std::uint64_t of_this_one) override;
-  std::string write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces, const std::function<std::string(std::size_t)>& text) override;
+  std::string write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces,
+                    const std::function<std::string(std::size_t)>& text) override;
   void part() override;
 
  private:

@@ -17,7 +17,8 @@ std::uint32_t crc(const std::string& bytes) {
 }
 
 std::string big_endian(std::uint32_t value) {
-  return {static_cast<char>(value >> 24 & 0xff), static_cast<char>(value >> 16 & 0xff), static_cast<char>(value >> 8 & 0xff), static_cast<char>(value & 0xff)};
+  return {static_cast<char>(value >> 24 & 0xff), static_cast<char>(value >> 16 & 0xff),
+          static_cast<char>(value >> 8 & 0xff), static_cast<char>(value & 0xff)};
 }
 
 std::string chunk(const std::string& type, const std::string& data) {
@@ -61,10 +62,14 @@ class Deflate {
     for (unsigned k = bits; k-- > 0;) put(value >> k & 1, 1);
   }
   void symbol(unsigned s) {
-    if (s < 144) code(0x30 + s, 8);
-    else if (s < 256) code(0x190 + s - 144, 9);
-    else if (s < 280) code(s - 256, 7);
-    else code(0xc0 + s - 280, 8);
+    if (s < 144)
+      code(0x30 + s, 8);
+    else if (s < 256)
+      code(0x190 + s - 144, 9);
+    else if (s < 280)
+      code(s - 256, 7);
+    else
+      code(0xc0 + s - 280, 8);
   }
   void literal(std::uint8_t byte) { symbol(byte); }
   void match(std::size_t length) {
@@ -111,8 +116,11 @@ std::string png(const Picture& picture) {
       filtered += static_cast<char>(static_cast<std::uint8_t>(picture.rgb[y * row + i] - before));
     }
   }
-  const std::string header = big_endian(static_cast<std::uint32_t>(picture.width)) + big_endian(static_cast<std::uint32_t>(picture.height)) + std::string("\x08\x02\x00\x00\x00", 5);
-  return std::string("\x89PNG\r\n\x1a\n", 8) + chunk("IHDR", header) + chunk("IDAT", "\x78\x01" + Deflate()(filtered) + big_endian(adler(filtered))) + chunk("IEND", "");
+  const std::string header = big_endian(static_cast<std::uint32_t>(picture.width)) +
+                             big_endian(static_cast<std::uint32_t>(picture.height)) +
+                             std::string("\x08\x02\x00\x00\x00", 5);
+  return std::string("\x89PNG\r\n\x1a\n", 8) + chunk("IHDR", header) +
+         chunk("IDAT", "\x78\x01" + Deflate()(filtered) + big_endian(adler(filtered))) + chunk("IEND", "");
 }
 
 }  // namespace eomgen::cli

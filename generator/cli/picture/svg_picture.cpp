@@ -60,32 +60,40 @@ class Painter {
   void line(Point a, Point b, double width, const Colour& colour) {
     a = placed(a);
     b = placed(b);
-    const double half = std::max(0.5, 0.5 * width * scale_), dx = b.first - a.first, dy = b.second - a.second, squared = dx * dx + dy * dy;
-    each(std::min(a.first, b.first) - half, std::max(a.first, b.first) + half, std::min(a.second, b.second) - half, std::max(a.second, b.second) + half,
-         [&](double x, double y) {
-           const double s = squared > 0 ? std::clamp(((x - a.first) * dx + (y - a.second) * dy) / squared, 0.0, 1.0) : 0;
-           return half + 0.5 - std::hypot(x - a.first - s * dx, y - a.second - s * dy);
-         },
-         colour);
+    const double half = std::max(0.5, 0.5 * width * scale_), dx = b.first - a.first, dy = b.second - a.second,
+                 squared = dx * dx + dy * dy;
+    each(
+        std::min(a.first, b.first) - half, std::max(a.first, b.first) + half, std::min(a.second, b.second) - half,
+        std::max(a.second, b.second) + half,
+        [&](double x, double y) {
+          const double s = squared > 0 ? std::clamp(((x - a.first) * dx + (y - a.second) * dy) / squared, 0.0, 1.0) : 0;
+          return half + 0.5 - std::hypot(x - a.first - s * dx, y - a.second - s * dy);
+        },
+        colour);
   }
   void disk(Point centre, double radius, const Colour& colour) {
     centre = placed(centre);
     radius *= scale_;
-    each(centre.first - radius, centre.first + radius, centre.second - radius, centre.second + radius,
-         [&](double x, double y) { return radius + 0.5 - std::hypot(x - centre.first, y - centre.second); }, colour);
+    each(
+        centre.first - radius, centre.first + radius, centre.second - radius, centre.second + radius,
+        [&](double x, double y) { return radius + 0.5 - std::hypot(x - centre.first, y - centre.second); }, colour);
   }
   /// A polyline in dashes, the first pattern from its beginning.
-  void polyline(const std::vector<Point>& points, double width, const std::vector<double>& dashes, const Colour& colour) {
+  void polyline(const std::vector<Point>& points, double width, const std::vector<double>& dashes,
+                const Colour& colour) {
     if (points.size() == 1) line(points[0], points[0], width, colour);
     std::size_t dash = 0;
     double left = dashes.empty() ? 0 : dashes[0];
     for (std::size_t i = 1; i < points.size(); ++i) {
-      const double dx = points[i].first - points[i - 1].first, dy = points[i].second - points[i - 1].second, length = std::hypot(dx, dy);
+      const double dx = points[i].first - points[i - 1].first, dy = points[i].second - points[i - 1].second,
+                   length = std::hypot(dx, dy);
       if (dashes.empty()) {
         line(points[i - 1], points[i], width, colour);
         continue;
       }
-      const auto at = [&](double s) { return Point{points[i - 1].first + dx * s / length, points[i - 1].second + dy * s / length}; };
+      const auto at = [&](double s) {
+        return Point{points[i - 1].first + dx * s / length, points[i - 1].second + dy * s / length};
+      };
       for (double s = 0; s < length;) {
         const double end = std::min(length, s + left);
         if (dash % 2 == 0) line(at(s), at(end), width, colour);
@@ -100,12 +108,17 @@ class Painter {
 
  private:
   static constexpr double farthest = 1e5;  // pixels; nothing beyond is seen
-  Point placed(Point p) const { return {std::clamp(p.first * scale_, -farthest, farthest), std::clamp((p.second + y_) * scale_, -farthest, farthest)}; }
+  Point placed(Point p) const {
+    return {std::clamp(p.first * scale_, -farthest, farthest),
+            std::clamp((p.second + y_) * scale_, -farthest, farthest)};
+  }
 
   template <typename Coverage>
   void each(double left, double right, double top, double bottom, const Coverage& coverage, const Colour& colour) {
     const auto first = [](double value) { return static_cast<std::size_t>(std::max(0.0, std::floor(value - 1))); };
-    const auto last = [](double value, std::size_t end) { return value < -1 ? 0 : std::min(end, static_cast<std::size_t>(value + 2)); };
+    const auto last = [](double value, std::size_t end) {
+      return value < -1 ? 0 : std::min(end, static_cast<std::size_t>(value + 2));
+    };
     for (std::size_t y = first(top); y < last(bottom, picture_.height); ++y) {
       for (std::size_t x = first(left); x < last(right, picture_.width); ++x) {
         const double share = std::clamp(coverage(static_cast<double>(x) + 0.5, static_cast<double>(y) + 0.5), 0.0, 1.0);
@@ -149,16 +162,24 @@ std::vector<std::vector<Point>> pieces(const std::string& d) {
     if (values.empty() || (result.empty() && command != 'M')) continue;
     if (command == 'M') result.emplace_back();
     const Point before = result.back().empty() ? Point{} : result.back().back();
-    if (command == 'H') result.back().emplace_back(values[0], before.second);
-    else if (command == 'V') result.back().emplace_back(before.first, values[0]);
-    else if (values.size() > 1) result.back().emplace_back(values[0], values[1]);
+    if (command == 'H')
+      result.back().emplace_back(values[0], before.second);
+    else if (command == 'V')
+      result.back().emplace_back(before.first, values[0]);
+    else if (values.size() > 1)
+      result.back().emplace_back(values[0], values[1]);
   }
   return result;
 }
 
 std::string plain(std::string text) {
-  for (const auto& [escaped, character] : {std::pair<std::string, std::string>{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&#39;", "'"}, {"&amp;", "&"}}) {
-    for (std::size_t at = 0; (at = text.find(escaped, at)) != std::string::npos; at += character.size()) text.replace(at, escaped.size(), character);
+  for (const auto& [escaped, character] : {std::pair<std::string, std::string>{"&lt;", "<"},
+                                           {"&gt;", ">"},
+                                           {"&quot;", "\""},
+                                           {"&#39;", "'"},
+                                           {"&amp;", "&"}}) {
+    for (std::size_t at = 0; (at = text.find(escaped, at)) != std::string::npos; at += character.size())
+      text.replace(at, escaped.size(), character);
   }
   return text;
 }
@@ -176,10 +197,16 @@ class Reader {
       if (name == "title") at = svg_.find("</title>", end);
       if (name == "svg") painter_.shift(tag.number("y"));
       if (name == "g") group_ = colour_of(tag.get("fill"), group_);
-      if (name == "line") painter_.polyline({{tag.number("x1"), tag.number("y1")}, {tag.number("x2"), tag.number("y2")}}, tag.number("stroke-width", 1), numbers(tag.get("stroke-dasharray")), colour_of(tag.get("stroke"), ink));
-      if (name == "circle") painter_.disk({tag.number("cx"), tag.number("cy")}, tag.number("r"), colour_of(tag.get("fill"), group_));
+      if (name == "line")
+        painter_.polyline({{tag.number("x1"), tag.number("y1")}, {tag.number("x2"), tag.number("y2")}},
+                          tag.number("stroke-width", 1), numbers(tag.get("stroke-dasharray")),
+                          colour_of(tag.get("stroke"), ink));
+      if (name == "circle")
+        painter_.disk({tag.number("cx"), tag.number("cy")}, tag.number("r"), colour_of(tag.get("fill"), group_));
       if (name == "path") {
-        for (const std::vector<Point>& piece : pieces(tag.get("d"))) painter_.polyline(piece, tag.number("stroke-width", 1), numbers(tag.get("stroke-dasharray")), colour_of(tag.get("stroke"), ink));
+        for (const std::vector<Point>& piece : pieces(tag.get("d")))
+          painter_.polyline(piece, tag.number("stroke-width", 1), numbers(tag.get("stroke-dasharray")),
+                            colour_of(tag.get("stroke"), ink));
       }
       if (name == "text") {
         const std::size_t close = svg_.find("</text>", end);
@@ -235,7 +262,8 @@ class Reader {
     }
     const std::string anchor = tag.get("text-anchor"), transform = tag.get("transform");
     // The only transform is that of a label along the vertical axis: translate(x y) rotate(-90).
-    const std::vector<double> moved = transform.empty() ? std::vector<double>{} : numbers(transform.substr(transform.find('(') + 1));
+    const std::vector<double> moved =
+        transform.empty() ? std::vector<double>{} : numbers(transform.substr(transform.find('(') + 1));
     const bool turned = moved.size() >= 2;
     const double x0 = turned ? moved[0] : tag.number("x"), y0 = turned ? moved[1] : tag.number("y");
     double start = anchor == "middle" ? -0.5 * width : anchor == "end" ? -width : 0;

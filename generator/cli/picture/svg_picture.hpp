@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Our own plots as pixels. In: SVG as eom/output/svg_plot.hpp writes it (rectangles, lines, paths of straight pieces, circles, text, one SVG in
-// another at some height); nothing else is understood. Out: a picture.
+// Our own plots as pixels. In: SVG as eom/output/svg_plot.hpp writes it (rectangles, lines, paths of straight pieces,
+// circles, text, one SVG in another at some height); nothing else is understood. Out: a picture.
 #pragma once
 
 #include <string>

@@ -18,7 +18,8 @@ using symbolic::Vec3;
 
 bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
   const std::vector<symbolic::Symbol> symbols = dag.symbols({expression});
-  return std::all_of(symbols.begin(), symbols.end(), [](const symbolic::Symbol& s) { return s.kind == SymbolKind::parameter; });
+  return std::all_of(symbols.begin(), symbols.end(),
+                     [](const symbolic::Symbol& s) { return s.kind == SymbolKind::parameter; });
 }
 
 Drawing::Drawing(Derived& derived) {
@@ -36,11 +37,13 @@ std::size_t Drawing::vector_of(const std::string& base) {
 }
 
 std::size_t Drawing::vector(Derived& derived, const Vec3& value) {
-  symbolic::Substitution imposed = mechanics::impose(derived.mechanics), written = mechanics::write_out(derived.mechanics);
+  symbolic::Substitution imposed = mechanics::impose(derived.mechanics),
+                         written = mechanics::write_out(derived.mechanics);
   const std::string base = drawn_prefix + std::to_string(outputs_.size()) + ".";
   for (std::size_t k = 0; k < 3; ++k) {
     const Ref finished = written(imposed(value[k]));
-    for (system::EquationSystem& candidate : derived.candidates) candidate.outputs.push_back({base + std::to_string(k + 1), finished});
+    for (system::EquationSystem& candidate : derived.candidates)
+      candidate.outputs.push_back({base + std::to_string(k + 1), finished});
   }
   return vector_of(base);
 }
@@ -55,13 +58,20 @@ std::size_t Drawing::size(Derived& derived, model::NodeId value) {
 
 void Drawing::places(const model::Model& model) {
   parts_["places"] = Json::array();
-  const auto massive = [](std::uint32_t i, const auto& list) { return std::any_of(list.begin(), list.end(), [i](const auto& heavy) { return heavy.place == i; }); };
+  const auto massive = [](std::uint32_t i, const auto& list) {
+    return std::any_of(list.begin(), list.end(), [i](const auto& heavy) { return heavy.place == i; });
+  };
   for (std::uint32_t i = 1; i < model.places.size(); ++i) {
     const model::Place& place = model.places[i];
-    // What a position is measured from is a rod or a thread as often as not; free coordinates of space are no line to the origin.
+    // What a position is measured from is a rod or a thread as often as not; free coordinates of space are no line to
+    // the origin.
     const bool linked = place.chart && (place.from > 0 || place.chart->system != "cartesian");
-    parts_["places"].push_back({{"name", place.name}, {"kind", massive(i, model.particles) ? "particle" : massive(i, model.bodies) ? "body" : "point"},
-                                {"from", linked ? Json(static_cast<int>(place.from) - 1) : Json(nullptr)}, {"at", vector_of(place.name + ".position")}});
+    parts_["places"].push_back({{"name", place.name},
+                                {"kind", massive(i, model.particles) ? "particle"
+                                         : massive(i, model.bodies)  ? "body"
+                                                                     : "point"},
+                                {"from", linked ? Json(static_cast<int>(place.from) - 1) : Json(nullptr)},
+                                {"at", vector_of(place.name + ".position")}});
   }
 }
 
@@ -71,19 +81,22 @@ void Drawing::bodies(Derived& derived) {
     const model::Frame& frame = derived.model.frames[body.frame];
     if (frame.stages.empty()) continue;
     Json axes = Json::array();
-    for (std::size_t k = 0; k < 2; ++k) axes.push_back(vector(derived, mechanics::lower_vector(derived.mechanics, frame.stages.back().e[k])));
+    for (std::size_t k = 0; k < 2; ++k)
+      axes.push_back(vector(derived, mechanics::lower_vector(derived.mechanics, frame.stages.back().e[k])));
     Json inertia = Json::array();
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k) inertia.push_back(size(derived, body.inertia[i][k]));
     }
-    parts_["bodies"].push_back({{"place", body.place - 1}, {"axes", axes}, {"mass", size(derived, body.mass)}, {"inertia", inertia}});
+    parts_["bodies"].push_back(
+        {{"place", body.place - 1}, {"axes", axes}, {"mass", size(derived, body.mass)}, {"inertia", inertia}});
   }
 }
 
 void Drawing::forces(Derived& derived) {
   parts_["springs"] = parts_["dampers"] = Json::array();
   const auto ends = [&](const auto& force) {
-    return Json{{"a", vector(derived, mechanics::lower_vector(derived.mechanics, force.a))}, {"b", vector(derived, mechanics::lower_vector(derived.mechanics, force.b))}};
+    return Json{{"a", vector(derived, mechanics::lower_vector(derived.mechanics, force.a))},
+                {"b", vector(derived, mechanics::lower_vector(derived.mechanics, force.b))}};
   };
   for (const model::Force& force : derived.model.forces) {
     if (const auto* spring = std::get_if<model::Spring>(&force.kind)) parts_["springs"].push_back(ends(*spring));
@@ -101,7 +114,8 @@ void Drawing::joints(Derived& derived) {
   };
   for (const model::Joint& joint : derived.model.joints) {
     if (joint.points[1] == model::no_node) continue;
-    parts_["joints"].push_back({{"name", joint.name}, {"at", vector(derived, mechanics::lower_vector(derived.mechanics, joint.points[1]))},
+    parts_["joints"].push_back({{"name", joint.name},
+                                {"at", vector(derived, mechanics::lower_vector(derived.mechanics, joint.points[1]))},
                                 {"of", {place_of(joint.frames[0]), place_of(joint.frames[1])}}});
   }
 }
@@ -117,7 +131,8 @@ void Drawing::contacts(Derived& derived) {
     for (std::size_t k = 0; k < 3; ++k) at[k] = m.dag->add(at[k], arm[k]);
     Json tangents = nullptr;
     if (touch.other_place == 0 && touch.tangents[0] != model::no_node && touch.tangents[1] != model::no_node) {
-      tangents = {vector(derived, mechanics::lower_vector(m, touch.tangents[0])), vector(derived, mechanics::lower_vector(m, touch.tangents[1]))};
+      tangents = {vector(derived, mechanics::lower_vector(m, touch.tangents[0])),
+                  vector(derived, mechanics::lower_vector(m, touch.tangents[1]))};
     }
     parts_["contacts"].push_back({{"name", constraint.name}, {"at", vector(derived, at)}, {"tangents", tangents}});
   }
@@ -129,7 +144,8 @@ void Drawing::shapes(Derived& derived) {
     Json lengths = Json::array(), at = Json::array();
     for (const model::NodeId length : drawn.lengths) lengths.push_back(size(derived, length));
     for (const model::NodeId x : drawn.at) at.push_back(size(derived, x));
-    parts_["shapes"].push_back({{"place", drawn.place - 1}, {"kind", drawn.kind}, {"lengths", lengths}, {"axis", drawn.axis}, {"at", at}});
+    parts_["shapes"].push_back(
+        {{"place", drawn.place - 1}, {"kind", drawn.kind}, {"lengths", lengths}, {"axis", drawn.axis}, {"at", at}});
   }
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page draws of a model. In: the model and its mechanics. Out: outputs that the code is to have (positions, axes of bodies, ends of
-// springs, points of joints and contacts), and where each part of the drawing finds its numbers among them.
+// What a page draws of a model. In: the model and its mechanics. Out: outputs that the code is to have (positions, axes
+// of bodies, ends of springs, points of joints and contacts), and where each part of the drawing finds its numbers
+// among them.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -22,14 +23,15 @@ class Drawing {
 
   /// In the order of the array that the page draws from.
   const std::vector<std::string>& outputs() const { return outputs_; }
-  /// Sizes that depend on parameters only: masses and inertias of bodies, lengths of shapes. What depends on more is a negative number: unknown.
+  /// Sizes that depend on parameters only: masses and inertias of bodies, lengths of shapes. What depends on more is a
+  /// negative number: unknown.
   const std::vector<symbolic::Ref>& sizes() const { return sizes_; }
   /// The parts: places, bodies, springs, dampers, joints, contacts, by indices into the outputs and the sizes.
   const nlohmann::ordered_json& parts() const { return parts_; }
 
  private:
-  std::size_t vector_of(const std::string& base);                       // of outputs that are there: base1 .. base3
-  std::size_t vector(Derived& derived, const symbolic::Vec3& value);    // of new ones
+  std::size_t vector_of(const std::string& base);                     // of outputs that are there: base1 .. base3
+  std::size_t vector(Derived& derived, const symbolic::Vec3& value);  // of new ones
   std::size_t size(Derived& derived, model::NodeId value);
   void places(const model::Model& model);
   void bodies(Derived& derived);

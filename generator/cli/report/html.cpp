@@ -29,13 +29,16 @@ using print::escape_html;
 // Inside of a script element "</script>" and "<!--" mean something, in a string too.
 std::string inside_of_script(const std::string& json) {
   std::string result;
-  for (const char c : json) result += c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : c == '&' ? "\\u0026" : std::string(1, c);
+  for (const char c : json)
+    result += c == '<' ? "\\u003c" : c == '>' ? "\\u003e" : c == '&' ? "\\u0026" : std::string(1, c);
   return result;
 }
 
 }  // namespace
 
-void Html::heading(int level, const std::string& text) { text_ += fmt::format("<h{0}>{1}</h{0}>\n", level, escape_html(text)); }
+void Html::heading(int level, const std::string& text) {
+  text_ += fmt::format("<h{0}>{1}</h{0}>\n", level, escape_html(text));
+}
 
 void Html::paragraph(const std::string& text, const std::string& style) {
   text_ += (style.empty() ? "<p>" : "<p class=\"" + style + "\">") + escape_html(text) + "</p>\n";
@@ -47,7 +50,8 @@ void Html::preformatted(const std::string& summary, const std::string& text) {
   text_ += "<details><summary>" + escape_html(summary) + "</summary><pre>" + escape_html(text) + "</pre></details>\n";
 }
 
-void Html::table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& numbers) {
+void Html::table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows,
+                 const std::vector<std::size_t>& numbers) {
   text_ += "<table>\n<tr>";
   for (const std::string& cell : head) text_ += "<th>" + escape_html(cell) + "</th>";
   text_ += "</tr>\n";
@@ -73,12 +77,14 @@ std::string page(const PageParts& parts) {
   // The target escapes what the model says; a script may hold nothing that ends it.
   all.set("model", parts.model.empty() ? "return null;" : parts.model + "return " + parts.name + ";");
   std::string scripts;
-  for (const char* script : {report::linear_js, report::integrator_js, report::motion_js, report::shapes_js, report::scene_js, report::plots_js, report::drag_js, report::controls_js,
-                             report::fit_js, report::main_js}) {
+  for (const char* script :
+       {report::linear_js, report::integrator_js, report::motion_js, report::shapes_js, report::scene_js,
+        report::plots_js, report::drag_js, report::controls_js, report::fit_js, report::main_js}) {
     scripts += script;
   }
   all.set("scripts", scripts);
-  all.set("moving", parts.motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);
+  all.set("moving",
+          parts.motion.empty() ? kainjow::mustache::data::type::bool_false : kainjow::mustache::data::type::bool_true);
   return skeleton.render(all);
 }
 

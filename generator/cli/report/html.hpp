@@ -15,7 +15,8 @@ class Html {
   void preformatted(const std::string& summary, const std::string& text);  // folded
   void markup(const std::string& trusted) { text_ += trusted + "\n"; }
   /// Cells are escaped; those of `numbers` are set as figures.
-  void table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows, const std::vector<std::size_t>& numbers = {});
+  void table(const std::vector<std::string>& head, const std::vector<std::vector<std::string>>& rows,
+             const std::vector<std::size_t>& numbers = {});
   const std::string& text() const { return text_; }
 
  private:
@@ -23,7 +24,7 @@ class Html {
 };
 
 struct PageParts {
-  std::string title;   // escaped here
+  std::string title;  // escaped here
   std::string body;
   std::string motion;  // JSON for the script; empty: the page has none
   std::string model;   // JavaScript of the target javascript, or empty

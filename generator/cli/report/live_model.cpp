@@ -19,7 +19,8 @@ using Json = nlohmann::ordered_json;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
-constexpr std::size_t largest_script = 400000;  // bytes; what is longer takes a page longer to read than it is looked at
+constexpr std::size_t largest_script =
+    400000;  // bytes; what is longer takes a page longer to read than it is looked at
 
 Ref exact(symbolic::Dag& dag, double value) { return dag.constant(cln::rational(cln::cl_DF(value))); }
 
@@ -27,7 +28,13 @@ class Live {
  public:
   Live(const Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
        const std::set<std::string>& set)
-      : s_(simulation), derived_(*simulation.derived), m_(derived_.mechanics), dag_(*m_.dag), drawing_(drawing), outputs_(outputs), set_(set) {}
+      : s_(simulation),
+        derived_(*simulation.derived),
+        m_(derived_.mechanics),
+        dag_(*m_.dag),
+        drawing_(drawing),
+        outputs_(outputs),
+        set_(set) {}
 
   LiveModel run() {
     LiveModel live;
@@ -39,7 +46,8 @@ class Live {
     program.second.clear();
     program.charts.clear();
     for (const program::Function& function : s_.program.functions) {
-      if (function.name == "rhs" || function.name == "mass" || function.name == "constraints") program.functions.push_back(function);
+      if (function.name == "rhs" || function.name == "mass" || function.name == "constraints")
+        program.functions.push_back(function);
       if (function.name == "events" && !program.events.empty()) program.functions.push_back(function);
       if (function.name == "outputs") program.functions.push_back(program::restricted(function, chosen()));
     }
@@ -64,11 +72,13 @@ class Live {
  private:
   /// What the page's integrator cannot do, or "".
   std::string obstacle() const {
-    if (!s_.program.contacts.empty()) return "its contacts stick, slide or part, and each of these has equations of its own";
+    if (!s_.program.contacts.empty())
+      return "its contacts stick, slide or part, and each of these has equations of its own";
     if (s_.scene.jumps) return "something jumps on its way, with an impulse that only the program works out";
     if (!s_.program.integrals.empty()) return "an integral over time has no closed form and is a state of its own";
     for (const model::SceneInput& input : model_scene().inputs) {
-      if (std::holds_alternative<model::InputTable>(input.signal)) return fmt::format("the input '{}' is a table of time", derived_.model.inputs[input.input].name);
+      if (std::holds_alternative<model::InputTable>(input.signal))
+        return fmt::format("the input '{}' is a table of time", derived_.model.inputs[input.input].name);
     }
     return "";
   }
@@ -78,12 +88,14 @@ class Live {
   std::vector<std::size_t> chosen() const {
     std::vector<std::size_t> places;
     for (const std::string& name : outputs_) {
-      places.push_back(static_cast<std::size_t>(std::find(s_.program.outputs.begin(), s_.program.outputs.end(), name) - s_.program.outputs.begin()));
+      places.push_back(static_cast<std::size_t>(std::find(s_.program.outputs.begin(), s_.program.outputs.end(), name) -
+                                                s_.program.outputs.begin()));
     }
     return places;
   }
 
-  program::Function function(const std::string& name, const std::vector<std::pair<std::string, std::vector<Ref>>>& results) {
+  program::Function function(const std::string& name,
+                             const std::vector<std::pair<std::string, std::vector<Ref>>>& results) {
     program::WantedFunction wanted;
     wanted.name = name;
     wanted.results = results;
@@ -92,7 +104,8 @@ class Live {
     return program::schedule(program::flatten(program::from_dag(dag_, wanted, s_.program.free), false), name, shape);
   }
 
-  /// The formula of a parameter: those of the scene and of the command line are numbers, which the reader of the page may move.
+  /// The formula of a parameter: those of the scene and of the command line are numbers, which the reader of the page
+  /// may move.
   bool is_dependent(std::size_t i) const {
     const auto& set = model_scene().parameters;
     const bool given = std::any_of(set.begin(), set.end(), [i](const auto& p) { return p.first == i; });
@@ -117,10 +130,12 @@ class Live {
     return expression;
   }
 
-  /// All parameters, the start as far as the scene gives it, and sizes of what is drawn, from the parameters that can be moved.
+  /// All parameters, the start as far as the scene gives it, and sizes of what is drawn, from the parameters that can
+  /// be moved.
   program::Function setup() {
     std::vector<Ref> p, x, sizes;
-    for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i) p.push_back(spelt(dag_.symbol({SymbolKind::parameter, i, 0})));
+    for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i)
+      p.push_back(spelt(dag_.symbol({SymbolKind::parameter, i, 0})));
     const std::size_t n = m_.free.size();
     symbolic::Substitution written = mechanics::write_out(m_);
     for (std::size_t k = 0; k < 2 * n; ++k) {
@@ -154,34 +169,56 @@ class Live {
   Json start() const {
     const model::Model& model = derived_.model;
     const std::size_t n = m_.free.size();
-    Json given = Json::array(), parameters = Json::array(), starts = Json::array(), events = Json::array(), states = Json::array();
+    Json given = Json::array(), parameters = Json::array(), starts = Json::array(), events = Json::array(),
+         states = Json::array();
     for (std::size_t k = 0; k < 2 * n; ++k) {
       const std::uint32_t c = m_.free[k % n];
       const std::uint8_t order = k < n ? 0 : 1;
       const auto same = [&](const auto& key) { return key.first == c && key.second == order; };
       const model::Scene& scene = model_scene();
-      const bool stated = std::any_of(scene.initial.begin(), scene.initial.end(), [&](const auto& v) { return v.coordinate == c && v.order == order; });
+      const bool stated = std::any_of(scene.initial.begin(), scene.initial.end(),
+                                      [&](const auto& v) { return v.coordinate == c && v.order == order; });
       if (stated && std::none_of(scene.solve.begin(), scene.solve.end(), same)) given.push_back(k);
       const std::string& unit = model.coordinates[c].unit.text;
-      states.push_back({{"name", model.coordinates[c].name + (k < n ? "" : "_dot")}, {"unit", k < n ? unit : unit.empty() ? "" : unit == "1" ? "1/s" : unit + "/s"}});
+      states.push_back({{"name", model.coordinates[c].name + (k < n ? "" : "_dot")},
+                        {"unit", k < n          ? unit
+                                 : unit.empty() ? ""
+                                 : unit == "1"  ? "1/s"
+                                                : unit + "/s"}});
     }
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const model::Parameter& p = model.parameters[i];
-      parameters.push_back({{"name", p.name}, {"unit", p.unit.text}, {"note", p.note}, {"value", s_.scene.parameters[i]}, {"positive", p.positive},
+      parameters.push_back({{"name", p.name},
+                            {"unit", p.unit.text},
+                            {"note", p.note},
+                            {"value", s_.scene.parameters[i]},
+                            {"positive", p.positive},
                             {"moved", !is_dependent(i) && !p.start_of && model.start_time != i}});
       const auto place = p.start_of ? std::find(m_.free.begin(), m_.free.end(), *p.start_of) : m_.free.end();
       if (place != m_.free.end()) starts.push_back({i, static_cast<std::size_t>(place - m_.free.begin())});
     }
     for (std::size_t i = 0; i < model.events.size(); ++i) {
-      events.push_back({{"name", model.events[i].name}, {"stop", bool(s_.scene.stops[i])}, {"direction", model::name(model.events[i].direction)}});
+      events.push_back({{"name", model.events[i].name},
+                        {"stop", bool(s_.scene.stops[i])},
+                        {"direction", model::name(model.events[i].direction)}});
     }
     Json lower = Json::array(), upper = Json::array();
     for (const std::uint32_t c : m_.free) {
       lower.push_back(std::isfinite(s_.scene.lower[c]) ? Json(s_.scene.lower[c]) : Json(nullptr));
       upper.push_back(std::isfinite(s_.scene.upper[c]) ? Json(s_.scene.upper[c]) : Json(nullptr));
     }
-    return {{"n", n}, {"states", states}, {"lower", lower}, {"upper", upper}, {"given", given}, {"parameters", parameters}, {"starts", starts}, {"inputs", model.inputs.size()},
-            {"events", events}, {"constraints", s_.program.active_constraints}, {"event_count", s_.program.event_count()}, {"size_count", drawing_.sizes().size()}};
+    return {{"n", n},
+            {"states", states},
+            {"lower", lower},
+            {"upper", upper},
+            {"given", given},
+            {"parameters", parameters},
+            {"starts", starts},
+            {"inputs", model.inputs.size()},
+            {"events", events},
+            {"constraints", s_.program.active_constraints},
+            {"event_count", s_.program.event_count()},
+            {"size_count", drawing_.sizes().size()}};
   }
 
   const Simulation& s_;
@@ -195,7 +232,8 @@ class Live {
 
 }  // namespace
 
-LiveModel live_model(const Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs, const std::set<std::string>& set) {
+LiveModel live_model(const Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
+                     const std::set<std::string>& set) {
   return Live(simulation, drawing, outputs, set).run();
 }
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cli/report/recorded_motion.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <eom/output/svg_plot.hpp>
-#include <fmt/format.h>
 
 #include "symbolic/evaluate.hpp"
 
@@ -18,16 +19,22 @@ constexpr double least_seconds = 4, most_seconds = 20;  // of an animation, what
 constexpr int digits_of_states = 10, digits_of_screens = 6;
 
 // As many digits as are needed; fewer bytes.
-double shortened(double x, int digits) { return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0; }
+double shortened(double x, int digits) {
+  return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0;
+}
 
 /// Sizes of the drawing at the parameters of the run.
 Json values(const std::vector<symbolic::Ref>& sizes, const Simulation& simulation) {
   constexpr int digits = 20;
   Json result = Json::array();
-  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return cln::cl_R(simulation.scene.parameters[s.index]); };
+  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R {
+    return cln::cl_R(simulation.scene.parameters[s.index]);
+  };
   for (const symbolic::Ref size : sizes) {
     try {
-      result.push_back(shortened(cln::double_approx(symbolic::evaluate(*simulation.derived->mechanics.dag, {size}, lookup, digits)[0]), digits_of_states));
+      result.push_back(shortened(
+          cln::double_approx(symbolic::evaluate(*simulation.derived->mechanics.dag, {size}, lookup, digits)[0]),
+          digits_of_states));
     } catch (const std::exception&) {
       result.push_back(-1);  // unknown, as where it depends on more than parameters
     }
@@ -76,8 +83,8 @@ Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) con
   return result;
 }
 
-Json RecordedMotion::json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live, const std::vector<std::string>& outputs,
-                          const std::vector<Panel>& panels) const {
+Json RecordedMotion::json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live,
+                          const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const {
   if (t_.size() < 2) return nullptr;
   const model::Model& model = simulation.derived->model;
   const std::vector<std::string> states = state_names(*simulation.derived);
@@ -88,7 +95,8 @@ Json RecordedMotion::json(const Simulation& simulation, const Drawing& drawing, 
     for (const std::string& name : panel.names) {
       const auto state = std::find(states.begin(), states.end(), name);
       const bool is_state = !live.script.empty() && state != states.end();
-      const auto place = is_state ? state - states.begin() : std::find(outputs.begin(), outputs.end(), name) - outputs.begin();
+      const auto place =
+          is_state ? state - states.begin() : std::find(outputs.begin(), outputs.end(), name) - outputs.begin();
       of.push_back({{"name", name}, {"state", is_state}, {"at", place}});
     }
     curves.push_back({{"title", panel.title}, {"of", of}});
@@ -97,10 +105,20 @@ Json RecordedMotion::json(const Simulation& simulation, const Drawing& drawing, 
   const double span = t_.back() - t_.front();
   const auto down = falling(*simulation.derived, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
-  return {{"t", times}, {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)}, {"y", is_live ? Json(nullptr) : rows(outputs, digits_of_screens)},
-          {"t0", simulation.scene.t0}, {"t1", simulation.scene.t1}, {"speed", span / std::clamp(span, least_seconds, most_seconds)},
-          {"down", down ? Json(*down) : Json(nullptr)}, {"parts", drawing.parts()}, {"sizes", values(drawing.sizes(), simulation)}, {"panels", curves},
-          {"events", events}, {"live", is_live ? live.start : Json(nullptr)}, {"reason", live.reason}, {"model", model.id}};
+  return {{"t", times},
+          {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},
+          {"y", is_live ? Json(nullptr) : rows(outputs, digits_of_screens)},
+          {"t0", simulation.scene.t0},
+          {"t1", simulation.scene.t1},
+          {"speed", span / std::clamp(span, least_seconds, most_seconds)},
+          {"down", down ? Json(*down) : Json(nullptr)},
+          {"parts", drawing.parts()},
+          {"sizes", values(drawing.sizes(), simulation)},
+          {"panels", curves},
+          {"events", events},
+          {"live", is_live ? live.start : Json(nullptr)},
+          {"reason", live.reason},
+          {"model", model.id}};
 }
 
 }  // namespace eomgen::cli

@@ -21,10 +21,10 @@ class RecordedMotion {
   /// The panels as SVG, which a page without scripts and paper show.
   std::string plots(const std::vector<Panel>& panels) const;
 
-  /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from which the script computes
-  /// the rest; else all `outputs`.
-  nlohmann::ordered_json json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live, const std::vector<std::string>& outputs,
-                              const std::vector<Panel>& panels) const;
+  /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
+  /// which the script computes the rest; else all `outputs`.
+  nlohmann::ordered_json json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live,
+                              const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
 
  private:
   std::vector<double> column(const std::string& name) const;

@@ -12,7 +12,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::uint16_t version = 45;            // of what reads 64-bit fields
+constexpr std::uint16_t version = 45;  // of what reads 64-bit fields
 constexpr std::uint16_t utf8_names = 0x800;
 constexpr std::uint16_t first_day = 0x21;        // 1 January 1980: the same runs, the same bytes
 constexpr std::uint32_t elsewhere = 0xffffffff;  // in the 64-bit fields
@@ -53,7 +53,8 @@ Archive::Archive(const std::string& path, std::vector<Member> members) : file_(p
 std::string Archive::local_header(std::size_t i) const {
   std::string text;
   put<std::uint32_t>(text, 0x04034b50);
-  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day}) put(text, value);
+  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day})
+    put(text, value);
   put(text, places_[i].checksum);
   put(text, elsewhere);
   put(text, elsewhere);
@@ -71,7 +72,8 @@ std::string Archive::central_header(std::size_t i) const {
   std::string text;
   put<std::uint32_t>(text, 0x02014b50);
   put<std::uint16_t>(text, 3 << 8 | version);  // attributes are those of Unix
-  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day}) put(text, value);
+  for (const std::uint16_t value : {version, utf8_names, std::uint16_t{0}, std::uint16_t{0}, first_day})
+    put(text, value);
   put(text, places_[i].checksum);
   put(text, elsewhere);
   put(text, elsewhere);
@@ -101,7 +103,8 @@ void Archive::write_at(std::uint64_t offset, std::string_view bytes) {
 
 void Archive::write(std::size_t member, std::string_view bytes) {
   Place& place = places_[member];
-  if (place.next + bytes.size() > place.begin + members_[member].bytes) throw std::logic_error("more bytes than a member of the archive has");
+  if (place.next + bytes.size() > place.begin + members_[member].bytes)
+    throw std::logic_error("more bytes than a member of the archive has");
   write_at(place.next, bytes);
   place.next += bytes.size();
   place.checksum = checksum(place.checksum, bytes);
@@ -110,7 +113,8 @@ void Archive::write(std::size_t member, std::string_view bytes) {
 void Archive::finish() {
   std::string directory;
   for (std::size_t i = 0; i < members_.size(); ++i) {
-    if (places_[i].next != places_[i].begin + members_[i].bytes) throw std::logic_error("fewer bytes than a member of the archive has");
+    if (places_[i].next != places_[i].begin + members_[i].bytes)
+      throw std::logic_error("fewer bytes than a member of the archive has");
     write_at(places_[i].header, local_header(i));
     directory += central_header(i);
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A zip archive of members that are stored as they are (PKWARE's APPNOTE 6.3, with the 64-bit fields of section 4.5.3 throughout). In:
-// names and sizes, then bytes of any member in any order of members. Out: the archive, with the checksum of each.
+// A zip archive of members that are stored as they are (PKWARE's APPNOTE 6.3, with the 64-bit fields of section 4.5.3
+// throughout). In: names and sizes, then bytes of any member in any order of members. Out: the archive, with the
+// checksum of each.
 #pragma once
 
 #include <cstdint>

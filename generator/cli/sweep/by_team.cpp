@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What several processes do to make one sweep: the first one takes over what is there, prepares, and hands out; the others make rows; all write the table.
+// What several processes do to make one sweep: the first one takes over what is there, prepares, and hands out; the
+// others make rows; all write the table.
 #include <eom/output/whole_file.hpp>
 #include <system_error>
 
@@ -9,8 +10,9 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::uint64_t least_of_ensemble = 256;  // runs of a block for each thread, so that lanes are full most of the time
-constexpr std::size_t most_rows = 1 << 16;        // that are written at once
+constexpr std::uint64_t least_of_ensemble =
+    256;                                    // runs of a block for each thread, so that lanes are full most of the time
+constexpr std::size_t most_rows = 1 << 16;  // that are written at once
 
 }  // namespace
 
@@ -18,7 +20,9 @@ bool Sweep::run_by_team() {
   const std::size_t threads = options_.jobs > 0 ? options_.jobs : 1;
   if (team_->leads()) {
     ledger_.require_file();
-    if (!options_.ensemble && options_.jobs > 1) throw Error("sweep", {}, "--jobs are threads of an ensemble here, and there is none", "start more processes, or add --ensemble");
+    if (!options_.ensemble && options_.jobs > 1)
+      throw Error("sweep", {}, "--jobs are threads of an ensemble here, and there is none",
+                  "start more processes, or add --ensemble");
     std::vector<Stretch> open = open_runs();
     std::optional<std::size_t> first;
     if (!open.empty()) {
@@ -30,8 +34,10 @@ bool Sweep::run_by_team() {
     team_->go(first);
     if (first) {
       team_->one_by_machine([] {});
-      if (team_->size() == 1) make_here(open, threads);
-      else team_->hand_out(open, options_.ensemble ? least_of_ensemble * threads : 1, Interrupt::flag());
+      if (team_->size() == 1)
+        make_here(open, threads);
+      else
+        team_->hand_out(open, options_.ensemble ? least_of_ensemble * threads : 1, Interrupt::flag());
     }
   } else if (const std::optional<std::uint64_t> first = team_->gone()) {
     team_->one_by_machine([&] {
@@ -51,8 +57,10 @@ bool Sweep::run_by_team() {
 
 void Sweep::make_here(const std::vector<Stretch>& stretches, std::size_t threads) {
   const std::vector<std::size_t> runs = runs_of(stretches);
-  if (options_.ensemble) compute(runs, threads);
-  else compute_here(runs);
+  if (options_.ensemble)
+    compute(runs, threads);
+  else
+    compute_here(runs);
 }
 
 void Sweep::write_by_team() {
@@ -75,14 +83,17 @@ void Sweep::write_by_team() {
   }
   const auto text = [&](std::size_t piece) {
     std::string lines;
-    rows.each(parts[piece].first, parts[piece].last, [&lines](std::size_t, std::string_view line) { lines.append(line) += '\n'; });
+    rows.each(parts[piece].first, parts[piece].last,
+              [&lines](std::size_t, std::string_view line) { lines.append(line) += '\n'; });
     return lines;
   };
   std::optional<eom::WholeFile> table;
   const std::string beginning = ledger_.beginning();
   const auto lost = [&table](const std::string& why) {
     if (table) table->discard();
-    throw Error("sweep", {}, why, "see to space on that disk and to your rights there; the same command goes on from what is there", Fault::tool);
+    throw Error("sweep", {}, why,
+                "see to space on that disk and to your rights there; the same command goes on from what is there",
+                Fault::tool);
   };
   try {
     if (team_->leads()) {

@@ -19,26 +19,30 @@
 namespace eomgen::cli {
 namespace {
 
-// What a run without an error estimate may lose of its energy is ten times this (run/balance.cpp): nearer to that it is made alone, where
-// the energy is looked at after every step.
+// What a run without an error estimate may lose of its energy is ten times this (run/balance.cpp): nearer to that it is
+// made alone, where the energy is looked at after every step.
 constexpr double doubtful_energy = 1e-2;
 
 emit::LoadedBatch compile_batch(const Simulation& first) {
   Derived& derived = *first.derived;
-  const run::Scene defaults = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
+  const run::Scene defaults =
+      run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
   const emit::EmissionContext context = emission_context(derived, first.program, defaults, first.certificate);
   std::vector<std::pair<std::string, std::string>> files;
-  for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch")) files.emplace_back(file.name, file.text);
+  for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch"))
+    files.emplace_back(file.name, file.text);
   const Interrupt heeded;  // by what waits for the compiler
   return emit::compile_and_load_batch(files, emit::mangled_id(context.id), &Interrupt::flag());
 }
 
 bool stands_still(const run::Scene& scene) {
   const auto still = [](const run::Signal& signal) { return !signal.moves() && signal.jumps().empty(); };
-  return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && !scene.jumps && scene.clock.bounds.empty() && scene.clock.breaks.empty();
+  return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && !scene.jumps && scene.clock.bounds.empty() &&
+         scene.clock.breaks.empty();
 }
 
-/// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands still.
+/// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands
+/// still.
 std::string ranged(const Simulation& first, const run::Code& code) {
   const run::Scene& scene = first.scene;
   const std::size_t n = code.free.size();
@@ -64,18 +68,26 @@ std::string ranged(const Simulation& first, const run::Code& code) {
 class Runs {
  public:
   Runs(const Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
-      : first_(first), asked_(asked), graph_(first), code_(first.code.for_run()), batch_(batch), how_(asked.runs.size(), How::together), energy_(asked.runs.size()) {
+      : first_(first),
+        asked_(asked),
+        graph_(first),
+        code_(first.code.for_run()),
+        batch_(batch),
+        how_(asked.runs.size(), How::together),
+        energy_(asked.runs.size()) {
     states_ = 2 * code_.free.size();
     p_ = first.scene.parameters.size();
     w_ = batch_.rhs_prepared != nullptr ? code_.prepared : 0;
     u_ = first.scene.inputs.size();
     const auto place = [&](const char* name) {
-      return static_cast<std::size_t>(std::find(code_.output_names.begin(), code_.output_names.end(), name) - code_.output_names.begin());
+      return static_cast<std::size_t>(std::find(code_.output_names.begin(), code_.output_names.end(), name) -
+                                      code_.output_names.begin());
     };
     kinetic_ = place("kinetic");
     potential_ = place("potential");
     const auto& conserved = first.derived->conserved;
-    watches_energy_ = std::any_of(conserved.begin(), conserved.end(), [](const derive::Conserved& c) { return c.name == "energy"; });
+    watches_energy_ =
+        std::any_of(conserved.begin(), conserved.end(), [](const derive::Conserved& c) { return c.name == "energy"; });
   }
 
   void run() {
@@ -88,16 +100,18 @@ class Runs {
     if (scene.step > 0) options.max_steps = std::numeric_limits<std::size_t>::max();
     options.interrupt = asked_.interrupt;
     options.threads = asked_.threads;
-    const auto rhs = [this](std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx, int* codes) {
+    const auto rhs = [this](std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+                            double* dx, int* codes) {
       const double* const w = p + p_ * stride;
       const double* const u = u_ > 0 ? w + w_ * stride : nullptr;
       constexpr int own = emit::own_time + emit::own_parameters + emit::own_inputs;
       return w_ > 0 ? batch_.rhs_prepared(count, stride, t, x, p, w, u, nullptr, own + emit::own_prepared, dx, codes)
                     : batch_.rhs(count, stride, t, x, p, u, nullptr, own, dx, codes);
     };
-    eom::integrate_ensemble(scene.solver, rhs, asked_.runs.size(), states_, p_ + w_ + u_, options,
-                            [this](std::size_t member, eom::EnsembleStart& start) { begin(member, start); },
-                            [this](const eom::EnsembleEnd& end) { finish(end); });
+    eom::integrate_ensemble(
+        scene.solver, rhs, asked_.runs.size(), states_, p_ + w_ + u_, options,
+        [this](std::size_t member, eom::EnsembleStart& start) { begin(member, start); },
+        [this](const eom::EnsembleEnd& end) { finish(end); });
   }
 
  private:
@@ -114,7 +128,8 @@ class Runs {
     Derived& derived = *first_.derived;
     std::optional<run::Scene> scene;
     try {
-      scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name), asked_.values(asked_.runs[member]));
+      scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
+                                 asked_.values(asked_.runs[member]));
     } catch (const Error& error) {
       if (error.stage() != "scene") throw;
       how_[member] = How::refused;
@@ -176,7 +191,7 @@ class Runs {
   run::Code code_;
   const emit::LoadedBatch& batch_;
   std::vector<How> how_;
-  std::vector<double> energy_;  // at the start of each
+  std::vector<double> energy_;                      // at the start of each
   std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;  // rows: parameters, what is prepared of them, inputs
   std::size_t kinetic_ = 0, potential_ = 0;
   bool watches_energy_ = false;
@@ -194,7 +209,8 @@ void require_plain(const Simulation& first) {
   const run::Code code = first.code.for_run();
   const eom::MethodInfo& method = run::method_named(first.scene.solver);
   std::string why;
-  if (method.name == std::string(eom::Automatic::name) || method.implicit || method.series || method.variational || method.constrained) {
+  if (method.name == std::string(eom::Automatic::name) || method.implicit || method.series || method.variational ||
+      method.constrained) {
     why = fmt::format("solver '{}' is no explicit Runge-Kutta method", first.scene.solver);
   } else if (!code.contacts.empty()) {
     why = "the model has contacts with friction, or that can be left";
@@ -211,7 +227,9 @@ void require_plain(const Simulation& first) {
   } else if (const std::string name = ranged(first, code); !name.empty()) {
     why = fmt::format("'{}' has a range, which is looked at after every step", name);
   } else if (run::NarrowForces(first.derived->candidates.front(), first.scene.parameters).any()) {
-    why = "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in every step";
+    why =
+        "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in "
+        "every step";
   } else if (!stands_still(first.scene)) {
     why = "inputs or functions of time move, whose jumps and pulses are located";
   }

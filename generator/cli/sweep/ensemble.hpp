@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of a sweep side by side in the lanes of vector registers (eom/ensemble), by threads. In: a run that has been made, values for the
-// others. Out: their results, to the last bit those that they have alone.
+// Runs of a sweep side by side in the lanes of vector registers (eom/ensemble), by threads. In: a run that has been
+// made, values for the others. Out: their results, to the last bit those that they have alone.
 #pragma once
 
 #include <atomic>
@@ -26,8 +26,9 @@ struct EnsembleRuns {
 /// Where nothing is said an ensemble is integrated by this: no method that could change on the way.
 std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides);
 
-/// Throws Error{stage "sweep"} where the scene has what only a run alone looks after: contacts, events, kinks, constraints with
-/// multipliers, charts that are exchanged, ranges, inputs that move, integrals, a solver that is not explicit.
+/// Throws Error{stage "sweep"} where the scene has what only a run alone looks after: contacts, events, kinks,
+/// constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals, a solver that is not
+/// explicit.
 void require_plain(const Simulation& first);
 
 /// The code of a scene for many states, compiled once.

@@ -27,8 +27,8 @@ struct Axis {
 
 class Grid {
  public:
-  /// Each of `axes` is NAME=FROM:TO:COUNT, NAME=FROM:TO:lin:COUNT, NAME=FROM:TO:log:COUNT or NAME=a,b,c. Throws Error for anything else,
-  /// for a name that comes twice, and for more than most_points.
+  /// Each of `axes` is NAME=FROM:TO:COUNT, NAME=FROM:TO:lin:COUNT, NAME=FROM:TO:log:COUNT or NAME=a,b,c. Throws Error
+  /// for anything else, for a name that comes twice, and for more than most_points.
   explicit Grid(const std::vector<std::string>& axes);
 
   const std::vector<Axis>& axes() const { return axes_; }

@@ -26,7 +26,8 @@ namespace fs = std::filesystem;
 constexpr const char* mark = "# sweep: ";
 
 [[noreturn]] void lost(const std::system_error& error) {
-  throw Error("sweep", {}, error.what(), "see to space on that disk and to your rights there; the same command goes on from what is there",
+  throw Error("sweep", {}, error.what(),
+              "see to space on that disk and to your rights there; the same command goes on from what is there",
               emit::fault_of_writing(error.code()));
 }
 
@@ -37,7 +38,8 @@ OpenFile open_own(const std::string& path) {
   OpenFile file(descriptor);
   struct stat found {};
   if (::fstat(descriptor, &found) != 0 || !S_ISREG(found.st_mode) || found.st_uid != ::geteuid()) return {};
-  // Where locks are unknown (some file systems of clusters) nobody can tell, and nothing is lost: two that write have a file each.
+  // Where locks are unknown (some file systems of clusters) nobody can tell, and nothing is lost: two that write have a
+  // file each.
   if (::flock(descriptor, LOCK_SH | LOCK_NB) != 0 && errno == EWOULDBLOCK) return {};
   return file;
 }
@@ -73,7 +75,8 @@ std::vector<Ledger::Unfinished> Ledger::unfinished() const {
   const std::string name = eom::WholeFile::shortened(target.filename().string()) + ".partial";
   std::vector<Unfinished> found;
   std::error_code none;
-  for (const fs::directory_entry& entry : fs::directory_iterator(target.has_parent_path() ? target.parent_path() : fs::path("."), none)) {
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(target.has_parent_path() ? target.parent_path() : fs::path("."), none)) {
     const std::string other = entry.path().filename().string();
     if (other != name && !(other.starts_with(name + "-") && other.size() == name.size() + 7)) continue;
     const std::string path = target.has_parent_path() ? entry.path().string() : other;
@@ -149,8 +152,10 @@ void Ledger::set_header(const std::string& header) try {
 }
 
 void Ledger::add(std::size_t run, const std::string& line) try {
-  if (out_) out_->write(line + "\n");
-  else own_.write(line + "\n");
+  if (out_)
+    out_->write(line + "\n");
+  else
+    own_.write(line + "\n");
   rows_.add(run, number_, end_, line.size());
   end_ += line.size() + 1;
 } catch (const std::system_error& error) {
@@ -178,7 +183,8 @@ void Ledger::remove_others() {
 
 void Ledger::require_file() const {
   if (kept_) return;
-  throw Error("sweep", {}, fmt::format("several processes write one file, and {} is none", model::quote(file_)), "name a file with --out");
+  throw Error("sweep", {}, fmt::format("several processes write one file, and {} is none", model::quote(file_)),
+              "name a file with --out");
 }
 
 void Ledger::finish() {

@@ -13,16 +13,20 @@
 
 namespace eomgen::cli {
 
-/// The table of a sweep. While it grows, rows go to FILE.partial-XXXXXX as they come in; finish() writes FILE in the order of the
-/// runs and removes the other. Rows of such files of the same sweep that was interrupted are taken over, unless the
-/// process that writes them is still there; so are those of FILE if the sweep is done. Links are not followed there, nor
-/// are files of other users read. Where FILE is no regular file nothing is taken over, and the table is written at once.
+/// The table of a sweep. While it grows, rows go to FILE.partial-XXXXXX as they come in; finish() writes FILE in the
+/// order of the runs and removes the other. Rows of such files of the same sweep that was interrupted are taken over,
+/// unless the process that writes them is still there; so are those of FILE if the sweep is done. Links are not
+/// followed there, nor are files of other users read. Where FILE is no regular file nothing is taken over, and the
+/// table is written at once.
 class Ledger {
  public:
-  enum class Part { whole, member };  // of several processes that make one table all but the first are members: they take nothing over
+  enum class Part {
+    whole,
+    member
+  };  // of several processes that make one table all but the first are members: they take nothing over
 
-  /// `key`: what makes two sweeps the same; it stands in the first line. `belongs`: whether a run is one of the table. Throws Error where
-  /// an unfinished table of another sweep is in the way.
+  /// `key`: what makes two sweeps the same; it stands in the first line. `belongs`: whether a run is one of the table.
+  /// Throws Error where an unfinished table of another sweep is in the way.
   Ledger(std::string file, std::string key, std::function<bool(std::size_t run)> belongs, Part part = Part::whole);
 
   const Rows& rows() const { return rows_; }  // in order before the first add() and after finish()

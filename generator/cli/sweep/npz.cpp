@@ -24,14 +24,16 @@ std::string npy_header(const std::string& type, const std::string& shape) {
   dictionary.resize((fixed + dictionary.size() + 1 + alignment - 1) / alignment * alignment - fixed - 1, ' ');
   dictionary += '\n';
   const std::size_t length = dictionary.size();
-  return std::string("\x93NUMPY\x01", 7) + '\0' + static_cast<char>(length & 0xff) + static_cast<char>(length >> 8) + dictionary;
+  return std::string("\x93NUMPY\x01", 7) + '\0' + static_cast<char>(length & 0xff) + static_cast<char>(length >> 8) +
+         dictionary;
 }
 
 std::string bytes_type(std::size_t width) { return fmt::format("|S{}", std::max<std::size_t>(width, 1)); }
 
 std::vector<std::string_view> fields_of(std::string_view line, std::size_t count) {
   std::vector<std::string_view> fields;
-  for (; fields.size() + 1 < count; line.remove_prefix(fields.back().size() + 1)) fields.push_back(line.substr(0, line.find(',')));
+  for (; fields.size() + 1 < count; line.remove_prefix(fields.back().size() + 1))
+    fields.push_back(line.substr(0, line.find(',')));
   fields.push_back(line);  // the last one may be quoted
   return fields;
 }
@@ -84,9 +86,12 @@ class Table {
     const std::string each = fmt::format("{},", rows_.size()), some = fmt::format("{},", details_);
     add("sweep", bytes_type(key_.size()), "", 1, key_.size());
     for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
-      if (k == 0) add(names_[k], "<i8", each, rows_.size(), 8);
-      else if (k == outcome_) add(names_[k], bytes_type(outcome_width_), each, rows_.size(), outcome_width_);
-      else add(names_[k], "<f8", each, rows_.size(), 8);
+      if (k == 0)
+        add(names_[k], "<i8", each, rows_.size(), 8);
+      else if (k == outcome_)
+        add(names_[k], bytes_type(outcome_width_), each, rows_.size(), outcome_width_);
+      else
+        add(names_[k], "<f8", each, rows_.size(), 8);
     }
     add("detail_run", "<i8", some, details_, 8);
     add("detail", bytes_type(detail_width_), some, details_, detail_width_);
@@ -103,7 +108,8 @@ class Table {
   }
 
  private:
-  void add(const std::string& name, const std::string& type, const std::string& shape, std::size_t count, std::size_t width) {
+  void add(const std::string& name, const std::string& type, const std::string& shape, std::size_t count,
+           std::size_t width) {
     headers_.push_back(npy_header(type, shape));
     members_.push_back({name + ".npy", headers_.back().size() + count * std::max<std::size_t>(width, 1)});
   }
@@ -115,9 +121,12 @@ class Table {
       rows_.each(first, std::min(first + enough, rows_.size()), [&](std::size_t run, std::string_view line) {
         const std::vector<std::string_view> fields = fields_of(line, names_.size());
         for (std::size_t k = 0; k + 1 < names_.size(); ++k) {
-          if (k == 0) put(columns[k + 1], static_cast<std::uint64_t>(run));
-          else if (k == outcome_) put(columns[k + 1], fields[k], std::max<std::size_t>(outcome_width_, 1));
-          else put(columns[k + 1], value_of(fields[k]));
+          if (k == 0)
+            put(columns[k + 1], static_cast<std::uint64_t>(run));
+          else if (k == outcome_)
+            put(columns[k + 1], fields[k], std::max<std::size_t>(outcome_width_, 1));
+          else
+            put(columns[k + 1], value_of(fields[k]));
         }
         if (fields.back().empty()) return;
         put(columns[names_.size()], static_cast<std::uint64_t>(run));
@@ -144,7 +153,8 @@ bool is_npz(const std::string& path) { return path.ends_with(".npz"); }
 void write_npz(const std::string& path, const std::string& key, const std::string& header, const Rows& rows) try {
   Table(key, header, rows).write(path);
 } catch (const std::invalid_argument&) {
-  throw Error("sweep", {}, fmt::format("{} is no file, and an archive of columns needs one", model::quote(path)), "name a file, or write the table as .csv");
+  throw Error("sweep", {}, fmt::format("{} is no file, and an archive of columns needs one", model::quote(path)),
+              "name a file, or write the table as .csv");
 }
 
 }  // namespace eomgen::cli

@@ -33,7 +33,8 @@ std::optional<Shard> shard_of(const std::string& text) {
 
 Points::Points(const std::vector<std::string>& grid, std::optional<Sampling> samples, std::optional<PointsFile> file)
     : samples_(std::move(samples)), file_(std::move(file)) {
-  if (samples_ && file_) throw Error("sweep", {}, "--sample and --points both say what changes fastest", "leave one of them out");
+  if (samples_ && file_)
+    throw Error("sweep", {}, "--sample and --points both say what changes fastest", "leave one of them out");
   if (!grid.empty() || (!samples_ && !file_)) grid_.emplace(grid);
   if (grid_) {
     size_ = grid_->size();
@@ -42,13 +43,17 @@ Points::Points(const std::vector<std::string>& grid, std::optional<Sampling> sam
   if (!samples_ && !file_) return;
   for (const std::string& name : samples_ ? samples_->names() : file_->names()) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
-      throw Error("sweep", {}, fmt::format("{} has a grid and is {}", model::quote(name), samples_ ? "sampled" : "a column of --points"), "leave one of them out");
+      throw Error(
+          "sweep", {},
+          fmt::format("{} has a grid and is {}", model::quote(name), samples_ ? "sampled" : "a column of --points"),
+          "leave one of them out");
     }
     names_.push_back(name);
   }
   const std::size_t each = samples_ ? samples_->size() : file_->size();
   if (each > most_points / size_) {
-    throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", most_points), "take fewer");
+    throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", most_points),
+                "take fewer");
   }
   size_ *= each;
 }
@@ -66,7 +71,8 @@ std::map<std::string, symbolic::Rational> Points::point(std::size_t index) const
 
 Shard parse_shard(const std::string& text) {
   if (const auto shard = shard_of(text)) return *shard;
-  throw Error("sweep", {}, fmt::format("{} is no shard", model::quote(text)), "write --shard NUMBER/COUNT, such as 2/8; numbers begin with 1");
+  throw Error("sweep", {}, fmt::format("{} is no shard", model::quote(text)),
+              "write --shard NUMBER/COUNT, such as 2/8; numbers begin with 1");
 }
 
 std::string shard_note(const Shard& shard, std::size_t runs) {

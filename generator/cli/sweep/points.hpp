@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The runs of a sweep: every point of its grid with every sample, or with every line of a file; and which of them a shard has.
+// The runs of a sweep: every point of its grid with every sample, or with every line of a file; and which of them a
+// shard has.
 #pragma once
 
 #include <map>
@@ -15,7 +16,8 @@ namespace eomgen::cli {
 
 class Points {
  public:
-  /// Throws Error where nothing is varied, a parameter is varied twice, there are samples and a file, or the points are more than most_points.
+  /// Throws Error where nothing is varied, a parameter is varied twice, there are samples and a file, or the points are
+  /// more than most_points.
   Points(const std::vector<std::string>& grid, std::optional<Sampling> samples, std::optional<PointsFile> file);
 
   const std::vector<std::string>& names() const { return names_; }

@@ -27,8 +27,12 @@ constexpr std::size_t most_bytes = 1'000'000'000;
 
 std::string text_of(const std::string& path) {
   std::error_code none;
-  if (!std::filesystem::is_regular_file(path, none)) fail(fmt::format("--points {}: there is no such file", model::quote(path)), "name a CSV file: a line of parameters, then lines of values");
-  if (std::filesystem::file_size(path, none) > most_bytes) fail(fmt::format("--points {}: the file is larger than 1 GB", model::quote(path)), "make several sweeps of parts of it");
+  if (!std::filesystem::is_regular_file(path, none))
+    fail(fmt::format("--points {}: there is no such file", model::quote(path)),
+         "name a CSV file: a line of parameters, then lines of values");
+  if (std::filesystem::file_size(path, none) > most_bytes)
+    fail(fmt::format("--points {}: the file is larger than 1 GB", model::quote(path)),
+         "make several sweeps of parts of it");
   std::ifstream file(path, std::ios::binary);
   std::ostringstream text;
   text << file.rdbuf();
@@ -39,8 +43,10 @@ std::string text_of(const std::string& path) {
 std::vector<std::string> fields_of(std::string_view line) {
   std::vector<std::string> fields(1);
   for (const char c : line) {
-    if (c == ',') fields.emplace_back();
-    else fields.back() += c;
+    if (c == ',')
+      fields.emplace_back();
+    else
+      fields.back() += c;
   }
   for (std::string& field : fields) {
     const auto blank = [](char c) { return c == ' ' || c == '\t' || c == '\r'; };
@@ -66,27 +72,34 @@ PointsFile::PointsFile(const std::string& path) {
       names_ = fields;
       for (std::size_t i = 0; i < names_.size(); ++i) {
         if (names_[i].empty()) fail(place + ": a column has no name", "name a parameter in each");
-        if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), names_[i]) != names_.begin() + static_cast<std::ptrdiff_t>(i)) {
+        if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), names_[i]) !=
+            names_.begin() + static_cast<std::ptrdiff_t>(i)) {
           fail(fmt::format("{}: {} comes twice", place, model::quote(names_[i])), "name each parameter once");
         }
       }
       continue;
     }
     if (fields.size() != names_.size()) {
-      fail(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names_.size()), "give a value for each, with commas between them");
+      fail(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names_.size()),
+           "give a value for each, with commas between them");
     }
     for (const std::string& field : fields) {
       const double value = cln::double_approx(parse_decimal(field, place));
-      if (!std::isfinite(value)) fail(fmt::format("{}: {} leaves the range of binary64", place, model::quote(field)), "use units in which it is nearer to 1");
+      if (!std::isfinite(value))
+        fail(fmt::format("{}: {} leaves the range of binary64", place, model::quote(field)),
+             "use units in which it is nearer to 1");
       values_.push_back(value);
     }
   }
-  if (names_.empty() || values_.empty()) fail(fmt::format("--points {}: no line has values", model::quote(path)), "write a line of parameters, then lines of values");
+  if (names_.empty() || values_.empty())
+    fail(fmt::format("--points {}: no line has values", model::quote(path)),
+         "write a line of parameters, then lines of values");
 }
 
 std::vector<symbolic::Rational> PointsFile::point(std::size_t index) const {
   std::vector<symbolic::Rational> result;
-  for (std::size_t k = 0; k < names_.size(); ++k) result.push_back(parse_decimal(shortest(values_[index * names_.size() + k]), names_[k]));
+  for (std::size_t k = 0; k < names_.size(); ++k)
+    result.push_back(parse_decimal(shortest(values_[index * names_.size() + k]), names_[k]));
   return result;
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters that a file gives: a CSV table whose first line names them, each further line a point. In: its path. Out: points.
+// Values of parameters that a file gives: a CSV table whose first line names them, each further line a point. In: its
+// path. Out: points.
 #pragma once
 
 #include <string>
@@ -11,7 +12,8 @@ namespace eomgen::cli {
 
 class PointsFile {
  public:
-  /// Lines that are empty or begin with # are left out. Throws Error with the number of the line for what is no such table.
+  /// Lines that are empty or begin with # are left out. Throws Error with the number of the line for what is no such
+  /// table.
   explicit PointsFile(const std::string& path);
 
   const std::vector<std::string>& names() const { return names_; }

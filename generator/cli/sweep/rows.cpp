@@ -111,7 +111,8 @@ void Rows::sort() {
   places_.erase(places_.begin(), first.base());
 }
 
-void Rows::each(std::size_t first, std::size_t last, const std::function<void(std::size_t, std::string_view)>& take) const {
+void Rows::each(std::size_t first, std::size_t last,
+                const std::function<void(std::size_t, std::string_view)>& take) const {
   constexpr std::size_t piece = 1 << 14;
   std::string held;  // a piece of one file, since neighbours mostly lie together
   std::uint32_t file = 0;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rows of a sweep's table, in files: memory holds the place of each, 24 bytes, whatever its length. In: lines that begin with the number
-// of their run. Out: the lines in the order of the runs.
+// Rows of a sweep's table, in files: memory holds the place of each, 24 bytes, whatever its length. In: lines that
+// begin with the number of their run. Out: the lines in the order of the runs.
 #pragma once
 
 #include <cstdint>
@@ -29,10 +29,12 @@ class OpenFile {
   std::shared_ptr<const int> descriptor_;
 };
 
-/// The lines of a file from its beginning, as long as `take` wants them; the last one only if it ends with a line break.
+/// The lines of a file from its beginning, as long as `take` wants them; the last one only if it ends with a line
+/// break.
 void each_line(const OpenFile& file, const std::function<bool(std::string_view line, std::uint64_t offset)>& take);
 
-/// The number of the run that a line begins with, if it has as many fields as `header`: what was written while a disk was full has not.
+/// The number of the run that a line begins with, if it has as many fields as `header`: what was written while a disk
+/// was full has not.
 bool reads_as_row(std::string_view line, std::string_view header, std::size_t& run);
 
 class Rows {
@@ -47,7 +49,8 @@ class Rows {
   std::size_t run(std::size_t i) const { return places_[i].run; }
   std::size_t length(std::size_t i) const { return places_[i].length; }
   /// Those from `first` to before `last`. Throws std::system_error.
-  void each(std::size_t first, std::size_t last, const std::function<void(std::size_t run, std::string_view line)>& take) const;
+  void each(std::size_t first, std::size_t last,
+            const std::function<void(std::size_t run, std::string_view line)>& take) const;
 
  private:
   struct Place {

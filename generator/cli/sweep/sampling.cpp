@@ -18,10 +18,13 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr std::size_t most_samples = 1'000'000'000'000, most_latin = 10'000'000, most_sobol = 1ULL << 32;  // latin keeps 4 bytes of each
+constexpr std::size_t most_samples = 1'000'000'000'000, most_latin = 10'000'000,
+                      most_sobol = 1ULL << 32;  // latin keeps 4 bytes of each
 
 [[noreturn]] void fail(const std::string& what) {
-  throw Error("sweep", {}, what, "write --sample NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal in SI units, with --samples N");
+  throw Error(
+      "sweep", {}, what,
+      "write --sample NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal in SI units, with --samples N");
 }
 
 // Steele, Lea and Flood's SplitMix64: a bijection of 64 bits that mixes them well.
@@ -32,14 +35,21 @@ std::uint64_t mixed(std::uint64_t z) {
   return z ^ (z >> 31);
 }
 
-// Primitive polynomials (degree, inner coefficients) and initial direction numbers of Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635,
-// from the second dimension on; the first is van der Corput's.
+// Primitive polynomials (degree, inner coefficients) and initial direction numbers of Joe and Kuo, SIAM J. Sci. Comput.
+// 30 (2008) 2635, from the second dimension on; the first is van der Corput's.
 struct Direction {
   unsigned degree, inner;
   std::uint32_t m[5];
 };
-constexpr Direction directions[] = {{1, 0, {1}},          {2, 1, {1, 3}},       {3, 1, {1, 3, 1}},    {3, 2, {1, 1, 1}},       {4, 1, {1, 1, 3, 3}},
-                                    {4, 4, {1, 3, 5, 13}}, {5, 2, {1, 1, 5, 5, 17}}, {5, 4, {1, 1, 5, 5, 5}}, {5, 7, {1, 1, 7, 11, 19}}};
+constexpr Direction directions[] = {{1, 0, {1}},
+                                    {2, 1, {1, 3}},
+                                    {3, 1, {1, 3, 1}},
+                                    {3, 2, {1, 1, 1}},
+                                    {4, 1, {1, 1, 3, 3}},
+                                    {4, 4, {1, 3, 5, 13}},
+                                    {5, 2, {1, 1, 5, 5, 17}},
+                                    {5, 4, {1, 1, 5, 5, 5}},
+                                    {5, 7, {1, 1, 7, 11, 19}}};
 constexpr std::size_t most_dimensions = 1 + std::size(directions);
 constexpr unsigned digits = 32;
 
@@ -66,7 +76,9 @@ std::uint32_t sobol(std::size_t dimension, std::uint64_t index) {
   return x;
 }
 
-double number(const std::string& text, const std::string& shown) { return cln::double_approx(parse_decimal(text, shown)); }
+double number(const std::string& text, const std::string& shown) {
+  return cln::double_approx(parse_decimal(text, shown));
+}
 
 }  // namespace
 
@@ -85,20 +97,27 @@ double normal_quantile(double part) {
   return part < 0.5 ? -x : x;
 }
 
-Sampling::Sampling(const std::vector<std::string>& axes, std::size_t count, const std::string& design, std::uint64_t seed) : count_(count), seed_(seed) {
+Sampling::Sampling(const std::vector<std::string>& axes, std::size_t count, const std::string& design,
+                   std::uint64_t seed)
+    : count_(count), seed_(seed) {
   if (axes.empty()) fail("--samples says how many, and no --sample says of what");
   if (count == 0) fail("--sample says of what, and --samples does not say how many");
   if (count > most_samples) fail(fmt::format("more than {} samples are asked for", most_samples));
-  if (design == "latin") design_ = Design::latin;
-  else if (design == "sobol") design_ = Design::sobol;
-  else if (design != "random") throw Error("sweep", {}, fmt::format("there is no design {}", model::quote(design)), "choose random, latin or sobol");
+  if (design == "latin")
+    design_ = Design::latin;
+  else if (design == "sobol")
+    design_ = Design::sobol;
+  else if (design != "random")
+    throw Error("sweep", {}, fmt::format("there is no design {}", model::quote(design)),
+                "choose random, latin or sobol");
   const std::size_t most = design_ == Design::latin ? most_latin : most_sobol;
   if (design_ != Design::random && count > most) {
     throw Error("sweep", {}, fmt::format("--design {} makes at most {} samples", design, most), "take --design random");
   }
   for (const std::string& text : axes) read(text);
   if (design_ == Design::sobol && axes_.size() > most_dimensions) {
-    throw Error("sweep", {}, fmt::format("a Sobol' sequence is made for at most {} parameters", most_dimensions), "take --design latin or random");
+    throw Error("sweep", {}, fmt::format("a Sobol' sequence is made for at most {} parameters", most_dimensions),
+                "take --design latin or random");
   }
   for (std::size_t a = 0; a < axes_.size() && design_ == Design::latin; ++a) {
     std::vector<std::uint32_t>& order = axes_[a].order;
@@ -116,17 +135,24 @@ void Sampling::read(const std::string& text) {
   if (equals == std::string::npos || equals == 0) fail(fmt::format("{} names no parameter", model::quote(text)));
   std::vector<std::string> fields{""};
   for (const char c : text.substr(equals + 1)) {
-    if (c == ':') fields.emplace_back();
-    else fields.back() += c;
+    if (c == ':')
+      fields.emplace_back();
+    else
+      fields.back() += c;
   }
   if (fields.size() < 2 || fields.size() > 3) fail(fmt::format("{} is no range of samples", model::quote(text)));
   Axis axis{text.substr(0, equals), number(fields[0], text), number(fields[1], text)};
   const std::string kind = fields.size() == 3 ? fields[2] : "lin";
-  if (kind == "log") axis.kind = Kind::logarithmic;
-  else if (kind == "normal") axis.kind = Kind::normal;
-  else if (kind != "lin") fail(fmt::format("{} has {} where lin, log or normal is asked", model::quote(text), model::quote(kind)));
-  if (axis.kind == Kind::logarithmic && !(axis.a * axis.b > 0)) fail(fmt::format("{} goes through 0 or changes its sign, which log cannot", model::quote(text)));
-  if (axis.kind == Kind::normal && !(axis.b > 0)) fail(fmt::format("the deviation in {} is not above 0", model::quote(text)));
+  if (kind == "log")
+    axis.kind = Kind::logarithmic;
+  else if (kind == "normal")
+    axis.kind = Kind::normal;
+  else if (kind != "lin")
+    fail(fmt::format("{} has {} where lin, log or normal is asked", model::quote(text), model::quote(kind)));
+  if (axis.kind == Kind::logarithmic && !(axis.a * axis.b > 0))
+    fail(fmt::format("{} goes through 0 or changes its sign, which log cannot", model::quote(text)));
+  if (axis.kind == Kind::normal && !(axis.b > 0))
+    fail(fmt::format("the deviation in {} is not above 0", model::quote(text)));
   for (const Axis& other : axes_) {
     if (other.name == axis.name) fail(fmt::format("{} is sampled twice", model::quote(axis.name)));
   }
@@ -162,7 +188,8 @@ std::vector<symbolic::Rational> Sampling::point(std::size_t index) const {
     if (axis.kind == Kind::logarithmic) value = axis.a * std::pow(axis.b / axis.a, u);
     if (axis.kind == Kind::normal) value = axis.a + axis.b * normal_quantile(std::max(u, 0x1p-54));
     if (!std::isfinite(value)) fail(fmt::format("{} leaves the range of binary64", model::quote(axis.name)));
-    result.push_back(parse_decimal(shortest(value), axis.name));  // the decimal that is this binary64, which the table shows
+    result.push_back(
+        parse_decimal(shortest(value), axis.name));  // the decimal that is this binary64, which the table shows
   }
   return result;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters at samples: --sample k=1:100 --sample m=1:0.1:normal --samples 1000 --design sobol. Each point follows from its
-// number, the seed and what was asked alone, so that any process makes any of them.
+// Values of parameters at samples: --sample k=1:100 --sample m=1:0.1:normal --samples 1000 --design sobol. Each point
+// follows from its number, the seed and what was asked alone, so that any process makes any of them.
 #pragma once
 
 #include <cstdint>
@@ -14,8 +14,9 @@ namespace eomgen::cli {
 class Sampling {
  public:
   Sampling() = default;
-  /// Each of `axes` is NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal. `design`: random; latin (hypercube: each axis in as many
-  /// equal parts as there are samples, one sample in each); sobol (a digitally shifted Sobol' sequence, of at most 10 axes). Throws Error.
+  /// Each of `axes` is NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal. `design`: random; latin
+  /// (hypercube: each axis in as many equal parts as there are samples, one sample in each); sobol (a digitally shifted
+  /// Sobol' sequence, of at most 10 axes). Throws Error.
   Sampling(const std::vector<std::string>& axes, std::size_t count, const std::string& design, std::uint64_t seed);
 
   std::vector<std::string> names() const;

@@ -56,7 +56,8 @@ ColumnStatistics statistics_of(const std::string& name, std::vector<double>& val
   result.greatest = values.back();
   result.histogram.resize(result.least < result.greatest ? histogram_parts : 1);
   for (const double value : values) {
-    const double place = value / 2 - result.least / 2, width = result.greatest / 2 - result.least / 2;  // halves: no range is infinite
+    const double place = value / 2 - result.least / 2,
+                 width = result.greatest / 2 - result.least / 2;  // halves: no range is infinite
     const std::size_t part = width > 0 ? static_cast<std::size_t>(place / width * histogram_parts) : 0;
     ++result.histogram[std::min(part, result.histogram.size() - 1)];
   }
@@ -69,9 +70,12 @@ ColumnStatistics statistics_of(const std::string& name, std::vector<double>& val
   return result;
 }
 
-bool ended_well(std::string_view outcome) { return outcome == eom::name(eom::Outcome::done) || outcome == eom::name(eom::Outcome::stopped_by_event); }
+bool ended_well(std::string_view outcome) {
+  return outcome == eom::name(eom::Outcome::done) || outcome == eom::name(eom::Outcome::stopped_by_event);
+}
 
-std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows, const EachRow& each_row) {
+std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows,
+                                                  const EachRow& each_row) {
   std::vector<std::string> names;
   each_field(header, std::string::npos, [&](std::size_t, std::string_view name) { names.emplace_back(name); });
   const auto outcome = static_cast<std::size_t>(std::find(names.begin(), names.end(), "outcome") - names.begin());
@@ -88,7 +92,8 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
         if (k < first || !well) return;
         double value = 0;
         const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-        if (error == std::errc() && stop == text.data() + text.size() && std::isfinite(value)) values[k - first].push_back(value);
+        if (error == std::errc() && stop == text.data() + text.size() && std::isfinite(value))
+          values[k - first].push_back(value);
       });
     });
     for (std::size_t k = first; k < last; ++k) {
@@ -101,9 +106,16 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
 nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const ColumnStatistics& c : columns) {
-    list.push_back({{"column", c.name}, {"count", c.count}, {"mean", c.mean}, {"deviation", c.deviation}, {"min", c.least}, {"max", c.greatest}, {"histogram", c.histogram}});
+    list.push_back({{"column", c.name},
+                    {"count", c.count},
+                    {"mean", c.mean},
+                    {"deviation", c.deviation},
+                    {"min", c.least},
+                    {"max", c.greatest},
+                    {"histogram", c.histogram}});
     nlohmann::ordered_json& quantiles = list.back()["quantiles"] = nlohmann::ordered_json::array();
-    for (std::size_t i = 0; i < c.quantiles.size(); ++i) quantiles.push_back({{"part", quantile_parts[i]}, {"value", c.quantiles[i]}});
+    for (std::size_t i = 0; i < c.quantiles.size(); ++i)
+      quantiles.push_back({{"part", quantile_parts[i]}, {"value", c.quantiles[i]}});
   }
   return list;
 }
@@ -111,11 +123,13 @@ nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns) {
 std::string to_text(const std::vector<ColumnStatistics>& columns) {
   std::size_t width = 6;
   for (const ColumnStatistics& c : columns) width = std::max(width, c.name.size());
-  std::string text = fmt::format("{:<{}} {:>9} {:>13} {:>13} {:>13}", "column", width, "runs", "mean", "deviation", "min");
+  std::string text =
+      fmt::format("{:<{}} {:>9} {:>13} {:>13} {:>13}", "column", width, "runs", "mean", "deviation", "min");
   for (const double part : quantile_parts) text += fmt::format(" {:>13}", fmt::format("{:g} %", 100 * part));
   text += fmt::format(" {:>13}\n", "max");
   for (const ColumnStatistics& c : columns) {
-    text += fmt::format("{:<{}} {:>9} {:>13.6g} {:>13.6g} {:>13.6g}", c.name, width, c.count, c.mean, c.deviation, c.least);
+    text +=
+        fmt::format("{:<{}} {:>9} {:>13.6g} {:>13.6g} {:>13.6g}", c.name, width, c.count, c.mean, c.deviation, c.least);
     for (const double value : c.quantiles) text += fmt::format(" {:>13.6g}", value);
     text += fmt::format(" {:>13.6g}\n", c.greatest);
   }

@@ -22,7 +22,7 @@
 namespace eomgen::cli {
 namespace {
 
-constexpr const char* refused = "refused";  // in place of an outcome, where a run could not begin
+constexpr const char* refused = "refused";     // in place of an outcome, where a run could not begin
 constexpr std::size_t most_runs = 10'000'000;  // of one process; each takes some 40 bytes of memory
 
 run::Overrides overrides_of(const SweepOptions& options) {
@@ -40,7 +40,9 @@ run::Overrides overrides_of(const SweepOptions& options) {
 
 std::optional<Sampling> samples_of(const SweepOptions& options, std::uint64_t seed) {
   if (options.sample.empty() && options.samples == 0) {
-    if (options.design) throw Error("sweep", {}, "--design is of samples, and there are none", "add --sample NAME=FROM:TO and --samples N, or leave it out");
+    if (options.design)
+      throw Error("sweep", {}, "--design is of samples, and there are none",
+                  "add --sample NAME=FROM:TO and --samples N, or leave it out");
     return std::nullopt;
   }
   return Sampling(options.sample, options.samples, options.design.value_or("random"), seed);
@@ -54,13 +56,16 @@ std::optional<PointsFile> file_of(const SweepOptions& options, std::string& hash
 }
 
 /// What makes two sweeps the same: the model's bytes and all that was asked.
-std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed, const std::string& points_hash) {
-  std::string text = model.content_hash + '\n' + options.scene + '\n' + (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
+std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
+                   const std::string& points_hash) {
+  std::string text = model.content_hash + '\n' + options.scene + '\n' +
+                     (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
   for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
     text += '\n';
     for (const std::string& entry : *list) text += entry + '\x1f';
   }
-  for (const auto& value : {options.rtol, options.atol, options.step, options.t_end}) text += '\n' + (value ? shortest(*value) : "");
+  for (const auto& value : {options.rtol, options.atol, options.step, options.t_end})
+    text += '\n' + (value ? shortest(*value) : "");
   if (options.ensemble) text += "\nensemble";
   if (!options.sample.empty()) {
     text += fmt::format("\n{} {} {}", options.samples, options.design.value_or("random"), seed);
@@ -72,23 +77,32 @@ std::string key_of(const SweepOptions& options, const model::Model& model, std::
 
 // A comma, a quotation mark or a line break inside of a field would be read as the end of it.
 std::string field(std::string text) {
-  std::replace_if(text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
   if (text.find_first_of(",\"") == std::string::npos) return text;
   std::string quoted = "\"";
   for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
   return quoted + "\"";
 }
 
-std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value)) : std::isnan(value) ? "nan" : value > 0 ? "inf" : "-inf"; }
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value))
+         : std::isnan(value)  ? "nan"
+         : value > 0          ? "inf"
+                              : "-inf";
+}
 
 Shard shard_of(const SweepOptions& options, const Points& points, std::size_t processes) {
   const Shard shard = options.shard ? parse_shard(*options.shard) : Shard{};
   if (shard.size(points.size()) == 0) {
-    throw Error("sweep", {}, fmt::format("shard {}/{} has no runs: there are {} in all", shard.number, shard.count, points.size()), "take fewer shards");
+    throw Error("sweep", {},
+                fmt::format("shard {}/{} has no runs: there are {} in all", shard.number, shard.count, points.size()),
+                "take fewer shards");
   }
   const std::size_t most = most_runs * processes;
   if (shard.size(points.size()) > most) {
-    throw Error("sweep", {}, fmt::format("a call makes no more than {} points, and these are {}", most, shard.size(points.size())),
+    throw Error("sweep", {},
+                fmt::format("a call makes no more than {} points, and these are {}", most, shard.size(points.size())),
                 "take fewer, or parts of them by --shard, each in a call of its own");
   }
   return shard;
@@ -109,23 +123,33 @@ void require_names(const Points& points, const SweepOptions& options, const mode
   }
 }
 
-std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed, const std::string& points_hash, const Shard& shard, const Points& points) {
+std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
+                         const std::string& points_hash, const Shard& shard, const Points& points) {
   return key_of(options, model, seed, points_hash) + (options.shard ? shard_note(shard, points.size()) : "");
 }
 
-std::size_t threads_of(const SweepOptions& options) { return options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency()); }
+std::size_t threads_of(const SweepOptions& options) {
+  return options.jobs > 0 ? options.jobs : std::max(1u, std::thread::hardware_concurrency());
+}
 
 }  // namespace
 
 Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Model& model)
-    : options_(options), seed_(common.seed), points_(options.grid, samples_of(options, common.seed), file_of(options, points_hash_)), shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
+    : options_(options),
+      seed_(common.seed),
+      points_(options.grid, samples_of(options, common.seed), file_of(options, points_hash_)),
+      shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
-      ledger_((require_names(points_, options, model), require_places({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
-              key_of_table(options, model, common.seed, points_hash_, shard_, points_), [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
+      ledger_((require_names(points_, options, model),
+               require_places({{"--out", file_, is_npz(file_) ? ".npz" : ".csv"}}, model.file, common.json), file_),
+              key_of_table(options, model, common.seed, points_hash_, shard_, points_),
+              [this](std::size_t run) { return run < points_.size() && shard_.has(run); },
               common.team == nullptr || common.team->leads() ? Ledger::Part::whole : Ledger::Part::member),
-      resumed_(ledger_.rows().size()), team_(common.team) {
+      resumed_(ledger_.rows().size()),
+      team_(common.team) {
   if (is_npz(file_) && (options.shard || team_ != nullptr)) {
-    throw Error("sweep", {}, fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
+    throw Error("sweep", {},
+                fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
                 "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
   }
   if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
@@ -237,7 +261,8 @@ std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
     run::Overrides overrides = at(run);
     overrides.exchanges_charts = charts;
     try {
-      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene(options_.scene), overrides);
+      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene(options_.scene),
+                         overrides);
       return true;
     } catch (const Error& error) {
       if (error.stage() != "scene") throw;
@@ -254,7 +279,8 @@ std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
   for (std::size_t run = 0; run < points_.size() && tries < most_runs; ++run, ++tries) {
     if (!is_open(open, run) && begins(run)) return run;
   }
-  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", why), "change the grid or the scene: " + remedy);
+  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", why),
+              "change the grid or the scene: " + remedy);
 }
 
 std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
@@ -273,7 +299,8 @@ std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
 bool Sweep::is_open(const std::vector<Stretch>& open, std::size_t run) const {
   if (!shard_.has(run)) return false;
   const std::size_t place = run / shard_.count;
-  const auto after = std::upper_bound(open.begin(), open.end(), place, [](std::size_t p, const Stretch& stretch) { return p < stretch.first; });
+  const auto after = std::upper_bound(open.begin(), open.end(), place,
+                                      [](std::size_t p, const Stretch& stretch) { return p < stretch.first; });
   return after != open.begin() && place - std::prev(after)->first < std::prev(after)->count;
 }
 
@@ -281,7 +308,8 @@ void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
   if (!is_open(open, run) || first_->result.outcome == eom::Outcome::interrupted) return;
   ledger_.add(run, row(run, first_->result));
   const std::size_t place = run / shard_.count;
-  const auto holds = std::find_if(open.begin(), open.end(), [place](const Stretch& stretch) { return place - stretch.first < stretch.count; });
+  const auto holds = std::find_if(open.begin(), open.end(),
+                                  [place](const Stretch& stretch) { return place - stretch.first < stretch.count; });
   const Stretch behind{place + 1, holds->first + holds->count - place - 1};
   holds->count = place - holds->first;
   const auto next = holds->count == 0 ? open.erase(holds) : std::next(holds);
@@ -303,7 +331,8 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
     if (!ensemble_) ensemble_.emplace(*first_);
     ensemble_->run({runs, threads, [this](std::size_t run) { return at(run); },
                     [this](std::size_t run, const run::RunResult& result) { ledger_.add(run, row(run, result)); },
-                    [this](std::size_t run, const std::string& why) { ledger_.add(run, refusal(run, why)); }, &Interrupt::flag()});
+                    [this](std::size_t run, const std::string& why) { ledger_.add(run, refusal(run, why)); },
+                    &Interrupt::flag()});
     return;
   }
   TidyGraph graph(*first_);
@@ -311,7 +340,9 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
     graph.tidy();
     return made(run);
   };
-  by_processes(runs, threads, line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); }, Interrupt::flag());
+  by_processes(
+      runs, threads, line, [this](std::size_t run, const std::string& text) { ledger_.add(run, text); },
+      Interrupt::flag());
 }
 
 /// In this process alone, which MPI does not want to be forked.
@@ -355,9 +386,11 @@ std::string Sweep::refusal(std::size_t run, const std::string& why) const {
 }
 
 std::string Sweep::row(std::size_t run, const run::RunResult& result) const {
-  std::string text = beginning(run) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t), result.statistics.steps, result.statistics.rhs_evaluations);
+  std::string text = beginning(run) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
+                                                  result.statistics.steps, result.statistics.rhs_evaluations);
   for (const std::string& name : names_) {
-    const auto found = std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
+    const auto found =
+        std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
     text += "," + (found == result.final.end() ? "" : number(found->second));
   }
   const auto& estimate = result.error_estimate;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A sweep: which runs there are, which of them are open, how each becomes a row of the table. In: what was asked. Out: the table.
+// A sweep: which runs there are, which of them are open, how each becomes a row of the table. In: what was asked. Out:
+// the table.
 #pragma once
 
 #include <optional>
@@ -45,7 +46,8 @@ class Sweep {
   void make_open_runs();
   void write_by_team();
   std::vector<Stretch> open_runs() const;
-  /// Code and columns by the first of the open runs that can begin, else by any that can. Gives it, or none where an interruption came first.
+  /// Code and columns by the first of the open runs that can begin, else by any that can. Gives it, or none where an
+  /// interruption came first.
   std::optional<std::size_t> prepare(const std::vector<Stretch>& open);
   bool simulate_first(std::size_t run, bool integrate);
   std::size_t first_that_begins(const std::vector<Stretch>& open);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Several processes, maybe on several machines, that make one sweep. The first hands out runs in blocks and makes none where there are
-// others; each of the others keeps the rows that it makes in a file of its own, and all together write the table.
+// Several processes, maybe on several machines, that make one sweep. The first hands out runs in blocks and makes none
+// where there are others; each of the others keeps the rows that it makes in a file of its own, and all together write
+// the table.
 #pragma once
 
 #include <atomic>
@@ -25,14 +26,16 @@ class Team {
   bool leads() const { return rank() == 0; }
   std::size_t workers() const { return size() > 1 ? size() - 1 : 1; }
 
-  /// Of the first one: all that can be wrong before the work has been looked at; the others begin with this run, if there is any to make.
+  /// Of the first one: all that can be wrong before the work has been looked at; the others begin with this run, if
+  /// there is any to make.
   virtual void go(std::optional<std::uint64_t> run) = 0;
   /// What go() was called with, for the others.
   virtual std::optional<std::uint64_t> gone() const = 0;
   /// First one process of each machine, then its others: what the first compiles the others find.
   virtual void one_by_machine(const std::function<void()>& work) = 0;
 
-  /// Of the first one: answers the others until all of `open` is handed out, or `stop`. A block has `least` runs or more.
+  /// Of the first one: answers the others until all of `open` is handed out, or `stop`. A block has `least` runs or
+  /// more.
   virtual void hand_out(std::vector<Stretch> open, std::uint64_t least, const std::atomic<bool>& stop) = 0;
   /// Of the others: the next block, or none.
   virtual std::optional<Stretch> next() = 0;
@@ -43,9 +46,11 @@ class Team {
     Stretch where;
     std::uint64_t bytes = 0;
   };
-  /// Writes the pieces of all behind one another, in the order of the table, to what the first one calls `path`, from `begin` on. Returns
+  /// Writes the pieces of all behind one another, in the order of the table, to what the first one calls `path`, from
+  /// `begin` on. Returns
   /// "" or, for all, why that failed.
-  virtual std::string write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces, const std::function<std::string(std::size_t piece)>& text) = 0;
+  virtual std::string write(const std::string& path, std::uint64_t begin, const std::vector<Piece>& pieces,
+                            const std::function<std::string(std::size_t piece)>& text) = 0;
   /// Waits for all. From now on nobody needs the others.
   virtual void part() = 0;
 };

@@ -23,7 +23,8 @@ namespace {
 class Child {
  public:
   Child(pid_t id, int pipe) : id_(id), pipe_(pipe) {}
-  Child(Child&& other) noexcept : id_(std::exchange(other.id_, 0)), pipe_(std::exchange(other.pipe_, -1)), text_(std::move(other.text_)) {}
+  Child(Child&& other) noexcept
+      : id_(std::exchange(other.id_, 0)), pipe_(std::exchange(other.pipe_, -1)), text_(std::move(other.text_)) {}
   Child& operator=(Child&&) = delete;
   ~Child() {  // left early: by an error or an interruption
     if (id_ <= 0) return;
@@ -43,7 +44,8 @@ class Child {
     if (count < 0) return errno == EINTR || errno == EAGAIN;
     if (count == 0) return ended();
     text_.append(buffer, static_cast<std::size_t>(count));
-    for (std::size_t end; (end = text_.find('\n')) != std::string::npos; text_.erase(0, end + 1)) take(text_.substr(0, end));
+    for (std::size_t end; (end = text_.find('\n')) != std::string::npos; text_.erase(0, end + 1))
+      take(text_.substr(0, end));
     return true;
   }
 
@@ -72,7 +74,8 @@ bool write_all(int pipe, const std::string& text) {
 }
 
 // Every `stride`-th job from `first`: neighbours of a grid take about as long as one another.
-[[noreturn]] void work(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t stride, int pipe, const std::function<std::string(std::size_t)>& line) {
+[[noreturn]] void work(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t stride, int pipe,
+                       const std::function<std::string(std::size_t)>& line) {
   int status = 0;
   try {
     for (std::size_t i = first; i < jobs.size(); i += stride) {
@@ -88,10 +91,12 @@ bool write_all(int pipe, const std::string& text) {
   _exit(status);  // no destructors: what they would clean up is the parent's
 }
 
-Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t stride, const std::function<std::string(std::size_t)>& line) {
+Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t stride,
+            const std::function<std::string(std::size_t)>& line) {
   int ends[2];
   const auto lost = [] {
-    throw Error("sweep", {}, fmt::format("no process could be started: {}", std::strerror(errno)), "close other programs, or ask for fewer with --jobs", Fault::tool);
+    throw Error("sweep", {}, fmt::format("no process could be started: {}", std::strerror(errno)),
+                "close other programs, or ask for fewer with --jobs", Fault::tool);
   };
   if (::pipe(ends) != 0) lost();
   std::fflush(stdout);
@@ -108,8 +113,10 @@ Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t
 
 }  // namespace
 
-void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes, const std::function<std::string(std::size_t)>& line,
-                  const std::function<void(std::size_t, const std::string&)>& done, const std::atomic<bool>& interrupt) {
+void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes,
+                  const std::function<std::string(std::size_t)>& line,
+                  const std::function<void(std::size_t, const std::string&)>& done,
+                  const std::atomic<bool>& interrupt) {
   const std::size_t count = std::min(processes, jobs.size());
   std::vector<Child> children;
   for (std::size_t first = 0; first < count; ++first) children.push_back(start(jobs, first, count, line));
@@ -134,7 +141,9 @@ void by_processes(const std::vector<std::size_t>& jobs, std::size_t processes, c
     for (std::size_t i = 0; i < waiting.size(); ++i) {
       if (waiting[i].revents == 0 || of[i]->read(take)) continue;
       throw Error("sweep", {}, "a process of the sweep ended before its runs were done",
-                  "the rows that are there are kept, and the same command goes on from them; with --jobs 1 the run that fails is the next one", Fault::tool);
+                  "the rows that are there are kept, and the same command goes on from them; with --jobs 1 the run "
+                  "that fails is the next one",
+                  Fault::tool);
     }
   }
 }

@@ -33,13 +33,20 @@ struct Array {
   const char* name;  // of the argument, and of what says that it is each state's own
   const char* own;
 };
-constexpr Array arrays[] = {{Slot::time, "t", "own_time"}, {Slot::state, "x", nullptr}, {Slot::parameter, "p", "own_parameters"},
-                            {Slot::prepared, "w", "own_prepared"}, {Slot::input, "u", "own_inputs"}};
+constexpr Array arrays[] = {{Slot::time, "t", "own_time"},
+                            {Slot::state, "x", nullptr},
+                            {Slot::parameter, "p", "own_parameters"},
+                            {Slot::prepared, "w", "own_prepared"},
+                            {Slot::input, "u", "own_inputs"}};
 
 class File {
  public:
   File(const program::Program& program, const EmissionContext& context)
-      : program_(program), context_(context), name_(mangled_id(context.id)), prefix_(name_ + "_batch_"), names_(model_names(program, context)) {
+      : program_(program),
+        context_(context),
+        name_(mangled_id(context.id)),
+        prefix_(name_ + "_batch_"),
+        names_(model_names(program, context)) {
     dialect_.real = prefix_ + "lanes";
     dialect_.constant = [](const symbolic::Rational& value) { return decimal(nearest_double(value)); };
     dialect_.value = decimal;
@@ -50,14 +57,19 @@ class File {
     for (const auto* list : {&names_.state, &names_.contacts, &names_.parameters, &names_.inputs, &names_.sides}) {
       for (const std::string& name : *list) table.declare(name);
     }
-    for (std::size_t i = 0; i < program.prepared_count(); ++i) names_.prepared.push_back(table.declare(fmt::format("w_{}", i)));
+    for (std::size_t i = 0; i < program.prepared_count(); ++i)
+      names_.prepared.push_back(table.declare(fmt::format("w_{}", i)));
   }
 
   std::vector<EmittedFile> run() {
     for (const Function& function : program_.functions) add(function);
     std::vector<std::pair<std::string, std::string>> values = {
-        {"banner", banner(program_, context_, "/* ", " * ", " */")}, {"name", name_}, {"prefix", prefix_}, {"library", library()},
-        {"contact_bits", std::to_string(eom::contact_bits)}, {"contact_states", std::to_string(eom::contact_states)},
+        {"banner", banner(program_, context_, "/* ", " * ", " */")},
+        {"name", name_},
+        {"prefix", prefix_},
+        {"library", library()},
+        {"contact_bits", std::to_string(eom::contact_bits)},
+        {"contact_states", std::to_string(eom::contact_states)},
         {"sincos", packs_ ? sincos() : ""}};
     return {{name_ + "_batch.c", rendered(skeleton::batch_model_batch_c, values, defined_)},
             {name_ + "_batch.h", rendered(skeleton::batch_model_batch_h, values, declared_)}};
@@ -75,7 +87,8 @@ class File {
   }
 
   void add(const Function& function) {
-    const bool gives = std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.second.empty(); });
+    const bool gives =
+        std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.second.empty(); });
     if (!gives) return;
     const FunctionText text = print_function(function, names_, context_, dialect_);
     FunctionText plain;
@@ -89,32 +102,41 @@ class File {
     if (numbers > most_numbers) return;
     packs_ = packs_ || text.packs > 0;
     library_.insert(text.library.begin(), text.library.end());
-    const std::string head = wrapped(fmt::format("int {}_{}_batch({})", name_, function.name, batch_arguments(list)), "    ");
+    const std::string head =
+        wrapped(fmt::format("int {}_{}_batch({})", name_, function.name, batch_arguments(list)), "    ");
     declared_.push_back({{"purpose", purpose(function.name)}, {"prototype", head}});
-    defined_.push_back({{"definition", kernel(function, text) + adaptor(function, list) + driver(function, list, head)}});
+    defined_.push_back(
+        {{"definition", kernel(function, text) + adaptor(function, list) + driver(function, list, head)}});
   }
 
   static bool takes(const std::vector<Argument>& list, Slot slot) {
-    return std::any_of(list.begin(), list.end(), [&](const Argument& a) { return a.kind != Argument::Kind::mode && a.kind != Argument::Kind::result && a.slot == slot; });
+    return std::any_of(list.begin(), list.end(), [&](const Argument& a) {
+      return a.kind != Argument::Kind::mode && a.kind != Argument::Kind::result && a.slot == slot;
+    });
   }
 
   static std::string batch_arguments(const std::vector<Argument>& list) {
     std::string inputs, results;
     for (const Argument& a : list) {
-      if (a.kind == Argument::Kind::result) results += fmt::format("double* {}, ", a.name);
-      else inputs += a.kind == Argument::Kind::mode ? "const int* mode, " : fmt::format("const double* {}, ", a.name);
+      if (a.kind == Argument::Kind::result)
+        results += fmt::format("double* {}, ", a.name);
+      else
+        inputs += a.kind == Argument::Kind::mode ? "const int* mode, " : fmt::format("const double* {}, ", a.name);
     }
     return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
   }
 
   std::string kernel(const Function& function, const FunctionText& text) const {
-    const std::string full = fmt::format("{}{}", prefix_, function.name), argument = fmt::format("const struct {}block* {}", prefix_, text.block);
+    const std::string full = fmt::format("{}{}", prefix_, function.name),
+                      argument = fmt::format("const struct {}block* {}", prefix_, text.block);
     std::string result = fmt::format("#if {}WIDTH > 1\n", prefix_);
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
-      result += fmt::format("__attribute__((noinline))\nstatic int {}_part{}({}, {}* {})\n{{\n{}}}\n\n", full, k + 1, argument, dialect_.real, text.work, text.parts[k]);
+      result += fmt::format("__attribute__((noinline))\nstatic int {}_part{}({}, {}* {})\n{{\n{}}}\n\n", full, k + 1,
+                            argument, dialect_.real, text.work, text.parts[k]);
     }
     const std::string body = text.parts.empty() ? text.body : calls_of_parts(full, text, text.block, dialect_.real);
-    return result + fmt::format("static int {}({})\n{{\n{}}}\n#else\n#define {} NULL\n#endif\n\n", full, argument, body, full);
+    return result +
+           fmt::format("static int {}({})\n{{\n{}}}\n#else\n#define {} NULL\n#endif\n\n", full, argument, body, full);
   }
 
   std::string adaptor(const Function& function, const std::vector<Argument>& list) const {
@@ -122,15 +144,20 @@ class File {
     std::size_t results = 0;
     for (const Argument& a : list) {
       handed += handed.empty() ? "" : ", ";
-      if (a.kind == Argument::Kind::result) handed += fmt::format("state->to[{}]", results++);
-      else if (a.kind == Argument::Kind::mode) handed += "state->mode";
-      else handed += fmt::format("{}state->from[{}]", a.kind == Argument::Kind::number ? "*" : "", place_of(a.slot));
+      if (a.kind == Argument::Kind::result)
+        handed += fmt::format("state->to[{}]", results++);
+      else if (a.kind == Argument::Kind::mode)
+        handed += "state->mode";
+      else
+        handed += fmt::format("{}state->from[{}]", a.kind == Argument::Kind::number ? "*" : "", place_of(a.slot));
     }
     return fmt::format("static int {0}{1}_alone(const struct {0}state* state)\n{{\n{2}\n}}\n\n", prefix_, function.name,
                        wrapped(fmt::format("  return {}_{}({});", name_, function.name, handed), "      "));
   }
   static std::size_t place_of(Slot slot) {
-    return static_cast<std::size_t>(std::find_if(std::begin(arrays), std::end(arrays), [slot](const Array& a) { return a.slot == slot; }) - std::begin(arrays));
+    return static_cast<std::size_t>(
+        std::find_if(std::begin(arrays), std::end(arrays), [slot](const Array& a) { return a.slot == slot; }) -
+        std::begin(arrays));
   }
 
   std::string driver(const Function& function, const std::vector<Argument>& list, const std::string& head) const {
@@ -145,7 +172,9 @@ class File {
       if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);
       return count;
     };
-    std::string fill = fmt::format("  memset(&call, 0, sizeof call);\n  call.kernel = {0}{1};\n  call.one = {0}{1}_alone;\n", prefix_, function.name);
+    std::string fill =
+        fmt::format("  memset(&call, 0, sizeof call);\n  call.kernel = {0}{1};\n  call.one = {0}{1}_alone;\n", prefix_,
+                    function.name);
     for (std::size_t k = 0; k < std::size(arrays); ++k) {
       const Array& array = arrays[k];
       if (!takes(list, array.slot)) continue;
@@ -155,8 +184,10 @@ class File {
         fill += "  (void)u;\n";
         continue;
       }
-      fill += fmt::format("  call.from[{}] = {};\n  call.entries[{}] = {};\n", k, input ? "u ? u : standing" : array.name, k, count);
-      const std::string own = array.own == nullptr ? "1" : fmt::format("{}(own & {}_{}) != 0", input ? "u && " : "", name_, array.own);
+      fill += fmt::format("  call.from[{}] = {};\n  call.entries[{}] = {};\n", k,
+                          input ? "u ? u : standing" : array.name, k, count);
+      const std::string own =
+          array.own == nullptr ? "1" : fmt::format("{}(own & {}_{}) != 0", input ? "u && " : "", name_, array.own);
       fill += fmt::format("  call.own[{}] = {};\n", k, own);
     }
     if (std::any_of(list.begin(), list.end(), [](const Argument& a) { return a.kind == Argument::Kind::mode; })) {
@@ -168,7 +199,8 @@ class File {
       fill += fmt::format("  call.to[{0}] = {1};\n  call.results[{0}] = {2};\n", r++, result, size(list_of.size()));
     }
     body += fmt::format("  double room[({}WIDTH + 1)*({})];\n", prefix_, numbers.empty() ? "1" : numbers);
-    return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill, prefix_);
+    return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,
+                       prefix_);
   }
 
   std::string sincos() const {
@@ -194,9 +226,11 @@ class File {
     std::string text;
     for (const std::string& function : library_) {
       const bool two = function == "pow" || function == "atan2";
-      const std::string arguments = two ? fmt::format("{0}lanes a, {0}lanes b", prefix_) : fmt::format("{}lanes a", prefix_);
-      text += fmt::format("{0}INLINE {0}lanes {1}({2})\n{{\n  for (int k = 0; k < {0}WIDTH; ++k) a[k] = {3}({4});\n  return a;\n}}\n\n", prefix_,
-                          prefix_ + function, arguments, function, two ? "a[k], b[k]" : "a[k]");
+      const std::string arguments =
+          two ? fmt::format("{0}lanes a, {0}lanes b", prefix_) : fmt::format("{}lanes a", prefix_);
+      text += fmt::format(
+          "{0}INLINE {0}lanes {1}({2})\n{{\n  for (int k = 0; k < {0}WIDTH; ++k) a[k] = {3}({4});\n  return a;\n}}\n\n",
+          prefix_, prefix_ + function, arguments, function, two ? "a[k], b[k]" : "a[k]");
     }
     return text;
   }
@@ -215,7 +249,8 @@ class File {
 
 std::vector<EmittedFile> emit_batch(const program::Program& program, const EmissionContext& context) {
   if (!program.charts.empty()) {
-    throw Error("emit", {}, "the target batch does not know charts yet", "use the target c or cpp, or leave --with charts out");
+    throw Error("emit", {}, "the target batch does not know charts yet",
+                "use the target c or cpp, or leave --with charts out");
   }
   std::vector<EmittedFile> files = emit_c(program, context);
   for (EmittedFile& file : File(program, context).run()) files.push_back(std::move(file));

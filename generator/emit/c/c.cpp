@@ -52,8 +52,10 @@ std::string definition(const std::string& name, const program::Function& functio
     const std::string list = guard + argument_list(arguments(function.name, text, names), "double");
     std::string parts;
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
-      parts += fmt::format("#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\nstatic int {}_part{}({}, double* {})\n{{\n{}}}\n\n", name, k + 1,
-                           list, text.work, text.parts[k]);
+      parts += fmt::format(
+          "#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\nstatic int {}_part{}({}, double* "
+          "{})\n{{\n{}}}\n\n",
+          name, k + 1, list, text.work, text.parts[k]);
     }
     const std::string handed = (text.near_first ? text.guarded + ", " : "") + argument_names(function, text, names);
     text.body = calls_of_parts(name, text, handed, "double");
@@ -64,18 +66,22 @@ std::string definition(const std::string& name, const program::Function& functio
   const std::string arguments = argument_names(function, text, names);
   std::string inner = head(name + "_from");
   inner.insert(inner.find('(') + 1, fmt::format("int {}, ", text.guarded));
-  return fmt::format("/* -1: not guarded, and an angle is too far for that. */\n"
-                     "#if defined(__GNUC__)\n__attribute__((always_inline))\n#endif\nstatic inline {}\n{{\n{}}}\n\n"
-                     "#if defined(__GNUC__)\n__attribute__((cold, noinline))\n#endif\nstatic {}\n{{\n  return {}_from(1, {});\n}}\n\n"
-                     "{}{}\n{{\n  const int code = {}_from(0, {});\n  return code >= 0 ? code : {}_far({});\n}}\n",
-                     inner, text.body, head(name + "_far"), name, arguments, linkage, head(name), name, arguments, name, arguments);
+  return fmt::format(
+      "/* -1: not guarded, and an angle is too far for that. */\n"
+      "#if defined(__GNUC__)\n__attribute__((always_inline))\n#endif\nstatic inline {}\n{{\n{}}}\n\n"
+      "#if defined(__GNUC__)\n__attribute__((cold, noinline))\n#endif\nstatic {}\n{{\n  return {}_from(1, {});\n}}\n\n"
+      "{}{}\n{{\n  const int code = {}_from(0, {});\n  return code >= 0 ? code : {}_far({});\n}}\n",
+      inner, text.body, head(name + "_far"), name, arguments, linkage, head(name), name, arguments, name, arguments);
 }
 
 std::string sizes(const std::string& name, const program::Program& program, const EmissionContext& context) {
-  std::vector<std::pair<const char*, std::size_t>> entries = {
-      {"states", program.state_count()}, {"parameters", context.parameters.size()}, {"inputs", context.inputs.size()},
-      {"constraints_active", program.active_constraints}, {"reaction_count", program.reactions.size()},
-      {"output_count", program.outputs.size()}, {"prepared_size", program.prepared_count()}};
+  std::vector<std::pair<const char*, std::size_t>> entries = {{"states", program.state_count()},
+                                                              {"parameters", context.parameters.size()},
+                                                              {"inputs", context.inputs.size()},
+                                                              {"constraints_active", program.active_constraints},
+                                                              {"reaction_count", program.reactions.size()},
+                                                              {"output_count", program.outputs.size()},
+                                                              {"prepared_size", program.prepared_count()}};
   if (program.event_count() > 0) entries.emplace_back("event_count", program.event_count());
   if (program.taylor) entries.emplace_back("taylor_order", program::taylor_order(*program.taylor));
   std::vector<std::string> lines;
@@ -117,7 +123,8 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},
-      {"includes", packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>" : "#include <math.h>"},
+      {"includes",
+       packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>" : "#include <math.h>"},
       {"kernels", packs ? sincos_kernel(name + "_", "static inline", "") + "\n" : ""},
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},

@@ -54,17 +54,19 @@ std::vector<EmittedFile> emit_cpp(const program::Program& program, const Emissio
     const TaylorText text = print_taylor(program, names, context, dialect, "");
     taylor = "\n" + text.definition;
   }
-  const SelfTestNames test{[](const std::string& f) { return f + "<double>"; }, template_kernels + "differs", "nullptr"};
+  const SelfTestNames test{[](const std::string& f) { return f + "<double>"; }, template_kernels + "differs",
+                           "nullptr"};
   std::vector<EmittedFile> files = {
       {name + ".hpp",
        rendered(skeleton::cpp_model_hpp,
                 {{"banner", banner(program, context, "// ", "// ", "")},
                  {"name", name},
-                {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>" : "#include <cmath>\n#include <cstddef>"},
-                {"kernels", packs ? generic_sincos + sincos_kernel(template_kernels, "inline", "std::") : ""},
+                 {"includes", packs ? "#include <cfloat>\n#include <cmath>\n#include <cstddef>\n#include <cstring>"
+                                    : "#include <cmath>\n#include <cstddef>"},
+                 {"kernels", packs ? generic_sincos + sincos_kernel(template_kernels, "inline", "std::") : ""},
                  {"enums", index_names(names, program.prepared_count(), program.taylor)},
                  {"prepared", (program.prepared_count() > 0 ? prepared_struct : "") + taylor},
-                {"info", string_literal(info_json(program, context), "      ")},
+                 {"info", string_literal(info_json(program, context), "      ")},
                  {"defaults", defaults_body(program, context, dialect)},
                  {"comparison", selftest_comparison(context, test, dialect)},
                  {"selftest", selftest_body(program, context, test, dialect)}},

@@ -72,22 +72,28 @@ std::string index_names(const ModelNames& names, std::size_t prepared, const std
   return result;
 }
 
-TemplateFunctions template_functions(const program::Program& program, const ModelNames& names, const EmissionContext& context, const Dialect& dialect, const std::string& mark) {
+TemplateFunctions template_functions(const program::Program& program, const ModelNames& names,
+                                     const EmissionContext& context, const Dialect& dialect, const std::string& mark) {
   TemplateFunctions result;
   for (const FilePart& part : file_parts(program, "", "Real")) {
     std::vector<std::pair<std::string, std::string>> entry{{"purpose", part.purpose}};
     if (part.function == nullptr) {
-      entry.emplace_back("head", wrapped(fmt::format("{}int {}({})", mark, part.name, part.arguments), std::string(part.name.size() + 5, ' ')));
+      entry.emplace_back("head", wrapped(fmt::format("{}int {}({})", mark, part.name, part.arguments),
+                                         std::string(part.name.size() + 5, ' ')));
       entry.emplace_back("body", part.body);
     } else {
       FunctionText text = print_function(*part.function, names, context, dialect);
       result.packs = result.packs || text.packs > 0;
       for (std::size_t k = 0; k < text.parts.size(); ++k) {
         const std::string list = argument_list(arguments(part.function->name, text, names), "Real");
-        const std::string head = fmt::format("#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\n{}int {}_part{}({}, Real* {})", mark, part.name, k + 1, list, text.work);
-        result.functions.push_back({{"purpose", fmt::format("Part {} of {}.", k + 1, part.name)}, {"head", head}, {"body", text.parts[k]}});
+        const std::string head =
+            fmt::format("#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\n{}int {}_part{}({}, Real* {})", mark,
+                        part.name, k + 1, list, text.work);
+        result.functions.push_back(
+            {{"purpose", fmt::format("Part {} of {}.", k + 1, part.name)}, {"head", head}, {"body", text.parts[k]}});
       }
-      if (!text.parts.empty()) text.body = calls_of_parts(part.name, text, argument_names(*part.function, text, names), "Real");
+      if (!text.parts.empty())
+        text.body = calls_of_parts(part.name, text, argument_names(*part.function, text, names), "Real");
       entry.emplace_back("head", mark + function_head(part.name, *part.function, text, names, "Real"));
       entry.emplace_back("body", text.body);
     }

@@ -21,9 +21,10 @@ std::string index_names(const ModelNames& names, std::size_t prepared, const std
 
 struct TemplateFunctions {
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;  // purpose, head, body of each
-  bool packs = false;  // some need the kernel
+  bool packs = false;                                                       // some need the kernel
 };
 /// `mark`: before the type of what they return.
-TemplateFunctions template_functions(const program::Program& program, const ModelNames& names, const EmissionContext& context, const Dialect& dialect, const std::string& mark);
+TemplateFunctions template_functions(const program::Program& program, const ModelNames& names,
+                                     const EmissionContext& context, const Dialect& dialect, const std::string& mark);
 
 }  // namespace eomgen::emit

@@ -30,8 +30,12 @@ EOM_DEVICE inline void eom_sincos(const Real& a, const Real& b, Real* sine, Real
 /// What an integration without events and projections passes over, as lines of a comment.
 std::string passed_over(const program::Program& program) {
   std::string text;
-  if (program.active_constraints > 0) text += " * Constraints that keep multipliers hold at the start and drift with the tolerances: nothing is projected onto them.\n";
-  if (!program.kinks.empty()) text += " * Steps go over kinks (abs, sign, min, max, if) as they come: only the error estimate sees them.\n";
+  if (program.active_constraints > 0)
+    text +=
+        " * Constraints that keep multipliers hold at the start and drift with the tolerances: nothing is projected "
+        "onto them.\n";
+  if (!program.kinks.empty())
+    text += " * Steps go over kinks (abs, sign, min, max, if) as they come: only the error estimate sees them.\n";
   if (!program.events.empty()) text += " * Events are not looked at.\n";
   return text;
 }
@@ -40,19 +44,29 @@ std::string passed_over(const program::Program& program) {
 
 std::vector<EmittedFile> emit_cuda(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
-  if (!program.charts.empty()) throw Error("emit", {}, "the target cuda does not know charts yet", "use the target c or cpp, or leave --with charts out");
-  if (program.taylor) throw Error("emit", {}, "the target cuda has no series", "leave taylor out of --with, or use the target c or cpp");
+  if (!program.charts.empty())
+    throw Error("emit", {}, "the target cuda does not know charts yet",
+                "use the target c or cpp, or leave --with charts out");
+  if (program.taylor)
+    throw Error("emit", {}, "the target cuda has no series", "leave taylor out of --with, or use the target c or cpp");
   if (!program.contacts.empty()) {
-    throw Error("emit", {}, "the target cuda integrates without events, and contacts have modes that begin and end with them", "use the target c or cpp with eom::integrate_modes, or take the contacts out");
+    throw Error("emit", {},
+                "the target cuda integrates without events, and contacts have modes that begin and end with them",
+                "use the target c or cpp with eom::integrate_modes, or take the contacts out");
   }
   const Dialect dialect = template_dialect();
   const std::string name = mangled_id(context.id);
   const ModelNames names = model_names(program, context);
   const auto [functions, packs] = template_functions(program, names, context, dialect, mark);
   const std::string about = banner(program, context, "// ", "// ", "");
-  const std::vector<std::pair<std::string, std::string>> values = {{"banner", about}, {"name", name}, {"enums", index_names(names, program.prepared_count(), {})},
-                                                                   {"kernels", packs ? sincos : ""}, {"defaults", defaults_body(program, context, dialect)}};
-  const std::vector<std::pair<std::string, std::string>> of_header = {{"banner", banner(program, context, "/* ", " * ", " */")}, {"name", name}, {"passed_over", passed_over(program)}};
+  const std::vector<std::pair<std::string, std::string>> values = {
+      {"banner", about},
+      {"name", name},
+      {"enums", index_names(names, program.prepared_count(), {})},
+      {"kernels", packs ? sincos : ""},
+      {"defaults", defaults_body(program, context, dialect)}};
+  const std::vector<std::pair<std::string, std::string>> of_header = {
+      {"banner", banner(program, context, "/* ", " * ", " */")}, {"name", name}, {"passed_over", passed_over(program)}};
   return {{name + ".cuh", rendered(skeleton::cuda_model_cuh, values, functions)},
           {name + "_ensemble.cu", rendered(skeleton::cuda_model_ensemble_cu, values, {})},
           {name + "_ensemble.h", rendered(skeleton::cuda_model_ensemble_h, of_header, {})}};

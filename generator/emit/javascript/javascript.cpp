@@ -59,12 +59,14 @@ std::string parameter_list(const std::string& function, const FunctionText& text
   return list;
 }
 
-/// The function; a long one as parts that it calls one after the other, since engines do not optimise functions of any length.
+/// The function; a long one as parts that it calls one after the other, since engines do not optimise functions of any
+/// length.
 std::string definition(const program::Function& function, const FunctionText& text, const ModelNames& names) {
   const std::string list = parameter_list(function.name, text, names);
   const std::string head = fmt::format("function {}({})", function.name, list);
   if (text.parts.empty()) return fmt::format("{} {{\n{}}}\n", head, text.body);
-  std::string parts, calls = fmt::format("  const {} = new Float64Array({});\n  let {} = 0;\n", text.work, text.work_size, text.code);
+  std::string parts,
+      calls = fmt::format("  const {} = new Float64Array({});\n  let {} = 0;\n", text.work, text.work_size, text.code);
   for (std::size_t k = 1; k <= text.parts.size(); ++k) {
     const std::string name = fmt::format("{}_part{}", function.name, k);
     parts += fmt::format("function {}({}, {}) {{\n{}}}\n\n", name, list, text.work, text.parts[k - 1]);
@@ -83,8 +85,10 @@ std::string vectors(const EmissionContext& context) {
   Json tests = Json::array();
   for (const TestVector& test : context.tests) {
     Json functions = Json::array();
-    for (const FunctionValues& f : test.functions) functions.push_back({{"name", f.function}, {"values", f.values}, {"allowed", f.tolerances}});
-    tests.push_back({{"t", test.t}, {"mode", test.mode}, {"x", test.x}, {"p", test.p}, {"u", test.u}, {"functions", functions}});
+    for (const FunctionValues& f : test.functions)
+      functions.push_back({{"name", f.function}, {"values", f.values}, {"allowed", f.tolerances}});
+    tests.push_back(
+        {{"t", test.t}, {"mode", test.mode}, {"x", test.x}, {"p", test.p}, {"u", test.u}, {"functions", functions}});
   }
   std::string text = "[";
   for (std::size_t i = 0; i < tests.size(); ++i) text += (i > 0 ? ",\n  " : "\n  ") + literal(tests[i]);
@@ -92,8 +96,12 @@ std::string vectors(const EmissionContext& context) {
 }
 
 void require_known(const program::Program& program) {
-  if (program.taylor) throw Error("emit", {}, "the JavaScript target does not know Taylor series", "leave taylor out of --with, or use the target c or cpp");
-  if (!program.charts.empty()) throw Error("emit", {}, "the JavaScript target does not know charts", "use the target c or cpp, or leave --with charts out");
+  if (program.taylor)
+    throw Error("emit", {}, "the JavaScript target does not know Taylor series",
+                "leave taylor out of --with, or use the target c or cpp");
+  if (!program.charts.empty())
+    throw Error("emit", {}, "the JavaScript target does not know charts",
+                "use the target c or cpp, or leave --with charts out");
 }
 
 }  // namespace
@@ -112,13 +120,14 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
     functions.push_back({{"purpose", purpose(function.name)}, {"definition", definition(function, text, names)}});
     list += ", " + function.name;
   }
-  const std::vector<std::pair<std::string, std::string>> values = {{"banner", harmless(banner(program, context, "// ", "// ", ""))},
-                                                                   {"name", name},
-                                                                   {"info", literal(Json::parse(info_json(program, context)))},
-                                                                   {"defaults", defaults_body(program, context, dialect)},
-                                                                   {"list", list},
-                                                                   {"prepared", std::to_string(program.prepared_count())},
-                                                                   {"vectors", vectors(context)}};
+  const std::vector<std::pair<std::string, std::string>> values = {
+      {"banner", harmless(banner(program, context, "// ", "// ", ""))},
+      {"name", name},
+      {"info", literal(Json::parse(info_json(program, context)))},
+      {"defaults", defaults_body(program, context, dialect)},
+      {"list", list},
+      {"prepared", std::to_string(program.prepared_count())},
+      {"vectors", vectors(context)}};
   return {{name + ".js", rendered(skeleton::javascript_model_js, values, functions)}};
 }
 

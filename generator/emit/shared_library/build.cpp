@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache: KEY/ holds the library and its SHA-256, which tells damage. That nobody else has put anything there is seen to by
-// cache_folder. A key's folder is made beside and renamed, so that it is there whole or not at all, whoever else is at it.
+// The cache: KEY/ holds the library and its SHA-256, which tells damage. That nobody else has put anything there is
+// seen to by cache_folder. A key's folder is made beside and renamed, so that it is there whole or not at all, whoever
+// else is at it.
 #include "emit/shared_library/build.hpp"
 
 #include <chrono>
@@ -26,7 +27,9 @@ std::string environment(const char* name) {
   return value == nullptr ? "" : value;
 }
 
-[[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("compile", {}, what, remedy, Fault::tool); }
+[[noreturn]] void fail(const std::string& what, const std::string& remedy) {
+  throw Error("compile", {}, what, remedy, Fault::tool);
+}
 
 struct Compiler {
   std::vector<std::string> command;  // the program and what it is always given ("ccache gcc")
@@ -68,7 +71,8 @@ Compiler find_compiler(const Recipe& recipe) {
   }
   std::string unset;
   for (const std::string& name : recipe.variables) unset += (unset.empty() ? "" : " and ") + name;
-  fail(asked.empty() ? "there is no " + recipe.language + " compiler" : "the " + recipe.language + " compiler `" + asked + "` does not run",
+  fail(asked.empty() ? "there is no " + recipe.language + " compiler"
+                     : "the " + recipe.language + " compiler `" + asked + "` does not run",
        "sudo apt-get install " + recipe.package + (asked.empty() ? "" : ", or unset " + unset));
 }
 
@@ -84,7 +88,8 @@ void write_file(const fs::path& path, const std::string& text) {
   std::ofstream out(path, std::ios::binary);
   out << text;
   out.close();
-  if (!out) fail("cannot write " + path.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to, with space left");
+  if (!out)
+    fail("cannot write " + path.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to, with space left");
 }
 
 /// The library of a cache entry that is whole.
@@ -100,10 +105,14 @@ void compile_into(const fs::path& folder, const Compiler& compiler, const Recipe
   const fs::path library = folder / (recipe.name + ".so");
   std::vector<std::string> command = compiler.command;
   command.insert(command.end(), recipe.flags.begin(), recipe.flags.end());
-  for (const std::string& argument : {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()}) command.push_back(argument);
+  for (const std::string& argument :
+       {(folder / recipe.files.front().first).string(), std::string("-o"), library.string()})
+    command.push_back(argument);
   command.insert(command.end(), recipe.libraries.begin(), recipe.libraries.end());
   const Finished finished = run_process(command, recipe.interrupt);
-  if (finished.interrupted) throw Error("compile", {}, "interrupted while the compiler worked", "nothing was computed that could be kept", Fault::numerical);
+  if (finished.interrupted)
+    throw Error("compile", {}, "interrupted while the compiler worked", "nothing was computed that could be kept",
+                Fault::numerical);
   if (!finished.started || finished.status != 0) {
     constexpr std::size_t shown = 4000;
     fail("`" + compiler.name + "` failed on " + recipe.what + ":\n" + finished.output.substr(0, shown), recipe.remedy);
@@ -154,7 +163,8 @@ Built build_library(const Recipe& recipe, const std::function<void(const std::st
     if (examine) examine((workplace.path() / file).string());
     put_in_place(workplace.path(), entry, recipe.name);
   } catch (const std::system_error&) {
-    fail("cannot use the cache folder " + cache.path.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to");
+    fail("cannot use the cache folder " + cache.path.string(),
+         "set EOMGEN_CACHE_DIR to a folder that you may write to");
   }
   built.cached = false;
   return built;

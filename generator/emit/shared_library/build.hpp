@@ -15,20 +15,20 @@ namespace eomgen::emit {
 class Workplace;
 
 struct Recipe {
-  std::string name;                                         // of the library, without .so
-  std::vector<std::pair<std::string, std::string>> files;   // name and text; the first is compiled
+  std::string name;                                        // of the library, without .so
+  std::vector<std::pair<std::string, std::string>> files;  // name and text; the first is compiled
   std::vector<std::string> flags, libraries;
   // Which compiler: of the first variable that is set, or the first of these that runs.
   std::string language = "C", package = "gcc libc6-dev";
   std::vector<std::string> variables = {"EOMGEN_CC", "CC"}, compilers = {"cc", "gcc"};
-  std::string what, remedy;                                 // of the error where it fails
-  const std::atomic<bool>* interrupt = nullptr;             // ends the compiler
+  std::string what, remedy;                      // of the error where it fails
+  const std::atomic<bool>* interrupt = nullptr;  // ends the compiler
 };
 
 struct Built {
-  std::string path;      // in the cache
-  bool cached = false;   // it was there already
-  double seconds = 0;    // of the compiler
+  std::string path;                              // in the cache
+  bool cached = false;                           // it was there already
+  double seconds = 0;                            // of the compiler
   std::shared_ptr<const Workplace> folder = {};  // where it is kept for this process alone: as long as this is there
   std::string note = {};                         // why
 };

@@ -46,7 +46,8 @@ Wish wished() {
 /// Why what is in this folder may be another user's; empty where it cannot.
 std::string distrust(const fs::path& folder) {
   struct stat found {};
-  if (::lstat(folder.c_str(), &found) != 0) return std::string("it cannot be looked at: ") + std::system_category().message(errno);
+  if (::lstat(folder.c_str(), &found) != 0)
+    return std::string("it cannot be looked at: ") + std::system_category().message(errno);
   if (S_ISLNK(found.st_mode)) return "it is a link";
   if (!S_ISDIR(found.st_mode)) return "it is no folder";
   if (found.st_uid != ::geteuid()) return "it belongs to another user";
@@ -60,14 +61,16 @@ std::string distrust(const fs::path& folder) {
 }
 
 [[noreturn]] void fail(const fs::path& folder) {
-  throw Error("compile", {}, "cannot use the cache folder " + folder.string(), "set EOMGEN_CACHE_DIR to a folder that you may write to", Fault::tool);
+  throw Error("compile", {}, "cannot use the cache folder " + folder.string(),
+              "set EOMGEN_CACHE_DIR to a folder that you may write to", Fault::tool);
 }
 
 }  // namespace
 
 Workplace::Workplace(const fs::path& parent, const std::string& name) {
   std::string place = (parent / (name + "XXXXXX")).string();
-  if (::mkdtemp(place.data()) == nullptr) throw std::system_error(errno, std::generic_category(), "cannot make a folder in " + parent.string());
+  if (::mkdtemp(place.data()) == nullptr)
+    throw std::system_error(errno, std::generic_category(), "cannot make a folder in " + parent.string());
   path_ = place;
   lock_ = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
   if (lock_ >= 0) ::flock(lock_, LOCK_EX | LOCK_NB);
@@ -124,7 +127,8 @@ void clear_leftovers(const fs::path& folder, const std::string& name) {
     struct stat found {};
     const int file = ::open(place.c_str(), O_RDONLY | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
     if (file < 0) continue;
-    const bool old = ::fstat(file, &found) == 0 && found.st_uid == ::geteuid() && std::time(nullptr) - found.st_mtime > just_made;
+    const bool old =
+        ::fstat(file, &found) == 0 && found.st_uid == ::geteuid() && std::time(nullptr) - found.st_mtime > just_made;
     if (old && ::flock(file, LOCK_EX | LOCK_NB) == 0) fs::remove_all(place, none);
     ::close(file);
   }

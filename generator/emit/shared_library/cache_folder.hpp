@@ -29,9 +29,9 @@ struct CacheFolder {
   std::string why;                     // then
 };
 
-/// $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the folder of temporary files; made if it is not there.
-/// One that is a link, belongs to another user, or that others may enter, is not used: a private one takes its place.
-/// Throws Error{Fault::tool}.
+/// $EOMGEN_CACHE_DIR, $XDG_CACHE_HOME/eomgen, ~/.cache/eomgen, or eomgen-UID in the folder of temporary files; made if
+/// it is not there. One that is a link, belongs to another user, or that others may enter, is not used: a private one
+/// takes its place. Throws Error{Fault::tool}.
 CacheFolder cache_folder();
 
 /// Of this user, no link, of the kind that is expected.

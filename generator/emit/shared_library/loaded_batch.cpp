@@ -49,16 +49,23 @@ bool agrees(const LoadedBatch& batch) {
 
 LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : model(path, name) {
   handle_ = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  const auto find = [&](const char* what) { return handle_ == nullptr ? nullptr : ::dlsym(handle_, (name + what).c_str()); };
+  const auto find = [&](const char* what) {
+    return handle_ == nullptr ? nullptr : ::dlsym(handle_, (name + what).c_str());
+  };
   rhs = reinterpret_cast<BatchFunction>(find("_rhs_batch"));
   rhs_prepared = reinterpret_cast<PreparedBatchFunction>(find("_rhs_prepared_batch"));
   const auto width_of = reinterpret_cast<int (*)()>(find("_batch_width"));
   if (width_of != nullptr) width = width_of();
-  const bool whole = rhs != nullptr && width_of != nullptr && (model.rhs_prepared == nullptr || rhs_prepared != nullptr);
+  const bool whole =
+      rhs != nullptr && width_of != nullptr && (model.rhs_prepared == nullptr || rhs_prepared != nullptr);
   if (whole && agrees(*this)) return;
   if (handle_ != nullptr) ::dlclose(handle_);
-  throw Error("compile", {}, whole ? "a batch of compiled code has other bits than its states alone: " + path : "compiled code lacks batches: " + path,
-              "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again; without --ensemble no batch is needed", Fault::tool);
+  throw Error("compile", {},
+              whole ? "a batch of compiled code has other bits than its states alone: " + path
+                    : "compiled code lacks batches: " + path,
+              "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again; without --ensemble no "
+              "batch is needed",
+              Fault::tool);
 }
 
 LoadedBatch::~LoadedBatch() {
@@ -66,10 +73,15 @@ LoadedBatch::~LoadedBatch() {
 }
 
 LoadedBatch::LoadedBatch(LoadedBatch&& other) noexcept
-    : model(std::move(other.model)), rhs(other.rhs), rhs_prepared(other.rhs_prepared), width(other.width), folder(std::move(other.folder)),
+    : model(std::move(other.model)),
+      rhs(other.rhs),
+      rhs_prepared(other.rhs_prepared),
+      width(other.width),
+      folder(std::move(other.folder)),
       handle_(std::exchange(other.handle_, nullptr)) {}
 
-LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files, const std::string& name, const std::atomic<bool>* interrupt) {
+LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files,
+                                   const std::string& name, const std::atomic<bool>* interrupt) {
   Recipe recipe;
   recipe.name = name;
   recipe.files = {{name + "_all.c", "#include \"" + name + ".c\"\n#include \"" + name + "_batch.c\"\n"}};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// In: what the target batch emitted. Out: its functions for many states, compiled for the processor of this machine and loaded. The
-// same cache as that of loaded_model.hpp; fused multiplications are left out, so that every processor computes the same bits.
+// In: what the target batch emitted. Out: its functions for many states, compiled for the processor of this machine and
+// loaded. The same cache as that of loaded_model.hpp; fused multiplications are left out, so that every processor
+// computes the same bits.
 #pragma once
 
 #include <atomic>
@@ -13,17 +14,19 @@
 
 namespace eomgen::emit {
 
-using BatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, const double* u, const int* mode,
-                              int own, double* dx, int* codes);
-using PreparedBatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, const double* w,
-                                      const double* u, const int* mode, int own, double* dx, int* codes);
+using BatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+                              const double* u, const int* mode, int own, double* dx, int* codes);
+using PreparedBatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x,
+                                      const double* p, const double* w, const double* u, const int* mode, int own,
+                                      double* dx, int* codes);
 
 /// NAME_own_time, ... of every NAME_batch.h (docs/abi.md).
 inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepared = 16;
 
 class LoadedBatch {
  public:
-  /// Throws Error{Fault::tool} as LoadedModel does, and where a batch of the default state has other bits than that state alone.
+  /// Throws Error{Fault::tool} as LoadedModel does, and where a batch of the default state has other bits than that
+  /// state alone.
   LoadedBatch(const std::string& path, const std::string& name);
   ~LoadedBatch();
   LoadedBatch(LoadedBatch&& other) noexcept;
@@ -40,6 +43,7 @@ class LoadedBatch {
 };
 
 /// `files`: name and text of NAME.c, NAME.h, NAME_batch.c and NAME_batch.h.
-LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files, const std::string& name, const std::atomic<bool>* interrupt);
+LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files,
+                                   const std::string& name, const std::atomic<bool>* interrupt);
 
 }  // namespace eomgen::emit

@@ -13,7 +13,8 @@ namespace {
 constexpr int abi_version = 1;
 
 [[noreturn]] void fail(const std::string& what) {
-  throw Error("compile", {}, what, "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again", Fault::tool);
+  throw Error("compile", {}, what, "remove the cache folder (EOMGEN_CACHE_DIR, or ~/.cache/eomgen) and try again",
+              Fault::tool);
 }
 
 template <class Pointer>

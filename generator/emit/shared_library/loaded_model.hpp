@@ -11,15 +11,16 @@ namespace eomgen::emit {
 
 using RhsFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dx);
 using PrepareFunction = int (*)(const double* p, double* w);
-using PreparedRhsFunction = int (*)(double t, const double* x, const double* p, const double* w, const double* u, int mode,
-                                    double* dx);
+using PreparedRhsFunction = int (*)(double t, const double* x, const double* p, const double* w, const double* u,
+                                    int mode, double* dx);
 using JacobianFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
                                  double* dfdt);
 using TaylorFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, int order,
                                double* coefficients);
 using MassFunction = int (*)(double t, const double* x, const double* p, double* M, double* h);
 using MassInFunction = int (*)(double t, const double* x, const double* p, int mode, double* M, double* h);
-using ConstraintInFunction = int (*)(double t, const double* x, const double* p, int mode, double* psi, double* A, double* b);
+using ConstraintInFunction = int (*)(double t, const double* x, const double* p, int mode, double* psi, double* A,
+                                     double* b);
 using ChartFunction = int (*)(const double* x, int mode, int to, double* y);
 using ConstraintFunction = int (*)(double t, const double* x, const double* p, double* psi, double* A, double* b);
 
@@ -38,11 +39,11 @@ class LoadedModel {
   RhsFunction rhs = nullptr;
   PrepareFunction prepare = nullptr;           // null too where nothing is worth preparing
   PreparedRhsFunction rhs_prepared = nullptr;  // there with `prepare`
-  JacobianFunction momenta = nullptr;  // momenta, rates in place of dfdx, dfdt
-  RhsFunction jac_p = nullptr;      // dfdp in place of dx
-  RhsFunction reactions = nullptr;  // lambda in place of dx
-  RhsFunction events = nullptr;     // g in place of dx
-  RhsFunction outputs = nullptr;    // y in place of dx
+  JacobianFunction momenta = nullptr;          // momenta, rates in place of dfdx, dfdt
+  RhsFunction jac_p = nullptr;                 // dfdp in place of dx
+  RhsFunction reactions = nullptr;             // lambda in place of dx
+  RhsFunction events = nullptr;                // g in place of dx
+  RhsFunction outputs = nullptr;               // y in place of dx
   JacobianFunction jac = nullptr;
   TaylorFunction taylor = nullptr;
   MassFunction mass = nullptr;
@@ -62,9 +63,9 @@ class Workplace;
 
 struct Compiled {
   LoadedModel model;
-  std::string path;      // of the library in the cache
-  bool cached = false;   // it was there already
-  double seconds = 0;    // of the compiler
+  std::string path;                              // of the library in the cache
+  bool cached = false;                           // it was there already
+  double seconds = 0;                            // of the compiler
   std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
   std::string note = {};                         // why
 };

@@ -18,7 +18,8 @@ namespace {
 
 constexpr int patience = 50;  // ms, until an interruption is seen
 
-/// Where Ctrl-C does not end this program by itself, the other one is in a group of its own, so that all of it can be ended.
+/// Where Ctrl-C does not end this program by itself, the other one is in a group of its own, so that all of it can be
+/// ended.
 bool outlives_interrupts() {
   struct sigaction now {};
   return ::sigaction(SIGINT, nullptr, &now) == 0 && now.sa_handler != SIG_DFL;
@@ -32,7 +33,8 @@ void set_attributes(posix_spawnattr_t& attributes, bool own_group) {
   for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) sigaddset(&defaults, signal);
   posix_spawnattr_setsigdefault(&attributes, &defaults);
   posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, static_cast<short>(POSIX_SPAWN_SETSIGDEF | (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
+  posix_spawnattr_setflags(&attributes,
+                           static_cast<short>(POSIX_SPAWN_SETSIGDEF | (own_group ? POSIX_SPAWN_SETPGROUP : 0)));
 }
 
 /// What it prints, to its end; false where that was cut short.

@@ -1,21 +1,24 @@
 // SPDX-License-Identifier: MIT
 // The stabilised index-2 form of Gear, Gupta and Leimkuhler, by Radau IIA of order 5 (collocation.hpp):
 //   q' = v - D1 mu,   v' = f(q, v, t) - D2 nu,   0 = psi(q, t),   0 = A v + b.
-// Source: Gear, Gupta, Leimkuhler, Automatic integration of Euler-Lagrange equations with constraints, Journal of Computational and Applied
-// Mathematics 12 (1985); Hairer, Wanner, Solving Ordinary Differential Equations II, sections VII.1 and VII.4.
+// Source: Gear, Gupta, Leimkuhler, Automatic integration of Euler-Lagrange equations with constraints, Journal of
+// Computational and Applied Mathematics 12 (1985); Hairer, Wanner, Solving Ordinary Differential Equations II, sections
+// VII.1 and VII.4.
 //
-// f are the accelerations of the index-1 form: the multipliers lambda_1 that keep A v' + ... = 0 are in them. In the GGL form lambda is
-// an unknown, so that with lambda = lambda_1 + nu it is the above for D1 = D2 = M^-1 A^T (A of the constraints on positions in D1). The
-// motion keeps psi and A v + b by f alone, so mu = nu = 0 along it, whatever D is: each D with C D regular, C = d(psi, A v + b)/dx, gives
-// a system of index 2 with the same solutions. Here D is that of the state where df/dx was last evaluated, and constant in between.
-// (M + A^T S A)^-1 A^T has the same range as M^-1 A^T, for any S > 0, and needs M positive on the motions that A allows only.
+// f are the accelerations of the index-1 form: the multipliers lambda_1 that keep A v' + ... = 0 are in them. In the
+// GGL form lambda is an unknown, so that with lambda = lambda_1 + nu it is the above for D1 = D2 = M^-1 A^T (A of the
+// constraints on positions in D1). The motion keeps psi and A v + b by f alone, so mu = nu = 0 along it, whatever D is:
+// each D with C D regular, C = d(psi, A v + b)/dx, gives a system of index 2 with the same solutions. Here D is that of
+// the state where df/dx was last evaluated, and constant in between. (M + A^T S A)^-1 A^T has the same range as M^-1
+// A^T, for any S > 0, and needs M positive on the motions that A allows only.
 //
-// Radau IIA ends steps with a stage: psi = 0 and A v + b = 0 hold there, without projection. Newton's iteration ends at its tolerance; the
-// last stage is then corrected with the same matrix until the constraints are at rounding. Of redundant rows an independent set is
-// kept as unknowns, chosen anew with each df/dx; the others are looked at in the end of each step. The error estimate is that of radau5 through
-// the bordered matrix, so that it lies along the constraints. The multipliers enter linearly: the iteration ends when x has converged.
-// Dense output: as in radau5, order 4. Across the constraints, where the stages are right themselves and not their slopes, it is another
-// quartic that brings the polynomial to the slope at the start.
+// Radau IIA ends steps with a stage: psi = 0 and A v + b = 0 hold there, without projection. Newton's iteration ends at
+// its tolerance; the last stage is then corrected with the same matrix until the constraints are at rounding. Of
+// redundant rows an independent set is kept as unknowns, chosen anew with each df/dx; the others are looked at in the
+// end of each step. The error estimate is that of radau5 through the bordered matrix, so that it lies along the
+// constraints. The multipliers enter linearly: the iteration ends when x has converged. Dense output: as in radau5,
+// order 4. Across the constraints, where the stages are right themselves and not their slopes, it is another quartic
+// that brings the polynomial to the slope at the start.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +47,16 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   static constexpr int dense_order = 4;
 
   Ggl(Problem& problem, std::span<const double> x, const Options& options)
-      : Core(problem.rhs, x, options, 3, problem.on_positions + problem.constraints), of_(problem), c_(problem.coordinates), rows_(problem), mass_(c_),
-        C_(extra_ * m_), D_(extra_ * c_), M_(c_ * c_), at_(n_), across_(length_) {}
+      : Core(problem.rhs, x, options, 3, problem.on_positions + problem.constraints),
+        of_(problem),
+        c_(problem.coordinates),
+        rows_(problem),
+        mass_(c_),
+        C_(extra_ * m_),
+        D_(extra_ * c_),
+        M_(c_ * c_),
+        at_(n_),
+        across_(length_) {}
 
   using Core::interpolate;
   void interpolate(double t, double* x) const {
@@ -53,7 +64,8 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     implicit::RadauTableau::Row weight;
     weights(*tableau_, s, weight);
     for (std::size_t i = 0; i < n_; ++i) {
-      const double along = i < m_ ? tableau_->gamma * estimate_[i] : h_ * f0_[i] + defect(i), across = i < m_ ? across_[i] : 0;
+      const double along = i < m_ ? tableau_->gamma * estimate_[i] : h_ * f0_[i] + defect(i),
+                   across = i < m_ ? across_[i] : 0;
       x[i] = x0_[i] + (polynomial(weight, s, i) + implicit::bump(s) * along + bump_across(s) * across);
     }
   }
@@ -78,7 +90,8 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
         matrix(m_ + a, i) = {chosen ? -C_[a + extra_ * i] : 0};
       }
       for (std::size_t i = 0; i < c_ && chosen; ++i) matrix(velocity(a) + i, m_ + a) = {D_[a + extra_ * i]};
-      for (std::size_t other = 0; other < extra_; ++other) matrix(m_ + other, m_ + a) = {a == other && !chosen ? 1.0 : 0.0};
+      for (std::size_t other = 0; other < extra_; ++other)
+        matrix(m_ + other, m_ + a) = {a == other && !chosen ? 1.0 : 0.0};
     }
   }
 
@@ -119,8 +132,9 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   static constexpr int most_rounds = 40;
   static constexpr double resting = 0.9;              // of a residual: it shrinks no more
   static constexpr double at_rounding = 4 * epsilon;  // of the terms of a constraint
-  static constexpr double allowed = 1e-10;            // of the coordinates or rates: a row that was not chosen, and contradicts those that were, is told
-  static constexpr double shift = 1.5e-8;             // of a coordinate, for differences
+  static constexpr double allowed =
+      1e-10;  // of the coordinates or rates: a row that was not chosen, and contradicts those that were, is told
+  static constexpr double shift = 1.5e-8;  // of a coordinate, for differences
 
   /// Where the components start that g_a has its multiplier in, and its row of A.
   std::size_t velocity(std::size_t a) const { return a < rows_.on_positions() ? 0 : c_; }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The methods that need a right-hand side with constraints, and keep them. A new one is a file with its class, and a line here.
+// The methods that need a right-hand side with constraints, and keep them. A new one is a file with its class, and a
+// line here.
 #pragma once
 
 #include <tuple>
@@ -8,7 +9,6 @@
 
 namespace eom::constrained {
 
-using Registry = std::tuple<
-    Ggl>;
+using Registry = std::tuple<Ggl>;
 
 }  // namespace eom::constrained

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The equations g = (psi of the constraints on positions, A v + b of all) that a method keeps, each in units of the length of its row of A.
-// In: a problem, states. Out: values, their rounding, an independent set of them.
+// The equations g = (psi of the constraints on positions, A v + b of all) that a method keeps, each in units of the
+// length of its row of A. In: a problem, states. Out: values, their rounding, an independent set of them.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,16 @@ namespace eom::constrained {
 class Rows {
  public:
   explicit Rows(const Problem& problem)
-      : of_(problem), c_(problem.coordinates), k_(problem.constraints), positions_(problem.on_positions), psi_(k_), A_(k_ * c_), b_(k_),
-        length_(k_, 1.0), rest_(k_ * c_), chosen_(k_) {}
+      : of_(problem),
+        c_(problem.coordinates),
+        k_(problem.constraints),
+        positions_(problem.on_positions),
+        psi_(k_),
+        A_(k_ * c_),
+        b_(k_),
+        length_(k_, 1.0),
+        rest_(k_ * c_),
+        chosen_(k_) {}
 
   /// Of g.
   std::size_t size() const { return positions_ + k_; }
@@ -38,7 +46,8 @@ class Rows {
                : code_not_finite;
   }
 
-  /// Lengths and a largest independent set of rows, those on positions first: Gram and Schmidt, each time the row of which most is left.
+  /// Lengths and a largest independent set of rows, those on positions first: Gram and Schmidt, each time the row of
+  /// which most is left.
   void select() {
     for (std::size_t r = 0; r < k_; ++r) {
       double sum = 0;
@@ -80,7 +89,8 @@ class Rows {
   }
 
  private:
-  static constexpr double independent = 1e-10;  // of a row's length: less is left of one that others make up, by their rounding
+  static constexpr double independent =
+      1e-10;  // of a row's length: less is left of one that others make up, by their rounding
 
   bool choose_among(std::size_t begin, std::size_t end) {
     std::size_t best = end;

@@ -11,7 +11,6 @@
 #pragma once
 
 #include <Eigen/Dense>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -20,20 +19,20 @@
 namespace eom {
 
 struct ProjectionOptions {
-  double tolerance = 1e-14;      // of the correction relative to the largest coordinate, of psi to its terms |A||q|
-  double rank_tolerance = 1e-11; // of a pivot relative to the largest, rows of A scaled to length 1
+  double tolerance = 1e-14;       // of the correction relative to the largest coordinate, of psi to its terms |A||q|
+  double rank_tolerance = 1e-11;  // of a pivot relative to the largest, rows of A scaled to length 1
   int max_iterations = 25;
-  double rounding = 1e-11;       // a correction that stops shrinking below this times max(1, |q|) counts as converged
+  double rounding = 1e-11;  // a correction that stops shrinking below this times max(1, |q|) counts as converged
 };
 
 struct ProjectionResult {
   static constexpr int not_converged = -1;
 
-  int code = 0;                   // 0, the code of a callback, or not_converged
-  int iterations = 0;             // Newton corrections of the positions
-  int rank = -1;                  // of A, where last solved with; -1: the state was consistent as it was
-  double position_correction = 0; // largest component of q - q before
-  double velocity_correction = 0; // largest component of v - v before
+  int code = 0;                    // 0, the code of a callback, or not_converged
+  int iterations = 0;              // Newton corrections of the positions
+  int rank = -1;                   // of A, where last solved with; -1: the state was consistent as it was
+  double position_correction = 0;  // largest component of q - q before
+  double velocity_correction = 0;  // largest component of v - v before
 };
 
 /// The work space and the method for n coordinates and m constraints; allocates in the constructor only.
@@ -50,7 +49,14 @@ class Projection {
         m_(static_cast<Index>(m)),
         positions_(n_, static_cast<Index>(holonomic)),
         velocities_(n_, m_),
-        psi_(m_), b_(m_), A_(m_, n_), M_(n_, n_), h_(n_), defect_(m_), correction_(n_), before_(2 * n_) {}
+        psi_(m_),
+        b_(m_),
+        A_(m_, n_),
+        M_(n_, n_),
+        h_(n_),
+        defect_(m_),
+        correction_(n_),
+        before_(2 * n_) {}
 
   Projection(std::size_t n, std::size_t m) : Projection(n, m, m) {}
 
@@ -90,11 +96,11 @@ class Projection {
     Matrix scaled_transpose;  // A^T, rows of A scaled to length 1
     Vector right;             // the right-hand side, scaled and permuted
     Eigen::ColPivHouseholderQR<Matrix> qr;
-    Matrix rows;              // R^T, m x rank in its first columns; then its own QR
-    Matrix metric;            // Q^T M Q, and the system for the part of the solution in the null space of A
-    Vector w;                 // the solution in the basis Q
+    Matrix rows;    // R^T, m x rank in its first columns; then its own QR
+    Matrix metric;  // Q^T M Q, and the system for the part of the solution in the null space of A
+    Vector w;       // the solution in the basis Q
     Eigen::ColPivHouseholderQR<Matrix> metric_qr;
-    Vector length;            // of the rows of A
+    Vector length;  // of the rows of A
   };
 
   template <class Constraints, class Mass>

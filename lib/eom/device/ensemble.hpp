@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Ensembles on an accelerator, one member per thread, each with steps of its own; CUDA, HIP, or any C++20 compiler as the host form. In: a model, a type with
+// Ensembles on an accelerator, one member per thread, each with steps of its own; CUDA, HIP, or any C++20 compiler as
+// the host form. In: a model, a type with
 //   static constexpr std::size_t states, parameters;
-//   template <class Real> static EOM_DEVICE int rhs(Real t, const Real* x, const Real* p, Real* dx);   a code of the C ABI
-// as target cuda of eomgen writes it. Out: where each member ends. Decisions and sums are those of eom::integrate: in binary64, compiled without contraction of
-// products and sums, a member ends with its bits. No allocation, no library.
+//   template <class Real> static EOM_DEVICE int rhs(Real t, const Real* x, const Real* p, Real* dx);   a code of the C
+//   ABI
+// as target cuda of eomgen writes it. Out: where each member ends. Decisions and sums are those of eom::integrate: in
+// binary64, compiled without contraction of products and sums, a member ends with its bits. No allocation, no library.
 #pragma once
 
 #include <cmath>
@@ -28,7 +30,7 @@ inline constexpr int done = 0, not_finite = 5, too_many_steps = 6, step_too_smal
 struct Settings {
   double rtol = 1e-9, atol = 1e-12;  // of single precision: not below 1e-6
   double max_step = std::numeric_limits<double>::infinity();
-  double initial_step = 0;  // 0: chosen
+  double initial_step = 0;                    // 0: chosen
   unsigned long long max_steps = 50'000'000;  // accepted and rejected together
 };
 
@@ -39,11 +41,17 @@ struct Counts {
 namespace detail {
 
 template <class Real>
-EOM_DEVICE inline Real larger(Real a, Real b) { return a < b ? b : a; }
+EOM_DEVICE inline Real larger(Real a, Real b) {
+  return a < b ? b : a;
+}
 template <class Real>
-EOM_DEVICE inline Real smaller(Real a, Real b) { return b < a ? b : a; }
+EOM_DEVICE inline Real smaller(Real a, Real b) {
+  return b < a ? b : a;
+}
 template <class Real>
-EOM_DEVICE inline Real size_of(Real a) { return a < 0 ? -a : a; }
+EOM_DEVICE inline Real size_of(Real a) {
+  return a < 0 ? -a : a;
+}
 template <class Real>
 EOM_DEVICE inline bool finite(const Real* x, std::size_t n) {
   for (std::size_t i = 0; i < n; ++i) {
@@ -79,7 +87,8 @@ EOM_DEVICE inline Real weighted(const Real* k, std::size_t n, std::index_sequenc
 template <class T, class Model, class Real>
 class Member {
  public:
-  EOM_DEVICE Member(const Real* p, const Settings& settings) : p_(p), settings_(settings), rtol_(static_cast<Real>(settings.rtol)), atol_(static_cast<Real>(settings.atol)) {}
+  EOM_DEVICE Member(const Real* p, const Settings& settings)
+      : p_(p), settings_(settings), rtol_(static_cast<Real>(settings.rtol)), atol_(static_cast<Real>(settings.atol)) {}
 
   /// From x at t0 to t1, x the last accepted state; a code.
   EOM_DEVICE int run(Real t0, Real t1, Real* x, Counts& counts) {
@@ -188,7 +197,8 @@ class Member {
     bool beyond = false;
     for (std::size_t i = 0; i < n; ++i) {
       x0_[i] = x1_[i], carry_[i] = new_carry_[i], k_[i] = k_[T::stages * n + i];
-      beyond = beyond || detail::size_of(x0_[i]) > static_cast<Real>(sizeof(Real) < sizeof(double) ? float_bound : divergence_bound);
+      beyond = beyond || detail::size_of(x0_[i]) >
+                             static_cast<Real>(sizeof(Real) < sizeof(double) ? float_bound : divergence_bound);
     }
     return beyond ? diverged : done;
   }
@@ -214,7 +224,9 @@ class Member {
   static EOM_DEVICE Real growth(Real factor) {
     constexpr double safety = T::control.safety, shrink = T::control.shrink, grow = T::control.grow;
     const Real value = static_cast<Real>(safety) / factor;
-    return value < static_cast<Real>(shrink) ? static_cast<Real>(shrink) : value > static_cast<Real>(grow) ? static_cast<Real>(grow) : value;
+    return value < static_cast<Real>(shrink) ? static_cast<Real>(shrink)
+           : value > static_cast<Real>(grow) ? static_cast<Real>(grow)
+                                             : value;
   }
   EOM_DEVICE Real after_accepted(Real h, Real error) {
     using std::pow;
@@ -244,7 +256,8 @@ class Member {
       sum += value * value;
     }
     const Real size_change = root(sum) / h0, largest = detail::larger(size_f, size_change);
-    const Real h1 = largest <= Real(1e-15) ? detail::larger(Real(1e-6), Real(1e-3) * h0) : pow(Real(0.01) / largest, order_inverse());
+    const Real h1 = largest <= Real(1e-15) ? detail::larger(Real(1e-6), Real(1e-3) * h0)
+                                           : pow(Real(0.01) / largest, order_inverse());
     return detail::smaller(100 * h0, h1);
   }
   static EOM_DEVICE Real order_inverse() {
@@ -284,10 +297,12 @@ class Member {
   bool rejected_before_ = false;
 };
 
-/// Member `member` of `members`, in structures of arrays: entry i of x lies at x[i * members + member], and so does each member's own entry of p; one p for all is
-/// as it is. t: where it ended; counts: steps, rejected, evaluations, one array after the other; both may be null.
+/// Member `member` of `members`, in structures of arrays: entry i of x lies at x[i * members + member], and so does
+/// each member's own entry of p; one p for all is as it is. t: where it ended; counts: steps, rejected, evaluations,
+/// one array after the other; both may be null.
 template <class T, class Model, class Real>
-EOM_DEVICE void integrate_member(std::size_t member, std::size_t members, Real t0, Real t1, Real* x, const Real* p, bool own_parameters, const Settings& settings, int* codes, Real* t,
+EOM_DEVICE void integrate_member(std::size_t member, std::size_t members, Real t0, Real t1, Real* x, const Real* p,
+                                 bool own_parameters, const Settings& settings, int* codes, Real* t,
                                  unsigned long long* counts) {
   constexpr std::size_t n = Model::states, m = Model::parameters;
   Real state[n], parameters[m > 0 ? m : 1];
@@ -306,9 +321,11 @@ EOM_DEVICE void integrate_member(std::size_t member, std::size_t members, Real t
 
 #if defined(__CUDACC__) || defined(__HIPCC__)
 template <class T, class Model, class Real>
-__global__ void ensemble(std::size_t members, Real t0, Real t1, Real* x, const Real* p, bool own_parameters, Settings settings, int* codes, Real* t, unsigned long long* counts) {
+__global__ void ensemble(std::size_t members, Real t0, Real t1, Real* x, const Real* p, bool own_parameters,
+                         Settings settings, int* codes, Real* t, unsigned long long* counts) {
   const std::size_t member = std::size_t{blockIdx.x} * blockDim.x + threadIdx.x;
-  if (member < members) integrate_member<T, Model, Real>(member, members, t0, t1, x, p, own_parameters, settings, codes, t, counts);
+  if (member < members)
+    integrate_member<T, Model, Real>(member, members, t0, t1, x, p, own_parameters, settings, codes, t, counts);
 }
 #endif
 

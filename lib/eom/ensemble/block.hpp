@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Some members of an ensemble side by side, each with its own time, step, error and end, by an explicit Runge-Kutta method. In: a
-// tableau, derivatives of many states, members. Out: the end of each, with the bits that explicit_rk/step.hpp and drive.hpp give it
-// alone. A lane whose member has ended gets the next one. Allocates in the constructor only.
+// Some members of an ensemble side by side, each with its own time, step, error and end, by an explicit Runge-Kutta
+// method. In: a tableau, derivatives of many states, members. Out: the end of each, with the bits that
+// explicit_rk/step.hpp and drive.hpp give it alone. A lane whose member has ended gets the next one. Allocates in the
+// constructor only.
 #pragma once
 
 #include <algorithm>
@@ -17,15 +18,27 @@
 
 namespace eom::ensemble {
 
-/// T: a tableau. Rhs: as EnsembleRhs. Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done: (const EnsembleEnd&).
+/// T: a tableau. Rhs: as EnsembleRhs. Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done:
+/// (const EnsembleEnd&).
 template <class T, class Rhs, class Next, class Start, class Done, std::size_t width = pack_width>
 class Block {
  public:
-  Block(Rhs& rhs, std::size_t states, std::size_t parameters, const EnsembleOptions& options, Next& next, Start& start, Done& done)
-      : rhs_(rhs), next_(next), start_(start), done_(done), options_(options), n_(states), n_error_(states - options.quadratures), p_count_(parameters),
+  Block(Rhs& rhs, std::size_t states, std::size_t parameters, const EnsembleOptions& options, Next& next, Start& start,
+        Done& done)
+      : rhs_(rhs),
+        next_(next),
+        start_(start),
+        done_(done),
+        options_(options),
+        n_(states),
+        n_error_(states - options.quadratures),
+        p_count_(parameters),
         lanes_((std::max<std::size_t>(options.lanes, 1) + width - 1) / width * width),
         stride_(lanes_ % 64 == 0 ? lanes_ + 8 : lanes_),  // rows a power of two apart displace one another in the cache
-        work_((stages + 6) * n_ * stride_ + p_count_ * stride_ + 8 * stride_ + n_ + p_count_), codes_(stride_), failed_(stride_), goes_on_(stride_) {
+        work_((stages + 6) * n_ * stride_ + p_count_ * stride_ + 8 * stride_ + n_ + p_count_),
+        codes_(stride_),
+        failed_(stride_),
+        goes_on_(stride_) {
     double* at = work_.data();
     const auto take = [&](std::size_t rows) { return std::exchange(at, at + rows * stride_); };
     k_ = take(stages * n_);
@@ -67,7 +80,8 @@ class Block {
   bool adaptive() const { return adaptive_method && options_.fixed_step <= 0; }
   std::size_t padded() const { return (lane_.size() + width - 1) / width * width; }
 
-  /// The first lanes are the ones under way: a new member comes behind them, and the last one takes the place of one that has ended.
+  /// The first lanes are the ones under way: a new member comes behind them, and the last one takes the place of one
+  /// that has ended.
   void refill() {
     for (bool more = true; more && lane_.size() < lanes_;) {
       const std::size_t first = lane_.size();
@@ -88,7 +102,8 @@ class Block {
   void finish(std::size_t l) {
     for (std::size_t i = 0; i < n_; ++i) one_x_[i] = x0_[i * stride_ + l];
     for (std::size_t i = 0; i < p_count_; ++i) one_p_[i] = p_[i * stride_ + l];
-    done_(EnsembleEnd{lane_[l].member(), lane_[l].outcome(), lane_[l].t(), {one_x_, n_}, {one_p_, p_count_}, lane_[l].statistics()});
+    done_(EnsembleEnd{
+        lane_[l].member(), lane_[l].outcome(), lane_[l].t(), {one_x_, n_}, {one_p_, p_count_}, lane_[l].statistics()});
   }
   void leave(std::size_t l) {
     finish(l);
@@ -160,7 +175,8 @@ class Block {
       h0 = std::min(h0, lane_[l].longest_step(options_));
       h_[l] = h0;
       t_[l] = lane_[l].t() + lane_[l].direction() * h0;
-      for (std::size_t i = 0; i < n_; ++i) x1_[i * stride_ + l] = x0_[i * stride_ + l] + lane_[l].direction() * h0 * k_[i * stride_ + l];
+      for (std::size_t i = 0; i < n_; ++i)
+        x1_[i * stride_ + l] = x0_[i * stride_ + l] + lane_[l].direction() * h0 * k_[i * stride_ + l];
     }
     evaluate(first, count, t_, x1_, stage_);
     for (std::size_t l = first; l < first + count; ++l) {
@@ -215,7 +231,8 @@ class Block {
       for (std::size_t i = 0; i < n_; ++i) {
         for (std::size_t l = 0; l < padded(); l += width) {
           const std::size_t at = i * stride_ + l;
-          store(stage_ + at, load(x0_ + at) + load(h_ + l) * weighted<T::a, Row>(k_ + at, std::make_index_sequence<stages>{}));
+          store(stage_ + at,
+                load(x0_ + at) + load(h_ + l) * weighted<T::a, Row>(k_ + at, std::make_index_sequence<stages>{}));
         }
       }
       evaluate_column(stage_t_, stage_, k_ + Row * n_ * stride_);
@@ -246,7 +263,8 @@ class Block {
       for (std::size_t l = 0; l < padded(); l += width) {
         const std::size_t at = i * stride_ + l;
         const Pack x = load(x0_ + at);
-        const Pack increment = load(h_ + l) * weighted<T::a, T::stages>(k_ + at, std::make_index_sequence<stages>{}) + load(carry_ + at);
+        const Pack increment =
+            load(h_ + l) * weighted<T::a, T::stages>(k_ + at, std::make_index_sequence<stages>{}) + load(carry_ + at);
         const Pack sum = x + increment;
         const Pack taken = sum - x;
         store(new_carry_ + at, (x - (sum - taken)) + (increment - taken));
@@ -269,7 +287,8 @@ class Block {
           return value * value;
         };
         sum += square(weighted<T::error, 0>(k_ + at, std::make_index_sequence<stages>{}));
-        if constexpr (T::error.size() == 2) guard += square(weighted<T::error, 1>(k_ + at, std::make_index_sequence<stages>{}));
+        if constexpr (T::error.size() == 2)
+          guard += square(weighted<T::error, 1>(k_ + at, std::make_index_sequence<stages>{}));
       }
       store(error_ + l, sum);
       if constexpr (T::error.size() == 2) store(stage_t_ + l, sum + 0.01 * guard);
@@ -354,9 +373,9 @@ class Block {
   std::vector<char> goes_on_;
   std::vector<Lane> lane_;
   double *k_, *x0_, *x1_, *stage_, *carry_, *new_carry_, *scratch_, *p_;  // rows of lanes, stride_ apart
-  double *t_, *h_, *stage_t_, *error_;                                   // t_: where the trial step ends
-  double *state_, *slope_, *size_, *accepted_;                           // of examine() and decide()
-  double *one_x_, *one_p_;                                               // of one member
+  double *t_, *h_, *stage_t_, *error_;                                    // t_: where the trial step ends
+  double *state_, *slope_, *size_, *accepted_;                            // of examine() and decide()
+  double *one_x_, *one_p_;                                                // of one member
 };
 
 }  // namespace eom::ensemble

@@ -7,15 +7,16 @@
 namespace eom {
 
 struct CompiledBatch {
-  using Function = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, const double* u, const int* mode, int own,
-                           double* dx, int* codes);
+  using Function = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+                           const double* u, const int* mode, int own, double* dx, int* codes);
   static constexpr int own_time = 1, own_parameters = 2;  // NAME_own_time, NAME_own_parameters
 
   Function rhs_function = nullptr;
   const double* u = nullptr;  // null: the defaults
   int mode = 0;
 
-  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx, int* codes) const {
+  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
+                 int* codes) const {
     return rhs_function(count, stride, t, x, p, u, &mode, own_time + own_parameters, dx, codes);
   }
 };

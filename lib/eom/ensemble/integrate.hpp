@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Many runs of one right-hand side at once. In: derivatives of many states, where each member starts. Out: where each ends, with the
-// bits that integrate() gives it alone, whatever the number of lanes and threads.
+// Many runs of one right-hand side at once. In: derivatives of many states, where each member starts. Out: where each
+// ends, with the bits that integrate() gives it alone, whatever the number of lanes and threads.
 #pragma once
 
 #include <atomic>
@@ -21,13 +21,16 @@ namespace ensemble {
 
 /// Members from one counter; what one of the threads throws is thrown here when all have ended.
 template <class T, class Rhs, class Start, class Done>
-void by_threads(Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters, const EnsembleOptions& options, Start& start, Done& done) {
+void by_threads(Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
+                const EnsembleOptions& options, Start& start, Done& done) {
   std::atomic<std::size_t> counter{0};
   std::exception_ptr thrown;
   std::mutex lock;
   const auto work = [&] {
     try {
-      const auto next = [&](std::size_t& member) { return (member = counter.fetch_add(1, std::memory_order_relaxed)) < members; };
+      const auto next = [&](std::size_t& member) {
+        return (member = counter.fetch_add(1, std::memory_order_relaxed)) < members;
+      };
       Block<T, Rhs, decltype(next), Start, Done>(rhs, states, parameters, options, next, start, done).run();
     } catch (...) {
       const std::lock_guard<std::mutex> guard(lock);
@@ -46,26 +49,34 @@ void by_threads(Rhs& rhs, std::size_t members, std::size_t states, std::size_t p
 
 }  // namespace ensemble
 
-/// Integrates `members` runs by an explicit Runge-Kutta method. rhs: as EnsembleRhs; start(member, EnsembleStart&) writes x, p, t0, t1;
-/// done(const EnsembleEnd&) sees each end, in no particular order. All three are called from `threads` threads at once.
-/// Throws std::invalid_argument for a method that is none of them, and for options that make no sense.
+/// Integrates `members` runs by an explicit Runge-Kutta method. rhs: as EnsembleRhs; start(member, EnsembleStart&)
+/// writes x, p, t0, t1; done(const EnsembleEnd&) sees each end, in no particular order. All three are called from
+/// `threads` threads at once. Throws std::invalid_argument for a method that is none of them, and for options that make
+/// no sense.
 template <class Rhs, class Start, class Done>
-void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states, std::size_t parameters, const EnsembleOptions& options,
-                        Start&& start, Done&& done) {
+void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
+                        std::size_t parameters, const EnsembleOptions& options, Start&& start, Done&& done) {
   const bool fixed = options.fixed_step > 0;
-  if (states == 0 || options.quadratures >= states) throw std::invalid_argument("eom::integrate_ensemble: there is no component of the state that steps could be chosen by");
-  if (!(options.rtol >= 0) || !(options.atol >= 0) || (!fixed && options.rtol + options.atol == 0) || !(options.max_step > 0) || !(options.initial_step >= 0) ||
-      !(options.fixed_step >= 0))
-    throw std::invalid_argument("eom::integrate_ensemble: tolerances and steps must not be negative, nor both tolerances 0");
+  if (states == 0 || options.quadratures >= states)
+    throw std::invalid_argument(
+        "eom::integrate_ensemble: there is no component of the state that steps could be chosen by");
+  if (!(options.rtol >= 0) || !(options.atol >= 0) || (!fixed && options.rtol + options.atol == 0) ||
+      !(options.max_step > 0) || !(options.initial_step >= 0) || !(options.fixed_step >= 0))
+    throw std::invalid_argument(
+        "eom::integrate_ensemble: tolerances and steps must not be negative, nor both tolerances 0");
   const bool known = [&]<class... T>(std::tuple<T...>*) {
     return ([&] {
       if (method != T::name) return false;
-      if (T::error.empty() && !fixed) throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) + " needs EnsembleOptions::fixed_step");
+      if (T::error.empty() && !fixed)
+        throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
+                                    " needs EnsembleOptions::fixed_step");
       ensemble::by_threads<T>(rhs, members, states, parameters, options, start, done);
       return true;
     }() || ...);
   }(static_cast<explicit_rk::Registry*>(nullptr));
-  if (!known) throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) + " is no explicit Runge-Kutta method");
+  if (!known)
+    throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
+                                " is no explicit Runge-Kutta method");
 }
 
 }  // namespace eom

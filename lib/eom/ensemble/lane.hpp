@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The steps of one member among others: what drive.hpp does for a run alone, decision by decision, so that a member takes the
-// steps that it would take alone, to the last bit. In: what a trial step came to. Out: the next one, or the end.
+// The steps of one member among others: what drive.hpp does for a run alone, decision by decision, so that a member
+// takes the steps that it would take alone, to the last bit. In: what a trial step came to. Out: the next one, or the
+// end.
 #pragma once
 
 #include <algorithm>
@@ -15,7 +16,12 @@ namespace eom::ensemble {
 class Lane {
  public:
   Lane(std::size_t member, double t0, double t1, const explicit_rk::StepControl& control, int order)
-      : member_(member), t_start_(t0), t_(t0), t_end_(t1), direction_(t1 < t0 ? -1.0 : 1.0), controller_(control, order) {}
+      : member_(member),
+        t_start_(t0),
+        t_(t0),
+        t_end_(t1),
+        direction_(t1 < t0 ? -1.0 : 1.0),
+        controller_(control, order) {}
 
   std::size_t member() const { return member_; }
   double t() const { return t_; }
@@ -24,14 +30,19 @@ class Lane {
   Outcome outcome() const { return outcome_; }
   void count(std::size_t evaluations) { statistics_.rhs_evaluations += evaluations; }
   const Statistics& statistics() const { return statistics_; }
-  double longest_step(const EnsembleOptions& options) const { return std::min(options.max_step, std::abs(t_end_ - t_start_)); }
+  double longest_step(const EnsembleOptions& options) const {
+    return std::min(options.max_step, std::abs(t_end_ - t_start_));
+  }
 
-  void start_with(double h, const EnsembleOptions& options) { h_ = std::min(std::max(h, smallest_step(t_)), longest_step(options)); }
+  void start_with(double h, const EnsembleOptions& options) {
+    h_ = std::min(std::max(h, smallest_step(t_)), longest_step(options));
+  }
   /// As many equal steps as are needed and no more; false: the run ends here.
   bool plan_fixed_steps(const EnsembleOptions& options) {
     const double quotient = std::abs(t_end_ - t_start_) / options.fixed_step;
     fixed_steps_ = std::max(1.0, std::ceil(quotient * (1 - 8 * std::numeric_limits<double>::epsilon())));
-    if (fixed_steps_ > 1 && options.fixed_step < smallest_step(std::max(std::abs(t_start_), std::abs(t_end_)))) return end(Outcome::step_too_small);
+    if (fixed_steps_ > 1 && options.fixed_step < smallest_step(std::max(std::abs(t_start_), std::abs(t_end_))))
+      return end(Outcome::step_too_small);
     return true;
   }
 
@@ -52,7 +63,8 @@ class Lane {
 
   /// Whether the run goes on.
   bool accept(double t_next, double error, const EnsembleOptions& options) {
-    if (fixed_steps_ == 0) h_ = std::min(controller_.after_accepted(std::abs(t_next - t_), error), longest_step(options));
+    if (fixed_steps_ == 0)
+      h_ = std::min(controller_.after_accepted(std::abs(t_next - t_), error), longest_step(options));
     t_ = t_next;
     ++statistics_.steps;
     return t_ != t_end_;

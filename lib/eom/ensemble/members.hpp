@@ -22,25 +22,26 @@ struct EnsembleStart {
 struct EnsembleEnd {
   std::size_t member = 0;
   Outcome outcome = Outcome::done;
-  double t = 0;                      // the time reached: t1 exactly when the outcome is done
-  std::span<const double> x, p;      // the state at t, and the parameters
+  double t = 0;                  // the time reached: t1 exactly when the outcome is done
+  std::span<const double> x, p;  // the state at t, and the parameters
   Statistics statistics;
 };
 
-/// Derivatives of `count` states, entry i of state s at [i*stride + s] of x, p and dx, its time t[s]; writes a code of the C ABI for each
-/// and returns one that is not 0, if there is any.
-using EnsembleRhs = std::function<int(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx, int* codes)>;
+/// Derivatives of `count` states, entry i of state s at [i*stride + s] of x, p and dx, its time t[s]; writes a code of
+/// the C ABI for each and returns one that is not 0, if there is any.
+using EnsembleRhs = std::function<int(std::size_t count, std::size_t stride, const double* t, const double* x,
+                                      const double* p, double* dx, int* codes)>;
 
 struct EnsembleOptions {
   double rtol = 1e-9, atol = 1e-12;
-  double initial_step = 0;           // 0: chosen
+  double initial_step = 0;  // 0: chosen
   double max_step = std::numeric_limits<double>::infinity();
-  double fixed_step = 0;             // > 0: steps of this size without error control; rk4 needs it
+  double fixed_step = 0;  // > 0: steps of this size without error control; rk4 needs it
   std::size_t max_steps = 50'000'000;
-  std::size_t quadratures = 0;       // trailing components of x kept out of the error norm
+  std::size_t quadratures = 0;  // trailing components of x kept out of the error norm
   const std::atomic<bool>* interrupt = nullptr;
-  std::size_t lanes = 32;            // members that a thread has under way
-  std::size_t threads = 1;           // 0: one for each processor
+  std::size_t lanes = 32;   // members that a thread has under way
+  std::size_t threads = 1;  // 0: one for each processor
 };
 
 }  // namespace eom

@@ -31,8 +31,8 @@ enum class AtEvent {
   stop,     // the run ends here: stopped_by_event
 };
 
-/// What a handler is given. At a passing crossing it is to be left alone and the answer is not asked. At a breaking one the handler
-/// may change x, and move t on by a part of the step that is not worth an integration.
+/// What a handler is given. At a passing crossing it is to be left alone and the answer is not asked. At a breaking one
+/// the handler may change x, and move t on by a part of the step that is not worth an integration.
 struct EventPoint {
   double& t;
   std::span<double> x;
@@ -51,8 +51,16 @@ class Run {
   Run(std::string_view method, F& rhs, G& g, std::vector<EventFunction> functions, double t0,
       std::span<const double> x0, double t1, const Options& options, Handler& handler, Observer& observer,
       AfterStep& after_step)
-      : method_(method), rhs_(rhs), g_(g), t1_(t1), options_(options), handler_(handler), observer_(observer),
-        after_step_(after_step), values_(functions.size()), locator_(std::move(functions), x0.size()) {
+      : method_(method),
+        rhs_(rhs),
+        g_(g),
+        t1_(t1),
+        options_(options),
+        handler_(handler),
+        observer_(observer),
+        after_step_(after_step),
+        values_(functions.size()),
+        locator_(std::move(functions), x0.size()) {
     total_.t = t0;
     total_.x.assign(x0.begin(), x0.end());
     cut_x_.resize(x0.size());
@@ -67,10 +75,12 @@ class Run {
     }
     Options piece = options_;
     while (true) {
-      piece.max_steps = options_.max_steps - std::min(options_.max_steps, total_.statistics.steps + total_.statistics.rejected);
+      piece.max_steps =
+          options_.max_steps - std::min(options_.max_steps, total_.statistics.steps + total_.statistics.rejected);
       cut_.reset();
-      const Result part = integrate(method_, rhs_, total_.t, total_.x, t1_, piece,
-                                    [this](const StepView& view) { return observe(view); }, after_step_);
+      const Result part = integrate(
+          method_, rhs_, total_.t, total_.x, t1_, piece, [this](const StepView& view) { return observe(view); },
+          after_step_);
       total_.statistics += part.statistics;
       if (!cut_) {
         total_.outcome = part.outcome;
@@ -110,9 +120,11 @@ class Run {
     return observer_(view);
   }
 
-  /// Goes from (t0, x0) to the crossing, in so many `parts`, until it stays where it is; `last` sees the final ones. x is the state there.
+  /// Goes from (t0, x0) to the crossing, in so many `parts`, until it stays where it is; `last` sees the final ones. x
+  /// is the state there.
   template <class Last>
-  bool refine(double t0, std::span<const double> x0, double h, std::size_t parts, Crossing& crossing, std::vector<double>& x, Last&& last) {
+  bool refine(double t0, std::span<const double> x0, double h, std::size_t parts, Crossing& crossing,
+              std::vector<double>& x, Last&& last) {
     if (std::abs(crossing.t - t0) < static_cast<double>(parts) * smallest_parts * std::abs(crossing.t)) parts = 1;
     Options one;
     one.rtol = options_.rtol;
@@ -122,7 +134,8 @@ class Run {
     // A step of radau may be of any of its orders, and only the highest is as accurate as all of them.
     if (method_ == implicit::Radau::name) one.series_order = options_.series_order != 0 ? options_.series_order : 13;
     const std::size_t i = crossing.function;
-    const double limit = std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
+    const double limit =
+        std::max(1e-12 * std::abs(h), 4 * std::numeric_limits<double>::epsilon() * std::abs(crossing.t));
     double t = crossing.t, before = 0, value_before = 0;
     bool go_on = true;
     for (int trial = 0; trial < most_corrections; ++trial) {
@@ -155,7 +168,8 @@ class Run {
           go_on = last(view) && go_on;
           return true;
         };
-        total_.statistics.rhs_evaluations += integrate(method_, rhs_, t0, x0, t, one, show, after_step_).statistics.rhs_evaluations;
+        total_.statistics.rhs_evaluations +=
+            integrate(method_, rhs_, t0, x0, t, one, show, after_step_).statistics.rhs_evaluations;
       }
       if (final) return go_on;
       before = t;
@@ -180,7 +194,8 @@ class Run {
   bool take_event(Options& piece) {
     Crossing crossing = *cut_;
     const double h = cut_h_;
-    const bool go_on = refine(cut_t_, cut_x_, h, options_.event_parts, crossing, total_.x, [this](const StepView& view) { return observer_(view); });
+    const bool go_on = refine(cut_t_, cut_x_, h, options_.event_parts, crossing, total_.x,
+                              [this](const StepView& view) { return observer_(view); });
     const double progress = std::abs(crossing.t - total_.t);
     total_.t = crossing.t;
     const bool known = g_(total_.t, total_.x.data(), values_.data()) == 0 && std::isfinite(values_[crossing.function]);
@@ -209,7 +224,7 @@ class Run {
 
   static constexpr int most_corrections = 6;
   static constexpr double smallest_parts = 1e-13;  // of the time
-  static constexpr double farthest = 0.01;  // of the step: a correction that is larger is none
+  static constexpr double farthest = 0.01;         // of the step: a correction that is larger is none
 
   std::string_view method_;
   F& rhs_;
@@ -232,7 +247,8 @@ class Run {
 
 /// integrate() with event functions: g(t, x, values) -> int gives as many values as there are `functions`;
 /// handler(EventPoint) -> AtEvent. Passing events are told before the observer sees the step that holds them, a
-/// breaking one after the observer saw the step that ends there, also where that ends the run. What is thrown is what integrate() throws.
+/// breaking one after the observer saw the step that ends there, also where that ends the run. What is thrown is what
+/// integrate() throws.
 template <class F, class G, class Handler, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate_events(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                         const Options& options, G&& g, std::vector<EventFunction> functions, Handler&& handler,

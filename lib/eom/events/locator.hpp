@@ -3,13 +3,14 @@
 // g(t, x, values) -> code. Out: crossings in the order of the run, each to 1e-12 of the step on the dense output.
 //
 // An event function keeps a side (the sign it had last). A crossing flips it, so that the residual of a root that was
-// just found is not found again. A side that is not known (at the start of a run on the surface itself, or after a state
-// was changed there) is the sign of the first value beyond rounding, looked for on a geometric sequence of points.
-// g may have hidden(view, i, side, from, to): between which two places of the step function i first leaves its side, whatever samples show.
-// Each step is sampled at nine points; between samples of one sign a double root is looked for wherever they show a dip that may
-// reach zero: three of them by the parabola through them, four by the lines through the outer two on either side, below which a convex function, with
-// a kink or not, cannot come. Where a crossing is found all functions are looked at: one that is beyond zero there has crossed before,
-// however short that is and whatever the samples say. A zero without a change of sign is no event.
+// just found is not found again. A side that is not known (at the start of a run on the surface itself, or after a
+// state was changed there) is the sign of the first value beyond rounding, looked for on a geometric sequence of
+// points. g may have hidden(view, i, side, from, to): between which two places of the step function i first leaves its
+// side, whatever samples show. Each step is sampled at nine points; between samples of one sign a double root is looked
+// for wherever they show a dip that may reach zero: three of them by the parabola through them, four by the lines
+// through the outer two on either side, below which a convex function, with a kink or not, cannot come. Where a
+// crossing is found all functions are looked at: one that is beyond zero there has crossed before, however short that
+// is and whatever the samples say. A zero without a change of sign is no event.
 #pragma once
 
 #include <algorithm>
@@ -39,14 +40,16 @@ enum class Watch {
 struct EventFunction {
   Direction direction = Direction::any;
   Watch watch = Watch::breaking;
-  bool guard = false;  // of a direction up or down: to start beyond the surface, or to leave it that way, is a crossing too
+  bool guard =
+      false;  // of a direction up or down: to start beyond the surface, or to leave it that way, is a crossing too
 };
 
 struct Crossing {
   std::size_t function = 0;
   double t = 0;
-  bool up = false;  // the value rises with t
-  double value = std::numeric_limits<double>::infinity();  // the function's there, before a handler changed anything; infinite: not known
+  bool up = false;                                         // the value rises with t
+  double value = std::numeric_limits<double>::infinity();  // the function's there, before a handler changed anything;
+                                                           // infinite: not known
 };
 
 class EventLocator {
@@ -68,8 +71,8 @@ class EventLocator {
   /// -1, 0 (not known) or 1 of a function's value where the run stands.
   int side(std::size_t function) const { return side_[function]; }
 
-  /// Takes the sides at (t, x) afresh; those within rounding of zero are not known, nor those of `crossed` functions that are as near zero as
-  /// they were at the crossing (a mode may give the function another meaning).
+  /// Takes the sides at (t, x) afresh; those within rounding of zero are not known, nor those of `crossed` functions
+  /// that are as near zero as they were at the crossing (a mode may give the function another meaning).
   template <class G>
   int start(double t, const double* x, G& g, bool forward = true, std::span<const Crossing> crossed = {}) {
     if (functions_.empty()) return 0;
@@ -150,14 +153,17 @@ class EventLocator {
 
   // Close to both ends too, so that a dip between the last of one step and the first of the next is seen.
   static constexpr std::array<double, 9> places{0, 1e-4, 0.067, 0.25, 0.5, 0.75, 0.933, 1 - 1e-4, 1};
-  static constexpr double tolerance = 1e-12;         // of the step
-  static constexpr double rounding = 1e-13;          // of the largest value seen: smaller ones have no sign
-  static constexpr double crossed_rounding = 1e-10;  // the same of a function that has just crossed: its place is corrected, not exact
+  static constexpr double tolerance = 1e-12;  // of the step
+  static constexpr double rounding = 1e-13;   // of the largest value seen: smaller ones have no sign
+  static constexpr double crossed_rounding =
+      1e-10;  // the same of a function that has just crossed: its place is corrected, not exact
   static constexpr double none = std::numeric_limits<double>::quiet_NaN();
-  static constexpr double dip_worth_a_look = 0.5;    // of the smallest sample: where a parabola's vertex lies lower
+  static constexpr double dip_worth_a_look = 0.5;  // of the smallest sample: where a parabola's vertex lies lower
 
   /// The side from which a function with a direction may be crossed.
-  static int inner_side(const EventFunction& f, bool forward) { return (f.direction == Direction::up) == forward ? -1 : 1; }
+  static int inner_side(const EventFunction& f, bool forward) {
+    return (f.direction == Direction::up) == forward ? -1 : 1;
+  }
   static int sign(double value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
   bool beyond(std::size_t i, double value) const {
     return std::isfinite(value) && std::abs(value) > std::max(4 * residual_[i], rounding * size_[i]);
@@ -216,7 +222,8 @@ class EventLocator {
     position_[i] = beyond_guard ? 0 : s;
   }
 
-  /// The first crossing after the function's position: by samples, or before that one where bounds of the function, if g has them, do not exclude it.
+  /// The first crossing after the function's position: by samples, or before that one where bounds of the function, if
+  /// g has them, do not exclude it.
   template <class G>
   std::optional<Candidate> crossing(const StepView& view, std::size_t i, G& g) {
     const std::optional<Candidate> sampled = between_samples(view, i, g);
@@ -228,7 +235,8 @@ class EventLocator {
       const auto inward = [&](double s) { return side * value(view, s, i, g); };
       const double at_right = inward(found->second);
       if (!(at_right < 0)) return sampled;
-      const double s = root(inward, found->first, found->first == position_[i] ? none : inward(found->first), found->second, at_right);
+      const double s = root(inward, found->first, found->first == position_[i] ? none : inward(found->first),
+                            found->second, at_right);
       if (!sampled || s < sampled->s - tolerance) return Candidate{i, s, side};
     }
     return sampled;
@@ -249,7 +257,9 @@ class EventLocator {
       if (here < 0) return Candidate{i, root(inward, left, at_left, places[k], here), side};
       if (k + 1 < places.size()) {
         const Point b{left, at_left}, c{places[k], here}, d{places[k + 1], side * sample(k + 1, i)};
-        double dip = k > 1 && places[k - 2] >= position_[i] ? dipped({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward) : none;
+        double dip = k > 1 && places[k - 2] >= position_[i]
+                         ? dipped({places[k - 2], side * sample(k - 2, i)}, b, c, d, inward)
+                         : none;
         if (!std::isfinite(dip)) dip = dipped(inward, left, at_left, places[k], here, d.s, d.value);
         if (std::isfinite(dip)) return Candidate{i, root(inward, left, at_left, dip, inward(dip)), side};
       }
@@ -268,7 +278,9 @@ class EventLocator {
     for (std::size_t i = 0; i < functions_.size(); ++i) {
       const int side = side_[i];
       const double there = side * there_[i];
-      if (i == found.function || functions_[i].watch == Watch::off || !(there < 0) || !beyond(i, there) || position_[i] >= found.s) continue;
+      if (i == found.function || functions_[i].watch == Watch::off || !(there < 0) || !beyond(i, there) ||
+          position_[i] >= found.s)
+        continue;
       double left = position_[i], at_left = left == 0 ? side * sample(0, i) : none;
       for (std::size_t k = 1; k < places.size() && places[k] < found.s; ++k) {
         if (places[k] > left && side * sample(k, i) > 0) left = places[k], at_left = side * sample(k, i);
@@ -280,8 +292,8 @@ class EventLocator {
     return first;
   }
 
-  /// A point between b and c where the function is negative though not at the four samples; NaN where the lines through the outer two
-  /// meet above zero, or there is none.
+  /// A point between b and c where the function is negative though not at the four samples; NaN where the lines through
+  /// the outer two meet above zero, or there is none.
   template <class F>
   double dipped(Point a, Point b, Point c, Point d, F& inward) {
     if (!(a.value > 0 && b.value > 0 && c.value > 0 && d.value > 0)) return none;
@@ -302,8 +314,8 @@ class EventLocator {
     if (!std::isfinite(fa)) fa = inward(a);
     if (!(fb > 0 && fb <= fa && fb < fc)) return none;
     const double left = (fb - fa) / (b - a), right = (fc - fb) / (c - b);
-    const double bend = (right - left) / (c - a);              // second divided difference, positive at a dip
-    const double slope = left + bend * (b - a);                // of the parabola at b
+    const double bend = (right - left) / (c - a);  // second divided difference, positive at a dip
+    const double slope = left + bend * (b - a);    // of the parabola at b
     const double vertex = fb - slope * slope / (4 * bend);
     if (!(vertex < dip_worth_a_look * fb)) return none;
     return events::find_negative(inward, a, b, fb, c, 1e-9);
@@ -332,7 +344,7 @@ class EventLocator {
   std::vector<double> size_;      // largest value seen
   std::vector<double> residual_;  // value at the start, of a function that started on its surface
   std::vector<double> values_;
-  std::vector<double> there_;     // values at a crossing
+  std::vector<double> there_;  // values at a crossing
   std::vector<double> samples_;
   std::vector<double> x_;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Step sizes from error estimates. In: the error norm of a trial step (1: just allowed). Out: accept or not, next step.
-// PI control after Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.4, and Hairer, Wanner,
-// part II, section IV.2: h_new = h safety err^-(1/p - 3/4 beta) err_before^beta, within [shrink, grow] h.
+// PI control after Hairer, Norsett, Wanner, Solving Ordinary Differential Equations I, section II.4, and Hairer,
+// Wanner, part II, section IV.2: h_new = h safety err^-(1/p - 3/4 beta) err_before^beta, within [shrink, grow] h.
 #pragma once
 
 #include <algorithm>
@@ -13,8 +13,7 @@ namespace eom::explicit_rk {
 
 class Controller {
  public:
-  Controller(const StepControl& control, int order)
-      : control_(control), exponent_(1.0 / order - 0.75 * control.beta) {}
+  Controller(const StepControl& control, int order) : control_(control), exponent_(1.0 / order - 0.75 * control.beta) {}
 
   /// The step to take after an accepted one of size h whose error norm was error; never longer after a rejection.
   double after_accepted(double h, double error) {

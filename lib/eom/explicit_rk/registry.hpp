@@ -11,10 +11,6 @@
 
 namespace eom::explicit_rk {
 
-using Registry = std::tuple<
-    Rk4,
-    Dopri5,
-    Tsit5,
-    Dop853>;
+using Registry = std::tuple<Rk4, Dopri5, Tsit5, Dop853>;
 
 }  // namespace eom::explicit_rk

@@ -16,11 +16,7 @@ struct Rk4 {
   static constexpr StepControl control{0.9, 0, 0.2, 5};  // not used: no estimator
 
   static constexpr std::array<double, 5> c{0, 0.5, 0.5, 1, 1};
-  static constexpr Weights<5, 5> a{{{},
-                                    {0.5},
-                                    {0, 0.5},
-                                    {0, 0, 1},
-                                    {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}}};
+  static constexpr Weights<5, 5> a{{{}, {0.5}, {0, 0.5}, {0, 0, 1}, {1.0 / 6, 1.0 / 3, 1.0 / 3, 1.0 / 6}}};
   static constexpr Weights<0, 5> error{};
   static constexpr Weights<0, 5> dense{};
 };

@@ -92,8 +92,8 @@ class Stepper {
     }
   }
 
-  /// |h lambda| of what the stages stir up: the change of the derivative between the last stage and the end, both at t1, by
-  /// that of the state (HW II, section IV.2). Before accept(), for methods whose last stage is at t1.
+  /// |h lambda| of what the stages stir up: the change of the derivative between the last stage and the end, both at
+  /// t1, by that of the state (HW II, section IV.2). Before accept(), for methods whose last stage is at t1.
   double stiffness() const {
     static_assert(T::c[T::stages - 1] == 1);
     double change = 0, distance = 0;
@@ -210,11 +210,11 @@ class Stepper {
   std::size_t n_;
   std::size_t n_error_;
   std::vector<double> work_;
-  double* k_;            // columns<T> derivatives, n apart
+  double* k_;  // columns<T> derivatives, n apart
   double* x0_;
   double* x1_;
-  double* stage_;        // state of the stage being evaluated
-  double* carry_;        // remainders of the sum so far, and after the trial step
+  double* stage_;  // state of the stage being evaluated
+  double* carry_;  // remainders of the sum so far, and after the trial step
   double* new_carry_;
   double* corrections_;  // dense_rows vectors
   double t0_ = 0;

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Tsitouras 5(4) with dense output of order 4.
 // Source: Ch. Tsitouras, Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying assumption,
-// Computers and Mathematics with Applications 62 (2011) 770-775. The dense row is the coefficients of s^4 in its interpolant.
+// Computers and Mathematics with Applications 62 (2011) 770-775. The dense row is the coefficients of s^4 in its
+// interpolant.
 #pragma once
 
 #include "eom/explicit_rk/tableau.hpp"
@@ -29,8 +30,8 @@ struct Tsit5 {
        2.324710524099774},
   }};
   static constexpr Weights<1, 7> error{{
-      {-0.00178001105222577714, -0.0008164344596567469, 0.007880878010261995, -0.1447110071732629,
-       0.5823571654525552, -0.45808210592918697, 1.0 / 66},
+      {-0.00178001105222577714, -0.0008164344596567469, 0.007880878010261995, -0.1447110071732629, 0.5823571654525552,
+       -0.45808210592918697, 1.0 / 66},
   }};
   static constexpr Weights<1, 7> dense{{
       {-1.0530884977290216, 0.1017, 2.490627285651253, -16.548102889244902, 47.37952196281928, -34.87065786149661, 2.5},

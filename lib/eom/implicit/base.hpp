@@ -27,7 +27,8 @@ class Base {
         jacobian_(problem, n_, m_, options.rtol > 0 ? options.atol / options.rtol : 0, differences),
         ends_(7 * n_) {
     double* next = ends_.data();
-    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_}) *vector = std::exchange(next, next + n_);
+    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_})
+      *vector = std::exchange(next, next + n_);
     std::copy(x.begin(), x.end(), x0_);
   }
   Base(const Base&) = delete;

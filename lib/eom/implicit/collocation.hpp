@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Steps of Radau IIA with error control, for stiff systems: what radau5, radau and ggl share. Source: Hairer, Wanner, Solving Ordinary
-// Differential Equations II, section IV.8: stage increments by simplified Newton iterations, transformed so that one real and (s - 1)/2
-// complex matrices are factored; an error estimate of order s, filtered by the real matrix; step sizes predicted from two steps
-// (Gustafsson); df/dx and the factors are kept as long as the iteration converges fast.
+// Steps of Radau IIA with error control, for stiff systems: what radau5, radau and ggl share. Source: Hairer, Wanner,
+// Solving Ordinary Differential Equations II, section IV.8: stage increments by simplified Newton iterations,
+// transformed so that one real and (s - 1)/2 complex matrices are factored; an error estimate of order s, filtered by
+// the real matrix; step sizes predicted from two steps (Gustafsson); df/dx and the factors are kept as long as the
+// iteration converges fast.
 //
-// The estimate is of lower order than the method. So that the step's own error stays in proportion to the tolerance r, it is
-// compared with r^((s+1)/(2s))/10. With fixed steps there is no tolerance: the iteration goes on to rounding.
-// A Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) has hidden the hooks below; u and g stand
-// behind the state in each stage, and behind its motion in matrices.
+// The estimate is of lower order than the method. So that the step's own error stays in proportion to the tolerance r,
+// it is compared with r^((s+1)/(2s))/10. With fixed steps there is no tolerance: the iteration goes on to rounding. A
+// Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) has hidden the hooks
+// below; u and g stand behind the state in each stage, and behind its motion in matrices.
 #pragma once
 
 #include <algorithm>
@@ -36,7 +37,8 @@ class Collocation : public Base {
     if (jacobian_wanted_ || !jacobian_known_)
       if (const int code = new_jacobian(); code != 0) return code;
     if (!fixed_ && !std::exchange(begun_, true))
-      if (const double fast = std::abs(h_) * jacobian_.fastest(f_, f_ + n_); fast > first_step && std::isfinite(fast)) return fail(first_step / fast), code_no_convergence;
+      if (const double fast = std::abs(h_) * jacobian_.fastest(f_, f_ + n_); fast > first_step && std::isfinite(fast))
+        return fail(first_step / fast), code_no_convergence;
     while (true) {
       if (!factored_ || std::abs(h_ - h_factored_) > same_step * std::abs(h_))
         if (!factor()) return fail(0.5), code_no_convergence;
@@ -79,7 +81,8 @@ class Collocation : public Base {
     method().choose_stages(next / h);
     rejected_ = false;
     accepted_ = true;
-    if (!stages_changed_ && contraction_ <= keep_jacobian && next >= h && next <= 1.2 * h) return h;  // the factors stay
+    if (!stages_changed_ && contraction_ <= keep_jacobian && next >= h && next <= 1.2 * h)
+      return h;  // the factors stay
     return next;
   }
 
@@ -104,7 +107,9 @@ class Collocation : public Base {
     swap_ends(moved);
   }
 
-  static void interpolate(const void* method, double t, double* x) { static_cast<const Method*>(method)->interpolate(t, x); }
+  static void interpolate(const void* method, double t, double* x) {
+    static_cast<const Method*>(method)->interpolate(t, x);
+  }
 
   /// Of the step that comes.
   std::size_t stages() const {
@@ -113,23 +118,34 @@ class Collocation : public Base {
   }
 
   // Hooks of what has algebraic equations, or chooses its stages.
-  int linearise() { return 0; }                            // at the step's start, with df/dx; returns a code
+  int linearise() { return 0; }  // at the step's start, with df/dx; returns a code
   template <class Matrix>
-  void border(Matrix&) const {}                            // rows and columns beyond the motion
-  int add_algebraic(double, const double*, const double*, double*) { return 0; }  // t, x, u, derivatives in which g stands too; a code
+  void border(Matrix&) const {}  // rows and columns beyond the motion
+  int add_algebraic(double, const double*, const double*, double*) {
+    return 0;
+  }  // t, x, u, derivatives in which g stands too; a code
   template <class Size>
-  void border_units(double*, const Size&) const {}         // right-hand sides for Units
-  int settle() { return 0; }                               // after the iteration: of the last stage; returns a code
-  void choose_stages(double) {}                            // after an accepted step; growth of the next
+  void border_units(double*, const Size&) const {}  // right-hand sides for Units
+  int settle() { return 0; }                        // after the iteration: of the last stage; returns a code
+  void choose_stages(double) {}                     // after an accepted step; growth of the next
  protected:
   static constexpr double safety = 0.9, most_growth = 8, most_shrinking = 5;
   static constexpr double keep_jacobian = 1e-3;  // of Newton's contraction
-  // Times |lambda| of the fastest motion: in a longer one the filter of the estimate takes an impact for a motion that has died away.
+  // Times |lambda| of the fastest motion: in a longer one the filter of the estimate takes an impact for a motion that
+  // has died away.
   static constexpr double first_step = 1, same_step = 1e-9;
 
-  Collocation(Problem& problem, std::span<const double> x, const Options& options, std::size_t stages, std::size_t algebraic = 0)
-      : Base(problem, x, options, Jacobian::Differences::one_sided), extra_(algebraic), length_(n_ + algebraic), real_(m_ + algebraic),
-        complex_(most / 2, Lu<Complex>(m_ + algebraic)), units_(m_, m_ + algebraic), work_(4 * most * length_), estimate_(length_), right_(length_),
+  Collocation(Problem& problem, std::span<const double> x, const Options& options, std::size_t stages,
+              std::size_t algebraic = 0)
+      : Base(problem, x, options, Jacobian::Differences::one_sided),
+        extra_(algebraic),
+        length_(n_ + algebraic),
+        real_(m_ + algebraic),
+        complex_(most / 2, Lu<Complex>(m_ + algebraic)),
+        units_(m_, m_ + algebraic),
+        work_(4 * most * length_),
+        estimate_(length_),
+        right_(length_),
         pair_(m_ + algebraic) {
     double* next = work_.data();
     for (double** block : {&z_, &w_, &f_, &z_before_}) *block = std::exchange(next, next + most * length_);
@@ -195,7 +211,8 @@ class Collocation : public Base {
       for (std::size_t i = 0; i < m_; ++i) {
         const double diagonal = i == j ? inverse : 0, entry = jacobian_(i, j);
         real_(i, j) = tableau_->gamma * diagonal - entry;
-        for (std::size_t p = 0; p < pairs; ++p) complex_[p](i, j) = {tableau_->alpha[p] * diagonal - entry, tableau_->beta[p] * diagonal};
+        for (std::size_t p = 0; p < pairs; ++p)
+          complex_[p](i, j) = {tableau_->alpha[p] * diagonal - entry, tableau_->beta[p] * diagonal};
       }
     method().border(real_);
     for (std::size_t p = 0; p < pairs; ++p) method().border(complex_[p]);
@@ -264,7 +281,9 @@ class Collocation : public Base {
       if (const int code = evaluate(t, scratch_, f); code != 0) return code;
       if (const int code = method().add_algebraic(t, scratch_, z + n_, f); code != 0) return code;
     }
-    return std::all_of(f_, f_ + stages() * length_, [](double value) { return std::isfinite(value); }) ? 0 : code_not_finite;
+    return std::all_of(f_, f_ + stages() * length_, [](double value) { return std::isfinite(value); })
+               ? 0
+               : code_not_finite;
   }
 
   /// One simplified Newton iteration from stage derivatives in f_; returns the size of the correction.
@@ -274,7 +293,8 @@ class Collocation : public Base {
     const auto per_h = [&](std::size_t row) { return row < m_ ? inverse : 0; };  // algebraic rows have no derivative
     each_unknown([&](std::size_t i, std::size_t row) { right_[row] = f_[i] - tableau_->gamma * w_[i] * per_h(row); });
     real_.solve(right_.data());
-    const double part = norm([&](std::size_t i) { return right_[i]; }, [&](std::size_t i) { return newton_scale(i, right_[i]); });
+    const double part =
+        norm([&](std::size_t i) { return right_[i]; }, [&](std::size_t i) { return newton_scale(i, right_[i]); });
     double sum = part * part;
     each_unknown([&](std::size_t i, std::size_t row) { w_[i] += right_[row]; });
     for (std::size_t p = 0; p < stages() / 2; ++p) {
@@ -282,10 +302,13 @@ class Collocation : public Base {
       const double *fa = f_ + (1 + 2 * p) * length_, *fb = fa + length_;
       const double alpha = tableau_->alpha[p], beta = tableau_->beta[p];
       each_unknown([&](std::size_t i, std::size_t row) {
-        pair_[row] = {fa[i] - (alpha * a[i] - beta * b[i]) * per_h(row), fb[i] - (alpha * b[i] + beta * a[i]) * per_h(row)};
+        pair_[row] = {fa[i] - (alpha * a[i] - beta * b[i]) * per_h(row),
+                      fb[i] - (alpha * b[i] + beta * a[i]) * per_h(row)};
       });
       complex_[p].solve(pair_.data());
-      const auto of_pair = [&](std::size_t i) { return std::sqrt(pair_[i].re * pair_[i].re + pair_[i].im * pair_[i].im); };
+      const auto of_pair = [&](std::size_t i) {
+        return std::sqrt(pair_[i].re * pair_[i].re + pair_[i].im * pair_[i].im);
+      };
       const double size = norm(of_pair, [&](std::size_t i) { return newton_scale(i, of_pair(i)); });
       sum += size * size;
       each_unknown([&](std::size_t i, std::size_t row) { a[i] += pair_[row].re, b[i] += pair_[row].im; });
@@ -306,8 +329,9 @@ class Collocation : public Base {
     remaining_ = std::pow(std::max(remaining_, epsilon), 0.8);
     contraction_ = keep_jacobian;
     if (fixed_)
-      units_.see(jacobian_, x0_, f0_, h_, 1, [&](double* w) { real_.solve(w); },
-                 [&](double* w, const auto& size) { method().border_units(w, size); });
+      units_.see(
+          jacobian_, x0_, f0_, h_, 1, [&](double* w) { real_.solve(w); },
+          [&](double* w, const auto& size) { method().border_units(w, size); });
     ToRounding to_rounding;
     double before = 0, ratio_before = 0;
     const int most_here = most_iterations();
@@ -383,7 +407,8 @@ class Collocation : public Base {
   Units units_;
   std::vector<double> work_, estimate_, right_;
   std::vector<Complex> pair_;
-  const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr, *of_before_ = nullptr;  // of the step that comes, the last, the one before
+  const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr,
+                     *of_before_ = nullptr;  // of the step that comes, the last, the one before
   std::size_t stages_ = 3;
   double *z_, *w_, *f_, *z_before_;  // stage increments, transformed, stage derivatives; of the step before
   double tolerance_ = 0, asked_rtol_ = 0, asked_atol_ = 0, rtol_ = 0, atol_ = 0, newton_tolerance_ = 0;

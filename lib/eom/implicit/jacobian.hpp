@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// df/dx and df/dt: from the right-hand side's own function, or by differences. In: a problem, a state and its derivative.
-// Out: matrix and vector, what they cost. The last components of x, quadratures, stay out: nothing depends on them.
+// df/dx and df/dt: from the right-hand side's own function, or by differences. In: a problem, a state and its
+// derivative. Out: matrix and vector, what they cost. The last components of x, quadratures, stay out: nothing depends
+// on them.
 #pragma once
 
 #include <algorithm>
@@ -19,13 +20,22 @@ class Jacobian {
 
   /// n components, the first m of which count; smallest: a size below which a component is not told from 0.
   Jacobian(const Problem& problem, std::size_t n, std::size_t m, double smallest, Differences differences)
-      : problem_(problem), n_(n), m_(m), smallest_(smallest), differences_(differences), dfdx_(m * m), dfdt_(m),
-        x_(n), up_(n), down_(n) {}
+      : problem_(problem),
+        n_(n),
+        m_(m),
+        smallest_(smallest),
+        differences_(differences),
+        dfdx_(m * m),
+        dfdt_(m),
+        x_(n),
+        up_(n),
+        down_(n) {}
 
   double operator()(std::size_t i, std::size_t j) const { return dfdx_[i + m_ * j]; }
   double dfdt(std::size_t i) const { return dfdt_[i]; }
 
-  /// |lambda| of the fastest motion, about: power iteration on the square, which is right where the fastest ones are a pair. v, w: work space, m each.
+  /// |lambda| of the fastest motion, about: power iteration on the square, which is right where the fastest ones are a
+  /// pair. v, w: work space, m each.
   double fastest(double* v, double* w) const {
     for (std::size_t i = 0; i < m_; ++i) v[i] = 1 + 0.5 * static_cast<double>(i % 3);
     const auto times = [&](const double* from, double* to) {
@@ -62,7 +72,8 @@ class Jacobian {
     const std::size_t before = counts.rhs_evaluations;
     std::copy_n(x, n_, x_.data());
     int code = given ? 0 : in_state(t, x, f, h, counts);
-    if (code == 0 && differences_ == Differences::central) code = in_time(t, f, h, counts);  // the others do not ask for it
+    if (code == 0 && differences_ == Differences::central)
+      code = in_time(t, f, h, counts);  // the others do not ask for it
     counts.difference_evaluations += counts.rhs_evaluations - before;
     return code != 0 || all_finite() ? code : code_not_finite;
   }
@@ -75,12 +86,16 @@ class Jacobian {
     double largest = 0;
     for (std::size_t j = 0; j < m_; ++j) largest = std::max(largest, std::abs(x[j]));
     for (std::size_t j = 0; j < m_; ++j) {
-      double size = std::max({std::abs(x[j]), std::abs(h * f[j]), largest > 0 ? std::min(smallest_, largest) : smallest_});
+      double size =
+          std::max({std::abs(x[j]), std::abs(h * f[j]), largest > 0 ? std::min(smallest_, largest) : smallest_});
       if (size == 0) size = largest > 0 ? largest : 1;
-      const int code = quotient(part() * size, f, &dfdx_[m_ * j], counts, [&](double by) {
-        x_[j] = x[j] + by;
-        return x_[j] - x[j];
-      }, [&] { return t; });
+      const int code = quotient(
+          part() * size, f, &dfdx_[m_ * j], counts,
+          [&](double by) {
+            x_[j] = x[j] + by;
+            return x_[j] - x[j];
+          },
+          [&] { return t; });
       x_[j] = x[j];
       if (code != 0) return code;
     }
@@ -90,10 +105,13 @@ class Jacobian {
   int in_time(double t, const double* f, double h, Statistics& counts) {
     double at = t;
     const double size = std::max(part() * std::abs(h), 64 * std::numeric_limits<double>::epsilon() * std::abs(t));
-    return quotient(size, f, dfdt_.data(), counts, [&](double by) {
-      at = t + by;
-      return at - t;
-    }, [&] { return at; });
+    return quotient(
+        size, f, dfdt_.data(), counts,
+        [&](double by) {
+          at = t + by;
+          return at - t;
+        },
+        [&] { return at; });
   }
 
   /// (f at +size less f at -size, or less f itself) by the distance; move(by) gives what was moved in binary64.

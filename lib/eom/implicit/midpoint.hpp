@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The implicit midpoint rule, x1 = x0 + h f(t0 + h/2, (x0 + x1)/2): order 2, fixed steps, symmetric in time, symplectic for
-// Hamiltonian systems; keeps every quadratic invariant. Source: Hairer, Lubich, Wanner, Geometric Numerical Integration,
-// chapters II, IV, VI. All this holds as far as the equation is solved, so Newton's iteration goes on to rounding.
-// Dense output: the Hermite cubic, whose error is that of the step.
+// The implicit midpoint rule, x1 = x0 + h f(t0 + h/2, (x0 + x1)/2): order 2, fixed steps, symmetric in time, symplectic
+// for Hamiltonian systems; keeps every quadratic invariant. Source: Hairer, Lubich, Wanner, Geometric Numerical
+// Integration, chapters II, IV, VI. All this holds as far as the equation is solved, so Newton's iteration goes on to
+// rounding. Dense output: the Hermite cubic, whose error is that of the step.
 #pragma once
 
 #include <algorithm>
@@ -57,11 +57,11 @@ class Midpoint : public Base {
 
   void accept(bool moved) { swap_ends(moved); }
 
-  static void interpolate(const void* method, double t, double* x) { static_cast<const Midpoint*>(method)->interpolate(t, x); }
-
-  void interpolate(double t, double* x) const {
-    hermite((t - t0_) / h_, h_, n_, x0_, f0_, x1_, f1_, x);
+  static void interpolate(const void* method, double t, double* x) {
+    static_cast<const Midpoint*>(method)->interpolate(t, x);
   }
+
+  void interpolate(double t, double* x) const { hermite((t - t0_) / h_, h_, n_, x0_, f0_, x1_, f1_, x); }
 
  private:
   static constexpr double keep_jacobian = 1e-2;  // of the contraction of Newton's iteration
@@ -85,7 +85,8 @@ class Midpoint : public Base {
   /// z = h/2 f(t0 + h/2, x0 + z).
   int iterate() {
     for (std::size_t i = 0; i < n_; ++i) z_[i] = i < m_ ? 0.5 * h_ * f0_[i] : 0;
-    units_.see(jacobian_, x0_, f0_, h_, 0.5 * h_, [&](double* w) { lu_.solve(w); }, [](double*, const auto&) {});
+    units_.see(
+        jacobian_, x0_, f0_, h_, 0.5 * h_, [&](double* w) { lu_.solve(w); }, [](double*, const auto&) {});
     ToRounding to_rounding;
     while (true) {
       if (const int code = evaluate_middle(); code != 0) return code;
@@ -93,9 +94,9 @@ class Midpoint : public Base {
       for (std::size_t i = 0; i < m_; ++i) right_[i] = 0.5 * h_ * f_[i] - z_[i];
       lu_.solve(right_);
       for (std::size_t i = 0; i < m_; ++i) z_[i] += right_[i];
-      const double size = norm([&](std::size_t i) { return right_[i]; }, [&](std::size_t i) {
-        return units_(i, std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[i])), right_[i]);
-      });
+      const double size = norm(
+          [&](std::size_t i) { return right_[i]; },
+          [&](std::size_t i) { return units_(i, std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[i])), right_[i]); });
       const ToRounding::State state = to_rounding.see(size);
       jacobian_wanted_ = to_rounding.contraction() > keep_jacobian;
       if (state == ToRounding::State::converged) return 0;

@@ -39,27 +39,31 @@ class ToRounding {
 
  private:
   static constexpr double stagnant = 1e-5, too_small_to_tell = 1e-8;
-  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a rounding of x.
+  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a
+  // rounding of x.
   static constexpr double negligible = std::numeric_limits<double>::epsilon() / 1024;
-  static constexpr int most_growths = 2;  // a component that first stirs in a later correction makes that one large once
+  static constexpr int most_growths =
+      2;  // a component that first stirs in a later correction makes that one large once
   int iterations_ = 0, growths_ = 0;
   double before_ = 0, contraction_ = 0;
 };
 
-/// In what units the components of a correction are small. A component's own size is the unit as long as it is more than rounding of the
-/// others. What their rounding makes of component i is eps w_i, where (I - h J) w = |h J| |x|: they enter through the arguments of f, and
-/// the matrix of the iteration spreads them. In a unit of 1e-6 w_i that is 2e-10; 50000 times that, by cancellation within f, still counts as
-/// rest (ToRounding::stagnant). A component that is small beside w_i by any factor down to 1e-6 keeps all its digits. The w_i have the
-/// dimensions of the x_i. Where a constraint pins a component at 0, w_i is 0; what is left then is 1e-25 of the largest of all.
+/// In what units the components of a correction are small. A component's own size is the unit as long as it is more
+/// than rounding of the others. What their rounding makes of component i is eps w_i, where (I - h J) w = |h J| |x|:
+/// they enter through the arguments of f, and the matrix of the iteration spreads them. In a unit of 1e-6 w_i that is
+/// 2e-10; 50000 times that, by cancellation within f, still counts as rest (ToRounding::stagnant). A component that is
+/// small beside w_i by any factor down to 1e-6 keeps all its digits. The w_i have the dimensions of the x_i. Where a
+/// constraint pins a component at 0, w_i is 0; what is left then is 1e-25 of the largest of all.
 class Units {
  public:
   /// unknowns: of the matrix, the first m of which are components.
   Units(std::size_t m, std::size_t unknowns) : m_(m), w_(unknowns) {}
 
-  /// For a step h from x, where the derivative is f. solve(vector): by the matrix of the iteration, times any number; part: h by that number.
-  /// border(w, sizes): right-hand sides of unknowns beyond the components.
+  /// For a step h from x, where the derivative is f. solve(vector): by the matrix of the iteration, times any number;
+  /// part: h by that number. border(w, sizes): right-hand sides of unknowns beyond the components.
   template <class Solve, class Border>
-  void see(const Jacobian& jacobian, const double* x, const double* f, double h, double part, Solve solve, Border border) {
+  void see(const Jacobian& jacobian, const double* x, const double* f, double h, double part, Solve solve,
+           Border border) {
     std::fill(w_.begin(), w_.end(), 0.0);
     least_ = 0;
     const auto size = [&](std::size_t j) { return std::max(std::abs(x[j]), std::abs(h * f[j])); };
@@ -68,7 +72,8 @@ class Units {
       least_ = std::max(least_, of_all * size(j));
       for (std::size_t i = 0; i < m_; ++i) w_[i] += std::abs(jacobian(i, j)) * moves;
     }
-    for (std::size_t i = 0; i < m_; ++i) w_[i] *= 1 + 0.1 * static_cast<double>(i % 7);  // so that no symmetry of the matrix makes one 0
+    for (std::size_t i = 0; i < m_; ++i)
+      w_[i] *= 1 + 0.1 * static_cast<double>(i % 7);  // so that no symmetry of the matrix makes one 0
     border(w_.data(), size);
     solve(w_.data());
   }

@@ -35,8 +35,9 @@ F& at_address(void* self) {
 
 template <class F>
 Problem problem_of(F& rhs) {
-  Problem problem{address_of(rhs),
-                  [](void* self, double t, const double* x, double* dx) -> int { return at_address<F>(self)(t, x, dx); }};
+  Problem problem{address_of(rhs), [](void* self, double t, const double* x, double* dx) -> int {
+                    return at_address<F>(self)(t, x, dx);
+                  }};
   if constexpr (requires(double t, const double* x, double* result) { rhs.jacobian(t, x, result, result); })
     problem.jacobian = [](void* self, double t, const double* x, double* dfdx, double* dfdt) -> int {
       return at_address<F>(self).jacobian(t, x, dfdx, dfdt);
@@ -51,7 +52,8 @@ struct ObserverOf {
 };
 template <class Observer>
 ObserverOf observer_of(Observer& observer) {
-  return {address_of(observer), [](void* self, const StepView& step) -> bool { return at_address<Observer>(self)(step); }};
+  return {address_of(observer),
+          [](void* self, const StepView& step) -> bool { return at_address<Observer>(self)(step); }};
 }
 
 struct AfterStepOf {
@@ -61,7 +63,8 @@ struct AfterStepOf {
 };
 template <class AfterStep>
 AfterStepOf after_step_of(AfterStep& after_step) {
-  return {address_of(after_step), [](void* self, double t, double* x) -> int { return at_address<AfterStep>(self)(t, x); }};
+  return {address_of(after_step),
+          [](void* self, double t, double* x) -> int { return at_address<AfterStep>(self)(t, x); }};
 }
 
 }  // namespace eom::implicit

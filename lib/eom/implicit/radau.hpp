@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Radau IIA of orders 5, 9 and 13 (collocation.hpp), chosen from step to step, for stiff systems to tight tolerances. Source: Hairer,
-// Wanner, Stiff differential equations solved by Radau methods, Journal of Computational and Applied Mathematics 111 (1999).
-// The order goes up where Newton's iteration converges fast (contraction below 0.002) in steps of steady length, and down where it
-// converges slowly (above 0.8) or not at all, but not within ten steps of the last change. It starts with 5.
-// Options::series_order fixes it; with fixed steps it is 5 unless told. Dense output: the collocation polynomial, of order s.
+// Radau IIA of orders 5, 9 and 13 (collocation.hpp), chosen from step to step, for stiff systems to tight tolerances.
+// Source: Hairer, Wanner, Stiff differential equations solved by Radau methods, Journal of Computational and Applied
+// Mathematics 111 (1999). The order goes up where Newton's iteration converges fast (contraction below 0.002) in steps
+// of steady length, and down where it converges slowly (above 0.8) or not at all, but not within ten steps of the last
+// change. It starts with 5. Options::series_order fixes it; with fixed steps it is 5 unless told. Dense output: the
+// collocation polynomial, of order s.
 #pragma once
 
 #include <cstddef>
@@ -21,7 +22,10 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
   static constexpr int dense_order = 3;  // at least
 
   Radau(Problem& problem, std::span<const double> x, const Options& options)
-      : Collocation(problem, x, options, options.series_order == 13 ? 7 : options.series_order == 9 ? 5 : 3),
+      : Collocation(problem, x, options,
+                    options.series_order == 13  ? 7
+                    : options.series_order == 9 ? 5
+                                                : 3),
         chooses_(options.series_order == 0 && options.fixed_step == 0) {
     if (const int asked = options.series_order; asked != 0 && asked != 5 && asked != 9 && asked != 13)
       throw std::invalid_argument("eom::integrate: series_order of radau has to be 0, 5, 9 or 13");
@@ -41,8 +45,10 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
     if (failed && stages_ > 3) {
       change_to(stages_ - 2);
     } else if (since_change_ >= settled) {
-      if (mean >= slow && stages_ > 3) change_to(stages_ - 2);
-      else if (mean <= fast && stages_ < RadauTableau::most && growth > steady && growth < 1 / steady) change_to(stages_ + 2);
+      if (mean >= slow && stages_ > 3)
+        change_to(stages_ - 2);
+      else if (mean <= fast && stages_ < RadauTableau::most && growth > steady && growth < 1 / steady)
+        change_to(stages_ + 2);
     }
   }
 
@@ -55,9 +61,9 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
   }
 
  private:
-  static constexpr double fast = 2e-3, slow = 0.8;     // contractions at which the order goes up and down
-  static constexpr double steady = 0.8;                // of the step before, or its inverse
-  static constexpr int settled = 10;                   // steps after a change of order
+  static constexpr double fast = 2e-3, slow = 0.8;  // contractions at which the order goes up and down
+  static constexpr double steady = 0.8;             // of the step before, or its inverse
+  static constexpr int settled = 10;                // steps after a change of order
 
   void change_to(std::size_t s) {
     use(s);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Radau IIA of order 5 for stiff systems (collocation.hpp) with three stages. Source: Hairer, Wanner, Solving Ordinary Differential
-// Equations II, section IV.8.
-// Dense output: the collocation polynomial (order 3) and, towards the derivative at the start, the filtered estimate times
-// a quartic; this makes it order 4 at no cost, and leaves it where the filter damps.
+// Radau IIA of order 5 for stiff systems (collocation.hpp) with three stages. Source: Hairer, Wanner, Solving Ordinary
+// Differential Equations II, section IV.8. Dense output: the collocation polynomial (order 3) and, towards the
+// derivative at the start, the filtered estimate times a quartic; this makes it order 4 at no cost, and leaves it where
+// the filter damps.
 #pragma once
 
 #include <span>

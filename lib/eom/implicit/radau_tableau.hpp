@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Radau IIA with s = 3, 5, 7 stages, orders 5, 9, 13, worked out once in long double from what defines it. Source: Hairer, Wanner,
-// Solving Ordinary Differential Equations II, sections IV.3, IV.5 and IV.8.
-//   c      the zeros of P_s(2x - 1) - P_(s-1)(2x - 1), the last is 1;  A[i][j] = integral of the j-th Lagrange polynomial up to c[i]
-//   gamma, alpha +- i beta   the eigenvalues of A^-1: zeros of the denominator of the Pade approximation (s - 1, s) of exp
-//   T      brings A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]; the first column has length 1, in the last row then 1, 0
-//   node   1/(c[i] times the product of c[i] - c[j]), of Lagrange's polynomials through 0 as well
-//   slope  slope . Z = minus the derivative at 0 of the polynomial through 0 at 0 and Z[i] at c[i]
+// Radau IIA with s = 3, 5, 7 stages, orders 5, 9, 13, worked out once in long double from what defines it. Source:
+// Hairer, Wanner, Solving Ordinary Differential Equations II, sections IV.3, IV.5 and IV.8.
+//   c      the zeros of P_s(2x - 1) - P_(s-1)(2x - 1), the last is 1;  A[i][j] = integral of the j-th Lagrange
+//   polynomial up to c[i] gamma, alpha +- i beta   the eigenvalues of A^-1: zeros of the denominator of the Pade
+//   approximation (s - 1, s) of exp T      brings A^-1 to the block form [gamma, (alpha, -beta; beta, alpha), ...]; the
+//   first column has length 1, in the last row then 1, 0 node   1/(c[i] times the product of c[i] - c[j]), of
+//   Lagrange's polynomials through 0 as well slope  slope . Z = minus the derivative at 0 of the polynomial through 0
+//   at 0 and Z[i] at c[i]
 #pragma once
 
 #include <array>
@@ -90,7 +91,8 @@ struct RadauTableau {
   Real legendre_difference(Real x) const {
     Real before = 1, here = 2 * x - 1;
     for (std::size_t n = 2; n <= stages; ++n) {
-      const Real next = (static_cast<Real>(2 * n - 1) * (2 * x - 1) * here - static_cast<Real>(n - 1) * before) / static_cast<Real>(n);
+      const Real next = (static_cast<Real>(2 * n - 1) * (2 * x - 1) * here - static_cast<Real>(n - 1) * before) /
+                        static_cast<Real>(n);
       before = here;
       here = next;
     }
@@ -140,7 +142,8 @@ struct RadauTableau {
     for (std::size_t j = 1; j <= stages; ++j)
       q[j] = -q[j - 1] * static_cast<Real>(stages - j + 1) / (static_cast<Real>(j) * static_cast<Real>(2 * stages - j));
     std::array<Number, most> z{};
-    for (std::size_t i = 0; i < stages; ++i) z[i] = static_cast<Real>(stages) * std::polar<Real>(1, 2 * static_cast<Real>(i) + 0.4L);
+    for (std::size_t i = 0; i < stages; ++i)
+      z[i] = static_cast<Real>(stages) * std::polar<Real>(1, 2 * static_cast<Real>(i) + 0.4L);
     for (int round = 0; round < 500; ++round)  // Durand and Kerner
       for (std::size_t i = 0; i < stages; ++i) {
         Number value = q[stages];

@@ -11,10 +11,6 @@
 
 namespace eom::implicit {
 
-using Registry = std::tuple<
-    Radau5,
-    Radau,
-    Rodas,
-    Midpoint>;
+using Registry = std::tuple<Radau5, Radau, Rodas, Midpoint>;
 
 }  // namespace eom::implicit

@@ -30,7 +30,9 @@ class Rodas : public Base {
 
   Rodas(Problem& problem, std::span<const double> x, const Options& options)
       : Base(problem, x, options, Jacobian::Differences::central),
-        controller_({0.9, 0, 0.2, 6}, order), lu_(m_), work_((T::stages + 1 + 3 + 4) * n_) {
+        controller_({0.9, 0, 0.2, 6}, order),
+        lu_(m_),
+        work_((T::stages + 1 + 3 + 4) * n_) {
     double* next = work_.data();
     u_ = std::exchange(next, next + T::stages * n_);
     f_ = std::exchange(next, next + n_);
@@ -68,7 +70,9 @@ class Rodas : public Base {
     swap_ends(moved);
   }
 
-  static void interpolate(const void* method, double t, double* x) { static_cast<const Rodas*>(method)->interpolate(t, x); }
+  static void interpolate(const void* method, double t, double* x) {
+    static_cast<const Rodas*>(method)->interpolate(t, x);
+  }
 
   void interpolate(double t, double* x) const {
     const double s = (t - t0_) / h_;
@@ -107,7 +111,8 @@ class Rodas : public Base {
       f = f_;
     }
     double* u = u_ + stage * n_;
-    for (std::size_t i = 0; i < m_; ++i) u[i] = f[i] + sum(T::C[stage], i, stage) / h_ + T::d[stage] * h_ * jacobian_.dfdt(i);
+    for (std::size_t i = 0; i < m_; ++i)
+      u[i] = f[i] + sum(T::C[stage], i, stage) / h_ + T::d[stage] * h_ * jacobian_.dfdt(i);
     lu_.solve(u);
     return 0;
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The argument `mode` of the C ABI: one bit per chart that can be exchanged, from bit 28 on (docs/abi.md, "Charts"). Set: the state
-// is in the second chart.
+// The argument `mode` of the C ABI: one bit per chart that can be exchanged, from bit 28 on (docs/abi.md, "Charts").
+// Set: the state is in the second chart.
 #pragma once
 
 #include <cstddef>

@@ -10,7 +10,8 @@ namespace eom {
 struct CompiledModel {
   using Function = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* result);
 
-  using Derivatives = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx, double* dfdt);
+  using Derivatives = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
+                              double* dfdt);
 
   Function rhs_function = nullptr;
   Function events_function = nullptr;
@@ -28,8 +29,9 @@ struct CompiledModel {
   /// The right-hand side with its derivatives, NAME_jac, for implicit methods; without it they take differences.
   auto rhs_and_jacobian() const {
     return WithJacobian{rhs(), [*this](double t, const double* x, int mode, double* dfdx, double* dfdt) {
-      return jac_function == nullptr ? no_jacobian_here : jac_function(t, x, p, u, mode, dfdx, dfdt);
-    }};
+                          return jac_function == nullptr ? no_jacobian_here
+                                                         : jac_function(t, x, p, u, mode, dfdx, dfdt);
+                        }};
   }
   /// The same in one mode.
   auto rhs(int mode) const {

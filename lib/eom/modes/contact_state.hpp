@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The argument `mode` of the C ABI: one digit to the base 6 per contact, the first contact lowest, in bits 0 to 7 (docs/abi.md,
-// "Modes"). digit % 3: 0 sticks, 1 slides along the tangent, 2 against it; in two directions 1 slides. digit / 3: of a surface that holds both ways, 0 the
-// multiplier presses as positive, 1 as negative; of one that can be left, 0 touches, 1 apart.
+// The argument `mode` of the C ABI: one digit to the base 6 per contact, the first contact lowest, in bits 0 to 7
+// (docs/abi.md, "Modes"). digit % 3: 0 sticks, 1 slides along the tangent, 2 against it; in two directions 1 slides.
+// digit / 3: of a surface that holds both ways, 0 the multiplier presses as positive, 1 as negative; of one that can be
+// left, 0 touches, 1 apart.
 #pragma once
 
 #include <cstddef>

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Contacts as modes: sticking, sliding and apart; which functions bound each, and what follows where one of them is crossed.
-// In: the contacts of a model, its functions rhs(t, x, mode, dx) and contacts(t, x, mode, g) in the numbering of the C ABI
-// (docs/abi.md, "Modes"), five values per contact:
+// Contacts as modes: sticking, sliding and apart; which functions bound each, and what follows where one of them is
+// crossed. In: the contacts of a model, its functions rhs(t, x, mode, dx) and contacts(t, x, mode, g) in the numbering
+// of the C ABI (docs/abi.md, "Modes"), five values per contact:
 //   slip    the slip speed along the (first) tangent
 //   above   mu_s |N| - phi of one direction, mu_s |N| - |phi| of two
 //   below   mu_s |N| + phi of one direction; of two the slip speed along the second tangent
 //   hold    the normal force as it presses; of a contact that is apart the gap
 //   margin  of the law's solution: where it is negative there is none, or several
-// and what changes velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode of a start.
+// and what changes velocities (ContactMotion below). Out: the table and the rule of integrate_modes(), and the mode of
+// a start.
 //
-// Sliding in two directions has no value at slip 0. It ends at the least slip that counts, from where the little that is left is
-// extrapolated, and starts with twice as much in the direction in which friction gives way.
+// Sliding in two directions has no value at slip 0. It ends at the least slip that counts, from where the little that
+// is left is extrapolated, and starts with twice as much in the direction in which friction gives way.
 #pragma once
 
 #include <algorithm>
@@ -63,9 +64,14 @@ template <class Rhs, class Functions, class Motion = ContactMotion>
 class Contacts {
  public:
   Contacts(std::vector<Contact> contacts, std::size_t states, Rhs rhs, Functions functions, Motion motion = {})
-      : contacts_(std::move(contacts)), dx_(states), g_(contact_values * contacts_.size()), rhs_(std::move(rhs)),
-        functions_(std::move(functions)), motion_(std::move(motion)) {
-    if (contacts_.size() > max_contacts) throw std::invalid_argument("eom::Contacts: more contacts than a mode has digits for");
+      : contacts_(std::move(contacts)),
+        dx_(states),
+        g_(contact_values * contacts_.size()),
+        rhs_(std::move(rhs)),
+        functions_(std::move(functions)),
+        motion_(std::move(motion)) {
+    if (contacts_.size() > max_contacts)
+      throw std::invalid_argument("eom::Contacts: more contacts than a mode has digits for");
     for (const Contact& contact : contacts_) {
       if (std::is_same_v<Motion, ContactMotion> && (contact.dimensions == 2 || contact.unilateral))
         throw std::invalid_argument("eom::Contacts: '" + contact.name + "' changes velocities, and no motion is given");
@@ -87,9 +93,9 @@ class Contacts {
     }
   }
 
-  /// The mode of a start: what slips slides; what does not sticks if the static law allows, else slides off; what is apart
-  /// (of contacts that can be left), or leaves at once, stays apart. `apart`: per contact; empty: all touch. x changes where something
-  /// hits at the start.
+  /// The mode of a start: what slips slides; what does not sticks if the static law allows, else slides off; what is
+  /// apart (of contacts that can be left), or leaves at once, stays apart. `apart`: per contact; empty: all touch. x
+  /// changes where something hits at the start.
   int start(double t, std::span<double> x, std::span<const bool> apart = {}) {
     int mode = 0;
     for (std::size_t j = 0; j < apart.size(); ++j)
@@ -149,14 +155,16 @@ class Contacts {
   }
 
   Transition stop_sliding(const ModePoint& point, std::size_t j) {
-    const int digit = contact_digit(point.mode, j), sign = digit - digit % 3, sticking = with_contact_digit(point.mode, j, sign);
+    const int digit = contact_digit(point.mode, j), sign = digit - digit % 3,
+              sticking = with_contact_digit(point.mode, j, sign);
     const std::string& name = contacts_[j].name;
     if (contacts_[j].dimensions == 2) {
       const int code = motion_.stop(point.t, point.x, point.mode, j);
       if (code == slips_on) return {point.mode};
       if (code != 0) return failed(point, code);
     }
-    if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0) return failed(point, code);
+    if (const int code = functions_(point.t, point.x.data(), sticking, g_.data()); code != 0)
+      return failed(point, code);
     if (static_law_holds(j)) {
       const int code = contacts_[j].dimensions == 2 ? motion_.stick(point.t, point.x, sticking, j) : 0;
       return code != 0 ? failed(point, code) : Transition{sticking, contacts_[j].rolls ? "roll" : "stick", name};
@@ -201,7 +209,8 @@ class Contacts {
     const auto touches = [&](std::size_t j) { return !contacts_[j].unilateral || contact_digit(mode, j) < 3; };
     const auto evaluate = [&] { return functions_(t, x.data(), mode, g_.data()) == 0; };
     for (std::size_t j = 0; j < contacts_.size(); ++j) {  // what an impact elsewhere has lifted
-      if (contacts_[j].unilateral && touches(j) && motion_.approach(t, x, j) > motion_.still()) mode = with_contact_digit(mode, j, 3);
+      if (contacts_[j].unilateral && touches(j) && motion_.approach(t, x, j) > motion_.still())
+        mode = with_contact_digit(mode, j, 3);
     }
     for (std::size_t j = 0; j < contacts_.size(); ++j) {
       if (!touches(j) || !contacts_[j].sticks) continue;
@@ -252,7 +261,11 @@ class Contacts {
     }
     if (!apart && contact.dimensions > 0) mode.watched.push_back({first + 4, Direction::down});
     if (contact.surface || contact.unilateral) mode.watched.push_back({first + 3, Direction::down});
-    const char* state = apart ? " is apart" : contact.dimensions == 0 ? " touches" : !contact.sticks || digit % 3 != 0 ? " slides" : contact.rolls ? " rolls" : " sticks";
+    const char* state = apart                               ? " is apart"
+                        : contact.dimensions == 0           ? " touches"
+                        : !contact.sticks || digit % 3 != 0 ? " slides"
+                        : contact.rolls                     ? " rolls"
+                                                            : " sticks";
     mode.name += (mode.name.empty() ? "" : ", ") + contact.name + state;
   }
 
@@ -261,14 +274,16 @@ class Contacts {
     for (std::size_t j = 0; j < contacts_.size(); ++j) modes *= contact_states;
     table_.resize(modes);
     for (std::size_t m = 0; m < table_.size(); ++m) {
-      for (std::size_t j = 0; j < contacts_.size(); ++j) watch_contact(table_[m], j, contact_digit(static_cast<int>(m), j));
+      for (std::size_t j = 0; j < contacts_.size(); ++j)
+        watch_contact(table_[m], j, contact_digit(static_cast<int>(m), j));
     }
   }
 
   std::vector<Contact> contacts_;
   std::vector<double> dx_, g_;
   std::vector<Mode> table_;
-  std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact, no_contact, no_contact, no_contact, no_contact};  // the last ones
+  std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact,
+                                   no_contact, no_contact, no_contact, no_contact};  // the last ones
   std::size_t hit_ = 0;
   Rhs rhs_;
   Functions functions_;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Systems with modes (sliding and sticking, contact and flight): one right-hand side per mode, and surfaces that lead from
-// one to another. In: rhs(t, x, mode, dx) -> code, events(t, x, mode, values) -> code, what is watched in each mode,
-// a rule for the transitions. Out: ModeResult: how the run ended, in which mode, and what happened when.
+// Systems with modes (sliding and sticking, contact and flight): one right-hand side per mode, and surfaces that lead
+// from one to another. In: rhs(t, x, mode, dx) -> code, events(t, x, mode, values) -> code, what is watched in each
+// mode, a rule for the transitions. Out: ModeResult: how the run ended, in which mode, and what happened when.
 //
 // What is watched in a mode bounds it: a function watched `down` has to be positive there, one watched `up` negative.
-// Where a mode is entered beyond one of its surfaces, or leaves it the wrong way at once, the rule is asked again at the same time, so
-// that several changes at one instant follow one another and no motion goes on in a mode that does not hold. A surface
-// on which a mode is entered is not met again until the motion has left it.
+// Where a mode is entered beyond one of its surfaces, or leaves it the wrong way at once, the rule is asked again at
+// the same time, so that several changes at one instant follow one another and no motion goes on in a mode that does
+// not hold. A surface on which a mode is entered is not met again until the motion has left it.
 //
-// Chattering (Zeno): transitions that follow one another ever faster, down to 1e-7 of the first interval, accumulate at a
-// time that is extrapolated; there the rule's settle(point), if it has one, says how to go on, and otherwise the run
+// Chattering (Zeno): transitions that follow one another ever faster, down to 1e-7 of the first interval, accumulate at
+// a time that is extrapolated; there the rule's settle(point), if it has one, says how to go on, and otherwise the run
 // ends as step_too_small with that time in `detail`.
 #pragma once
 
@@ -38,8 +38,8 @@ struct Mode {
   std::vector<WatchedSurface> watched;
 };
 
-/// What the rule is given; it may change x (an impact), puts it onto the surface where that matters, and may move t on to where
-/// what little was left of the mode has ended.
+/// What the rule is given; it may change x (an impact), puts it onto the surface where that matters, and may move t on
+/// to where what little was left of the mode has ended.
 struct ModePoint {
   double& t;
   std::span<double> x;
@@ -49,9 +49,9 @@ struct ModePoint {
 
 /// What the rule answers.
 struct Transition {
-  int mode = 0;                     // the next one; may be the same
-  std::string kind = {}, name = {}; // recorded: "slip", "stick", "contact", ... and whose; kind empty: not recorded
-  Outcome outcome = Outcome::done;  // another one ends the run here: stopped_by_event, friction_no_solution, ...
+  int mode = 0;                      // the next one; may be the same
+  std::string kind = {}, name = {};  // recorded: "slip", "stick", "contact", ... and whose; kind empty: not recorded
+  Outcome outcome = Outcome::done;   // another one ends the run here: stopped_by_event, friction_no_solution, ...
 };
 
 struct ModeEvent {
@@ -148,7 +148,8 @@ class Switch {
     accumulation = at;
     ended = Outcome::step_too_small;
     char text[160];
-    std::snprintf(text, sizeof text, "chattering: after %zu changes of mode they accumulate at t = %.17g", transitions, at);
+    std::snprintf(text, sizeof text, "chattering: after %zu changes of mode they accumulate at t = %.17g", transitions,
+                  at);
     detail = text;
     return AtEvent::stop;
   }
@@ -163,7 +164,11 @@ class Machine {
  public:
   Machine(F& rhs, G& events, std::span<const Mode> table, std::size_t functions, Rule& rule, int mode,
           Observer& observer, AfterStep& after_step)
-      : rhs_(rhs), events_(events), functions_(functions), switch_(table, rule, mode), observer_(observer),
+      : rhs_(rhs),
+        events_(events),
+        functions_(functions),
+        switch_(table, rule, mode),
+        observer_(observer),
         after_step_(after_step) {
     switch_.watch(functions_);
   }
@@ -189,16 +194,14 @@ class Machine {
     F& rhs;
     const int& mode;
     int operator()(double t, const double* x, double* dx) const { return rhs(t, x, mode, dx); }
-    int jacobian(double t, const double* x, double* dfdx, double* dfdt) const
-      requires requires(F& f) { f.jacobian(t, x, 0, dfdx, dfdt); }
-    {
-      return rhs.jacobian(t, x, mode, dfdx, dfdt);
+    int jacobian(double t, const double* x, double* dfdx, double* dfdt) const requires requires(F& f) {
+      f.jacobian(t, x, 0, dfdx, dfdt);
     }
-    int taylor(double t, const double* x, int order, double* c) const
-      requires requires(F& f) { f.taylor(t, x, 0, order, c); }
-    {
-      return rhs.taylor(t, x, mode, order, c);
+    { return rhs.jacobian(t, x, mode, dfdx, dfdt); }
+    int taylor(double t, const double* x, int order, double* c) const requires requires(F& f) {
+      f.taylor(t, x, 0, order, c);
     }
+    { return rhs.taylor(t, x, mode, order, c); }
     int taylor_order() const { return rhs.taylor_order(); }
     std::size_t taylor_states() const { return rhs.taylor_states(); }
   };
@@ -206,8 +209,9 @@ class Machine {
   Result run_smooth(std::string_view method, const InMode& f, double t0, std::span<const double> x0, double t1,
                     const Options& options) {
     return integrate_events(
-        method, f, t0, x0, t1, options, [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); },
-        functions_, [this](const EventPoint& point) { return switch_.take(point.t, point.x, point.crossing, point.functions); },
+        method, f, t0, x0, t1, options,
+        [this](double t, const double* x, double* g) { return events_(t, x, switch_.mode, g); }, functions_,
+        [this](const EventPoint& point) { return switch_.take(point.t, point.x, point.crossing, point.functions); },
         [this](const StepView& view) { return observer_(view, switch_.mode); },
         [this](double t, double* x) { return after_step_(t, x, switch_.mode); });
   }

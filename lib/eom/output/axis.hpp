@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One axis of a plot. In: the values' range, linear or logarithmic. Out: a range with a margin, and ticks at round numbers.
+// One axis of a plot. In: the values' range, linear or logarithmic. Out: a range with a margin, and ticks at round
+// numbers.
 #pragma once
 
 #include <algorithm>
@@ -20,14 +21,12 @@ struct Tick {
 };
 
 /// Whether a value can be shown at all; beyond 1e300 the differences of two would overflow.
-inline bool showable(double value, bool logarithmic) {
-  return std::abs(value) <= 1e300 && (!logarithmic || value > 0);
-}
+inline bool showable(double value, bool logarithmic) { return std::abs(value) <= 1e300 && (!logarithmic || value > 0); }
 
 struct Axis {
   double low = 0, high = 1;
   bool logarithmic = false;
-  double offset = 0;     // what a linear axis's labels leave out: value = offset + label times 10 to the power
+  double offset = 0;  // what a linear axis's labels leave out: value = offset + label times 10 to the power
   int power = 0;
   std::string offset_label;
   std::vector<Tick> ticks;

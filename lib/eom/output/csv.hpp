@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A table of numbers in a file. In: column names, rows of (t, values). Out: F.csv, whole or not at all.
-// Rows go to F.csv.partial-XXXXXX (whole_file.hpp); finish(outcome) adds the line "# outcome: NAME" and renames it to F.csv in
-// one go, after an interruption or a failure too. Without finish the partial file stays, with whole lines (a kill that
-// falls into the middle of a write may cut the last one). Numbers have 17 significant digits, as printf's %.17g gives in
-// the C locale, whatever the locale is; -0 is 0.
+// Rows go to F.csv.partial-XXXXXX (whole_file.hpp); finish(outcome) adds the line "# outcome: NAME" and renames it to
+// F.csv in one go, after an interruption or a failure too. Without finish the partial file stays, with whole lines (a
+// kill that falls into the middle of a write may cut the last one). Numbers have 17 significant digits, as printf's
+// %.17g gives in the C locale, whatever the locale is; -0 is 0.
 #pragma once
 
 #include <charconv>
@@ -25,7 +25,8 @@ namespace eom {
 class CsvWriter {
  public:
   /// Opens the file and writes the header line: t, then columns. Throws std::system_error with the path.
-  CsvWriter(const std::filesystem::path& path, std::span<const std::string> columns) : CsvWriter(WholeFile(path), columns) {}
+  CsvWriter(const std::filesystem::path& path, std::span<const std::string> columns)
+      : CsvWriter(WholeFile(path), columns) {}
   CsvWriter(WholeFile file, std::span<const std::string> columns)
       : path_(file.path()), partial_(file.partial()), columns_(columns.size()), file_(std::move(file)) {
     lines_.reserve(2 * flush_size);

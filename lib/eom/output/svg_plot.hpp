@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // A line plot as a self-contained SVG document. In: named series, labels, linear or logarithmic axes. Out: a string.
-// Values that cannot be shown (not finite, beyond 1e300, not positive on a logarithmic axis) interrupt the line. All text is escaped.
+// Values that cannot be shown (not finite, beyond 1e300, not positive on a logarithmic axis) interrupt the line. All
+// text is escaped.
 #pragma once
 
 #include <algorithm>
@@ -19,11 +20,11 @@
 namespace eom {
 
 struct PlotSeries {
-  std::string name;           // empty: not in the legend
-  std::vector<double> x, y;   // of one length
+  std::string name;          // empty: not in the legend
+  std::vector<double> x, y;  // of one length
   bool line = true;
   bool markers = false;
-  double error_at_end = 0;    // of the last value: a bar where that is more than the line
+  double error_at_end = 0;  // of the last value: a bar where that is more than the line
 };
 
 /// A place on the horizontal axis, such as an event.
@@ -194,9 +195,11 @@ class Drawing {
     constexpr const char* minor = "stroke=\"#f3f4f6\"";
     for (const bool drawing_major : {false, true}) {
       for (const Tick& tick : x_.ticks)
-        if (tick.minor != drawing_major) line(x_at(tick.value), top_, x_at(tick.value), bottom_, drawing_major ? major : minor);
+        if (tick.minor != drawing_major)
+          line(x_at(tick.value), top_, x_at(tick.value), bottom_, drawing_major ? major : minor);
       for (const Tick& tick : y_.ticks)
-        if (tick.minor != drawing_major) line(left_, y_at(tick.value), right_, y_at(tick.value), drawing_major ? major : minor);
+        if (tick.minor != drawing_major)
+          line(left_, y_at(tick.value), right_, y_at(tick.value), drawing_major ? major : minor);
     }
     for (const Tick& tick : x_.ticks)
       if (!tick.minor) text(x_at(tick.value), bottom_ + 18, "text-anchor=\"middle\"", tick_text(tick));
@@ -215,7 +218,9 @@ class Drawing {
       text(0.5 * (left_ + right_), height_ - 14, "text-anchor=\"middle\" font-size=\"13.5\"", escaped(plot_.x_label));
     if (!plot_.y_label.empty()) {
       const double middle = 0.5 * (top_ + bottom_);
-      text(0, 0, ("text-anchor=\"middle\" font-size=\"13.5\" transform=\"translate(18 " + number(middle) + ") rotate(-90)\"").c_str(),
+      text(0, 0,
+           ("text-anchor=\"middle\" font-size=\"13.5\" transform=\"translate(18 " + number(middle) + ") rotate(-90)\"")
+               .c_str(),
            escaped(plot_.y_label));
     }
   }
@@ -233,20 +238,25 @@ class Drawing {
       if (!x_.shows(mark.x)) continue;
       const double x = x_at(mark.x);
       if (x < left_ - 0.5 || x > right_ + 0.5 || std::abs(x - last) < 1) continue;
-      out_ += "<line x1=\"" + number(x) + "\" y1=\"" + number(top_) + "\" x2=\"" + number(x) + "\" y2=\"" + number(bottom_) +
-              "\" stroke=\"#8b949e\" stroke-dasharray=\"2 4\"><title>" + escaped(mark.name) + "</title></line>\n";
+      out_ += "<line x1=\"" + number(x) + "\" y1=\"" + number(top_) + "\" x2=\"" + number(x) + "\" y2=\"" +
+              number(bottom_) + "\" stroke=\"#8b949e\" stroke-dasharray=\"2 4\"><title>" + escaped(mark.name) +
+              "</title></line>\n";
       last = x;
     }
   }
 
   /// The estimated error of the last value, where it is longer than the line is wide.
   void draw_error(const PlotSeries& series, std::size_t k) {
-    if (!(series.error_at_end > 0) || series.x.empty() || !x_.shows(series.x.back()) || !y_.shows(series.y.back())) return;
-    const double x = x_at(series.x.back()), high = y_at(std::min(series.y.back() + series.error_at_end, 1e300)), low = y_at(std::max(series.y.back() - series.error_at_end, -1e300));
+    if (!(series.error_at_end > 0) || series.x.empty() || !x_.shows(series.x.back()) || !y_.shows(series.y.back()))
+      return;
+    const double x = x_at(series.x.back()), high = y_at(std::min(series.y.back() + series.error_at_end, 1e300)),
+                 low = y_at(std::max(series.y.back() - series.error_at_end, -1e300));
     if (!(low - high > 2 * line_width)) return;
-    const std::string top = number(std::max(high, top_)), bottom = number(std::min(low, bottom_)), left = number(x - 4), right = number(x + 4), middle = number(x);
-    out_ += "<path d=\"M" + middle + " " + top + "V" + bottom + "M" + left + " " + top + "H" + right + "M" + left + " " + bottom + "H" + right + "\" fill=\"none\" " + stroke_of(k) +
-            "><title>estimated error of " + escaped(series.name) + "</title></path>\n";
+    const std::string top = number(std::max(high, top_)), bottom = number(std::min(low, bottom_)), left = number(x - 4),
+                      right = number(x + 4), middle = number(x);
+    out_ += "<path d=\"M" + middle + " " + top + "V" + bottom + "M" + left + " " + top + "H" + right + "M" + left +
+            " " + bottom + "H" + right + "\" fill=\"none\" " + stroke_of(k) + "><title>estimated error of " +
+            escaped(series.name) + "</title></path>\n";
   }
 
   /// Points nearer than a third of a pixel to the one drawn before are left out: long runs stay small files.
@@ -273,7 +283,8 @@ class Drawing {
       last_y = y;
     }
     if (series.line && !path.empty())
-      out_ += "<path d=\"" + path + "\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" " + stroke_of(k) + "/>\n";
+      out_ += "<path d=\"" + path + "\" fill=\"none\" stroke-linejoin=\"round\" stroke-linecap=\"round\" " +
+              stroke_of(k) + "/>\n";
     if (series.line) draw_error(series, k);
     if (series.markers && !marks.empty())
       out_ += std::string("<g stroke=\"#fff\" fill=\"") + colours[k % colours.size()] + "\">" + marks + "</g>\n";

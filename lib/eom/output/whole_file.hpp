@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // A file that is there whole or not at all. In: a path, bytes. Out: the file, replaced in one go by finish().
-// Bytes go to a new file of unpredictable name beside the result, PATH.partial-XXXXXX, made with O_EXCL: nobody can have
-// put a link there, and two writers never share one. Without finish it stays, so that what a killed program had written
-// can be found. Symbolic links are followed: what they point to is replaced, the link stays. What is no regular file (a
-// terminal, a pipe, /dev/full), and what is open as this process's standard output or error, is written through.
+// Bytes go to a new file of unpredictable name beside the result, PATH.partial-XXXXXX, made with O_EXCL: nobody can
+// have put a link there, and two writers never share one. Without finish it stays, so that what a killed program had
+// written can be found. Symbolic links are followed: what they point to is replaced, the link stays. What is no regular
+// file (a terminal, a pipe, /dev/full), and what is open as this process's standard output or error, is written
+// through.
 #pragma once
 
 #include <fcntl.h>
@@ -49,8 +50,11 @@ class WholeFile {
   }
 
   WholeFile(WholeFile&& other) noexcept
-      : path_(std::move(other.path_)), target_(std::move(other.target_)), partial_(std::exchange(other.partial_, {})),
-        file_(std::exchange(other.file_, -1)), bytes_(other.bytes_) {}
+      : path_(std::move(other.path_)),
+        target_(std::move(other.target_)),
+        partial_(std::exchange(other.partial_, {})),
+        file_(std::exchange(other.file_, -1)),
+        bytes_(other.bytes_) {}
   WholeFile& operator=(WholeFile&&) = delete;
   ~WholeFile() {
     if (file_ >= 0) ::close(file_);

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// A right-hand side that knows the Taylor series of its solution, for the method `taylor`. Any callable f(t, x, dx) is one that has
-//   taylor(t, x, order, c) -> code   c[i + s k] = the k-th derivative of x_i over k!, k = 0..order, of the first s components
-//   taylor_order(), taylor_states()  the highest order, s; what is behind them are quadratures, taken along by f alone
+// A right-hand side that knows the Taylor series of its solution, for the method `taylor`. Any callable f(t, x, dx) is
+// one that has
+//   taylor(t, x, order, c) -> code   c[i + s k] = the k-th derivative of x_i over k!, k = 0..order, of the first s
+//   components taylor_order(), taylor_states()  the highest order, s; what is behind them are quadratures, taken along
+//   by f alone
 // (NAME_taylor of the C ABI is such a function). With modes: taylor(t, x, mode, order, c).
 #pragma once
 
@@ -41,7 +43,9 @@ template <class F>
 Problem problem_of(F& rhs) {
   Problem problem;
   problem.self = implicit::address_of(rhs);
-  problem.f = [](void* self, double t, const double* x, double* dx) -> int { return implicit::at_address<F>(self)(t, x, dx); };
+  problem.f = [](void* self, double t, const double* x, double* dx) -> int {
+    return implicit::at_address<F>(self)(t, x, dx);
+  };
   if constexpr (requires(double t, const double* x, double* c) { rhs.taylor(t, x, 1, c); }) {
     problem.series = [](void* self, double t, const double* x, int order, double* c) -> int {
       return implicit::at_address<F>(self).taylor(t, x, order, c);

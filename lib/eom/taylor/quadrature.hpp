@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Gauss-Legendre quadrature on [0, 1] with eight nodes: of degree 15. Nodes and weights from the Legendre polynomial by Newton's
-// iteration, once.
+// Gauss-Legendre quadrature on [0, 1] with eight nodes: of degree 15. Nodes and weights from the Legendre polynomial by
+// Newton's iteration, once.
 #pragma once
 
 #include <array>
@@ -16,7 +16,9 @@ struct Gauss {
 
   Gauss() {
     for (std::size_t i = 0; i < count; ++i) {
-      long double x = std::cos(std::numbers::pi_v<long double> * (static_cast<long double>(i) + 0.75L) / (count + 0.5L)), slope = 1;
+      long double x = std::cos(std::numbers::pi_v<long double> * (static_cast<long double>(i) + 0.75L) /
+                               (count + 0.5L)),
+                  slope = 1;
       for (int k = 0; k < 8; ++k) {
         long double before = 1, here = x;
         for (std::size_t n = 2; n <= count; ++n) {

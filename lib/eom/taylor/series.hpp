@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Taylor series of adaptive order: the coefficients at the start of a step give its end, its error, its length and, as they
-// are, the dense output. Steps are chosen before they are made, so that nearly none is rejected.
-// Source: Jorba, Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods,
-// Experimental Mathematics 14 (2005): the length from the last two coefficients, an order that is worth its cost.
+// Taylor series of adaptive order: the coefficients at the start of a step give its end, its error, its length and, as
+// they are, the dense output. Steps are chosen before they are made, so that nearly none is rejected. Source: Jorba,
+// Zou, A software package for the numerical integration of ODEs by means of high-order Taylor methods, Experimental
+// Mathematics 14 (2005): the length from the last two coefficients, an order that is worth its cost.
 //
-// An order p costs about (p + 6)^2 and allows the step h_p at which the last two terms are of the size of the tolerance: the
-// order goes where h_p / (p + 6)^2 is largest, by 1 from step to step. With fixed steps, or where a step is made anew with an end that
-// others have chosen, the order rises until the last terms are below the tolerance.
+// An order p costs about (p + 6)^2 and allows the step h_p at which the last two terms are of the size of the
+// tolerance: the order goes where h_p / (p + 6)^2 is largest, by 1 from step to step. With fixed steps, or where a step
+// is made anew with an end that others have chosen, the order rises until the last terms are below the tolerance.
 #pragma once
 
 #include <algorithm>
@@ -44,7 +44,8 @@ class Series {
         order_is_given_(options.series_order > 0),
         work_(9 * n_ + 2 * s_ * (static_cast<std::size_t>(highest_) + 1)) {
     double* next = work_.data();
-    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_, &node_, &weight_}) *vector = std::exchange(next, next + n_);
+    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_, &node_, &weight_})
+      *vector = std::exchange(next, next + n_);
     for (At* at : {&here_, &there_}) at->c = std::exchange(next, next + s_ * (static_cast<std::size_t>(highest_) + 1));
     std::copy(x.begin(), x.end(), x0_);
   }
@@ -83,7 +84,8 @@ class Series {
     t0_ = t0;
     h_ = t1 - t0;
     t1_ = t1;
-    for (int terms = order_; here_.order == 0 || (fixed_ && !order_is_given_ && here_.order < highest_ && error_norm(0, 0) > 1);
+    for (int terms = order_;
+         here_.order == 0 || (fixed_ && !order_is_given_ && here_.order < highest_ && error_norm(0, 0) > 1);
          terms = std::min(terms + 4, highest_)) {
       if (const int code = expand(t0, x0_, f0_, here_, terms); code != 0) return code;
       measure(here_, x0_, h_);
@@ -103,7 +105,9 @@ class Series {
     measure(there_, x1_, h);
     return length(there_);
   }
-  double after_rejected(double h, double error) { return h * std::clamp(std::pow(aim / error, 1.0 / here_.order), 0.1, 0.95); }
+  double after_rejected(double h, double error) {
+    return h * std::clamp(std::pow(aim / error, 1.0 / here_.order), 0.1, 0.95);
+  }
   double after_failed(double h) { return 0.25 * h; }
 
   void accept(bool moved) {
@@ -117,7 +121,9 @@ class Series {
       std::swap(carry_, new_carry_);
   }
 
-  static void interpolate(const void* method, double t, double* x) { static_cast<const Series*>(method)->interpolate(t, x); }
+  static void interpolate(const void* method, double t, double* x) {
+    static_cast<const Series*>(method)->interpolate(t, x);
+  }
 
   void interpolate(double t, double* x) const {
     const double d = t - t0_, s = d / h_;
@@ -131,16 +137,18 @@ class Series {
  private:
   struct At {
     double* c = nullptr;
-    int order = 0;               // 0: not computed
-    double last = 0, before = 0; // log2 of the last two terms at h = 1, as far as they count for the error
+    int order = 0;                // 0: not computed
+    double last = 0, before = 0;  // log2 of the last two terms at h = 1, as far as they count for the error
   };
 
   static constexpr int lowest_order = 4;
   static constexpr double aim = 0.5, log2_aim = -1;  // of the tolerance that a step may use
-  static constexpr double tail = -2.3;     // log2 of what is left out, in units of the last terms: the next ones are shorter by h/radius
-  static constexpr double jump = 4;        // times the order, of the tolerance: what the derivative at the end may be off by, over the step
-  static constexpr double smooth = 1e-9;   // of the derivative: what is off by less is rounding
-  static constexpr double overhead = 6;    // an order p costs (p + overhead)^2, measured
+  static constexpr double tail =
+      -2.3;  // log2 of what is left out, in units of the last terms: the next ones are shorter by h/radius
+  static constexpr double jump =
+      4;  // times the order, of the tolerance: what the derivative at the end may be off by, over the step
+  static constexpr double smooth = 1e-9;  // of the derivative: what is off by less is rounding
+  static constexpr double overhead = 6;   // an order p costs (p + overhead)^2, measured
 
   /// Where the terms of a series that loses e^-1.6 from one to the next reach the tolerance.
   int first_order(std::span<const double> x) const {
@@ -163,8 +171,9 @@ class Series {
     return code;
   }
 
-  /// Whether the series ends with the derivative that the right-hand side has there. Where it jumps, or bends within less than the series sees
-  /// (dry friction in a plane as the slip passes by zero), the coefficients know nothing of it, nor does their size.
+  /// Whether the series ends with the derivative that the right-hand side has there. Where it jumps, or bends within
+  /// less than the series sees (dry friction in a plane as the slip passes by zero), the coefficients know nothing of
+  /// it, nor does their size.
   bool goes_on() const {
     double off = 0, size = 0;
     for (std::size_t i = 0; i < error_; ++i) {
@@ -190,10 +199,12 @@ class Series {
     return 0.5 * std::log2(sum / static_cast<double>(error_));
   }
 
-  /// The last terms, for a state that moves on by about `move` times its rate; and whether the next series is worth another order.
+  /// The last terms, for a state that moves on by about `move` times its rate; and whether the next series is worth
+  /// another order.
   void measure(At& at, const double* x, double move) {
     const double* slope = at.c + s_;
-    for (std::size_t i = 0; i < error_; ++i) weight_[i] = 1 / (atol_ + rtol_ * (std::abs(x[i]) + 0.5 * std::abs(slope[i] * move)));
+    for (std::size_t i = 0; i < error_; ++i)
+      weight_[i] = 1 / (atol_ + rtol_ * (std::abs(x[i]) + 0.5 * std::abs(slope[i] * move)));
     const int p = at.order;
     at.last = tail + size_of_term(at, p);
     at.before = 2 * tail + size_of_term(at, p - 1);
@@ -205,8 +216,8 @@ class Series {
     trend_ = gain > 1e-3 ? 1 : gain < -1e-3 ? -1 : 0;
   }
 
-  /// Ends the series of a fixed step at its smallest terms, where they do not become small: the step is longer than the radius of
-  /// convergence, or rounding grows from term to term (near a place where constraints lose rank).
+  /// Ends the series of a fixed step at its smallest terms, where they do not become small: the step is longer than the
+  /// radius of convergence, or rounding grows from term to term (near a place where constraints lose rank).
   void cut() {
     int best = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -224,7 +235,9 @@ class Series {
   static double log2_length(const At& at) {
     return -std::max((at.last - log2_aim) / at.order, (at.before - log2_aim) / (at.order - 1));
   }
-  static double length(const At& at) { return std::min(std::exp2(log2_length(at)), std::numeric_limits<double>::max()); }
+  static double length(const At& at) {
+    return std::min(std::exp2(log2_length(at)), std::numeric_limits<double>::max());
+  }
 
   int next_order() const {
     return order_is_given_ ? here_.order : std::clamp(here_.order + trend_, std::min(lowest_order, highest_), highest_);

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Variational integrators with fixed steps: symplectic in (q, p), symmetric in time, with holonomic constraints. Source: Marsden, West,
-// Discrete mechanics and variational integrators, Acta Numerica 10 (2001), sections 2.3, 2.7 and 3.5.
-// The discrete Lagrangian is L_d(q0, q1) = h L((q0 + q1)/2, (q1 - q0)/h) at the time of the middle. With p and its rate g = dL/dq there
+// Variational integrators with fixed steps: symplectic in (q, p), symmetric in time, with holonomic constraints.
+// Source: Marsden, West, Discrete mechanics and variational integrators, Acta Numerica 10 (2001), sections 2.3, 2.7
+// and 3.5. The discrete Lagrangian is L_d(q0, q1) = h L((q0 + q1)/2, (q1 - q0)/h) at the time of the middle. With p and
+// its rate g = dL/dq there
 //   p0 + A(q0)^T l = p - h/2 g,   psi(q1) = 0,   p1 = p + h/2 g + A(q1)^T l1,   A(q1) qdot1 + b = 0;
-// forces without a potential are in g (d'Alembert's principle in discrete form). Orders 4 and 6 are compositions of such steps.
-// Newton's iteration goes on to rounding; its matrix, by differences, is kept as long as it converges fast. Momenta are carried
-// from step to step with their rounding, velocities follow from them. Dense output: the Hermite cubic, of order 3 within a step.
+// forces without a potential are in g (d'Alembert's principle in discrete form). Orders 4 and 6 are compositions of
+// such steps. Newton's iteration goes on to rounding; its matrix, by differences, is kept as long as it converges fast.
+// Momenta are carried from step to step with their rounding, velocities follow from them. Dense output: the Hermite
+// cubic, of order 3 within a step.
 #pragma once
 
 #include <algorithm>
@@ -50,8 +52,13 @@ class Integrator : public implicit::Base {
   static constexpr bool error_uses_end = false;
 
   Integrator(Problem& problem, std::span<const double> x, const Options& options)
-      : Base(problem.rhs, x, options, implicit::Jacobian::Differences::one_sided), of_(problem), c_(problem.coordinates),
-        k_(problem.constraints), lu_(c_ + k_), end_(c_ + k_), work_(5 * n_ + 12 * c_ + 3 * k_ + 2 * c_ * k_ + 2 * c_ * c_) {
+      : Base(problem.rhs, x, options, implicit::Jacobian::Differences::one_sided),
+        of_(problem),
+        c_(problem.coordinates),
+        k_(problem.constraints),
+        lu_(c_ + k_),
+        end_(c_ + k_),
+        work_(5 * n_ + 12 * c_ + 3 * k_ + 2 * c_ * k_ + 2 * c_ * c_) {
     double* next = work_.data();
     const auto take = [&](std::size_t count) { return std::exchange(next, next + count); };
     at_ = take(n_), middle_ = take(n_), quadrature_ = take(n_);
@@ -96,19 +103,20 @@ class Integrator : public implicit::Base {
     swap_ends(moved);
   }
 
-  static void interpolate(const void* method, double t, double* x) { static_cast<const Integrator*>(method)->interpolate(t, x); }
-
-  void interpolate(double t, double* x) const {
-    implicit::hermite((t - t0_) / h_, h_, n_, x0_, f0_, x1_, f1_, x);
+  static void interpolate(const void* method, double t, double* x) {
+    static_cast<const Integrator*>(method)->interpolate(t, x);
   }
+
+  void interpolate(double t, double* x) const { implicit::hermite((t - t0_) / h_, h_, n_, x0_, f0_, x1_, f1_, x); }
 
  private:
   static constexpr double keep_matrix = 1e-2;  // of the contraction of Newton's iteration
   static constexpr int most_iterations = 50;
   static constexpr double at_rounding = 1e-8, sure_rounding = 1e-15;
-  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a rounding of q.
+  // What is left out has the same sign in every step, so that it adds up; sums with remainders resolve more than a
+  // rounding of q.
   static constexpr double negligible = epsilon / 1024;
-  static constexpr double still = 1e-6;        // of the largest coordinate: below it one is not told from 0
+  static constexpr double still = 1e-6;  // of the largest coordinate: below it one is not told from 0
 
   int momenta(double t, const double* x, double* p, double* rate) {
     ++counts_.rhs_evaluations;
@@ -233,8 +241,10 @@ class Integrator : public implicit::Base {
         const double ratio = size / before;
         if (iteration == 2) matrix_wanted_ = ratio > keep_matrix;
         if (ratio < 0.5 && ratio / (1 - ratio) * size <= negligible) return 0;
-        if (size > 0.5 * least && ++stalled >= (least < sure_rounding ? 2 : 6) && least < at_rounding) return 0;  // rounding is what is left
-        // One correction may grow: coordinates that have gone far count for little in `size`, and what is mended of them moves others.
+        if (size > 0.5 * least && ++stalled >= (least < sure_rounding ? 2 : 6) && least < at_rounding)
+          return 0;  // rounding is what is left
+        // One correction may grow: coordinates that have gone far count for little in `size`, and what is mended of
+        // them moves others.
         if (ratio > 2 && size > at_rounding && ++grown == 3) return code_no_convergence;
       }
       before = size;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A right-hand side that knows its momenta, for the variational integrators. Any callable f(t, x, dx) of a state x = (q, qdot, then
-// quadratures) is one that has
+// A right-hand side that knows its momenta, for the variational integrators. Any callable f(t, x, dx) of a state x =
+// (q, qdot, then quadratures) is one that has
 //   coordinates()                            n of q
-//   momenta(t, x, p, rate) -> code           p = dT/dqdot, and its rate d/dt p without the forces of constraints: dT/dq and all forces
-//   mass(t, x, M) -> code                    M = dp/dqdot, n x n by columns
-//   constraints()                            m, all of positions: psi(q, t) = 0
-//   constrain(t, x, psi, A, b) -> code       psi, A = dpsi/dq (m x n by columns), d/dt psi = A qdot + b; not asked where m is 0
+//   momenta(t, x, p, rate) -> code           p = dT/dqdot, and its rate d/dt p without the forces of constraints: dT/dq
+//   and all forces mass(t, x, M) -> code                    M = dp/dqdot, n x n by columns constraints() m, all of
+//   positions: psi(q, t) = 0 constrain(t, x, psi, A, b) -> code       psi, A = dpsi/dq (m x n by columns), d/dt psi = A
+//   qdot + b; not asked where m is 0
 // (NAME_momenta, NAME_mass and NAME_constraints of the C ABI are such functions).
 #pragma once
 
@@ -34,7 +34,9 @@ Problem problem_of(F& rhs) {
     problem.momenta = [](void* self, double t, const double* x, double* p, double* rate) -> int {
       return implicit::at_address<F>(self).momenta(t, x, p, rate);
     };
-    problem.mass = [](void* self, double t, const double* x, double* M) -> int { return implicit::at_address<F>(self).mass(t, x, M); };
+    problem.mass = [](void* self, double t, const double* x, double* M) -> int {
+      return implicit::at_address<F>(self).mass(t, x, M);
+    };
     problem.constrain = [](void* self, double t, const double* x, double* psi, double* A, double* b) -> int {
       return implicit::at_address<F>(self).constrain(t, x, psi, A, b);
     };

@@ -8,9 +8,6 @@
 
 namespace eom::variational {
 
-using Registry = std::tuple<
-    Integrator<Order2>,
-    Integrator<Order4>,
-    Integrator<Order6>>;
+using Registry = std::tuple<Integrator<Order2>, Integrator<Order4>, Integrator<Order6>>;
 
 }  // namespace eom::variational

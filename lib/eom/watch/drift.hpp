@@ -4,14 +4,15 @@
 // Drift of a quantity v that should stay at v0:
 //   max_abs_drift      = max_t |v(t) - v0|
 //   max_relative_drift = max_abs_drift / scale,  scale = max(|v0|, largest magnitude handed over)
-// where a magnitude is the size of the terms whose sum v is (for an energy: T + |U|), so that a v0 that is zero or small
-// by cancellation does not make rounding look like a defect. Where the scale is 0 (v0 is 0 and no magnitude was given)
-// max_relative_drift is max_abs_drift itself, in the units of v.
+// where a magnitude is the size of the terms whose sum v is (for an energy: T + |U|), so that a v0 that is zero or
+// small by cancellation does not make rounding look like a defect. Where the scale is 0 (v0 is 0 and no magnitude was
+// given) max_relative_drift is max_abs_drift itself, in the units of v.
 //
 // Power balance of the energy E and the work W done since the start by what is not in E:
 //   max_abs_defect      = max_t |E(t) - E(0) - W(t)|
 //   max_relative_defect = max_abs_defect / scale,  scale = max over t of |E|, |W| and the magnitude handed over;
-// where the scale is 0, max_abs_defect itself. Values that are not finite make the drift infinite; it never shrinks back.
+// where the scale is 0, max_abs_defect itself. Values that are not finite make the drift infinite; it never shrinks
+// back.
 #pragma once
 
 #include <algorithm>

@@ -1,10 +1,12 @@
-// A program of somebody else: generated C and the C++ header beside the installed runtime. The pendulum keeps its energy.
+// A program of somebody else: generated C and the C++ header beside the installed runtime. The pendulum keeps its
+// energy.
+#include "pendulum.h"
+
 #include <cmath>
 #include <cstdio>
 #include <eom/ode.hpp>
 #include <vector>
 
-#include "pendulum.h"
 #include "pendulum.hpp"
 
 int main() {
