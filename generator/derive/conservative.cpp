@@ -21,7 +21,7 @@ class Classifier {
     result_.name = m_.model->forces[force_].name;
     const Ref known = m_.potential_by_force[force_];
     if (!dag_.is_zero(known)) result_.potential = known;
-    if (std::holds_alternative<model::Dry>(m_.model->forces[force_].kind)) {
+    if (m_.model->forces[force_].dry) {
       result_.conservative = Verdict::no;
       say("it is friction");
     } else if (std::all_of(Q_.begin(), Q_.end(), [&](Ref q) { return dag_.is_zero(q); })) {

@@ -15,11 +15,11 @@ Vec3 take_gravity(Mechanics& m, Spelled& spelled, Ref& other_potential) {
   Vec3 sum = symbolic::zero_vector(dag);
   other_potential = spelled(mechanics::lower_scalar(m, m.model->energy.potential));
   for (std::size_t i = 0; i < m.model->forces.size(); ++i) {
-    const auto* gravity = std::get_if<model::Gravity>(&m.model->forces[i].kind);
+    const model::NodeId gravity = m.model->forces[i].acceleration();
     Vec3 g = symbolic::zero_vector(dag);
-    if (gravity != nullptr) g = spelled(mechanics::lower_vector(m, gravity->acceleration));
+    if (gravity != model::no_node) g = spelled(mechanics::lower_vector(m, gravity));
     const std::vector<Symbol> symbols = dag.symbols({g[0], g[1], g[2]});
-    const bool uniform = gravity != nullptr && std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
+    const bool uniform = gravity != model::no_node && std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
                            return s.kind == SymbolKind::parameter || s.kind == SymbolKind::time;
                          });
     for (std::size_t k = 0; k < 3 && uniform; ++k) sum[k] = dag.add(sum[k], g[k]);

@@ -243,7 +243,7 @@ const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
     if (constraint.name == contact.name && constraint.friction) return *constraint.friction;
   }
   const auto named = [&](const model::Force& force) { return force.name == contact.name; };
-  return std::get<model::Dry>(std::find_if(m.model->forces.begin(), m.model->forces.end(), named)->kind).law;
+  return std::find_if(m.model->forces.begin(), m.model->forces.end(), named)->dry->law;
 }
 
 }  // namespace
@@ -359,10 +359,9 @@ void add_contacts(Mechanics& m, Lowering& lower) {
     reader.read(constraint);
   }
   for (const model::Force& force : m.model->forces) {
-    const auto* dry = std::get_if<model::Dry>(&force.kind);
-    if (dry == nullptr) continue;
-    if (m.contacts.size() == eom::max_contacts) refuse_more(m, dry->law.span);
-    reader.read(force, *dry);
+    if (!force.dry) continue;
+    if (m.contacts.size() == eom::max_contacts) refuse_more(m, force.dry->law.span);
+    reader.read(force, *force.dry);
   }
 }
 

@@ -89,7 +89,8 @@ Lowering::Value Lowering::lower(const model::Node& node) {
     case Op::extension:
     case Op::integral:
     case Op::reaction:
-    case Op::slip: return lower_leaf(node);
+    case Op::slip:
+    case Op::inertia: return lower_leaf(node);
     case Op::add:
     case Op::subtract:
     case Op::negate:
@@ -120,8 +121,19 @@ Lowering::Value Lowering::lower_leaf(const model::Node& node) {
     case Op::integral: return of(dag_.symbol({SymbolKind::integral, node.index, 0}));
     case Op::reaction: return of(multiplier(node));
     case Op::slip: return of(slip_);
+    case Op::inertia: return of(inertia(node.index, vector(node.args[0])));
     default: return of(extension_);
   }
+}
+
+// v . J v, along the axes in which the moment of inertia is known.
+Ref Lowering::inertia(std::uint32_t body, const Vec3& v) {
+  const Spin& spin = m_.spins.at(body);
+  const std::array<Ref, 3> along{dot(v, spin.axes[0]), dot(v, spin.axes[1]), dot(v, spin.axes[2])};
+  const std::array<Ref, 3> J = times(dag_, spin, along);
+  Ref sum = dag_.zero();
+  for (std::size_t k = 0; k < 3; ++k) sum = dag_.add(sum, dag_.mul(along[k], J[k]));
+  return sum;
 }
 
 // A component of the reaction of a joint.

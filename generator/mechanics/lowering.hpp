@@ -54,6 +54,7 @@ class Lowering {
   const Value& value(model::NodeId id);
   Value lower(const model::Node& node);
   Value lower_leaf(const model::Node& node);
+  Ref inertia(std::uint32_t body, const Vec3& v);
   Ref multiplier(const model::Node& node);
   Ref rolling_reaction(const model::Node& node);
   Ref joint_force(const model::Node& node);

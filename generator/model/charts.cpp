@@ -31,7 +31,7 @@ std::string contact_of(const Model& model) {
       return fmt::format("constraint '{}' has friction or can be left", constraint.name);
   }
   for (const Force& force : model.forces) {
-    if (std::holds_alternative<Dry>(force.kind)) return fmt::format("'{}' is dry friction", force.name);
+    if (force.dry) return fmt::format("'{}' is dry friction", force.name);
   }
   return "";
 }

@@ -36,6 +36,7 @@ enum class Op : std::uint8_t {
   reaction,    // reaction.NAME in an event: index into Model::constraints, order = which of its equations (of a joint:
                // components), from 0
   slip,        // speed of the contact whose coefficient of friction this is
+  inertia,     // v . J v of a vector v = args[0] and Model::bodies[index]; of descriptions of forces only
   // scalar or vector by Node::vector (multiply: one side may be a vector; divide: vector by scalar)
   add,
   subtract,

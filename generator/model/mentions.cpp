@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 
-#include <type_traits>
 #include <unordered_set>
 
 namespace eomgen::model {
@@ -27,7 +26,11 @@ class Collector {
     add("the energies", {model_.energy.kinetic, model_.energy.potential});
     for (const Force& force : model_.forces) {
       of_ = fmt::format("'{}'", force.name);
-      std::visit([this](const auto& kind) { this->force(kind); }, force.kind);
+      for (const Argument& argument : force.arguments) more({argument.value});
+      for (const Effect& effect : force.effects) {
+        if (effect.acts == Effect::Acts::component) rubbed(effect.index);
+      }
+      if (force.dry) more({force.dry->normal}), law(force.dry->law), rubbed(force.dry->coordinate);
     }
     constraints();
     for (const Event& event : model_.events) add(fmt::format("event '{}'", event.name), {event.when});
@@ -72,20 +75,6 @@ class Collector {
   }
   void law(const Friction& f) { more({f.static_coefficient, f.dynamic_coefficient, f.width, f.surface_velocity}); }
 
-  void force(const Gravity& f) { more({f.acceleration}); }
-  void force(const CentralGravity& f) { more({f.GM, f.center}); }
-  void force(const Gravitation& f) { more({f.G}); }
-  void force(const AppliedForce& f) { more({f.force, f.at}); }
-  void force(const Spring& f) { more({f.a, f.b, f.stiffness, f.length, f.energy}); }
-  void force(const Damper& f) { more({f.a, f.b, f.coefficient}); }
-  void force(const Torsion& f) { more({f.angle, f.stiffness, f.rest, f.coefficient}); }
-  void force(const Moment& f) { more({f.moment}); }
-  void force(const Magnus& f) { more({f.coefficient}); }
-  void force(const Drag& f) { more({f.on, f.density, f.area, f.coefficient}); }
-  void force(const Generalized& f) {
-    for (const auto& [coordinate, component] : f.components) more({component}), rubbed(coordinate);
-  }
-  void force(const Dry& f) { more({f.normal}), law(f.law), rubbed(f.coordinate); }
   /// A component along a coordinate names it, though no expression does: the position or rotation that uses it stands
   /// for it.
   void rubbed(std::uint32_t coordinate) {

@@ -6,6 +6,7 @@
 #include <array>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -116,50 +117,6 @@ struct Particle {
   Span span;
 };
 
-struct Gravity {
-  NodeId acceleration;
-};
-struct CentralGravity {
-  NodeId GM;
-  NodeId center;  // a vector
-  int order = 0;  // 2: with what a body's inertia adds, eq. (7.71)
-};
-struct Gravitation {
-  NodeId G;
-};  // mutual, all masses
-struct AppliedForce {
-  NodeId force;
-  NodeId at;
-};               // both vectors; `at` is the point of application
-struct Spring {  // energy is of Op::extension; stiffness form has it no_node
-  NodeId a, b;
-  NodeId stiffness, length;
-  NodeId energy;
-};
-struct Damper {
-  NodeId a, b;
-  NodeId coefficient;
-};
-struct Torsion {
-  NodeId angle;
-  NodeId stiffness, rest;
-  NodeId coefficient;
-};  // no_node where not given
-struct Drag {
-  NodeId on;
-  NodeId density, area, coefficient;
-};
-struct Moment {   // on a body or frame
-  NodeId moment;  // vector
-  std::uint32_t frame;
-};
-struct Magnus {        // m c w x v at the centre of mass, eq. (8.52)
-  std::uint32_t body;  // index into Model::bodies
-  NodeId coefficient;
-};
-struct Generalized {
-  std::vector<std::pair<std::uint32_t, NodeId>> components;
-};  // coordinate, force
 /// Coulomb's law: coefficients are expressions, which may use Op::slip. With a width w0 the smooth law in its place,
 /// -mu |N| w / sqrt(w^2 + w0^2), which never sticks and has no static coefficient.
 struct Friction {
@@ -173,12 +130,41 @@ struct Dry {  // Coulomb friction on one coordinate, with a given normal force
   NodeId normal;
   Friction law;
 };
+/// What the author of a force wrote, by the names of forces/NAME.cpp.
+struct Argument {
+  std::string name;
+  NodeId value = no_node;   // an expression; of places and bodies where they are
+  std::uint32_t index = 0;  // of a place, body, frame, coordinate, choice
+};
+/// What a force does, as the description of its kind spells it out.
+struct Effect {
+  enum class Acts {
+    acceleration,  // vector `value`: of every mass
+    potential,     // scalar: an energy, of the points `at`, `other` if given; Op::extension is `extension`
+    force,         // vector: at the point `at`
+    moment,        // vector: on the frame `index`
+    work,          // scalar: a generalised force on the scalar `at`
+    damping,       // scalar: coefficient of a damper between the points `at` and `other`
+    component,     // scalar: a generalised force along the coordinate `index`
+  };
+  Acts acts = Acts::potential;
+  NodeId value = no_node;
+  NodeId at = no_node, other = no_node, extension = no_node;
+  std::uint32_t index = 0;
+};
 struct Force {
   std::string name;  // given, or "force 2"
-  std::variant<Gravity, CentralGravity, Gravitation, AppliedForce, Spring, Damper, Torsion, Drag, Generalized, Dry,
-               Moment, Magnus>
-      kind;
+  std::string kind;  // name in forces::registry()
+  std::vector<Argument> arguments;
+  std::vector<Effect> effects;
+  std::optional<Dry> dry;  // a contact, which has no effects
   Span span;
+
+  const Argument* argument(std::string_view key) const;  // nullptr where it is not given
+  /// The expression of an argument; no_node where it is not given.
+  NodeId value(std::string_view key) const;
+  /// The acceleration of every mass, of uniform gravity; no_node of all other forces.
+  NodeId acceleration() const;
 };
 
 /// Where a body touches a plane or another body: rolling = { .. }, sliding = { .. }.

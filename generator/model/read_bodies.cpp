@@ -39,26 +39,6 @@ void Reader::declare_angles(const Value& table) {
   }
 }
 
-std::uint32_t Reader::frame_named(const Value& value, const std::string& what) {
-  as(Value::Kind::text, value, what, "write the name of a body or frame");
-  if (value.text == "ground") return 0;
-  Symbol* symbol = scope_.find(value.text);
-  if (symbol == nullptr || symbol->frame == 0) {
-    std::vector<std::string> names;
-    for (std::size_t k = 1; k < model_.frames.size(); ++k) names.push_back(model_.frames[k].name);
-    const std::string hint = did_you_mean(value.text, names);
-    source_.fail(value.span,
-                 symbol == nullptr
-                     ? fmt::format("there is no body or frame {}", quote(value.text))
-                     : fmt::format("{} is {}, which has no axes", quote(value.text), model::kind_name(symbol->kind)),
-                 !hint.empty()   ? hint
-                 : names.empty() ? "add a [[body]] or a [[frame]]"
-                                 : fmt::format("the bodies and frames are {}", fmt::join(names, ", ")));
-  }
-  symbol->used = true;
-  return symbol->frame;
-}
-
 const Entry& Reader::rotation_entry(const Value& rotation) const {
   as(Value::Kind::table, rotation, "a rotation", form);
   check_keys(rotation,

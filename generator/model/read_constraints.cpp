@@ -2,6 +2,7 @@
 // [[constraint]] and [energy].
 #include <fmt/format.h>
 
+#include "model/read_friction.hpp"
 #include "model/reader.hpp"
 
 namespace eomgen::model {
@@ -40,7 +41,7 @@ void Reader::read_constraints() {
             : needed(*table, "holonomic", what,
                      "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
     read_holds(constraint, *table);
-    if (const Value* friction = table->find("friction")) read_friction(constraint, *friction);
+    if (const Value* friction = table->find("friction")) FrictionReader(reading_).of_constraint(constraint, *friction);
   }
 }
 
@@ -57,7 +58,7 @@ bool Reader::read_contact(Constraint& constraint, const Value& table) {
   }
   read_rolling(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
   read_holds(constraint, table);
-  if (const Value* friction = table.find("friction")) read_friction(constraint, *friction);
+  if (const Value* friction = table.find("friction")) FrictionReader(reading_).of_constraint(constraint, *friction);
   return true;
 }
 

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Coulomb friction: friction = { .. } of a constraint, and the force dry = { .. } on one coordinate.
-#include <fmt/format.h>
+#include "model/read_friction.hpp"
 
-#include "model/reader.hpp"
+#include <fmt/format.h>
 
 namespace eomgen::model {
 namespace {
@@ -11,7 +10,7 @@ constexpr Facts on_state = on_time | on_input | on_coordinate | on_velocity;
 
 }  // namespace
 
-Friction Reader::read_coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed) {
+Friction FrictionReader::coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed) {
   Friction law;
   law.span = table.span;
   const auto coefficient = [&](std::string_view key) {
@@ -58,7 +57,7 @@ Friction Reader::read_coefficients(const Value& table, const std::string& what, 
   return law;
 }
 
-void Reader::read_friction(Constraint& constraint, const Value& value) {
+void FrictionReader::of_constraint(Constraint& constraint, const Value& value) {
   const std::string what = fmt::format("the friction of '{}'", constraint.name);
   as(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
   check_keys(value, {what, {"static", "dynamic", "surface_velocity", "law", "width"}, {}});
@@ -71,7 +70,7 @@ void Reader::read_friction(Constraint& constraint, const Value& value) {
     source_.fail(value.span, fmt::format("'{}' leaves no direction to slide in", constraint.name),
                  "friction belongs to one equation (a surface) or to two (a curve)");
   }
-  Friction law = read_coefficients(value, what, dimension_of("m/s"));
+  Friction law = coefficients(value, what, dimension_of("m/s"));
   if (law.width != no_node && constraint.touch && constraint.touch->rolling) {
     source_.fail(value.span, fmt::format("under the smooth law '{}' creeps and never rolls", constraint.name),
                  "write sliding = { .. } in place of rolling, or law = \"coulomb\"");
@@ -84,7 +83,7 @@ void Reader::read_friction(Constraint& constraint, const Value& value) {
   constraint.friction = law;
 }
 
-Dry Reader::read_dry(const Value& table, const std::string& what) {
+Dry FrictionReader::dry(const Value& table, const std::string& what) {
   check_keys(table, {what, {"coordinate", "normal", "static", "dynamic", "law", "width"}, {}});
   const Value& name = needed(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
   as(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
@@ -94,16 +93,16 @@ Dry Reader::read_dry(const Value& table, const std::string& what) {
     source_.fail(name.span, fmt::format("{} is not a coordinate", quote(name.text)),
                  hint.empty() ? "name a coordinate of the model" : hint);
   }
-  Dry dry{symbol->index, no_node, {}};
+  Dry rubbing{symbol->index, no_node, {}};
   const Value& normal = needed(table, "normal", what, "add normal = \"m*g\", the force that presses");
-  dry.normal = resolver_
-                   .value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
-                                          std::nullopt, "a normal force is made of parameters, the state and t"})
-                   .node;
-  dry.law = read_coefficients(table, what, std::nullopt);
+  rubbing.normal = resolver_
+                       .value(normal, Context{fmt::format("the normal force of {}", what), on_state, Shape::scalar,
+                                              std::nullopt, "a normal force is made of parameters, the state and t"})
+                       .node;
+  rubbing.law = coefficients(table, what, std::nullopt);
   for (const Force& before : model_.forces) {
-    const Dry* other = std::get_if<Dry>(&before.kind);
-    if (other == nullptr || other->coordinate != dry.coordinate || dry.law.width != no_node ||
+    const std::optional<Dry>& other = before.dry;
+    if (!other || other->coordinate != rubbing.coordinate || rubbing.law.width != no_node ||
         other->law.width != no_node)
       continue;
     source_.fail(name.span,
@@ -111,16 +110,15 @@ Dry Reader::read_dry(const Value& table, const std::string& what) {
                              quote(name.text), before.name),
                  "write one force whose normal force is that of both");
   }
-  return dry;
+  return rubbing;
 }
 
-// friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2 and mode.NAME of a contact.
-bool Reader::is_contact_output(const std::vector<std::string>& parts) {
+bool FrictionReader::is_output(const std::vector<std::string>& parts) {
   if (parts.size() < 2 || parts.size() > 3 || (parts[0] != "friction" && parts[0] != "mode" && parts[0] != "slip"))
     return false;
   const Symbol* symbol = scope_.find(parts[1]);
   if (symbol == nullptr) return false;
-  const bool dry = symbol->kind == SymbolKind::force && std::holds_alternative<Dry>(model_.forces[symbol->index].kind);
+  const bool dry = symbol->kind == SymbolKind::force && model_.forces[symbol->index].dry.has_value();
   const bool constraint = symbol->kind == SymbolKind::constraint;
   const bool rough = constraint && model_.constraints[symbol->index].friction.has_value();
   const bool left = constraint && model_.constraints[symbol->index].unilateral;

@@ -104,24 +104,6 @@ Typed Reader::define_place(Symbol& symbol) {
   return position;
 }
 
-std::uint32_t Reader::place_named(const Value& value, const std::string& what) {
-  as(Value::Kind::text, value, what, "write the name of a particle or point, or \"origin\"");
-  if (value.text == "origin") return 0;
-  Symbol* symbol = scope_.find(value.text);
-  if (symbol == nullptr || symbol->kind != SymbolKind::place) {
-    std::vector<std::string> places = scope_.names(SymbolKind::place);
-    places.emplace_back("origin");
-    const std::string hint = did_you_mean(value.text, places);
-    source_.fail(value.span,
-                 symbol == nullptr ? fmt::format("there is no particle or point {}", quote(value.text))
-                                   : fmt::format("{} is {}, not a particle or point", quote(value.text),
-                                                 model::kind_name(symbol->kind)),
-                 hint.empty() ? "name a particle or point, or \"origin\"" : hint);
-  }
-  symbol->used = true;
-  return symbol->index;
-}
-
 void Reader::read_particles() {
   for (std::uint32_t k = 1; k < model_.places.size(); ++k) {
     Symbol& symbol = *scope_.find(model_.places[k].name);

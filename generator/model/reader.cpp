@@ -9,6 +9,7 @@
 
 #include "model/content_hash.hpp"
 #include "model/declared_order.hpp"
+#include "model/read_forces.hpp"
 #include "model/start_time.hpp"
 #include "model/units.hpp"
 
@@ -45,13 +46,11 @@ bool states_units(const Value& value, std::string_view section, std::string_view
 
 }  // namespace
 
-Reader::Reader(const Source& source, const Value& root)
-    : source_(source),
-      root_(root),
-      scope_(source),
-      resolver_(source, model_, scope_, [this](Symbol& symbol) { return define(symbol); }) {}
+Reader::Reader(Reading& reading) : Room(reading) {
+  reading.define = [this](Symbol& symbol) { return define(symbol); };
+}
 
-Model Reader::read() {
+void Reader::read() {
   check_keys(root_, {"a model",
                      {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
                       "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
@@ -82,7 +81,7 @@ Model Reader::read() {
   declare_constraints();
   declare_joints();
   declare_units();
-  declare_forces();
+  ForcesReader(reading_).declare();
   declare_events();
   declare_coordinates();
 
@@ -94,7 +93,7 @@ Model Reader::read() {
   read_bodies();
   for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
   read_energy();
-  read_forces();
+  ForcesReader(reading_).read();
   read_constraints();
   read_units();
   read_events();
@@ -111,22 +110,22 @@ Model Reader::read() {
   read_scenes();
   read_joints();
   warn_unused();
-  return std::move(model_);
 }
 
 Model read_model_text(const std::string& text, const std::string& file) {
   const Source source(file, text);
   const Value root = read_document(source);
-  Reader reader(source, root);
-  Model model = reader.read();
+  Reading reading(source, root);
+  Reader(reading).read();
+  Model& model = reading.model;
   restore_declared_order(model);
   name_start_values(model);
-  add_start_time(model, reader.units_stated());
+  add_start_time(model, reading.resolver.units_stated());
   model.file = file;
   model.id = std::filesystem::path(file).stem().string();
   model.lines = source.lines();
   model.content_hash = content_hash(text);
-  return model;
+  return std::move(model);
 }
 
 Model read_model(const std::string& path) {
@@ -147,6 +146,20 @@ Model read_model(const std::string& path) {
   if (text.size() > max_file_bytes)
     fail(fmt::format("the file has more than {} bytes", max_file_bytes), "check that this is a model file");
   return read_model_text(text, path);
+}
+
+const Argument* Force::argument(std::string_view key) const {
+  const auto found = std::find_if(arguments.begin(), arguments.end(), [&](const Argument& a) { return a.name == key; });
+  return found == arguments.end() ? nullptr : &*found;
+}
+
+NodeId Force::value(std::string_view key) const {
+  const Argument* found = argument(key);
+  return found == nullptr ? no_node : found->value;
+}
+
+NodeId Force::acceleration() const {
+  return effects.size() == 1 && effects[0].acts == Effect::Acts::acceleration ? effects[0].value : no_node;
 }
 
 Where Model::where(const Span& span) const { return where_in(file, lines, span); }

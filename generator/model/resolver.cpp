@@ -228,6 +228,12 @@ Typed Resolver::extension(Span span) {
   return result;
 }
 
+Typed Resolver::inertia(std::uint32_t body, const Typed& vector, Span span) {
+  Typed result = make(Op::inertia, false, {vector}, span);
+  model_.arena.nodes[result.node].index = body;
+  return result;
+}
+
 Typed Resolver::slip(Span span) {
   Typed result = make(Op::slip, false, {}, span);
   result.facts = on_velocity;

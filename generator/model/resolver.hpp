@@ -76,6 +76,7 @@ class Resolver {
   Typed rate(const Typed& scalar, Span span);  // ddt
   Typed product_of(const Typed& a, const Typed& b, Span span) { return multiply(a, b, span); }
   Typed extension(Span span);
+  Typed inertia(std::uint32_t body, const Typed& vector, Span span);  // v . J v
   Typed slip(Span span);
   /// The value times a unit; a value that has the unit's dimension already keeps it, if the unit has no factor.
   Typed with_unit(const Typed& typed, const MeasuredUnit& unit, Span span);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "model/read_friction.hpp"
 #include "model/reader.hpp"
 
 namespace eomgen::model {
@@ -136,7 +137,7 @@ void Reader::check_output(const Value& value) {
   if (parts.size() == 1 &&
       std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end())
     return;
-  if (is_contact_output(parts)) return;
+  if (FrictionReader(reading_).is_output(parts)) return;
   if (parts.size() == 2 && is_axis(parts[1], "omega")) {
     const Symbol* turning = scope_.find(parts[0]);
     if (turning != nullptr && turning->frame > 0) return;

@@ -84,10 +84,9 @@ class Cases {
   // Of springs whose units are not known.
   bool is_stiffness(std::uint32_t p) const {
     for (const model::Force& force : m_.model->forces) {
-      model::NodeId node = model::no_node;
-      if (const auto* spring = std::get_if<model::Spring>(&force.kind)) node = spring->stiffness;
-      if (const auto* spring = std::get_if<model::Torsion>(&force.kind)) node = spring->stiffness;
-      if (mentions(node, p)) return true;
+      for (const model::Argument& argument : force.arguments) {
+        if (argument.name.find("stiffness") != std::string::npos && mentions(argument.value, p)) return true;
+      }
     }
     return false;
   }

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verify/argument.hpp"
+
 namespace eomgen::verify {
 
 using model::Node;
@@ -22,14 +24,14 @@ Vector cross(const Vector& a, const Vector& b) {
 Jet norm(const Vector& a, const Precision& p) { return sqrt(dot(a, a), p); }
 
 Interpreter::Interpreter(const model::Model& model, Environment environment, Precision precision, Margin* margin,
-                         const model::Spring* spring)
+                         const model::Force* spring)
     : model_(model), environment_(std::move(environment)), precision_(precision), margin_(margin), spring_(spring) {}
 
 std::unique_ptr<Interpreter> Interpreter::child(Environment environment) const {
   return std::make_unique<Interpreter>(model_, std::move(environment), precision_, margin_, spring_);
 }
 
-Interpreter Interpreter::for_spring(const model::Spring& spring) const {
+Interpreter Interpreter::for_spring(const model::Force& spring) const {
   return Interpreter(model_, environment_, precision_, margin_, &spring);
 }
 
@@ -205,8 +207,8 @@ Jet Interpreter::call(const Node& node) {
   return less(x, y) == (node.fn == Fn::min) ? x : y;
 }
 
-Jet Interpreter::extension(const model::Spring& spring) {
-  return norm(vector(spring.b) - vector(spring.a), precision_) - scalar(spring.length);
+Jet Interpreter::extension(const model::Force& spring) {
+  return norm(vector(given(spring, "b")) - vector(given(spring, "a")), precision_) - scalar(given(spring, "length"));
 }
 
 void Interpreter::refuse(const Node& node, const char* what) const {

@@ -46,7 +46,7 @@ struct Margin {
 class Interpreter {
  public:
   Interpreter(const model::Model& model, Environment environment, Precision precision, Margin* margin = nullptr,
-              const model::Spring* spring = nullptr);
+              const model::Force* spring = nullptr);
 
   Jet scalar(model::NodeId id);
   Vector vector(model::NodeId id);
@@ -57,7 +57,7 @@ class Interpreter {
   Vector angular_velocity(std::uint32_t frame);
   Vector virtual_rotation(std::uint32_t frame, std::size_t coordinate);
   /// |b - a| - length of the spring that Op::extension means here.
-  Jet extension(const model::Spring& spring);
+  Jet extension(const model::Force& spring);
 
   const Environment& environment() const { return environment_; }
   unsigned level() const { return environment_.level; }
@@ -70,7 +70,7 @@ class Interpreter {
   /// Every velocity alone on a new level: d/dqdot_i is slope(level(), i).
   Interpreter& by_rates();
   /// The same environment, in which Op::extension is that of `spring`.
-  Interpreter for_spring(const model::Spring& spring) const;
+  Interpreter for_spring(const model::Force& spring) const;
 
  private:
   using Leaf = std::tuple<model::Op, std::uint32_t, std::uint8_t>;
@@ -94,7 +94,7 @@ class Interpreter {
   Environment environment_;
   Precision precision_;
   Margin* margin_;
-  const model::Spring* spring_;
+  const model::Force* spring_;
   std::unordered_map<model::NodeId, Jet> scalars_;
   std::unordered_map<model::NodeId, Vector> vectors_;
   std::unique_ptr<Interpreter> later_, by_q_, by_q_and_rates_, by_rates_;

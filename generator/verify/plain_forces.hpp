@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces of a Model as the judge sees them: a vector at a point, or a tension times a virtual extension.
+// Forces of a Model as the judge sees them, each stated in its own file of verify/forces/.
 #pragma once
 
 #include <vector>

@@ -143,12 +143,12 @@ TEST_CASE("judge: variable mass, drag, attraction, torsion, an energy of the ext
   const Formula x = coordinate(m, "x");
   const Formula zero = number(m, 0);
   const Formula P = place(m, "P", vector(x, zero, zero), time(m) * k);  // m = k t
-  force(m, model::Drag{P.id, k.id, k.id, k.id});
-  force(m, model::CentralGravity{k.id, (-(k * E(m, 1))).id});
-  force(m, model::Torsion{(x ^ 2).id, k.id, zero.id, k.id});
+  force(m, "drag", {{"on", P.id}, {"density", k.id}, {"area", k.id}, {"coefficient", k.id}});
+  force(m, "central_gravity", {{"GM", k.id}, {"center", (-(k * E(m, 1))).id}});
+  force(m, "torsion", {{"angle", (x ^ 2).id}, {"stiffness", k.id}, {"rest", zero.id}, {"coefficient", k.id}});
   const Formula e = leaf(m, Op::extension, 0);
-  force(m, model::Spring{vector(zero, zero, zero).id, P.id, model::no_node, k.id, (k * (e ^ 4)).id});
-  force(m, model::AppliedForce{(diff(ddt(x ^ 3), rate(x)) * E(m, 1)).id, P.id});  // 3 x^2
+  force(m, "spring", {{"a", vector(zero, zero, zero).id}, {"b", P.id}, {"length", k.id}, {"energy", (k * (e ^ 4)).id}});
+  applied(m, diff(ddt(x ^ 3), rate(x)) * E(m, 1), P);  // 3 x^2
   const Judge judge(m, digits);
   Dice dice;
   const State s = random_state(judge, dice);

@@ -124,9 +124,38 @@ inline Formula basis(Op op, Formula place, Formula q) {
   node.args[0] = q.id;
   return make(*place.model, node);
 }
-template <class Kind>
-void force(model::Model& m, Kind kind) {
-  m.forces.push_back({"force " + std::to_string(m.forces.size() + 1), kind, {}});
+/// A force as the reader leaves it: what its author wrote, for the judge, and what it does, for mechanics.
+inline void force(model::Model& m, std::string kind, std::vector<model::Argument> arguments,
+                  std::vector<model::Effect> effects = {}) {
+  m.forces.push_back({"force " + std::to_string(m.forces.size() + 1),
+                      std::move(kind),
+                      std::move(arguments),
+                      std::move(effects),
+                      std::nullopt,
+                      {}});
+}
+using Acts = model::Effect::Acts;
+inline model::Effect effect(Acts acts, Formula value, Formula at = {}, Formula other = {}) {
+  return {acts, value.id, at.id, other.id, model::no_node, 0};
+}
+inline void gravity(model::Model& m, Formula g) {
+  force(m, "gravity", {{"gravity", g.id}}, {effect(Acts::acceleration, g)});
+}
+inline void applied(model::Model& m, Formula F, Formula at) {
+  force(m, "force", {{"force", F.id}, {"on", at.id}}, {effect(Acts::force, F, at)});
+}
+inline void spring(model::Model& m, Formula a, Formula b, Formula stiffness, Formula length) {
+  const Formula energy = ((norm(a - b) - length) ^ 2) * stiffness / 2;
+  force(m, "spring", {{"a", a.id}, {"b", b.id}, {"stiffness", stiffness.id}, {"length", length.id}},
+        {effect(Acts::potential, energy)});
+}
+inline void damper(model::Model& m, Formula a, Formula b, Formula c) {
+  force(m, "damper", {{"a", a.id}, {"b", b.id}, {"coefficient", c.id}}, {effect(Acts::damping, c, a, b)});
+}
+inline void generalized(model::Model& m, std::uint32_t coordinate, Formula F) {
+  model::Effect along = effect(Acts::component, F);
+  along.index = coordinate;
+  force(m, "generalized", {{m.coordinates[coordinate].name, F.id, coordinate}}, {along});
 }
 inline void holonomic(model::Model& m, std::string name, std::vector<Formula> psi) {
   model::Constraint c;

@@ -59,7 +59,7 @@ TEST_CASE("points: coordinates stay inside their ranges, away from the ends, and
 TEST_CASE("points: what has no value is rejected, counted, and given up in the end with the reasons") {
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
-  force(m, model::Generalized{{{0, call(Fn::log, th).id}}});  // of negative angles: no value
+  generalized(m, 0, call(Fn::log, th));  // of negative angles: no value
   const Judge judge(m, 60);
   Points points(judge, 5, many);
   for (int i = 0; i < 20; ++i) CHECK(cln::plusp(points.next().q[0]));
@@ -68,7 +68,7 @@ TEST_CASE("points: what has no value is rejected, counted, and given up in the e
   CHECK(points.rejected().begin()->second > 3);
 
   model::Model never = chain(1);
-  force(never, model::Generalized{{{0, call(Fn::log, number(never, -1)).id}}});
+  generalized(never, 0, call(Fn::log, number(never, -1)));
   const Judge of_never(never, 60);
   Points none(of_never, 5, many);
   try {
@@ -83,7 +83,7 @@ TEST_CASE("points: what has no value is rejected, counted, and given up in the e
 TEST_CASE("points: kinks are kept away from, constraints that contradict one another have no states") {
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
-  force(m, model::Generalized{{{0, call(Fn::abs, th - th).id}}});  // always at the kink
+  generalized(m, 0, call(Fn::abs, th - th));  // always at the kink
   const Judge judge(m, 60);
   Points points(judge, 5, many);
   CHECK_THROWS_AS(points.next(), Error);

@@ -23,8 +23,8 @@ inline model::Model moving_sphere() {
   m.coordinates[0].lower = m.coordinates[1].lower = number(m, 0).id;
   m.coordinates[1].upper = leaf(m, Op::pi, 0).id;
   const Formula P = place(m, "P", spherical(R, phi, theta), mass);
-  force(m, model::Gravity{(-(g * E(m, 3))).id});
-  force(m, model::AppliedForce{(D * R * basis(Op::unit_basis, P, theta)).id, P.id});
+  gravity(m, -(g * E(m, 3)));
+  applied(m, D * R * basis(Op::unit_basis, P, theta), P);
   holonomic(m, "sphere", {R - d});
   default_scene(m);
   return m;
@@ -45,7 +45,7 @@ inline model::Model cart_pendulum() {
       ((M + mass) / 2 * (x_dot ^ 2) + mass * l * x_dot * theta_dot * cos(theta) + mass * (l ^ 2) / 2 * (theta_dot ^ 2))
           .id;
   m.energy.potential = (-(mass * g * l * cos(theta))).id;
-  force(m, model::Generalized{{{0, (F - c * x_dot).id}}});
+  generalized(m, 0, F - c * x_dot);
   default_scene(m);
   return m;
 }
@@ -63,7 +63,7 @@ inline model::Model chain(int n) {
     position = place(m, "P" + std::to_string(i), i == 1 ? rod : position + rod, mass);
   }
   const Formula g = parameter(m, "g", Rational(981) / 100);
-  force(m, model::Gravity{(-(g * E(m, 2))).id});
+  gravity(m, -(g * E(m, 2)));
   default_scene(m);
   return m;
 }
@@ -78,9 +78,9 @@ inline model::Model rod_pendulum() {
   const Formula x = coordinate(m, "x"), y = coordinate(m, "y");
   const Formula P = place(m, "P", vector(x, y, number(m, 0)), mass);
   const Formula A = place(m, "A", vector(number(m, 2), number(m, 1), number(m, 0)));
-  force(m, model::Gravity{(-(g * E(m, 2))).id});
-  force(m, model::Spring{A.id, P.id, k.id, number(m, Rational(3) / 2).id, model::no_node});
-  force(m, model::Damper{A.id, P.id, c.id});
+  gravity(m, -(g * E(m, 2)));
+  spring(m, A, P, k, number(m, Rational(3) / 2));
+  damper(m, A, P, c);
   holonomic(m, "rod", {(x ^ 2) + (y ^ 2) - (L ^ 2)});
   m.scenes.clear();
   default_scene(m);

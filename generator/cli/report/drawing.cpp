@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "forces/kind.hpp"
 #include "mechanics/imposition.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -94,13 +95,14 @@ void Drawing::bodies(Derived& derived) {
 
 void Drawing::forces(Derived& derived) {
   parts_["springs"] = parts_["dampers"] = Json::array();
-  const auto ends = [&](const auto& force) {
-    return Json{{"a", vector(derived, mechanics::lower_vector(derived.mechanics, force.a))},
-                {"b", vector(derived, mechanics::lower_vector(derived.mechanics, force.b))}};
+  const auto ends = [&](const model::Force& force) {
+    return Json{{"a", vector(derived, mechanics::lower_vector(derived.mechanics, force.value("a")))},
+                {"b", vector(derived, mechanics::lower_vector(derived.mechanics, force.value("b")))}};
   };
   for (const model::Force& force : derived.model.forces) {
-    if (const auto* spring = std::get_if<model::Spring>(&force.kind)) parts_["springs"].push_back(ends(*spring));
-    if (const auto* damper = std::get_if<model::Damper>(&force.kind)) parts_["dampers"].push_back(ends(*damper));
+    const forces::Kind& kind = *forces::find(force.kind);
+    if (kind.line_of_spring) parts_["springs"].push_back(ends(force));
+    if (kind.line_of_damper) parts_["dampers"].push_back(ends(force));
   }
 }
 
@@ -152,9 +154,9 @@ void Drawing::shapes(Derived& derived) {
 std::optional<std::array<double, 3>> falling(Derived& derived, const std::vector<double>& parameters) {
   constexpr int digits = 20;
   for (const model::Force& force : derived.model.forces) {
-    const auto* gravity = std::get_if<model::Gravity>(&force.kind);
-    if (gravity == nullptr) continue;
-    const Vec3 g = mechanics::lower_vector(derived.mechanics, gravity->acceleration);
+    const model::NodeId gravity = force.acceleration();
+    if (gravity == model::no_node) continue;
+    const Vec3 g = mechanics::lower_vector(derived.mechanics, gravity);
     std::array<double, 3> down{};
     double length = 0;
     for (std::size_t k = 0; k < 3; ++k) {

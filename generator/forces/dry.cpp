@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/kinds.hpp"
+
+namespace eomgen::forces {
+
+Kind dry() {
+  return {
+      .name = "dry",
+      .title = "Coulomb friction on one coordinate",
+      .form = Form::friction,
+  };
+}
+
+}  // namespace eomgen::forces

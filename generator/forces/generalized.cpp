@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/kinds.hpp"
+
+namespace eomgen::forces {
+
+Kind generalized() {
+  return {
+      .name = "generalized",
+      .title = "generalised forces along coordinates",
+      .form = Form::components,
+  };
+}
+
+}  // namespace eomgen::forces

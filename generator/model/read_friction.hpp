@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Coulomb friction: friction = { .. } of a constraint, and the force dry = { .. } on one coordinate.
+#pragma once
+
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class FrictionReader : private Room {
+ public:
+  explicit FrictionReader(Reading& reading) : Room(reading) {}
+  void of_constraint(Constraint& constraint, const Value& value);
+  Dry dry(const Value& table, const std::string& what);
+  /// friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2 and mode.NAME of a contact.
+  bool is_output(const std::vector<std::string>& parts);
+
+ private:
+  Friction coefficients(const Value& table, const std::string& what, std::optional<Dimension> speed);
+};
+
+}  // namespace eomgen::model

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "model/room.hpp"
+
+#include <fmt/format.h>
+
+namespace eomgen::model {
+
+Reading::Reading(const Source& file, const Value& tree)
+    : source(file),
+      root(tree),
+      scope(source),
+      resolver(source, model, scope, [this](Symbol& symbol) { return define(symbol); }) {}
+
+Room::Room(Reading& reading)
+    : reading_(reading),
+      source_(reading.source),
+      root_(reading.root),
+      model_(reading.model),
+      scope_(reading.scope),
+      resolver_(reading.resolver),
+      place_sources_(reading.place_sources),
+      frame_sources_(reading.frame_sources),
+      chains_(reading.chains),
+      ranged_(reading.ranged),
+      measured_(reading.measured) {}
+
+std::uint32_t Room::place_named(const Value& value, const std::string& what) {
+  as(Value::Kind::text, value, what, "write the name of a particle or point, or \"origin\"");
+  if (value.text == "origin") return 0;
+  Symbol* symbol = scope_.find(value.text);
+  if (symbol == nullptr || symbol->kind != SymbolKind::place) {
+    std::vector<std::string> places = scope_.names(SymbolKind::place);
+    places.emplace_back("origin");
+    const std::string hint = did_you_mean(value.text, places);
+    source_.fail(value.span,
+                 symbol == nullptr ? fmt::format("there is no particle or point {}", quote(value.text))
+                                   : fmt::format("{} is {}, not a particle or point", quote(value.text),
+                                                 model::kind_name(symbol->kind)),
+                 hint.empty() ? "name a particle or point, or \"origin\"" : hint);
+  }
+  symbol->used = true;
+  return symbol->index;
+}
+
+std::uint32_t Room::frame_named(const Value& value, const std::string& what) {
+  as(Value::Kind::text, value, what, "write the name of a body or frame");
+  if (value.text == "ground") return 0;
+  Symbol* symbol = scope_.find(value.text);
+  if (symbol == nullptr || symbol->frame == 0) {
+    std::vector<std::string> names;
+    for (std::size_t k = 1; k < model_.frames.size(); ++k) names.push_back(model_.frames[k].name);
+    const std::string hint = did_you_mean(value.text, names);
+    source_.fail(value.span,
+                 symbol == nullptr
+                     ? fmt::format("there is no body or frame {}", quote(value.text))
+                     : fmt::format("{} is {}, which has no axes", quote(value.text), model::kind_name(symbol->kind)),
+                 !hint.empty()   ? hint
+                 : names.empty() ? "add a [[body]] or a [[frame]]"
+                                 : fmt::format("the bodies and frames are {}", fmt::join(names, ", ")));
+  }
+  symbol->used = true;
+  return symbol->frame;
+}
+
+Typed Room::point(const Value& value, const std::string& what) {
+  // A misspelt name of a particle deserves to be told as one.
+  if (value.is(Value::Kind::text) && is_identifier(value.text) && scope_.find(value.text) == nullptr &&
+      value.text != "origin" && !is_reserved(value.text)) {
+    place_named(value, what);
+  }
+  return resolver_.value(value, Context{what, on_motion, Shape::vector, dimension_of("m"), ""});
+}
+
+}  // namespace eomgen::model

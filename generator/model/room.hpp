@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the readers of the sections share. A section is read by one class, a Room, on one Reading: the file as values,
+// the Model that is being made, the names, and the sources of what is resolved only when it is needed.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "model/resolver.hpp"
+
+namespace eomgen::model {
+
+inline constexpr std::size_t max_places = 1000;
+inline constexpr std::size_t max_coordinates = 1000;
+inline constexpr std::size_t max_scenes = 100;
+inline constexpr long max_chain = 64;
+
+/// The keys of one kind of table: those that exist, and those that a later version brings.
+struct Keys {
+  std::string what;  // "[[particle]]"
+  std::vector<std::string_view> known;
+  std::vector<std::string_view> later;
+};
+
+/// Where a place is declared.
+struct PlaceSource {
+  const Value* table = nullptr;
+  bool particle = false;
+  bool body = false;
+  std::uint32_t chain = 0;  // index + 1 into Reading::chains, for links
+  long link = 0;            // from 1
+};
+
+struct Chain {
+  const Value* table = nullptr;
+  std::string name;
+  long n = 0;
+  bool relative = false;
+  std::vector<std::uint32_t> coordinates, places;
+};
+
+/// A direction that is fixed in a frame and in space: components of its unit vector along the axes of the frame, and
+/// in proportion to them numbers, where it is made of numbers.
+struct FixedDirection {
+  std::array<Typed, 3> unit;
+  std::optional<std::array<cln::cl_RA, 3>> numbers;
+};
+
+/// Where axes are declared.
+struct FrameSource {
+  const Value* table = nullptr;
+  std::uint32_t place = 0;                  // of a body
+  bool still = false;                       // it keeps its attitude; the ground does
+  std::optional<FixedDirection> axis = {};  // about which it turns, if that is a fixed one
+  bool upright =
+      false;  // it turns about that axis alone, from E1, E2, E3 on: the axis has the same components in space
+};
+
+struct Reading {
+  Reading(const Source& file, const Value& tree);
+  Reading(const Reading&) = delete;
+  Reading& operator=(const Reading&) = delete;
+
+  const Source& source;
+  const Value& root;
+  Model model;
+  Scope scope;
+  std::function<Typed(Symbol&)> define;  // reads the declaration of a symbol that is needed now
+  Resolver resolver;
+  std::vector<PlaceSource> place_sources;  // per Model::places
+  std::vector<FrameSource> frame_sources;  // per Model::frames
+  std::vector<Chain> chains;
+  std::set<std::uint32_t> ranged, measured;  // coordinates whose range or unit [coordinates] states
+};
+
+class Room {
+ protected:
+  explicit Room(Reading& reading);
+
+  // keys.cpp
+  void check_keys(const Value& table, const Keys& keys) const;
+  const Value& needed(const Value& table, std::string_view key, const std::string& what,
+                      const std::string& remedy) const;
+  const Value& as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const;
+  const Value* section(std::string_view name) const;                // [name], checked to be a table
+  std::vector<const Value*> sections(std::string_view name) const;  // [[name]]
+  std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;
+  Span key_span(const Value& table, std::string_view key) const;
+  [[noreturn]] void not_yet(Span span, const std::string& what) const;
+  std::string tex_of(const Value& table, const std::string& what) const;
+  /// A unit that values are given in: SI without a factor.
+  Unit si_unit(const Value& value, const std::string& what) const;
+  MeasuredUnit any_unit(const Value& value, const std::string& what) const;
+
+  // room.cpp
+  /// Index into Model::places, 0 of "origin"; refused if it is no name of a place.
+  std::uint32_t place_named(const Value& value, const std::string& what);
+  /// Index into Model::frames, 0 of "ground"; refused if it is no name of a body or frame.
+  std::uint32_t frame_named(const Value& value, const std::string& what);
+  /// A place by its name, or a vector.
+  Typed point(const Value& value, const std::string& what);
+
+  Reading& reading_;
+  const Source& source_;
+  const Value& root_;
+  Model& model_;
+  Scope& scope_;
+  Resolver& resolver_;
+  std::vector<PlaceSource>& place_sources_;
+  std::vector<FrameSource>& frame_sources_;
+  std::vector<Chain>& chains_;
+  std::set<std::uint32_t>&ranged_, &measured_;
+};
+
+}  // namespace eomgen::model

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The formulas of a kind of force, spelled out for one force of the model.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "model/read_forces.hpp"
+
+namespace eomgen::model {
+namespace {
+
+using forces::Acts;
+using forces::Is;
+using forces::Over;
+
+const std::map<Acts, Effect::Acts>& effects() {
+  static const std::map<Acts, Effect::Acts> all{{Acts::acceleration, Effect::Acts::acceleration},
+                                                {Acts::potential, Effect::Acts::potential},
+                                                {Acts::force, Effect::Acts::force},
+                                                {Acts::moment, Effect::Acts::moment},
+                                                {Acts::work, Effect::Acts::work},
+                                                {Acts::damping, Effect::Acts::damping}};
+  return all;
+}
+
+bool is_vector(Acts acts) { return acts == Acts::acceleration || acts == Acts::force || acts == Acts::moment; }
+
+Typed known(NodeId node) {
+  Typed result;
+  result.node = node;
+  return result;
+}
+
+Context formula(Shape shape) { return {"a force", on_anything, shape, std::nullopt, ""}; }
+
+}  // namespace
+
+bool ForcesReader::is_written_zero(NodeId id) const {
+  const Node& node = model_.arena[id];
+  switch (node.op) {
+    case Op::number: return cln::zerop(node.value);
+    case Op::negate:
+    case Op::divide: return is_written_zero(node.args[0]);
+    case Op::multiply: return is_written_zero(node.args[0]) || is_written_zero(node.args[1]);
+    default: return false;
+  }
+}
+
+bool ForcesReader::applies(const Open& open, const forces::Term& term) const {
+  return std::all_of(term.when.begin(), term.when.end(), [&](const forces::When& when) {
+    const Argument* argument = open.force.argument(when.key);
+    switch (when.is) {
+      case Is::given: return argument != nullptr;
+      case Is::left_out: return argument == nullptr;
+      case Is::zero: return argument != nullptr && is_written_zero(argument->value);
+      case Is::not_zero: return argument != nullptr && !is_written_zero(argument->value);
+      case Is::chosen: break;
+    }
+    const auto& keys = open.kind.keys;
+    const auto key = std::find_if(keys.begin(), keys.end(),
+                                  [&](const forces::Key& candidate) { return candidate.name == when.key; });
+    return argument != nullptr && key->choices[argument->index].text == when.choice;
+  });
+}
+
+void ForcesReader::add_effect(const Open& open, const forces::Term& term, const std::map<std::string, Typed>& local) {
+  const Span span = open.force.span;
+  const auto text = [&](const std::string& written, Shape shape) {
+    return resolver_.text(written, local, span, formula(shape)).node;
+  };
+  Effect effect;
+  effect.acts = effects().at(term.acts);
+  if (term.acts == Acts::moment) {
+    effect.index = open.force.argument(term.at)->index;
+    if (effect.index == 0) return;  // the ground
+  }
+  effect.value = text(term.formula, is_vector(term.acts) ? Shape::vector : Shape::scalar);
+  if (!term.extension.empty()) effect.extension = text(term.extension, Shape::scalar);
+  if (term.acts == Acts::force) effect.at = text(term.at, Shape::vector);
+  if (term.acts == Acts::work) effect.at = text(term.at, Shape::scalar);
+  if (term.acts == Acts::damping || term.acts == Acts::potential) {
+    effect.at = open.force.value("a");
+    effect.other = open.force.value("b");
+  }
+  open.force.effects.push_back(effect);
+}
+
+std::map<std::string, Typed> ForcesReader::mass_names(std::uint32_t place, NodeId mass, const std::string& number,
+                                                      Span span) {
+  Typed r = resolver_.place(place, span);
+  r.dimension = std::nullopt;
+  return {{"m" + number, known(mass)}, {"r" + number, r}};
+}
+
+void ForcesReader::add_over_bodies(const Open& open, const forces::Term& term) {
+  const Span span = open.force.span;
+  for (std::uint32_t k = 0; k < model_.bodies.size(); ++k) {
+    const Body& body = model_.bodies[k];
+    std::map<std::string, Typed> local = open.local;
+    local.merge(mass_names(body.place, body.mass, "", span));
+    local["d"] = resolver_.text(term.arm, local, span, formula(Shape::vector));
+    local["dJd"] = resolver_.inertia(k, local["d"], span);
+    std::map<std::string, Typed> J;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const NodeId moment = body.inertia[i][i];
+      J[fmt::format("J{}", i + 1)] = moment == no_node ? resolver_.number(0, span) : known(moment);
+    }
+    local["trJ"] = resolver_.text("J1 + (J2 + J3)", J, span, formula(Shape::scalar));
+    add_effect(open, term, local);
+  }
+}
+
+void ForcesReader::spell(Open& open) {
+  struct Mass {
+    std::uint32_t place;
+    NodeId mass;
+  };
+  std::vector<Mass> masses;
+  for (const Particle& particle : model_.particles) masses.push_back({particle.place, particle.mass});
+  for (const Body& body : model_.bodies) masses.push_back({body.place, body.mass});
+  for (const forces::Term& term : open.kind.terms) {
+    if (!applies(open, term)) continue;
+    if (term.over == Over::once) add_effect(open, term, open.local);
+    if (term.over == Over::bodies) add_over_bodies(open, term);
+    for (std::size_t i = 0; i < masses.size() && (term.over == Over::masses || term.over == Over::pairs); ++i) {
+      const bool pairs = term.over == Over::pairs;
+      std::map<std::string, Typed> local = open.local;
+      local.merge(mass_names(masses[i].place, masses[i].mass, pairs ? "1" : "", open.force.span));
+      if (!pairs) add_effect(open, term, local);
+      for (std::size_t k = i + 1; k < masses.size() && pairs; ++k) {
+        std::map<std::string, Typed> both = local;
+        both.merge(mass_names(masses[k].place, masses[k].mass, "2", open.force.span));
+        add_effect(open, term, both);
+      }
+    }
+  }
+}
+
+}  // namespace eomgen::model

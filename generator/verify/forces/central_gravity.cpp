@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/forces/statement.hpp"
+
+namespace eomgen::verify::forces {
+namespace {
+
+bool extended(const model::Force& force) {
+  const model::Argument* order = argument(force, "order");
+  return order != nullptr && order->index == 1;  // of 0 and 2
+}
+
+Jet trace(const model::Body& body, Interpreter& at) {
+  return at.scalar(body.inertia[0][0]) + at.scalar(body.inertia[1][1]) + at.scalar(body.inertia[2][2]);
+}
+
+// What the inertia of a body adds to Newton's attraction, and the moment, eq. (7.72).
+void attract_extended(const model::Force& force, const model::Body& body, VirtualWork& w) {
+  const model::NodeId center = given(force, "center");
+  const Vector d = w.now.place(body.place) - w.now.vector(center);
+  const Jet R = norm(d, w.precision), GM = w.now.scalar(given(force, "GM"));
+  const Vector c = (Jet(1) / R) * d, Jc = inertia_times(body, w.now, c);
+  const Jet along = trace(body, w.now) - Jet(5) * dot(c, Jc);
+  const Vector pull = (Jet(-3) * GM / (Jet(2) * R * R * R * R)) * (Jet(2) * Jc + along * c);
+  w.apply(pull, w.by_q.place(body.place) - w.by_q.vector(center));
+  w.turn((Jet(3) * GM / (R * R * R)) * cross(c, Jc), body.frame);
+}
+
+void act(const model::Force& force, VirtualWork& w) {
+  for (const model::Body& body : w.model.bodies) {
+    if (extended(force)) attract_extended(force, body, w);
+  }
+  const model::NodeId center = given(force, "center");
+  for (const Mass& p : masses(w.model)) {
+    const Jet strength = w.now.scalar(given(force, "GM")) * w.now.scalar(p.mass);
+    w.attract(strength, w.now.place(p.place) - w.now.vector(center), w.by_q.place(p.place) - w.by_q.vector(center));
+  }
+}
+
+void potential(const model::Force& force, Potentials& U) {
+  const Jet GM = U.at.scalar(given(force, "GM"));
+  const Vector center = U.at.vector(given(force, "center"));
+  for (const Mass& p : masses(U.model))
+    U.add(-(GM * U.at.scalar(p.mass)) / norm(U.at.place(p.place) - center, U.precision));
+  for (const model::Body& body : U.model.bodies) {  // (7.71)
+    if (!extended(force)) continue;
+    const Vector d = U.at.place(body.place) - center;
+    const Jet R = norm(d, U.precision);
+    const Jet half = GM / (Jet(2) * R * R * R);
+    U.add(-(half * trace(body, U.at)));
+    U.add(Jet(3) * half * dot(d, inertia_times(body, U.at, d)) / (R * R));
+  }
+}
+
+}  // namespace
+
+Statement central_gravity() { return {act, potential}; }
+
+}  // namespace eomgen::verify::forces

@@ -1,0 +1,13 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/forces/statement.hpp"
+
+namespace eomgen::verify::forces {
+namespace {
+
+void act(const model::Force&, VirtualWork&) {}  // with the contacts (State::friction)
+
+}  // namespace
+
+Statement dry() { return {act}; }
+
+}  // namespace eomgen::verify::forces

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What every kind of force in the registry has to be, so that a new one is held to it without a further line.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <set>
+#include <string>
+
+#include "forces/kind.hpp"
+#include "model/names.hpp"
+#include "verify/forces/statement.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+bool has_key(const forces::Kind& kind, const std::string& name) {
+  return std::any_of(kind.keys.begin(), kind.keys.end(), [&](const forces::Key& key) { return key.name == name; });
+}
+
+bool has_potential(const forces::Kind& kind) {
+  return std::any_of(kind.terms.begin(), kind.terms.end(), [](const forces::Term& term) {
+    return term.acts == forces::Acts::potential || term.acts == forces::Acts::acceleration;
+  });
+}
+
+}  // namespace
+
+TEST_CASE(
+    "every kind of force has a name of its own, and a judge's statement, with an energy where it has a potential") {
+  std::set<std::string> names;
+  REQUIRE(forces::registry().size() >= 12);
+  for (const forces::Kind& kind : forces::registry()) {
+    CAPTURE(kind.name);
+    CHECK(names.insert(kind.name).second);
+    CHECK(forces::find(kind.name) == &kind);
+    CHECK_FALSE(kind.title.empty());
+    const verify::forces::Statement& statement = verify::forces::statement(kind.name);
+    CHECK((statement.act != nullptr));
+    CHECK((statement.potential != nullptr) == has_potential(kind));
+  }
+  CHECK(forces::find("no_such_force") == nullptr);
+}
+
+TEST_CASE("keys, rules and terms of a kind name keys that it has") {
+  for (const forces::Kind& kind : forces::registry()) {
+    CAPTURE(kind.name);
+    std::set<std::string> keys;
+    for (const forces::Key& key : kind.keys) {
+      CAPTURE(key.name);
+      CHECK(keys.insert(key.name).second);
+      CHECK(model::is_identifier(key.name));
+      for (const std::string& other : {key.with, key.unless}) CHECK((other.empty() || has_key(kind, other)));
+      CHECK(key.choices.empty() == (key.asks != forces::Asks::choice));
+    }
+    for (const forces::Rule& rule : kind.rules) {
+      CHECK(has_key(kind, rule.first));
+      CHECK(has_key(kind, rule.second));
+      CHECK_FALSE(rule.what.empty());
+      CHECK_FALSE(rule.remedy.empty());
+    }
+    for (const forces::Term& term : kind.terms) {
+      CHECK_FALSE(term.formula.empty());
+      CHECK((term.over == forces::Over::bodies) == !term.arm.empty());
+      for (const forces::When& when : term.when) CHECK(has_key(kind, when.key));
+    }
+    const bool data = kind.form == forces::Form::table || kind.form == forces::Form::value;
+    CHECK(data == !kind.terms.empty());
+    if (kind.form == forces::Form::value) CHECK(kind.keys.at(0).name == kind.name);
+  }
+}
