@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[chain]]: n point masses on massless rods in the plane of E1 and E2, hanging along -E2 where all angles are 0.
+#include "model/chain.hpp"
+
 #include <fmt/format.h>
 
-#include "model/reader.hpp"
+#include "model/read_names.hpp"
+#include "model/read_places.hpp"
 
 namespace eomgen::model {
 
-void Reader::declare_chain(const Value& table) {
+void ChainsReader::declare(const Value& table) {
   check_keys(table, {"[[chain]]", {"name", "n", "mass", "length", "coordinate", "angles", "from"}, {}});
   Chain chain;
   chain.table = &table;
@@ -34,20 +37,20 @@ void Reader::declare_chain(const Value& table) {
     const std::string name = fmt::format("{}{}", coordinate, k);
     Symbol* known = scope_.find(name);
     if (known == nullptr || known->kind != SymbolKind::coordinate || known->entry == nullptr) {
-      declare_coordinate(name, coordinate_span, nullptr);
+      NamesReader(reading_).declare_coordinate(name, coordinate_span, nullptr);
       known = scope_.find(name);
     }
     known->used = true;
     chain.coordinates.push_back(known->index);
     if (measured_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
-    chain.places.push_back(declare_place(fmt::format("{}{}", chain.name, k), table.find("name")->span,
-                                         PlaceSource{&table, true, false, index, k}));
+    chain.places.push_back(PlacesReader(reading_).declare_place(
+        fmt::format("{}{}", chain.name, k), table.find("name")->span, PlaceSource{&table, true, false, index, k}));
   }
   chains_.push_back(std::move(chain));
 }
 
 // "m" for all links, or an array with one entry for each.
-Typed Reader::chain_entry(const Value& table, std::string_view key, long link, const Context& context) {
+Typed ChainsReader::entry(const Value& table, std::string_view key, long link, const Context& context) {
   const std::string what = "this [[chain]]";
   const Value& value =
       needed(table, key, what, fmt::format("add {} = \"..\" for all links, or an array with one entry for each", key));
@@ -62,14 +65,14 @@ Typed Reader::chain_entry(const Value& table, std::string_view key, long link, c
   return resolver_.value(value.items[static_cast<std::size_t>(link - 1)], context);
 }
 
-Typed Reader::chain_position(const PlaceSource& where) {
+Typed ChainsReader::position(const PlaceSource& where) {
   const Chain& chain = chains_[where.chain - 1];
   const Value& table = *chain.table;
   const Span span = table.span;
   const auto k = static_cast<std::size_t>(where.link - 1);
   const Context context{"the length of a link", on_time, Shape::scalar, dimension_of("m"), ""};
   std::map<std::string, Typed> local;
-  local["length"] = chain_entry(table, "length", where.link, context);
+  local["length"] = entry(table, "length", where.link, context);
   Typed angle = resolver_.coordinate(chain.coordinates[k], 0, span);
   if (chain.relative) {
     angle = resolver_.coordinate(chain.coordinates[0], 0, span);

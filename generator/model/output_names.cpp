@@ -5,11 +5,11 @@
 
 #include <map>
 
-#include "model/reader.hpp"
+#include "model/read_scenes.hpp"
 
 namespace eomgen::model {
 
-void Reader::refuse_shadowed_outputs() {
+void ScenesReader::refuse_shadowed_outputs() {
   std::map<std::string, std::string> taken;  // the output, what it is
   const auto derived = [&taken](const std::string& name, const std::string& what) { taken.emplace(name, what); };
   derived("energy", "T + U");

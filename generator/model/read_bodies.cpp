@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[body]], [[frame]]: axes that turn, spelled out through the registry of rotations; points on bodies.
+#include "model/read_bodies.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "model/reader.hpp"
+#include "model/read_inertia.hpp"
+#include "model/read_positions.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -15,7 +18,7 @@ constexpr const char* form =
 
 }  // namespace
 
-void Reader::declare_frame(const Value& table, std::uint32_t place, Symbol& symbol) {
+void BodiesReader::declare_frame(const Value& table, std::uint32_t place, Symbol& symbol) {
   Frame frame;
   frame.name = symbol.name;
   frame.span = symbol.span;
@@ -27,19 +30,19 @@ void Reader::declare_frame(const Value& table, std::uint32_t place, Symbol& symb
 }
 
 // The names in angles = [..], euler_parameters = [..], rodrigues = [..] and angle = "..": new ones are coordinates.
-void Reader::declare_angles(const Value& table) {
+void BodiesReader::declare_angles(const Value& table) {
   const Value* rotation = table.find("rotation");
   if (rotation == nullptr || !rotation->is(Value::Kind::table)) return;
   for (const Entry& entry : rotation->entries) {
     const bool angles = entry.key == "angles" || entry.key == "angle";
     if (!angles && entry.key != "euler_parameters" && entry.key != "rodrigues") continue;
     const char* unit = angles ? "rad" : "1";
-    if (entry.key == "angle") declare_entry(entry.value, unit);
-    for (const Value& item : entry.value.items) declare_entry(item, unit);
+    if (entry.key == "angle") PositionsReader(reading_).declare_entry(entry.value, unit);
+    for (const Value& item : entry.value.items) PositionsReader(reading_).declare_entry(item, unit);
   }
 }
 
-const Entry& Reader::rotation_entry(const Value& rotation) const {
+const Entry& BodiesReader::rotation_entry(const Value& rotation) const {
   as(Value::Kind::table, rotation, "a rotation", form);
   check_keys(rotation,
              {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}, {}});
@@ -62,8 +65,8 @@ const Entry& Reader::rotation_entry(const Value& rotation) const {
 }
 
 // The values of the entries, and the name of the representation.
-std::vector<const Value*> Reader::rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry,
-                                                   const Value& rotation) {
+std::vector<const Value*> BodiesReader::rotation_entries(Frame& frame, const rotations::Rotation& found,
+                                                         const Entry& entry, const Value& rotation) {
   frame.rotation = found.name;
   if (found.family == "fixed") {
     if (!as(Value::Kind::boolean, entry.value, "'fixed'", "write fixed = true").truth)
@@ -86,7 +89,7 @@ std::vector<const Value*> Reader::rotation_entries(Frame& frame, const rotations
   return result;
 }
 
-Typed Reader::define_axes(Symbol& symbol) {
+Typed BodiesReader::define_axes(Symbol& symbol) {
   const std::uint32_t index = symbol.index;
   const Value& table = *frame_sources_[index].table;
   const std::string what = fmt::format("'{}'", model_.frames[index].name);
@@ -99,7 +102,7 @@ Typed Reader::define_axes(Symbol& symbol) {
   return symbol.typed;
 }
 
-void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotation) {
+void BodiesReader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotation) {
   const Entry& entry = rotation_entry(rotation);
   std::string name = entry.key;
   if (entry.key == "euler") {
@@ -151,7 +154,8 @@ void Reader::read_rotation(Frame& frame, std::uint32_t index, const Value& rotat
 }
 
 // About an axis that is fixed in the parent: one of its axes, or any sum of them with constant components.
-void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local) {
+void BodiesReader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation,
+                              std::map<std::string, Typed>& local) {
   const Value& written = *rotation.find("axis");
   const std::string of =
       frame.parent == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", model_.frames[frame.parent].name);
@@ -192,7 +196,7 @@ void Reader::turn_about(Frame& frame, std::uint32_t index, const Value& rotation
 }
 
 /// The components of a sum of numbers times E1, E2, E3.
-std::optional<std::array<cln::cl_RA, 3>> Reader::numbers_of(NodeId vector) const {
+std::optional<std::array<cln::cl_RA, 3>> BodiesReader::numbers_of(NodeId vector) const {
   const Node& node = model_.arena[vector];
   std::array<cln::cl_RA, 3> result{0, 0, 0};
   const auto combined = [&](const cln::cl_RA& left, std::size_t a, const cln::cl_RA& right,
@@ -218,8 +222,8 @@ std::optional<std::array<cln::cl_RA, 3>> Reader::numbers_of(NodeId vector) const
   }
 }
 
-void Reader::add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local,
-                       Span span) {
+void BodiesReader::add_stage(std::uint32_t index, const rotations::Step& step,
+                             const std::map<std::string, Typed>& local, Span span) {
   const Context context{"a rotation", on_anything, Shape::scalar, std::nullopt, ""};
   const std::size_t before = model_.frames[index].stages.size();
   const std::uint32_t parent = model_.frames[index].parent;
@@ -241,7 +245,7 @@ void Reader::add_stage(std::uint32_t index, const rotations::Step& step, const s
   model_.frames[index].stages.push_back(stage);
 }
 
-Typed Reader::point_on_body(const Value& table, const std::string& what) {
+Typed BodiesReader::point_on_body(const Value& table, const std::string& what) {
   if (const Value* position = table.find("position")) {
     source_.fail(position->span, fmt::format("{} is on a body and has a position too", what), "keep one of them");
   }
@@ -266,7 +270,7 @@ Typed Reader::point_on_body(const Value& table, const std::string& what) {
   return sum;
 }
 
-void Reader::read_bodies() {
+void BodiesReader::read() {
   for (std::uint32_t k = 1; k < model_.frames.size(); ++k) resolver_.symbol(scope_.axes(k), model_.frames[k].span);
   for (std::uint32_t k = 1; k < model_.frames.size(); ++k) {
     const FrameSource source = frame_sources_[k];
@@ -284,7 +288,7 @@ void Reader::read_bodies() {
       source_.fail(value.span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
     }
     body.mass = mass.node;
-    read_inertia(body, *source.table);
+    InertiaReader(reading_).read(body, *source.table);
     model_.bodies.push_back(body);
   }
 }
@@ -299,7 +303,7 @@ bool by_parameters(const Value& table) {
 }  // namespace
 
 // Euler parameters have unit length: a constraint NAME_unit for each body or frame that uses them.
-void Reader::declare_units() {
+void BodiesReader::declare_units() {
   for (std::uint32_t k = 1; k < model_.frames.size(); ++k) {
     if (!by_parameters(*frame_sources_[k].table)) continue;
     Constraint constraint;
@@ -312,7 +316,7 @@ void Reader::declare_units() {
   }
 }
 
-void Reader::read_units() {
+void BodiesReader::read_units() {
   for (const Frame& frame : model_.frames) {
     const rotations::Rotation* rotation = rotations::find(frame.rotation);
     if (rotation == nullptr || rotation->unit.empty()) continue;
@@ -323,77 +327,6 @@ void Reader::read_units() {
     Constraint& constraint = model_.constraints[scope_.find(frame.name + "_unit")->index];
     const Context context{"the length of Euler parameters", on_motion, Shape::scalar, std::nullopt, ""};
     constraint.psi = {resolver_.text(rotation->unit, local, constraint.span, context).node};
-  }
-}
-
-// Of Euler parameters that a scene leaves out e1, e2, e3 are 0, and e0 is what is left of the length.
-void Reader::complete_parameters(Scene& scene) {
-  for (const Frame& frame : model_.frames) {
-    const rotations::Rotation* rotation = rotations::find(frame.rotation);
-    if (rotation == nullptr || rotation->unit.empty()) continue;
-    const auto given = [&](std::size_t k) {
-      const std::uint32_t coordinate = model_.arena[frame.entries[k]].index;
-      const auto same = [&](const InitialValue& v) { return v.coordinate == coordinate && v.order == 0; };
-      return std::any_of(scene.initial.begin(), scene.initial.end(), same) ||
-             std::any_of(scene.guess.begin(), scene.guess.end(), same);
-    };
-    if (given(0)) continue;
-    const auto add = [&](std::vector<InitialValue>& values, std::size_t k, const Rational& value) {
-      values.push_back({model_.arena[frame.entries[k]].index, 0, resolver_.number(value, scene.span).node, scene.span});
-    };
-    const bool none = !given(1) && !given(2) && !given(3);
-    for (std::size_t k = 1; k < 4; ++k) {
-      if (!given(k)) add(scene.initial, k, 0);
-    }
-    add(none ? scene.initial : scene.guess, 0, 1);
-  }
-}
-
-// "B.omega" = [..]; false for any other key.
-bool Reader::read_initial_rotation(Scene& scene, const Entry& entry, bool guess) {
-  const bool nested = entry.value.is(Value::Kind::table) && entry.value.find("omega") != nullptr;
-  if (nested)
-    source_.fail(entry.span, "the key of an angular velocity has a dot in it",
-                 fmt::format("write it in quotes: \"{}.omega\" = [..]", entry.key));
-  constexpr std::string_view ending = ".omega";
-  if (!entry.key.ends_with(ending)) return false;
-  Value name;
-  name.kind = Value::Kind::text;
-  name.text = entry.key.substr(0, entry.key.size() - ending.size());
-  name.span = entry.span;
-  const std::string remedy = fmt::format("write \"{}\" = [w1, w2, w3], along the axes of the body", entry.key);
-  if (guess) source_.fail(entry.span, "an angular velocity cannot be guessed", "give it in 'initial'");
-  InitialRotation rotation{frame_named(name, "a key of 'initial'"), {}, entry.span};
-  if (rotation.frame == 0) source_.fail(entry.span, "the ground does not turn", "name a body or frame");
-  as(Value::Kind::array, entry.value, fmt::format("'{}'", entry.key), remedy);
-  if (entry.value.items.size() != 3)
-    source_.fail(entry.value.span, fmt::format("'{}' has {} entries", entry.key, entry.value.items.size()), remedy);
-  for (std::size_t k = 0; k < 3; ++k) {
-    rotation.value[k] =
-        resolver_
-            .value(entry.value.items[k],
-                   {fmt::format("a component of '{}'", entry.key), on_time, Shape::scalar, dimension_of("rad/s"),
-                    "it is made of numbers, parameters and functions at the start"})
-            .node;
-  }
-  scene.rotations.push_back(rotation);
-  return true;
-}
-
-// An angular velocity stands instead of the rates of the body's own angles.
-void Reader::check_initial_rotations(const Scene& scene) const {
-  for (const InitialRotation& rotation : scene.rotations) {
-    const Frame& frame = model_.frames[rotation.frame];
-    for (const NodeId entry : frame.entries) {
-      const Node& node = model_.arena[entry];
-      for (const InitialValue& initial : scene.initial) {
-        if (node.op != Op::coordinate || initial.order != 1 || initial.coordinate != node.index) continue;
-        source_.fail(initial.span,
-                     fmt::format("'{}_dot' is given, and it follows from '{}.omega' of this scene",
-                                 model_.coordinates[node.index].name, frame.name),
-                     "keep one of them");
-      }
-    }
   }
 }
 

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[constraint]] and [energy].
+#include "model/read_constraints.hpp"
+
 #include <fmt/format.h>
 
+#include "model/read_contacts.hpp"
 #include "model/read_friction.hpp"
-#include "model/reader.hpp"
 
 namespace eomgen::model {
 
-void Reader::declare_constraints() {
+void ConstraintsReader::declare() {
   for (const Value* table : sections("constraint")) {
     check_keys(*table, {"[[constraint]]",
                         {"name", "holonomic", "velocity", "rolling", "sliding", "holds", "restitution", "friction"},
@@ -22,7 +24,7 @@ void Reader::declare_constraints() {
   }
 }
 
-void Reader::read_constraints() {
+void ConstraintsReader::read() {
   std::size_t index = 0;
   for (const Value* table : sections("constraint")) {
     Constraint& constraint = model_.constraints[index++];
@@ -46,7 +48,7 @@ void Reader::read_constraints() {
 }
 
 // rolling = { .. } or sliding = { .. }; false for any other constraint.
-bool Reader::read_contact(Constraint& constraint, const Value& table) {
+bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table) {
   const Entry *rolling = table.entry("rolling"), *sliding = table.entry("sliding");
   if (rolling == nullptr && sliding == nullptr) return false;
   const Entry& kind = rolling != nullptr ? *rolling : *sliding;
@@ -56,14 +58,14 @@ bool Reader::read_contact(Constraint& constraint, const Value& table) {
                  fmt::format("the constraint '{}' is both '{}' and '{}'", constraint.name, kind.key, other),
                  "write one [[constraint]] for each");
   }
-  read_rolling(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
+  ContactsReader(reading_).read(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
   read_holds(constraint, table);
   if (const Value* friction = table.find("friction")) FrictionReader(reading_).of_constraint(constraint, *friction);
   return true;
 }
 
 // holds = "unilateral": psi >= 0, with a coefficient of restitution.
-void Reader::read_holds(Constraint& constraint, const Value& table) {
+void ConstraintsReader::read_holds(Constraint& constraint, const Value& table) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   const Value* holds = table.find("holds");
   const Value* restitution = table.find("restitution");
@@ -103,7 +105,7 @@ void Reader::read_holds(Constraint& constraint, const Value& table) {
           .node;
 }
 
-void Reader::read_equations(Constraint& constraint, const Value& value) {
+void ConstraintsReader::read_equations(Constraint& constraint, const Value& value) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   Context context{what, on_motion, Shape::either, std::nullopt,
                   "a holonomic constraint is made of coordinates, functions of time, parameters and t; "
@@ -171,7 +173,7 @@ void Reader::read_equations(Constraint& constraint, const Value& value) {
   }
 }
 
-void Reader::read_energy() {
+void ConstraintsReader::read_energy() {
   const Value* table = section("energy");
   if (table == nullptr) return;
   check_keys(*table, {"[energy]", {"kinetic", "potential"}, {}});

@@ -3,18 +3,18 @@
 // through the point of the other body, which moves as that point does, eq. (7.28).
 #include <fmt/format.h>
 
-#include "model/reader.hpp"
+#include "model/read_contacts.hpp"
 
 namespace eomgen::model {
 
-bool Reader::touches_body(const Value& on) {
+bool ContactsReader::touches_body(const Value& on) {
   if (!on.is(Value::Kind::text) || on.text == "ground") return false;
   const Symbol* symbol = scope_.find(on.text);
   return symbol != nullptr && symbol->frame > 0;
 }
 
-std::optional<std::string> Reader::between_bodies(Touch& touch, const Value& table,
-                                                  std::map<std::string, Typed>& local) {
+std::optional<std::string> ContactsReader::between_bodies(Touch& touch, const Value& table,
+                                                          std::map<std::string, Typed>& local) {
   const Value& on = *table.find("on");
   touch.other_frame = frame_named(on, "'on'");
   touch.other_place = frame_sources_[touch.other_frame].place;
@@ -44,7 +44,7 @@ std::optional<std::string> Reader::between_bodies(Touch& touch, const Value& tab
 }
 
 // shape = { sphere = "R" }, shape_b = { sphere = "S" } or { hollow = "S" }, inside of which the other sphere is.
-void Reader::spheres_in_contact(const Value& table, std::map<std::string, Typed>& local) {
+void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string, Typed>& local) {
   constexpr const char* form =
       "write shape = { sphere = \"R\" }, shape_b = { sphere = \"S\" }, or shape_b = { hollow = \"S\" } where it is "
       "inside of the other";
@@ -72,7 +72,7 @@ void Reader::spheres_in_contact(const Value& table, std::map<std::string, Typed>
 }
 
 // at, at_b and the normal, which is that of a sphere about the centre of mass of the first body if it is left out.
-void Reader::points_in_contact(const Value& table, std::map<std::string, Typed>& local) {
+void ContactsReader::points_in_contact(const Value& table, std::map<std::string, Typed>& local) {
   const std::string what = "a contact of two bodies";
   if (const Value* shape = table.find("shape_b"))
     source_.fail(shape->span, "'shape_b' needs 'shape' of the first body beside it",

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "model/inverse.hpp"
-#include "model/reader.hpp"
+#include "model/read_positions.hpp"
 #include "model/samples.hpp"
 
 namespace eomgen::model {
@@ -17,7 +17,7 @@ constexpr const char* give_x = "give x = [\"..\", \"..\", \"..\"] in terms of th
 
 }  // namespace
 
-Reader::Spelt Reader::custom_position(const Value& table, const Entry& entry) {
+PositionsReader::Spelt PositionsReader::custom_position(const Value& table, const Entry& entry) {
   as(Value::Kind::array, entry.value, "'custom'", form);
   if (entry.value.items.size() != 3) {
     source_.fail(entry.value.span, fmt::format("'custom' has {} entries", entry.value.items.size()), form);
@@ -56,7 +56,7 @@ Reader::Spelt Reader::custom_position(const Value& table, const Entry& entry) {
 }
 
 // q(x) alone: solved for x1, x2, x3.
-std::array<Typed, 3> Reader::solved_position(const Value& names, const Value& q, const Context& context) {
+std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const Value& q, const Context& context) {
   std::array<Syntax, 3> f;
   std::array<std::string, 3> of;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -85,7 +85,7 @@ std::array<Typed, 3> Reader::solved_position(const Value& names, const Value& q,
 }
 
 // q(x(q)) = q at made-up points.
-void Reader::check_inverse(const Spelt& spelt, const Value& q, bool both) {
+void PositionsReader::check_inverse(const Spelt& spelt, const Value& q, bool both) {
   constexpr int tries = 200, enough = 8;
   constexpr double tolerance = 1e-8;  // of values around 1, through a few roots and quotients
   std::map<std::string, Typed> local;

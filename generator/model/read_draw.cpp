@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [draw]: how a report draws particles and bodies. The equations do not see it.
+#include "model/read_draw.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "model/reader.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::array<DrawnShape, 6> shapes{
 
 }  // namespace
 
-void Reader::read_draw() {
+void DrawReader::read() {
   const Value* table = section("draw");
   if (table == nullptr) return;
   for (const Entry& entry : table->entries) {
@@ -50,7 +50,7 @@ void Reader::read_draw() {
   }
 }
 
-Drawn Reader::drawn_shape(std::uint32_t place, const Value& value) {
+Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   const std::string what = fmt::format("the drawing of '{}'", model_.places[place].name);
   as(Value::Kind::table, value, what, form);
   Keys keys{what, {}, {}};
@@ -81,8 +81,8 @@ Drawn Reader::drawn_shape(std::uint32_t place, const Value& value) {
   return drawn;
 }
 
-std::vector<NodeId> Reader::drawn_lengths(const Value& value, std::size_t count, const std::string& what,
-                                          bool positive) {
+std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t count, const std::string& what,
+                                              bool positive) {
   const Context context{fmt::format("a length in {}", what), 0, Shape::scalar, dimension_of("m"),
                         "what is drawn is made of numbers and parameters"};
   const auto length = [&](const Value& item) {

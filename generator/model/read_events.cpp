@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[event]]: changes of sign that are told, or that end a run; and the events that end a scene.
+#include "model/read_events.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
-
-#include "model/reader.hpp"
 
 namespace eomgen::model {
 
@@ -17,7 +17,7 @@ const char* name(Event::Direction direction) {
   return "any";
 }
 
-void Reader::declare_events() {
+void EventsReader::declare() {
   for (const Value* table : sections("event")) {
     check_keys(*table, {"[[event]]", {"name", "when", "direction", "action"}, {}});
     Event event;
@@ -29,7 +29,7 @@ void Reader::declare_events() {
   }
 }
 
-void Reader::read_events() {
+void EventsReader::read() {
   std::size_t index = 0;
   for (const Value* table : sections("event")) {
     Event& event = model_.events[index++];
@@ -63,7 +63,7 @@ void Reader::read_events() {
   }
 }
 
-void Reader::read_stop(Scene& scene, const Value& value) {
+void EventsReader::read_stop(Scene& scene, const Value& value) {
   const std::string remedy = "write stop = [\"NAME\"] with the name of an [[event]]";
   as(Value::Kind::array, value, "'stop'", remedy);
   for (const Value& item : value.items) {

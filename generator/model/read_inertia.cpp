@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // inertia = { principal = [A, B, C] }, [[..], [..], [..]], "J", or a homogeneous shape: about the centre of mass, along
 // the axes of the body.
-#include <fmt/format.h>
+#include "model/read_inertia.hpp"
 
-#include "model/reader.hpp"
+#include <fmt/format.h>
 
 namespace eomgen::model {
 namespace {
@@ -34,7 +34,7 @@ Context moment_context(const std::string& what) {
 
 }  // namespace
 
-void Reader::read_inertia(Body& body, const Value& table) {
+void InertiaReader::read(Body& body, const Value& table) {
   const std::string what = fmt::format("the inertia of '{}'", model_.frames[body.frame].name);
   const Value& value = needed(table, "inertia", fmt::format("'{}'", model_.frames[body.frame].name), form);
   const NodeId zero = resolver_.number(0, value.span).node;
@@ -76,7 +76,7 @@ void Reader::read_inertia(Body& body, const Value& table) {
   for (std::size_t k = 0; k < 3; ++k) body.inertia[k][k] = moments[k];
 }
 
-std::array<NodeId, 3> Reader::shape_moments(const Body& body, const Entry& shape) {
+std::array<NodeId, 3> InertiaReader::shape_moments(const Body& body, const Entry& shape) {
   const std::string what = fmt::format("the inertia of '{}'", model_.frames[body.frame].name);
   std::array<NodeId, 3> result{};
   if (shape.key == "principal") {
@@ -123,7 +123,7 @@ std::array<NodeId, 3> Reader::shape_moments(const Body& body, const Entry& shape
 }
 
 // One moment is enough where the body turns about a direction that is fixed in it and in space.
-void Reader::read_scalar_inertia(Body& body, const Value& value) {
+void InertiaReader::read_scalar_inertia(Body& body, const Value& value) {
   const Frame& frame = model_.frames[body.frame];
   const Typed J = resolver_.value(value, moment_context(fmt::format("the inertia of '{}'", frame.name)));
   const auto& axis = frame_sources_[body.frame].axis;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[joint]]: two ends, points and axes fixed in each, and the equations of the registry between them.
+#include "model/read_joints.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-
-#include "model/reader.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -27,7 +27,7 @@ constexpr double parallel = 1e-9;
 
 }  // namespace
 
-void Reader::declare_joints() {
+void JointsReader::declare() {
   for (const Value* table : sections("joint")) {
     check_keys(*table, {"[[joint]]", {"name", "type", "bodies", "at", "axis", "axes"}, {}});
     Joint joint;
@@ -44,12 +44,12 @@ void Reader::declare_joints() {
   }
 }
 
-void Reader::read_joints() {
+void JointsReader::read() {
   std::size_t index = 0;
   for (const Value* table : sections("joint")) read_joint(model_.joints[index++], *table);
 }
 
-void Reader::read_joint(Joint& joint, const Value& table) {
+void JointsReader::read_joint(Joint& joint, const Value& table) {
   const std::string what = fmt::format("the joint '{}'", joint.name);
   const Value& type = as(Value::Kind::text, needed(table, "type", what, form), fmt::format("'type' of {}", what), form);
   const joints::Joint* kind = joints::find(type.text);
@@ -98,7 +98,7 @@ void Reader::read_joint(Joint& joint, const Value& table) {
   }
 }
 
-std::array<Reader::JointEnd, 2> Reader::joint_ends(const Value& table, const std::string& what) {
+std::array<JointsReader::JointEnd, 2> JointsReader::joint_ends(const Value& table, const std::string& what) {
   const Value& bodies =
       as(Value::Kind::array, needed(table, "bodies", what, form), fmt::format("'bodies' of {}", what), form);
   if (bodies.items.size() != 2) {
@@ -124,7 +124,7 @@ std::array<Reader::JointEnd, 2> Reader::joint_ends(const Value& table, const std
 
 // Coordinates that something else than this constraint binds: their start is not 0 just because the scene does not give
 // it.
-AtStart Reader::at_start(std::uint32_t constraint) {
+AtStart JointsReader::at_start(std::uint32_t constraint) {
   std::set<std::uint32_t> open;
   const auto add = [&](NodeId node) {
     for (const auto& [index, order] : resolver_.coordinates_in(node)) open.insert(index);
@@ -147,7 +147,7 @@ AtStart Reader::at_start(std::uint32_t constraint) {
 }
 
 // A direction, fixed in a body so that it is at the start what it is there.
-Typed Reader::carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude) {
+Typed JointsReader::carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude) {
   const auto known = [&](const Typed& typed) {
     Typed result = typed;
     result.node = start(typed.node);
@@ -173,7 +173,7 @@ Typed Reader::carried(const Typed& direction, std::uint32_t frame, AtStart& star
   return resolver_.text(text, local, span, {"a direction", on_anything, Shape::vector, std::nullopt, ""});
 }
 
-void Reader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Value& at, const std::string& what) {
+void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Value& at, const std::string& what) {
   const Context ground{fmt::format("'at' of {}", what), on_time, Shape::vector, dimension_of("m"),
                        "a point of the ground is made of parameters, functions of time and t"};
   const Context body{ground.what, on_motion, Shape::vector, dimension_of("m"),
@@ -213,7 +213,7 @@ void Reader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Val
 }
 
 // The axis of one end with two directions across it, all along the axes of that body with constant components.
-std::array<Typed, 3> Reader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
+std::array<Typed, 3> JointsReader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
   const std::string of = end.frame == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", end.name);
   const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Facts{0} : on_motion, Shape::vector,
                         std::nullopt, "it is fixed in its body: make it of " + of};
@@ -254,8 +254,8 @@ std::array<Typed, 3> Reader::triad_about(const Value& written, const JointEnd& e
   return triad;
 }
 
-void Reader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
-                        const std::string& what) {
+void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
+                              const std::string& what) {
   const Value* axis = table.find("axis");
   if (kind.axes == joints::Axes::none) {
     if (axis != nullptr)
@@ -295,8 +295,8 @@ void Reader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends
 }
 
 // One axis, as placed at the start, with two directions across it, all fixed in A; the axis fixed in B too.
-void Reader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
-                           const std::string& what) {
+void JointsReader::axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
+                                 const std::string& what) {
   const Context vector{what, on_anything, Shape::vector, std::nullopt, ""};
   const Typed placed = carried(direction, 0, start, span);
   const std::array<double, 3> v = start.vector_value(placed.node);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [parameters], [functions], [inputs], [coordinates], [definitions].
+#include "model/read_names.hpp"
+
 #include <fmt/format.h>
 
-#include "model/reader.hpp"
+#include "model/read_bodies.hpp"
+#include "model/read_places.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -20,7 +23,7 @@ std::optional<MeasuredUnit> unit_in(const Value& value) {
 
 }  // namespace
 
-void Reader::declare_names() {
+void NamesReader::declare() {
   const auto declare = [&](std::string_view section_name, SymbolKind kind) {
     const Value* table = section(section_name);
     if (table == nullptr) return;
@@ -36,7 +39,7 @@ void Reader::declare_names() {
   }
 }
 
-std::uint32_t Reader::declare_coordinate(const std::string& name, Span span, const Entry* entry) {
+std::uint32_t NamesReader::declare_coordinate(const std::string& name, Span span, const Entry* entry) {
   Symbol& symbol = scope_.declare(SymbolKind::coordinate, name, span, entry);
   if (model_.coordinates.size() >= max_coordinates) {
     source_.fail(span, fmt::format("the model has more than {} coordinates", max_coordinates),
@@ -51,7 +54,7 @@ std::uint32_t Reader::declare_coordinate(const std::string& name, Span span, con
   return symbol.index;
 }
 
-void Reader::read_coordinate(const Entry& entry) {
+void NamesReader::read_coordinate(const Entry& entry) {
   const std::uint32_t index = scope_.find(entry.key)->index;
   Coordinate& coordinate = model_.coordinates[index];
   const std::string what = fmt::format("'{}'", entry.key);
@@ -72,7 +75,7 @@ void Reader::read_coordinate(const Entry& entry) {
 }
 
 // After all names are known: the ends of a range may be expressions of parameters.
-void Reader::read_ranges() {
+void NamesReader::read_ranges() {
   const Value* table = section("coordinates");
   if (table == nullptr) return;
   for (const Entry& entry : table->entries) {
@@ -99,19 +102,19 @@ void Reader::read_ranges() {
   }
 }
 
-Typed Reader::define(Symbol& symbol) {
+Typed NamesReader::define(Symbol& symbol) {
   switch (symbol.kind) {
     case SymbolKind::parameter: return define_parameter(symbol);
     case SymbolKind::function: return define_function(symbol);
     case SymbolKind::input: return define_input(symbol);
     case SymbolKind::definition: return define_definition(symbol);
-    case SymbolKind::place: return define_place(symbol);
-    case SymbolKind::frame: return define_axes(symbol);
+    case SymbolKind::place: return PlacesReader(reading_).define_place(symbol);
+    case SymbolKind::frame: return BodiesReader(reading_).define_axes(symbol);
     default: return Typed{};
   }
 }
 
-Typed Reader::define_parameter(Symbol& symbol) {
+Typed NamesReader::define_parameter(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the parameter '{}'", symbol.name);
   const Context context{what, 0, Shape::scalar, std::nullopt, ""};
@@ -144,7 +147,7 @@ Typed Reader::define_parameter(Symbol& symbol) {
   return typed;
 }
 
-Typed Reader::define_function(Symbol& symbol) {
+Typed NamesReader::define_function(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the function '{}'", symbol.name);
   Function function;
@@ -174,7 +177,7 @@ Typed Reader::define_function(Symbol& symbol) {
   return typed;
 }
 
-Typed Reader::define_input(Symbol& symbol) {
+Typed NamesReader::define_input(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the input '{}'", symbol.name);
   as(Value::Kind::table, declared, what, fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
@@ -199,7 +202,7 @@ Typed Reader::define_input(Symbol& symbol) {
   return result;
 }
 
-Typed Reader::define_definition(Symbol& symbol) {
+Typed NamesReader::define_definition(Symbol& symbol) {
   const Context context{fmt::format("the definition '{}'", symbol.name), on_anything, Shape::either, std::nullopt, ""};
   Typed typed = resolver_.value(symbol.entry->value, context);
   typed.literal = false;
@@ -214,7 +217,7 @@ Typed Reader::define_definition(Symbol& symbol) {
   return typed;
 }
 
-void Reader::warn_misspelt(const std::string& name, Span span) {
+void NamesReader::warn_misspelt(const std::string& name, Span span) {
   for (const std::string& known : scope_.names()) {
     if (known == name || !looks_misspelt(name, known)) continue;
     resolver_.warn(span, fmt::format("'{}' declares a new coordinate; it is one letter away from '{}'", name, known),
@@ -223,7 +226,7 @@ void Reader::warn_misspelt(const std::string& name, Span span) {
   }
 }
 
-void Reader::warn_unused() {
+void NamesReader::warn_unused() {
   for (Parameter& parameter : model_.parameters) {
     if (parameter.start_of) continue;  // initial(q)
     parameter.used = scope_.find(parameter.name)->used;

@@ -1,13 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [[particle]], [[point]]: names, positions and masses.
+#include "model/read_places.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 
-#include "model/reader.hpp"
+#include "model/chain.hpp"
+#include "model/read_bodies.hpp"
+#include "model/read_positions.hpp"
 
 namespace eomgen::model {
-std::uint32_t Reader::declare_place(const std::string& name, Span span, PlaceSource where) {
+std::uint32_t PlacesReader::declare_place(const std::string& name, Span span, PlaceSource where) {
   Symbol& symbol = scope_.declare(SymbolKind::place, name, span);
   if (model_.places.size() > max_places) {
     source_.fail(span, fmt::format("the model has more than {} particles and points", max_places),
@@ -22,7 +26,7 @@ std::uint32_t Reader::declare_place(const std::string& name, Span span, PlaceSou
   return symbol.index;
 }
 
-void Reader::declare_places() {
+void PlacesReader::declare() {
   struct Item {
     const Value* table;
     int kind;  // 0 particle, 1 point, 2 chain, 3 body, 4 frame
@@ -37,7 +41,7 @@ void Reader::declare_places() {
                    [](const Item& a, const Item& b) { return a.table->begin < b.table->begin; });
   for (const auto& [table, which] : items) {
     if (which == 2) {
-      declare_chain(*table);
+      ChainsReader(reading_).declare(*table);
       continue;
     }
     if (which == 0) check_keys(*table, {"[[particle]]", {"name", "mass", "position"}, {}});
@@ -50,19 +54,19 @@ void Reader::declare_places() {
         text_of_key(*table, "name", fmt::format("this [[{}]]", kinds[static_cast<std::size_t>(which)]));
     const Span span = table->find("name")->span;
     if (which == 4) {
-      declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
+      BodiesReader(reading_).declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
       continue;
     }
     const std::uint32_t place = declare_place(name, span, PlaceSource{table, which == 0, which == 3, 0, 0});
-    if (which == 3) declare_frame(*table, place, *scope_.find(name));
+    if (which == 3) BodiesReader(reading_).declare_frame(*table, place, *scope_.find(name));
   }
 }
 
 // A bare unknown name in a position is a new coordinate. All other names are declared by now.
-void Reader::declare_coordinates() {
+void PlacesReader::declare_coordinates() {
   const auto position = [&](const Value& table) {
     const Value* found = table.find("position");
-    if (found != nullptr && found->is(Value::Kind::table)) declare_entries(*found);
+    if (found != nullptr && found->is(Value::Kind::table)) PositionsReader(reading_).declare_entries(*found);
   };
   std::size_t place = 1;
   // Those of a body's rotation follow those of its position; frames come where they stand among the bodies.
@@ -74,27 +78,27 @@ void Reader::declare_coordinates() {
          ++place) {
       if (place_sources_[place].chain == 0) position(*place_sources_[place].table);
     }
-    if (frame < frame_sources_.size()) declare_angles(*frame_sources_[frame].table);
+    if (frame < frame_sources_.size()) BodiesReader(reading_).declare_angles(*frame_sources_[frame].table);
   }
 }
 
-Typed Reader::define_place(Symbol& symbol) {
+Typed PlacesReader::define_place(Symbol& symbol) {
   const PlaceSource where = place_sources_[symbol.index];
   Typed position;
   if (where.chain > 0) {
-    position = chain_position(where);
+    position = ChainsReader(reading_).position(where);
   } else if (where.body && where.table->find("position") == nullptr) {
     position = resolver_.meet(resolver_.number(0, symbol.span), symbol.span,
                               Context{"a position", 0, Shape::vector, std::nullopt, ""});
   } else if (!where.particle && !where.body &&
              (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
-    position = point_on_body(*where.table, fmt::format("'{}'", symbol.name));
+    position = BodiesReader(reading_).point_on_body(*where.table, fmt::format("'{}'", symbol.name));
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);
     const Value& value = needed(*where.table, "position", what,
                                 "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
     if (value.is(Value::Kind::table)) {
-      position = chart_position(symbol.index, value);
+      position = PositionsReader(reading_).position(symbol.index, value);
     } else {
       const Context context{fmt::format("the position of {}", what), on_motion, Shape::vector, dimension_of("m"), ""};
       position = resolver_.value(value, context);
@@ -104,7 +108,7 @@ Typed Reader::define_place(Symbol& symbol) {
   return position;
 }
 
-void Reader::read_particles() {
+void PlacesReader::read_particles() {
   for (std::uint32_t k = 1; k < model_.places.size(); ++k) {
     Symbol& symbol = *scope_.find(model_.places[k].name);
     resolver_.symbol(symbol, symbol.span);
@@ -116,7 +120,7 @@ void Reader::read_particles() {
     const std::string what = fmt::format("'{}'", symbol.name);
     const Context context{fmt::format("the mass of {}", what), on_time, Shape::scalar, dimension_of("kg"), ""};
     if (where.chain == 0) needed(*where.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
-    const Typed mass = where.chain > 0 ? chain_entry(*where.table, "mass", where.link, context)
+    const Typed mass = where.chain > 0 ? ChainsReader(reading_).entry(*where.table, "mass", where.link, context)
                                        : resolver_.value(*where.table->find("mass"), context);
     if (mass.constant && !cln::plusp(*mass.constant)) {
       source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what),

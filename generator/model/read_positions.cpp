@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // position = { SYSTEM = [..], .. }: charts are spelled out through the registry of coordinate systems; `custom` ones
 // are read in read_custom.cpp.
+#include "model/read_positions.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "model/reader.hpp"
+#include "model/read_names.hpp"
 #include "model/samples.hpp"
 
 namespace eomgen::model {
@@ -16,7 +18,7 @@ bool is_bare_name(const Value& value) { return value.is(Value::Kind::text) && is
 
 }  // namespace
 
-void Reader::declare_entries(const Value& position) {
+void PositionsReader::declare_entries(const Value& position) {
   for (const Entry& entry : position.entries) {
     const coordinates::CoordinateSystem* system = coordinates::find(entry.key);
     if ((system == nullptr && entry.key != "custom") || !entry.value.is(Value::Kind::array)) continue;
@@ -27,15 +29,15 @@ void Reader::declare_entries(const Value& position) {
 }
 
 // A coordinate of a custom system has no unit of its own: [coordinates] may state one.
-void Reader::declare_entry(const Value& entry, std::string_view unit) {
+void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
   if (!is_bare_name(entry)) return;
   const Symbol* known = scope_.find(entry.text);
   if (known == nullptr) {
     const Derivative derivative = split_derivative(entry.text);
     if (is_reserved(entry.text) || (derivative.order > 0 && scope_.find(derivative.base) != nullptr))
       return;  // told later
-    declare_coordinate(entry.text, entry.span, nullptr);
-    warn_misspelt(entry.text, entry.span);
+    NamesReader(reading_).declare_coordinate(entry.text, entry.span, nullptr);
+    NamesReader(reading_).warn_misspelt(entry.text, entry.span);
     known = scope_.find(entry.text);
   }
   if (known->kind != SymbolKind::coordinate || unit.empty()) return;
@@ -45,7 +47,7 @@ void Reader::declare_entry(const Value& entry, std::string_view unit) {
 }
 
 // The one entry of the table that names a coordinate system; keys that belong to another one are refused.
-const Entry& Reader::system_entry(const Value& table) const {
+const Entry& PositionsReader::system_entry(const Value& table) const {
   Keys keys{"a position", {"from", "axes", "custom", "x", "q"}, {}};
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     keys.known.push_back(system->name);
@@ -74,7 +76,7 @@ const Entry& Reader::system_entry(const Value& table) const {
   return *found;
 }
 
-std::array<Typed, 3> Reader::chart_entries(const coordinates::CoordinateSystem& system, const Value& entries) {
+std::array<Typed, 3> PositionsReader::chart_entries(const coordinates::CoordinateSystem& system, const Value& entries) {
   const std::string remedy =
       fmt::format("write {} = [\"{}\", \"{}\", \"{}\"]{}", system.name, system.slots[0].name, system.slots[1].name,
                   system.slots[2].name, system.planar ? ", or the first two in the plane" : "");
@@ -110,7 +112,7 @@ std::array<Typed, 3> Reader::chart_entries(const coordinates::CoordinateSystem& 
 }
 
 // A system of the registry: its expressions over the entries and its constant.
-Reader::Spelt Reader::spelt_position(const Value& table, const Entry& entry) {
+PositionsReader::Spelt PositionsReader::spelt_position(const Value& table, const Entry& entry) {
   const coordinates::CoordinateSystem& system = *coordinates::find(entry.key);
   const Span span = entry.value.span;
   const std::array<Typed, 3> parts = chart_entries(system, entry.value);
@@ -140,7 +142,7 @@ Reader::Spelt Reader::spelt_position(const Value& table, const Entry& entry) {
 }
 
 // Coordinates that do not tell places apart would give a singular inertia matrix wherever one starts.
-void Reader::check_independent(const Spelt& spelt, const Entry& entry, Span constant) {
+void PositionsReader::check_independent(const Spelt& spelt, const Entry& entry, Span constant) {
   constexpr int points = 12;
   constexpr double smallest = 1e-9;  // squared sine of the angle between tangents; rounding leaves 1e-18 of it
   std::vector<std::uint32_t> coordinates;
@@ -166,7 +168,7 @@ void Reader::check_independent(const Spelt& spelt, const Entry& entry, Span cons
                             : fmt::format("choose another {}", coordinates::find(entry.key)->constant.name));
 }
 
-Typed Reader::chart_position(std::uint32_t place, const Value& table) {
+Typed PositionsReader::position(std::uint32_t place, const Value& table) {
   const Entry& entry = system_entry(table);
   const Span span = entry.value.span;
   const coordinates::CoordinateSystem* system = coordinates::find(entry.key);

@@ -4,7 +4,7 @@
 // the normal, eqs. (7.28), (7.38). With friction the one of the position is left, and the law sees to the others.
 #include <fmt/format.h>
 
-#include "model/reader.hpp"
+#include "model/read_contacts.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -16,7 +16,7 @@ constexpr const char* form =
 }  // namespace
 
 // The plane: a point of it, its normal, what it does along itself, and the tangents.
-std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
+std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
   const Span span = on.span;
   const Context position{"a plane", on_motion, Shape::vector, std::nullopt, ""};
   std::map<std::string, Typed> plane;
@@ -59,7 +59,7 @@ std::map<std::string, Typed> Reader::plane_of_contact(const Value& on) {
 }
 
 // From the centre of mass to the point of contact.
-Typed Reader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
+Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Typed> local) {
   const Value *at = table.find("at"), *shape = table.find("shape");
   if ((at == nullptr) == (shape == nullptr)) {
     source_.fail(
@@ -83,8 +83,8 @@ Typed Reader::contact_arm(const Value& table, std::map<std::string, Typed> local
 
 // Of a body: its centre of mass x, the velocity v of that, its angular velocity w, its axis e3. Equations are written
 // in these, so that no name of the model can be taken for another.
-void Reader::name_motion(std::uint32_t frame, const std::string& ending, Span span,
-                         std::map<std::string, Typed>& local) {
+void ContactsReader::name_motion(std::uint32_t frame, const std::string& ending, Span span,
+                                 std::map<std::string, Typed>& local) {
   const Context vector{"a contact", on_motion | on_velocity, Shape::vector, std::nullopt, ""};
   const std::map<std::string, Typed> body{{"x", resolver_.place(frame_sources_[frame].place, span)}};
   local["x" + ending] = body.at("x");
@@ -94,7 +94,7 @@ void Reader::name_motion(std::uint32_t frame, const std::string& ending, Span sp
 }
 
 // The direction that tangent 1 is nearest to, where the model names one.
-void Reader::tangent_of_contact(const Value& table, std::map<std::string, Typed>& local) {
+void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string, Typed>& local) {
   const Value* value = table.find("tangent");
   if (value == nullptr) return;
   local["a"] = resolver_.value(*value, {"the tangent of a contact", on_motion, Shape::vector, std::nullopt,
@@ -105,7 +105,7 @@ void Reader::tangent_of_contact(const Value& table, std::map<std::string, Typed>
 }
 
 // Where it touches, and how fast its point there moves against what it touches.
-void Reader::read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local) {
+void ContactsReader::read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   Touch& touch = *constraint.touch;
   touch.arm = local.at("p").node;
@@ -123,7 +123,7 @@ void Reader::read_touch(Constraint& constraint, const Value& table, const std::m
   touch.beside = read("x + p - o - dot(x + p - o, n)*n", Shape::vector);
 }
 
-void Reader::read_rolling(Constraint& constraint, const Value& table, bool rolling, bool rough) {
+void ContactsReader::read(Constraint& constraint, const Value& table, bool rolling, bool rough) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   as(Value::Kind::table, table, what, form);
   check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}, {}});

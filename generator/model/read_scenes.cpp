@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // [scene.NAME]: merging, the span of time, start values, what may be moved, the solver.
+#include "model/read_scenes.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cctype>
 
-#include "model/reader.hpp"
+#include "model/read_bodies.hpp"
+#include "model/read_events.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -19,7 +22,7 @@ Context plain(std::string what, std::string_view unit) {
 
 }  // namespace
 
-void Reader::read_scenes() {
+void ScenesReader::read() {
   const Value* table = section("scene");
   if (table != nullptr && table->entries.size() > max_scenes) {
     source_.fail(table->entries[max_scenes].span, fmt::format("the model has more than {} scenes", max_scenes),
@@ -40,7 +43,7 @@ void Reader::read_scenes() {
     scene.name = "default";
     scene.t0 = resolver_.number(0, Span{}).node;
     scene.t1 = resolver_.number(10, Span{}).node;
-    complete_parameters(scene);
+    BodiesReader(reading_).complete_parameters(scene);
     model_.scenes.push_back(std::move(scene));
   } else {
     read_scene(*table->entry("default"));
@@ -52,7 +55,7 @@ void Reader::read_scenes() {
 }
 
 // The entries of a scene after `from`: tables merge key by key (see scene_entries), other keys replace.
-std::vector<const Entry*> Reader::merged(const Entry& scene, std::vector<std::string>& from) const {
+std::vector<const Entry*> ScenesReader::merged(const Entry& scene, std::vector<std::string>& from) const {
   const std::string what = fmt::format("[scene.{}]", scene.key);
   as(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
   check_keys(scene.value, {what,
@@ -109,7 +112,7 @@ std::vector<const Entry*> merged_table(const std::vector<const Entry*>& scene, s
 
 }  // namespace
 
-void Reader::read_scene(const Entry& entry) {
+void ScenesReader::read_scene(const Entry& entry) {
   if (!is_identifier(entry.key) || entry.key.size() > max_name_length) {
     source_.fail(entry.span, fmt::format("{} cannot be the name of a scene", quote(entry.key)),
                  "use letters, digits and underscores");
@@ -136,7 +139,7 @@ void Reader::read_scene(const Entry& entry) {
     } else if (key == "solver") {
       read_solver(scene, value);
     } else if (key == "stop") {
-      read_stop(scene, value);
+      EventsReader(reading_).read_stop(scene, value);
     } else {
       const bool time = key == "step" || key == "every";
       const NodeId node = positive_number(value, fmt::format("'{}'", key), time ? "s" : "1");
@@ -147,12 +150,12 @@ void Reader::read_scene(const Entry& entry) {
   read_scene_inputs(scene, merged_table(entries, "inputs"));
   read_initial(scene, merged_table(entries, "initial"), false);
   read_initial(scene, merged_table(entries, "guess"), true);
-  complete_parameters(scene);
-  check_initial_rotations(scene);
+  BodiesReader(reading_).complete_parameters(scene);
+  BodiesReader(reading_).check_initial_rotations(scene);
   model_.scenes.push_back(std::move(scene));
 }
 
-void Reader::read_span(Scene& scene, const Value& value) {
+void ScenesReader::read_span(Scene& scene, const Value& value) {
   const std::string remedy = "write t = [0, 10]: start and end in seconds";
   as(Value::Kind::array, value, "'t'", remedy);
   if (value.items.size() != 2) source_.fail(value.span, fmt::format("'t' has {} entries", value.items.size()), remedy);
@@ -164,7 +167,7 @@ void Reader::read_span(Scene& scene, const Value& value) {
   scene.t1 = t1.node;
 }
 
-NodeId Reader::positive_number(const Value& value, const std::string& what, std::string_view unit) {
+NodeId ScenesReader::positive_number(const Value& value, const std::string& what, std::string_view unit) {
   if (value.is(Value::Kind::array)) not_yet(value.span, fmt::format("{} with a value for each coordinate", what));
   const Typed typed = resolver_.value(value, plain(what, unit == "1" ? "1" : unit));
   if (typed.constant && !cln::plusp(*typed.constant))
@@ -172,7 +175,7 @@ NodeId Reader::positive_number(const Value& value, const std::string& what, std:
   return typed.node;
 }
 
-Symbol& Reader::coordinate_of_key(const Entry& entry, const std::string& what, std::uint8_t& order) {
+Symbol& ScenesReader::coordinate_of_key(const Entry& entry, const std::string& what, std::uint8_t& order) {
   const Derivative derivative = split_derivative(entry.key);
   Symbol* symbol = scope_.find(derivative.base);
   order = derivative.order;
@@ -189,14 +192,14 @@ Symbol& Reader::coordinate_of_key(const Entry& entry, const std::string& what, s
                hint.empty() ? "the keys are coordinates q and their rates q_dot" : hint);
 }
 
-void Reader::read_initial(Scene& scene, const std::vector<const Entry*>& entries, bool guess) {
+void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& entries, bool guess) {
   const std::string what = guess ? "'guess'" : "'initial'";
   std::set<std::pair<std::uint32_t, std::uint8_t>> given;
   if (guess) {
     for (const InitialValue& known : scene.initial) given.insert({known.coordinate, known.order});
   }
   for (const Entry* entry : entries) {
-    if (read_initial_rotation(scene, *entry, guess)) continue;
+    if (BodiesReader(reading_).read_initial_rotation(scene, *entry, guess)) continue;
     InitialValue initial{};
     const Symbol& symbol = coordinate_of_key(*entry, what, initial.order);
     initial.coordinate = symbol.index;
@@ -229,7 +232,7 @@ void Reader::read_initial(Scene& scene, const std::vector<const Entry*>& entries
 }
 
 // 45 of an angle that is measured in radians: degrees were meant, or a whole number of turns too many.
-void Reader::warn_of_degrees(const Entry& entry, const Typed& typed, const InitialValue& initial) {
+void ScenesReader::warn_of_degrees(const Entry& entry, const Typed& typed, const InitialValue& initial) {
   const Rational turn = Rational(62832) / 10000;
   const bool angle = model_.coordinates[initial.coordinate].unit.text == "rad";
   if (!angle || initial.order != 0 || !typed.literal || !typed.constant || cln::abs(*typed.constant) <= turn) return;
@@ -238,7 +241,7 @@ void Reader::warn_of_degrees(const Entry& entry, const Typed& typed, const Initi
                  fmt::format("write \"{0} deg\" for degrees, \"{0} rad\" for radians", written));
 }
 
-void Reader::read_solve(Scene& scene, const Value& value) {
+void ScenesReader::read_solve(Scene& scene, const Value& value) {
   as(Value::Kind::array, value, "'solve'", "write solve = [\"y_dot\"]");
   for (const Value& item : value.items) {
     as(Value::Kind::text, item, "an entry of 'solve'", "write solve = [\"y_dot\"]");

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/reader.hpp"
-
+// A model file, section by section: each is read by a class of its own (room.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +8,15 @@
 
 #include "model/content_hash.hpp"
 #include "model/declared_order.hpp"
+#include "model/read_bodies.hpp"
+#include "model/read_constraints.hpp"
+#include "model/read_draw.hpp"
+#include "model/read_events.hpp"
 #include "model/read_forces.hpp"
+#include "model/read_joints.hpp"
+#include "model/read_names.hpp"
+#include "model/read_places.hpp"
+#include "model/read_scenes.hpp"
 #include "model/start_time.hpp"
 #include "model/units.hpp"
 
@@ -44,13 +51,58 @@ bool states_units(const Value& value, std::string_view section, std::string_view
          });
 }
 
-}  // namespace
+class Reader : private Room {
+ public:
+  explicit Reader(Reading& reading) : Room(reading) {
+    reading.define = [&reading](Symbol& symbol) { return NamesReader(reading).define(symbol); };
+  }
+  void read();
 
-Reader::Reader(Reading& reading) : Room(reading) {
-  reading.define = [this](Symbol& symbol) { return define(symbol); };
+ private:
+  void read_head();
+};
+
+// First every name of the file is declared, then expressions are resolved; a name that is needed is resolved on the
+// way, so that the order of the file does not matter.
+void Reader::read() {
+  read_head();
+  NamesReader(reading_).declare();
+  PlacesReader(reading_).declare();
+  ConstraintsReader(reading_).declare();
+  JointsReader(reading_).declare();
+  BodiesReader(reading_).declare_units();
+  ForcesReader(reading_).declare();
+  EventsReader(reading_).declare();
+  PlacesReader(reading_).declare_coordinates();
+
+  for (const SymbolKind kind : {SymbolKind::parameter, SymbolKind::function, SymbolKind::input}) {
+    for (Symbol* symbol : scope_.all(kind)) resolver_.symbol(*symbol, symbol->span);
+  }
+  NamesReader(reading_).read_ranges();
+  PlacesReader(reading_).read_particles();
+  BodiesReader(reading_).read();
+  for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
+  ConstraintsReader(reading_).read_energy();
+  ForcesReader(reading_).read();
+  ConstraintsReader(reading_).read();
+  BodiesReader(reading_).read_units();
+  EventsReader(reading_).read();
+  DrawReader(reading_).read();
+  if (model_.particles.empty() && model_.bodies.empty() && model_.energy.kinetic == no_node) {
+    source_.fail(root_.span, "nothing moves: the model has no particle, no body and no kinetic energy",
+                 "add a [[particle]] or [[body]], or kinetic = \"..\" in [energy]");
+  }
+  if (model_.coordinates.empty()) {
+    source_.fail(root_.span, "nothing moves: the model has no coordinate",
+                 "name coordinates in a position or in [coordinates]");
+  }
+  ScenesReader(reading_).refuse_shadowed_outputs();
+  ScenesReader(reading_).read();
+  JointsReader(reading_).read();
+  NamesReader(reading_).warn_unused();
 }
 
-void Reader::read() {
+void Reader::read_head() {
   check_keys(root_, {"a model",
                      {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
                       "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
@@ -75,42 +127,9 @@ void Reader::read() {
   model_.frames.emplace_back();
   model_.frames.back().name = "ground";
   frame_sources_.emplace_back().still = true;
-
-  declare_names();
-  declare_places();
-  declare_constraints();
-  declare_joints();
-  declare_units();
-  ForcesReader(reading_).declare();
-  declare_events();
-  declare_coordinates();
-
-  for (const SymbolKind kind : {SymbolKind::parameter, SymbolKind::function, SymbolKind::input}) {
-    for (Symbol* symbol : scope_.all(kind)) resolver_.symbol(*symbol, symbol->span);
-  }
-  read_ranges();
-  read_particles();
-  read_bodies();
-  for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
-  read_energy();
-  ForcesReader(reading_).read();
-  read_constraints();
-  read_units();
-  read_events();
-  read_draw();
-  if (model_.particles.empty() && model_.bodies.empty() && model_.energy.kinetic == no_node) {
-    source_.fail(root_.span, "nothing moves: the model has no particle, no body and no kinetic energy",
-                 "add a [[particle]] or [[body]], or kinetic = \"..\" in [energy]");
-  }
-  if (model_.coordinates.empty()) {
-    source_.fail(root_.span, "nothing moves: the model has no coordinate",
-                 "name coordinates in a position or in [coordinates]");
-  }
-  refuse_shadowed_outputs();
-  read_scenes();
-  read_joints();
-  warn_unused();
 }
+
+}  // namespace
 
 Model read_model_text(const std::string& text, const std::string& file) {
   const Source source(file, text);

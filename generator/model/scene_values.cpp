@@ -6,7 +6,7 @@
 #include <array>
 
 #include "model/read_friction.hpp"
-#include "model/reader.hpp"
+#include "model/read_scenes.hpp"
 
 namespace eomgen::model {
 namespace {
@@ -34,7 +34,7 @@ bool is_axis(const std::string& part, std::string_view name) {
 
 }  // namespace
 
-void Reader::read_scene_parameters(Scene& scene, const std::vector<const Entry*>& entries) {
+void ScenesReader::read_scene_parameters(Scene& scene, const std::vector<const Entry*>& entries) {
   for (const Entry* entry : entries) {
     const Symbol* symbol = scope_.find(entry->key);
     if (symbol == nullptr || symbol->kind != SymbolKind::parameter) {
@@ -57,7 +57,7 @@ void Reader::read_scene_parameters(Scene& scene, const std::vector<const Entry*>
   }
 }
 
-void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& entries) {
+void ScenesReader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& entries) {
   for (const Entry* entry : entries) {
     const Symbol* symbol = scope_.find(entry->key);
     if (symbol == nullptr || symbol->kind != SymbolKind::input) {
@@ -81,7 +81,7 @@ void Reader::read_scene_inputs(Scene& scene, const std::vector<const Entry*>& en
   }
 }
 
-InputTable Reader::read_input_table(const Value& table, const Symbol& input) {
+InputTable ScenesReader::read_input_table(const Value& table, const Symbol& input) {
   const std::string what = fmt::format("the table of the input '{}'", input.name);
   const std::string remedy = "write { t = [0, 1, 2], value = [0, 5, 0] }: value[k] holds from t[k] on";
   check_keys(table, {what, {"t", "value"}, {}});
@@ -106,7 +106,7 @@ InputTable Reader::read_input_table(const Value& table, const Symbol& input) {
   return result;
 }
 
-void Reader::read_solver(Scene& scene, const Value& value) {
+void ScenesReader::read_solver(Scene& scene, const Value& value) {
   as(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
   if (std::find(solvers.begin(), solvers.end(), value.text) == solvers.end()) {
     const std::vector<std::string> names(solvers.begin(), solvers.end());
@@ -117,7 +117,7 @@ void Reader::read_solver(Scene& scene, const Value& value) {
   scene.solver = value.text;
 }
 
-void Reader::read_outputs(Scene& scene, const Value& value) {
+void ScenesReader::read_outputs(Scene& scene, const Value& value) {
   as(Value::Kind::array, value, "'outputs'", "write outputs = [\"energy\", \"reaction.NAME\"]");
   for (const Value& item : value.items) {
     as(Value::Kind::text, item, "an output", "write outputs = [\"energy\", \"reaction.NAME\"]");
@@ -132,7 +132,7 @@ void Reader::read_outputs(Scene& scene, const Value& value) {
   }
 }
 
-void Reader::check_output(const Value& value) {
+void ScenesReader::check_output(const Value& value) {
   const std::vector<std::string> parts = split_at_dots(value.text);
   if (parts.size() == 1 &&
       std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end())

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// [[body]] [[frame]]: rotations, points on bodies, and the start of rotations.
+#pragma once
+
+#include <map>
+
+#include "model/room.hpp"
+#include "rotations/rotation.hpp"
+
+namespace eomgen::model {
+
+class BodiesReader : private Room {
+ public:
+  explicit BodiesReader(Reading& reading) : Room(reading) {}
+  void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
+  void declare_angles(const Value& table);
+  Typed define_axes(Symbol& symbol);
+  Typed point_on_body(const Value& table, const std::string& what);
+  void read();
+  void declare_units();
+  void read_units();
+  void complete_parameters(Scene& scene);
+  bool read_initial_rotation(Scene& scene, const Entry& entry, bool guess);
+  void check_initial_rotations(const Scene& scene) const;
+
+ private:
+  const Entry& rotation_entry(const Value& rotation) const;
+  void read_rotation(Frame& frame, std::uint32_t index, const Value& rotation);
+  std::vector<const Value*> rotation_entries(Frame& frame, const rotations::Rotation& found, const Entry& entry,
+                                             const Value& rotation);
+  std::optional<std::array<cln::cl_RA, 3>> numbers_of(NodeId vector) const;
+  void turn_about(Frame& frame, std::uint32_t index, const Value& rotation, std::map<std::string, Typed>& local);
+  void add_stage(std::uint32_t index, const rotations::Step& step, const std::map<std::string, Typed>& local,
+                 Span span);
+};
+
+}  // namespace eomgen::model

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// [[constraint]] and [energy].
+#pragma once
+
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class ConstraintsReader : private Room {
+ public:
+  explicit ConstraintsReader(Reading& reading) : Room(reading) {}
+  void declare();
+  void read();
+  void read_energy();
+
+ private:
+  bool read_contact(Constraint& constraint, const Value& table);
+  void read_equations(Constraint& constraint, const Value& value);
+  void read_holds(Constraint& constraint, const Value& table);
+};
+
+}  // namespace eomgen::model

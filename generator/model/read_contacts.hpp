@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// rolling = { .. } and sliding = { .. } of a [[constraint]]: a body on a plane or on another body.
+#pragma once
+
+#include <map>
+
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class ContactsReader : private Room {
+ public:
+  explicit ContactsReader(Reading& reading) : Room(reading) {}
+  void read(Constraint& constraint, const Value& table, bool rolling, bool rough);
+
+ private:
+  std::map<std::string, Typed> plane_of_contact(const Value& on);
+  void tangent_of_contact(const Value& table, std::map<std::string, Typed>& local);
+  void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, Typed>& local);
+  void read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local);
+  Typed contact_arm(const Value& table, std::map<std::string, Typed> local);
+  bool touches_body(const Value& on);
+  /// psi, where it is not that of two points and a normal.
+  std::optional<std::string> between_bodies(Touch& touch, const Value& table, std::map<std::string, Typed>& local);
+  void spheres_in_contact(const Value& table, std::map<std::string, Typed>& local);
+  void points_in_contact(const Value& table, std::map<std::string, Typed>& local);
+};
+
+}  // namespace eomgen::model

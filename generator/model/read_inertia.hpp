@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The inertia of a [[body]].
+#pragma once
+
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class InertiaReader : private Room {
+ public:
+  explicit InertiaReader(Reading& reading) : Room(reading) {}
+  void read(Body& body, const Value& table);
+
+ private:
+  void read_scalar_inertia(Body& body, const Value& value);
+  std::array<NodeId, 3> shape_moments(const Body& body, const Entry& shape);
+};
+
+}  // namespace eomgen::model

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// [[joint]]: two ends, points and axes fixed in each, and the equations of the registry between them.
+#pragma once
+
+#include "joints/joint.hpp"
+#include "model/at_start.hpp"
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class JointsReader : private Room {
+ public:
+  explicit JointsReader(Reading& reading) : Room(reading) {}
+  void declare();
+  void read();
+
+ private:
+  struct JointEnd {
+    std::uint32_t frame = 0;
+    std::string name;
+    Typed point;
+    std::array<Typed, 3> axis;  // a, a1, a2, fixed in this body
+  };
+  void read_joint(Joint& joint, const Value& table);
+  std::array<JointEnd, 2> joint_ends(const Value& table, const std::string& what);
+  void joint_points(Joint& joint, std::array<JointEnd, 2>& ends, const Value& at, const std::string& what);
+  void joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>& ends, const Value& table,
+                  const std::string& what);
+  std::array<Typed, 3> triad_about(const Value& axis, const JointEnd& end, const std::string& what);
+  void axis_at_start(const Typed& direction, std::array<JointEnd, 2>& ends, AtStart& start, Span span,
+                     const std::string& what);
+  AtStart at_start(std::uint32_t constraint);
+  Typed carried(const Typed& direction, std::uint32_t frame, AtStart& start, Span span, bool attitude = false);
+};
+
+}  // namespace eomgen::model

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// [parameters] [functions] [inputs] [coordinates] [definitions]: names, and what they stand for when it is needed.
+#pragma once
+
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class NamesReader : private Room {
+ public:
+  explicit NamesReader(Reading& reading) : Room(reading) {}
+  void declare();
+  std::uint32_t declare_coordinate(const std::string& name, Span span, const Entry* entry);
+  Typed define(Symbol& symbol);
+  void read_ranges();
+  void warn_misspelt(const std::string& name, Span span);
+  void warn_unused();
+
+ private:
+  Typed define_parameter(Symbol& symbol);
+  Typed define_function(Symbol& symbol);
+  Typed define_input(Symbol& symbol);
+  Typed define_definition(Symbol& symbol);
+  void read_coordinate(const Entry& entry);
+};
+
+}  // namespace eomgen::model

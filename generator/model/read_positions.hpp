@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Positions in a coordinate system of the registry, or in one of the model.
+#pragma once
+
+#include "coordinates/coordinate_system.hpp"
+#include "model/room.hpp"
+
+namespace eomgen::model {
+
+class PositionsReader : private Room {
+ public:
+  explicit PositionsReader(Reading& reading) : Room(reading) {}
+  void declare_entries(const Value& position);
+  void declare_entry(const Value& entry, std::string_view unit);
+  Typed position(std::uint32_t place, const Value& table);
+
+ private:
+  /// A position in a chart, from where the chart measures.
+  struct Spelt {
+    Chart chart;
+    std::array<Typed, 3> x;
+  };
+  const Entry& system_entry(const Value& table) const;
+  Spelt spelt_position(const Value& table, const Entry& entry);
+  Spelt custom_position(const Value& table, const Entry& entry);
+  std::array<Typed, 3> solved_position(const Value& names, const Value& q, const Context& context);
+  void check_inverse(const Spelt& spelt, const Value& q, bool both);
+  void check_independent(const Spelt& spelt, const Entry& entry, Span constant);
+  std::array<Typed, 3> chart_entries(const coordinates::CoordinateSystem& system, const Value& entries);
+};
+
+}  // namespace eomgen::model
