@@ -38,7 +38,7 @@ bool has_key(const forces::Kind& kind, std::string_view name) {
 std::string remedy_for(const forces::Key& key) {
   switch (key.asks) {
     case forces::Asks::ends: return "write between = [\"P\", \"Q\"] with particles, points, \"origin\" or vectors";
-    case forces::Asks::triple: return fmt::format("add {0} = [\"{0}1\", \"{0}2\", \"{0}3\"]", key.name);
+    case forces::Asks::triple: return fmt::format("add {} = [\"..\", \"..\", \"..\"], along three axes", key.name);
     case forces::Asks::bodies: return fmt::format("add {} = [\"A\", \"B\"]; one of them may be \"ground\"", key.name);
     case forces::Asks::points: return fmt::format("add {} = [\"point of A\", \"point of B\"]", key.name);
     case forces::Asks::vector: return fmt::format("add {} = \"<vector>\"", key.name);

@@ -13,7 +13,7 @@ TEST_CASE("every wrong model is refused by the program, in the same words, in un
   const Folder folder;
   std::size_t count = 0;
   for (const auto& table : {wrong_names(), wrong_structure(), wrong_units(), wrong_expressions(), wrong_scenes(),
-                            wrong_hostile(), wrong_bodies()}) {
+                            wrong_hostile(), wrong_bodies(), wrong_forces()}) {
     for (const WrongModel& wrong : table) {
       CAPTURE(wrong.name);
       folder.write("model.toml", wrong.text);

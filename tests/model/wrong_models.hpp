@@ -31,5 +31,6 @@ std::vector<WrongModel> wrong_expressions();
 std::vector<WrongModel> wrong_scenes();
 std::vector<WrongModel> wrong_hostile();
 std::vector<WrongModel> wrong_bodies();
+std::vector<WrongModel> wrong_forces();
 
 }  // namespace eomgen::model

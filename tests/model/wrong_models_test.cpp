@@ -40,6 +40,7 @@ TEST_CASE("wrong units and types are refused in exact words") { refuse_all(wrong
 TEST_CASE("wrong expressions are refused in exact words") { refuse_all(wrong_expressions()); }
 TEST_CASE("wrong scenes are refused in exact words") { refuse_all(wrong_scenes()); }
 TEST_CASE("wrong bodies and rotations are refused in exact words") { refuse_all(wrong_bodies()); }
+TEST_CASE("wrong forces are refused in exact words") { refuse_all(wrong_forces()); }
 TEST_CASE("hostile input is refused in exact words") { refuse_all(wrong_hostile()); }
 
 TEST_CASE("the whole report of a refusal is what the user sees") {

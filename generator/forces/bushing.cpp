@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/kinds.hpp"
+
+namespace eomgen::forces {
+
+// x_i = (rB - rA) . A_i, along the axes of A; p_i = sin(p) n . A_i of the rotation by p about n that takes the axes of
+// A to those of B. Forces and moments on A and B are opposite; both forces act at the point of B.
+Kind bushing() {
+  const std::string x1 = "dot(rB - rA, A1)", x2 = "dot(rB - rA, A2)", x3 = "dot(rB - rA, A3)";
+  const std::string p1 = "((dot(B2, A3) - dot(B3, A2))/2)", p2 = "((dot(B3, A1) - dot(B1, A3))/2)",
+                    p3 = "((dot(B1, A2) - dot(B2, A1))/2)";
+  const std::string moment =
+      "(rotational_coefficient1*dot(wB - wA, A1)*A1 + rotational_coefficient2*dot(wB - wA, A2)*A2 + "
+      "rotational_coefficient3*dot(wB - wA, A3)*A3)";
+  const When slides{Is::given, "coefficient"}, turns{Is::given, "rotational_coefficient"};
+  return {
+      .name = "bushing",
+      .title = "springs and dampers along and about the axes of one of two bodies",
+      .keys = {{.name = "bodies", .asks = Asks::bodies},
+               {.name = "at", .asks = Asks::points, .on = On::motion},
+               {.name = "stiffness", .asks = Asks::triple, .unit = "N/m"},
+               {.name = "coefficient", .asks = Asks::triple, .unit = "N*s/m", .on = On::state, .optional = true},
+               {.name = "rotational_stiffness", .asks = Asks::triple, .unit = "N*m", .optional = true},
+               {.name = "rotational_coefficient",
+                .asks = Asks::triple,
+                .unit = "N*m*s",
+                .on = On::state,
+                .optional = true}},
+      .terms = {{.formula = "(stiffness1*" + x1 + "^2 + stiffness2*" + x2 + "^2 + stiffness3*" + x3 + "^2)/2"},
+                {.formula = "(rotational_stiffness1*" + p1 + "^2 + rotational_stiffness2*" + p2 +
+                            "^2 + rotational_stiffness3*" + p3 + "^2)/2",
+                 .when = {{Is::given, "rotational_stiffness"}}},
+                {.acts = Acts::work, .formula = "-(coefficient1*ddt(" + x1 + "))", .at = x1, .when = {slides}},
+                {.acts = Acts::work, .formula = "-(coefficient2*ddt(" + x2 + "))", .at = x2, .when = {slides}},
+                {.acts = Acts::work, .formula = "-(coefficient3*ddt(" + x3 + "))", .at = x3, .when = {slides}},
+                {.acts = Acts::moment, .formula = "-" + moment, .at = "B", .when = {turns}},
+                {.acts = Acts::moment, .formula = moment, .at = "A", .when = {turns}}},
+  };
+}
+
+}  // namespace eomgen::forces

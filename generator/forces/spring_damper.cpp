@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "forces/kinds.hpp"
+
+namespace eomgen::forces {
+
+Kind spring_damper() {
+  return {
+      .name = "spring_damper",
+      .title = "a linear spring and a damper between two points",
+      .keys = {{.name = "between", .asks = Asks::ends, .on = On::motion},
+               {.name = "stiffness", .unit = "N/m"},
+               {.name = "length", .unit = "m", .optional = true, .fallback = "0"},
+               {.name = "coefficient", .unit = "N*s/m", .on = On::state}},
+      .terms = {{.formula = "stiffness*dot(a - b, a - b)/2", .when = {{Is::zero, "length"}}},
+                {.formula = "stiffness*(norm(a - b) - length)^2/2", .when = {{Is::not_zero, "length"}}},
+                {.acts = Acts::damping, .formula = "coefficient"}},
+      .line_of_spring = true,
+      .line_of_damper = true,
+  };
+}
+
+}  // namespace eomgen::forces
