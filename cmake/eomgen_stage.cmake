@@ -12,12 +12,12 @@ function(eomgen_stage name)
   target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})
 endfunction()
 
-# eomgen_force_kinds(RESULT): NAME.cpp for each line FORCE(NAME) of generator/forces/registry.inc, which is read again where it changes.
-function(eomgen_force_kinds result)
-  set(registry ${PROJECT_SOURCE_DIR}/generator/forces/registry.inc)
+# eomgen_registered(FOLDER RESULT): NAME.cpp for each line WORD(NAME) of generator/FOLDER/registry.inc, which is read again where it changes.
+function(eomgen_registered folder result)
+  set(registry ${PROJECT_SOURCE_DIR}/generator/${folder}/registry.inc)
   set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${registry})
-  file(STRINGS ${registry} lines REGEX "^FORCE\\(.*\\)$")
-  list(TRANSFORM lines REPLACE "^FORCE\\((.*)\\)$" "\\1.cpp")
+  file(STRINGS ${registry} lines REGEX "^[A-Z]+\\(.*\\)$")
+  list(TRANSFORM lines REPLACE "^[A-Z]+\\((.*)\\)$" "\\1.cpp")
   set(${result} ${lines} PARENT_SCOPE)
 endfunction()
 

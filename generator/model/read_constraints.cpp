@@ -5,15 +5,18 @@
 #include <fmt/format.h>
 
 #include "model/read_contacts.hpp"
+#include "model/read_couplings.hpp"
 #include "model/read_friction.hpp"
 
 namespace eomgen::model {
 
 void ConstraintsReader::declare() {
   for (const Value* table : sections("constraint")) {
-    check_keys(*table, {"[[constraint]]",
-                        {"name", "holonomic", "velocity", "rolling", "sliding", "holds", "restitution", "friction"},
-                        {}});
+    Keys keys{"[[constraint]]",
+              {"name", "holonomic", "velocity", "rolling", "sliding", "holds", "restitution", "friction"},
+              {}};
+    for (const couplings::Coupling& coupling : couplings::registry()) keys.known.push_back(coupling.name);
+    check_keys(*table, keys);
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
     Symbol& symbol = scope_.declare(SymbolKind::constraint, name, table->find("name")->span);
     symbol.index = static_cast<std::uint32_t>(model_.constraints.size());
@@ -30,7 +33,7 @@ void ConstraintsReader::read() {
     Constraint& constraint = model_.constraints[index++];
     const std::string what = fmt::format("the constraint '{}'", constraint.name);
     const Value* velocity = table->find("velocity");
-    if (read_contact(constraint, *table)) continue;
+    if (read_contact(constraint, *table) || read_coupling(constraint, *table)) continue;
     if (velocity != nullptr && table->find("holonomic") != nullptr) {
       source_.fail(velocity->span, fmt::format("{} is both 'holonomic' and 'velocity'", what),
                    "write one [[constraint]] for each; the velocities of a holonomic one follow");
@@ -61,6 +64,20 @@ bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table)
   ContactsReader(reading_).read(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
   read_holds(constraint, table);
   if (const Value* friction = table.find("friction")) FrictionReader(reading_).of_constraint(constraint, *friction);
+  return true;
+}
+
+// gear = { .. } and such; false for any other constraint.
+bool ConstraintsReader::read_coupling(Constraint& constraint, const Value& table) {
+  CouplingsReader couplings(reading_);
+  const Entry* coupling = couplings.found(table);
+  if (coupling == nullptr) return false;
+  for (const Entry& other : table.entries) {
+    if (other.key == "name" || &other == coupling) continue;
+    source_.fail(other.span, fmt::format("'{}' does not belong to '{}'", other.key, coupling->key),
+                 "write one [[constraint]] for each; a coupling holds, without friction, in both directions");
+  }
+  couplings.read(constraint, *coupling);
   return true;
 }
 

@@ -15,6 +15,7 @@ class ConstraintsReader : private Room {
 
  private:
   bool read_contact(Constraint& constraint, const Value& table);
+  bool read_coupling(Constraint& constraint, const Value& table);
   void read_equations(Constraint& constraint, const Value& value);
   void read_holds(Constraint& constraint, const Value& table);
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Forces that are refused: keys that are missing, clash or are made of the wrong things.
+// Forces and couplings that are refused: keys that are missing, clash or are made of the wrong things.
 #include "wrong_models.hpp"
 
 namespace eomgen::model {
@@ -22,6 +22,13 @@ rotation = { axis = "E3", angle = "b" }
 [[force]]
 )" + force +
          "\n";
+}
+
+/// The gear is line 15.
+std::string gear(const std::string& keys, const std::string& more = "") {
+  std::string text = bodies("");
+  text.erase(text.find("[[force]]"));
+  return text + "[[constraint]]\nname = \"g\"\ngear = { " + keys + " }\n" + more;
 }
 
 }  // namespace
@@ -79,6 +86,31 @@ std::vector<WrongModel> wrong_forces() {
        bodies("bushing = { bodies = [\"A\", \"B\"], at = [\"A\", \"B\"], stiffness = \"a_dot\" }"), "14:64",
        "'a_dot' depends on velocities, which the stiffness of this bushing cannot",
        "use numbers, parameters and time only"},
+      {"a gear without a ratio", gear("bodies = [\"A\", \"B\"], axes = \"E3\""), "15:8", "the gear 'g' has no ratio",
+       "add ratio = \"-2\", the first speed over the second; of a belt it is positive"},
+      {"a gear of nothing", gear("ratio = 2"), "15:8", "the gear 'g' has neither bodies nor angles",
+       "write gear = { bodies = [\"A\", \"B\"], axes = [\"A.e3\", \"B.e3\"], ratio = \"-2\" }, or gear = { angles = "
+       "[\"phi\", \"psi\"], ratio = \"-2\" }; a ratio is the first speed over the second"},
+      {"a gear of bodies and angles", gear("bodies = [\"A\", \"B\"], angles = [\"a\", \"b\"], ratio = 2"), "15:10",
+       "the gear 'g' has both angles and bodies", "keep the angles, or bodies and axes"},
+      {"a gear on its own carrier", gear("bodies = [\"A\", \"ground\"], axes = \"E3\", ratio = 2"), "15:25",
+       "'ground' does not turn against the carrier of the gear 'g'",
+       "add carrier = \"C\", the body on which both turn; it is the ground if left out"},
+      {"a gear between a body and itself", gear("bodies = [\"A\", \"A\"], axes = \"E3\", ratio = 2"), "15:19",
+       "the gear 'g' is between 'A' and itself", "write bodies = [\"A\", \"B\"]; one of them may be \"ground\""},
+      {"a gear of ratio 0", gear("angles = [\"a\", \"b\"], ratio = 0"), "15:39",
+       "the ratio of the gear 'g' is 0, which holds the first and leaves the second free",
+       "give a ratio that is not 0"},
+      {"a gear of lengths", gear("angles = [\"x\", \"b\"], ratio = 2"), "15:21",
+       "the units clash: an angle of the gear 'g' is asked in 1, and this is in m",
+       "check the formula and the units of the names in it"},
+      {"a gear that can be left", gear("angles = [\"a\", \"b\"], ratio = 2", "holds = \"unilateral\"\n"), "16:1",
+       "'holds' does not belong to 'gear'",
+       "write one [[constraint]] for each; a coupling holds, without friction, in both directions"},
+      {"a gear that binds the ground", gear("angles = [\"1[rad]\", \"t*1[rad/s]\"], ratio = 2"), "15:8",
+       "the gear 'g' binds nothing that moves",
+       "write gear = { bodies = [\"A\", \"B\"], axes = [\"A.e3\", \"B.e3\"], ratio = \"-2\" }, or gear = { angles = "
+       "[\"phi\", \"psi\"], ratio = \"-2\" }; a ratio is the first speed over the second"},
   };
 }
 
