@@ -25,7 +25,7 @@ const Words models{"P7_moving_sphere", "P2_planar_pendulum", "S5_double_pendulum
 TEST_CASE("list: the document holds the registries, the readable output names the same") {
   const Folder folder;
   const Json all = document(folder, {"list"});
-  has_keys(all, {"coordinates", "rotations", "joints", "solvers", "targets"});
+  has_keys(all, {"coordinates", "rotations", "joints", "couplings", "forces", "solvers", "targets"});
   const std::string readable = expect(0, folder, {"list"}).out;
   for (const char* key : {"coordinates", "solvers", "targets", "routes"}) {
     CHECK_FALSE(all[key].empty());

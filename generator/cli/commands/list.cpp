@@ -6,9 +6,11 @@
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
 #include "coordinates/coordinate_system.hpp"
+#include "couplings/coupling.hpp"
 #include "derive/routes.hpp"
 #include "emit/targets.hpp"
 #include "eom/ode.hpp"
+#include "forces/kind.hpp"
 #include "joints/joint.hpp"
 #include "rotations/rotation.hpp"
 
@@ -64,6 +66,15 @@ json registries() {
   for (const joints::Joint& joint : joints::registry()) {
     result["joints"].push_back({{"name", joint.name}, {"title", joint.title}, {"equations", joint.equations.size()}});
   }
+  result["couplings"] = json::array();
+  for (const couplings::Coupling& coupling : couplings::registry())
+    result["couplings"].push_back({{"name", coupling.name}, {"title", coupling.title}});
+  result["forces"] = json::array();
+  for (const forces::Kind& kind : forces::registry()) {
+    json keys = json::array();
+    for (const forces::Key& key : kind.keys) keys.push_back(key.name);
+    result["forces"].push_back({{"name", kind.name}, {"title", kind.title}, {"keys", keys}});
+  }
   result["solvers"] = solvers;
   result["targets"] = targets;
   result["routes"] = routes;
@@ -88,7 +99,7 @@ int execute(const Common& common) {
                             entry["adaptive"].get<bool>() ? "chooses its steps" : "needs --step",
                             entry["implicit"].get<bool>() ? ", implicit" : "") +
                     (entry["constrained"].get<bool>() ? ", for models with constraints, which it keeps itself" : "");
-      fmt::print("  {:<14} {}\n", entry["name"].get<std::string>(), title);
+      fmt::print("  {:<16} {}\n", entry["name"].get<std::string>(), title);
     }
   }
   return 0;
