@@ -35,6 +35,8 @@ Kind bushing() {
                 {.acts = Acts::work, .formula = "-(coefficient3*ddt(" + x3 + "))", .at = x3, .when = {slides}},
                 {.acts = Acts::moment, .formula = "-" + moment, .at = "B", .when = {turns}},
                 {.acts = Acts::moment, .formula = moment, .at = "A", .when = {turns}}},
+      .spring = {"rA", "rB"},
+      .damper = {"rA", "rB"},
   };
 }
 

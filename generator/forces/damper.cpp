@@ -10,7 +10,7 @@ Kind damper() {
       .keys = {{.name = "between", .asks = Asks::ends, .on = On::motion},
                {.name = "coefficient", .unit = "N*s/m", .on = On::state}},
       .terms = {{.acts = Acts::damping, .formula = "coefficient"}},
-      .line_of_damper = true,
+      .damper = {"a", "b"},
   };
 }
 

@@ -100,6 +100,11 @@ enum class Form {
   friction,    // KIND = { coordinate, normal, and the law of friction }
 };
 
+/// Between two points among the keys' names; none where they are empty.
+struct Line {
+  std::string from, to;
+};
+
 struct Kind {
   std::string name;   // KIND of a model file: unique
   std::string title;  // for lists
@@ -107,7 +112,7 @@ struct Kind {
   std::vector<Key> keys = {};
   std::vector<Rule> rules = {};
   std::vector<Term> terms = {};
-  bool line_of_spring = false, line_of_damper = false;  // how `report` draws the line between the ends a and b
+  Line spring = {}, damper = {};  // that `report` draws
 };
 
 std::span<const Kind> registry();

@@ -11,7 +11,7 @@ Kind linear_actuator() {
                {.name = "force", .unit = "N", .on = On::state}},
       .terms = {{.acts = Acts::force, .formula = "force*unit(a - b)", .at = "a"},
                 {.acts = Acts::force, .formula = "force*unit(b - a)", .at = "b"}},
-      .line_of_damper = true,
+      .damper = {"a", "b"},
   };
 }
 

@@ -22,7 +22,7 @@ Kind spring() {
                 {.formula = "stiffness*(norm(a - b) - length)^2/2",
                  .when = {{Is::given, "stiffness"}, {Is::not_zero, "length"}}},
                 {.formula = "energy", .when = {{Is::given, "energy"}}, .extension = "norm(a - b) - length"}},
-      .line_of_spring = true,
+      .spring = {"a", "b"},
   };
 }
 

@@ -14,8 +14,8 @@ Kind spring_damper() {
       .terms = {{.formula = "stiffness*dot(a - b, a - b)/2", .when = {{Is::zero, "length"}}},
                 {.formula = "stiffness*(norm(a - b) - length)^2/2", .when = {{Is::not_zero, "length"}}},
                 {.acts = Acts::damping, .formula = "coefficient"}},
-      .line_of_spring = true,
-      .line_of_damper = true,
+      .spring = {"a", "b"},
+      .damper = {"a", "b"},
   };
 }
 

@@ -100,6 +100,32 @@ TEST_CASE(
   CHECK(highest == 1);
 }
 
+TEST_CASE("report: springs, dampers, struts, actuators and bushings are drawn between their points") {
+  const Folder folder;
+  folder.write("mount.toml", R"toml(format = 1
+[[body]]
+name = "B"
+mass = "1 kg"
+inertia = "1 kg*m^2"
+position = { cartesian = ["x", "y"] }
+rotation = { axis = "E3", angle = "b" }
+[[force]]
+bushing = { bodies = ["ground", "B"], at = ["origin", "B - 1[m]*B.e1"], stiffness = "100 N/m", rotational_stiffness = "5 N*m" }
+[[force]]
+spring_damper = { between = ["2[m]*E2", "B"], stiffness = "5 N/m", coefficient = "1 N*s/m" }
+[[force]]
+linear_actuator = { between = ["B", "3[m]*E1"], force = "1 N" }
+[scene.default]
+t = [0, 0.1]
+initial = { x = 1 }
+)toml");
+  expect(0, folder, {"report", "mount.toml", "-o", "page.html"});
+  const Json parts = motion(folder.read("page.html"))["parts"];
+  REQUIRE(parts["springs"].size() == 2);
+  REQUIRE(parts["dampers"].size() == 3);
+  CHECK(parts["springs"][0]["a"] != parts["springs"][0]["b"]);
+}
+
 TEST_CASE(
     "report: parameters that depend on others follow on the page and have no slider of their own; those that are set "
     "are numbers") {

@@ -64,6 +64,7 @@ TEST_CASE("keys, rules and terms of a kind name keys that it has") {
       CHECK((term.over == forces::Over::bodies) == !term.arm.empty());
       for (const forces::When& when : term.when) CHECK(has_key(kind, when.key));
     }
+    for (const forces::Line& line : {kind.spring, kind.damper}) CHECK(line.from.empty() == line.to.empty());
     const bool data = kind.form == forces::Form::table || kind.form == forces::Form::value;
     CHECK(data == !kind.terms.empty());
     if (kind.form == forces::Form::value) CHECK(kind.keys.at(0).name == kind.name);

@@ -95,14 +95,18 @@ void Drawing::bodies(Derived& derived) {
 
 void Drawing::forces(Derived& derived) {
   parts_["springs"] = parts_["dampers"] = Json::array();
-  const auto ends = [&](const model::Force& force) {
-    return Json{{"a", vector(derived, mechanics::lower_vector(derived.mechanics, force.value("a")))},
-                {"b", vector(derived, mechanics::lower_vector(derived.mechanics, force.value("b")))}};
-  };
   for (const model::Force& force : derived.model.forces) {
+    const auto add = [&](const char* list, const forces::Line& line) {
+      if (line.from.empty()) return;
+      const auto end = [&](const std::string& name) {
+        return vector(derived, mechanics::lower_vector(derived.mechanics, force.value(name)));
+      };
+      const std::size_t a = end(line.from), b = end(line.to);
+      parts_[list].push_back({{"a", a}, {"b", b}});
+    };
     const forces::Kind& kind = *forces::find(force.kind);
-    if (kind.line_of_spring) parts_["springs"].push_back(ends(force));
-    if (kind.line_of_damper) parts_["dampers"].push_back(ends(force));
+    add("springs", kind.spring);
+    add("dampers", kind.damper);
   }
 }
 
