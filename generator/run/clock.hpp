@@ -5,6 +5,7 @@
 // ones.
 #pragma once
 
+#include <eom/hybrid/problem.hpp>
 #include <eom/run_types.hpp>
 #include <string>
 #include <vector>
@@ -14,11 +15,7 @@
 
 namespace eomgen::run {
 
-/// A kink of time alone is crossed between these two times, which differ by rounding; functions are on one side at
-/// either.
-struct Break {
-  double before = 0, after = 0;
-};
+using eom::hybrid::Break;
 
 struct Clock {
   std::vector<Break> breaks;           // inside the span, ascending; without the jumps of tables

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <array>
+#include <eom/hybrid/problem.hpp>
 #include <functional>
 #include <span>
 #include <string>
@@ -26,17 +27,8 @@ class Jumps {
   bool none() const { return !by_time_ && surfaces_.empty(); }
   bool by_time() const { return by_time_; }
 
-  struct At {
-    double t;
-    std::span<const double> x;  // q, qdot, ...
-    const double* u;
-  };
-  struct Told {
-    bool velocities = false;  // they may have to jump: those of x did, and constraints move otherwise
-    bool potential = false;
-    std::string what;          // the velocity of a place that jumps, or ""
-    std::string undetermined;  // a sentence: what jumps that no equation says the consequences of
-  };
+  using At = eom::hybrid::Place;
+  using Told = eom::hybrid::Impulse;
   /// From just before a kink of time to just after it: changes velocities in `x` to what they are without impulses of
   /// constraints.
   Told cross(const At& before, double after, const double* u_after, std::span<double> x) const;

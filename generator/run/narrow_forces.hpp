@@ -5,6 +5,7 @@
 // values that no sample has, and the path of the step does not satisfy the equations at one.
 #pragma once
 
+#include <eom/hybrid/problem.hpp>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -17,13 +18,7 @@ namespace eomgen::run {
 
 class NarrowForces {
  public:
-  /// What a run asks with.
-  struct Setting {
-    StepBoxes::Inputs inputs;
-    std::function<int(double t, const double* x, double* dx)> derivative;
-    double rtol = 0, atol = 0;
-    bool series = false;  // the method sees the equations at the start of its steps only
-  };
+  using Setting = eom::hybrid::Sampling;  // what a run asks with
 
   NarrowForces() = default;
   NarrowForces(const system::EquationSystem& system, const std::vector<double>& parameters);

@@ -4,8 +4,7 @@
 #pragma once
 
 #include <atomic>
-#include <eom/events/locator.hpp>
-#include <eom/modes/contacts.hpp>
+#include <eom/hybrid/problem.hpp>
 #include <eom/ode.hpp>
 #include <functional>
 #include <limits>
@@ -19,64 +18,22 @@
 
 namespace eomgen::run {
 
-/// Outputs that code in these charts does not give: they belong to the own ones.
-struct OwnOutputs {
-  int in_charts = 0;  // bits of mode
-  std::vector<std::uint32_t> outputs;
-};
+using eom::hybrid::ExchangedChart;
+using eom::hybrid::OwnOutputs;
+using eom::hybrid::WatchedEvent;
 
-/// The functions of the C ABI that a run calls (docs/abi.md); mass and constraints only where there are multipliers.
-struct Code {
-  int (*rhs)(double, const double*, const double*, const double*, int, double*) = nullptr;
-  // The same in two, null where it is not split: what needs parameters only, and the rest.
-  int (*prepare)(const double*, double*) = nullptr;
-  int (*rhs_prepared)(double, const double*, const double*, const double*, const double*, int, double*) = nullptr;
-  std::size_t prepared = 0;  // entries of what `prepare` writes
-  int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
-  int (*events)(double, const double*, const double*, const double*, int, double*) = nullptr;
-  // Only where an implicit solver was asked for; else, and for df/dt along inputs, it takes differences.
-  int (*jac)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
-  int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
-  int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
-  std::vector<std::string> output_names;  // entries of y: begins with every coordinate and its _dot
-  std::vector<std::uint32_t> free;        // coordinates that are state, with their rates
-  std::size_t integrals = 0;              // states after them: 0 at the start, never projected
-  std::size_t active_constraints = 0;
-  std::vector<bool> holonomic = {};             // per active constraint: false where it binds velocities only
-  std::vector<std::string> kinks = {};          // "abs", "max": their surfaces follow the model's events in g
+/// The compiled model of a run, and what is known of it beside: mass and constraints only where there are multipliers,
+/// functions for a solver only where it was asked for.
+struct Code : eom::hybrid::Code {
   std::vector<symbolic::Ref> kink_values = {};  // as expressions
-  std::vector<eom::Contact> contacts = {};      // after them, eom::contact_values of each
-  std::size_t first_kink_bit = 0;               // of mode: two for each kink, above and below its surface
-  // Only where the solver taylor was asked for, up to its highest order.
-  int (*taylor)(double, const double*, const double*, const double*, int, int, double*) = nullptr;
-  int taylor_order = 0;
-  // Only where a variational solver was asked for, with mass, and with constraints where there are any.
-  int (*momenta)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
-  // Only of code that knows several charts.
-  int (*chart)(const double*, int, int, double*) = nullptr;
-  int (*mass_in)(double, const double*, const double*, int, double*, double*) = nullptr;
-  int (*constraints_in)(double, const double*, const double*, int, double*, double*, double*) = nullptr;
-  std::vector<OwnOutputs> own_outputs = {};
-  int (*jac_p)(double, const double*, const double*, const double*, int,
-               double*) = nullptr;  // only where sensitivities were asked for
 };
 
 struct Invariant {
   std::string name;
   double initial = 0, max_relative_drift = 0;
 };
-struct RunEvent {
-  double t;
-  std::string kind, name;
-  double work = 0;  // of an impulse
-};
+using RunEvent = eom::hybrid::Event;
 
-/// An [[event]] as this scene takes it.
-struct WatchedEvent {
-  std::string name;
-  eom::Direction direction = eom::Direction::any;
-  bool stop = false;
-};
 struct KinkCrossings {
   std::string of;
   std::size_t count = 0;
@@ -124,15 +81,6 @@ struct ContactOutputs {
   std::vector<std::string> phi;
   std::size_t constraint = 0;  // active, of one that can be left
   std::string restitution;     // of one that can be left
-};
-
-/// A chart that the run leaves near where it fails, and comes back to.
-struct ExchangedChart {
-  std::string of;
-  std::vector<std::size_t> angles;             // places in the state
-  std::vector<std::uint32_t> coordinates;      // of the model
-  std::size_t guarded = 0;                     // which of them tells how far the chart is from failing
-  bool at_sine = true, second_at_sine = true;  // by its sine or cosine, in the own and in the second chart
 };
 
 struct RunRequest {

@@ -21,6 +21,7 @@ class Signal {
   /// Whether it changes between its jumps.
   bool moves() const;
   const std::vector<double>& jumps() const { return time_; }
+  const std::vector<double>& values() const { return value_; }  // from each jump on
 
  private:
   struct Step {

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 #include <eom/constraints/projection.hpp>
+#include <eom/hybrid/constraint_rows.hpp>
 
-#include "run/constraint_rows.hpp"
+#include "run/bind.hpp"
 
 namespace eomgen::stress {
 namespace {
@@ -12,7 +13,11 @@ namespace {
 class Start {
  public:
   Start(const run::Scene& scene, const run::RunRequest& run)
-      : run_(run), n_(run.code.free.size()), rows_(run), x_(run.state_names.size()) {
+      : run_(run),
+        n_(run.code.free.size()),
+        problem_(run::problem_of(run, "auto")),
+        rows_(problem_),
+        x_(run.state_names.size()) {
     for (std::size_t i = 0; i < n_; ++i) {
       x_[i] = scene.q[run.code.free[i]];
       x_[n_ + i] = scene.qdot[run.code.free[i]];
@@ -64,7 +69,8 @@ class Start {
 
   const run::RunRequest& run_;
   std::size_t n_;
-  run::ConstraintRows rows_;
+  eom::hybrid::Problem problem_;
+  eom::hybrid::ConstraintRows rows_;
   std::vector<double> x_, u_;
 };
 

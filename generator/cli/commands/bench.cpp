@@ -65,7 +65,7 @@ void require_smooth(const Simulation& simulation, const run::RunRequest& request
   options.fixed_step = simulation.scene.step;
   options.interrupt = request.interrupt;
   const eom::Result end = trial.run(options, {});
-  for (const std::size_t crossings : trial.kink_crossings) {
+  for (const std::size_t crossings : trial.kink_crossings()) {
     if (crossings > 0)
       unsupported("the motion crosses a kink (abs, sign, min, max, if)",
                   "shorten the run (--t-end), or smooth the law");

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: MIT
+// Whether the energy of a run is accounted for. In: a finished run with its error estimate. Out: the outcome
+// balance_open where it is not, by more than the estimate explains.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "eom/hybrid/run_result.hpp"
+#include "eom/hybrid/text.hpp"
+
+namespace eom::hybrid {
+
+namespace balance {
+
+inline constexpr double always = 1e-4;       // of the energies: less is no sign of an event that was missed
+inline constexpr double of_tolerance = 1e4;  // an energy follows the states, and adds up over many steps
+inline constexpr double of_estimate = 1e3;   // an end may be nearer the truth than the states on the way
+inline constexpr double without_estimate = 0.1;
+
+/// The largest estimate of a state, relative to the largest of its kind.
+inline double relative_estimate(const Problem& problem, const RunResult& result) {
+  const std::size_t n = problem.n();
+  double largest = 0;
+  for (const std::size_t first : {std::size_t{0}, n}) {
+    double size = 0, estimate = 0;
+    for (std::size_t i = first; i < first + n; ++i) {
+      size = std::max(size, std::abs(result.state[i]));
+      estimate = std::max(estimate, result.error.states[i]);
+    }
+    if (estimate > 0) largest = std::max(largest, estimate / std::max(size, estimate));
+  }
+  return largest;
+}
+
+}  // namespace balance
+
+inline void require_balance(const Problem& problem, RunResult& result) {
+  double open = problem.power ? result.power_balance : 0;
+  for (std::size_t i = 0; i < problem.invariants.size(); ++i) {
+    if (problem.invariants[i].output == problem.energy) open = std::max(open, result.invariants[i].max_relative_drift);
+  }
+  const bool told = result.error.doubt != Doubt::none;  // the estimate itself says that it is not to be trusted
+  if (told || !(open > balance::always)) return;
+  double allowed = problem.step > 0 ? 0 : balance::of_tolerance * problem.rtol;
+  allowed = std::max(allowed, result.error.states.empty()
+                                  ? balance::without_estimate
+                                  : balance::of_estimate * balance::relative_estimate(problem, result));
+  if (open <= allowed) return;
+  result.outcome = Outcome::balance_open;
+  result.open_balance = open;
+  result.detail = "the energy changes by " + printed(open, 2) +
+                  " of itself more than the forces account for, and the error estimate does not explain it: something "
+                  "was passed over; compare with shorter steps, a tighter rtol or another solver";
+}
+
+}  // namespace eom::hybrid

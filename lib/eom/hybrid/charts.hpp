@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: MIT
+// The charts that one run is in. In: the state at the end of each step. Out: when and how it goes to second charts and
+// back, and the state in the own charts, angles continuous, for whoever reports it (docs/runtime.md, "Charts").
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/hybrid/problem.hpp"
+#include "eom/modes/chart_state.hpp"
+
+namespace eom::hybrid {
+
+class ChartSwitch {
+ public:
+  explicit ChartSwitch(const Problem& problem);
+
+  bool any() const { return !problem_.charts.empty(); }
+  unsigned second() const { return in_; }  // a bit per chart: which are second ones
+  int mode() const;                        // bits of `mode`
+  const Code& code() const { return *code_; }
+
+  /// The state of a start, in the own charts; whether it is to be exchanged there.
+  bool start(double t, const double* x);
+  /// 2 where the state is so near to where its chart fails that it must not be asked: a step that gets there is made
+  /// shorter.
+  int admits(const double* x) const;
+  /// An accepted step, the first to be told of it; true: the state is to be exchanged at its end.
+  bool follow(const StepView& step);
+  /// Exchanges what is due; whose charts these are.
+  std::vector<std::string> exchange(double t, std::span<double> x);
+
+  /// A state of the last step in the own charts. What has no value exactly where they fail is not a number.
+  void own(double t, const double* x, std::span<double> own) const;
+  /// Whether a coordinate of the model has another meaning at present.
+  bool has_exchanged(std::uint32_t coordinate) const;
+  /// Outputs that the code does not give at present.
+  std::span<const std::uint32_t> own_outputs() const;
+
+ private:
+  static constexpr double pi = std::numbers::pi;
+
+  // Of the sine or cosine that vanishes where a chart fails. The steps of a run shrink in proportion to it, and its
+  // rounding errors grow with its inverse; the second chart is never below sqrt(1 - 0.4^2) while the own one is below
+  // 0.4.
+  static constexpr double leaves_below = 0.2;
+  static constexpr double returns_above = 0.4;
+  static constexpr double forbidden = 0.02;  // of the angle: beyond what a step may reach in the chart that it began in
+
+  static constexpr double turns_in_a_sample = 1;  // rad: what an angle may change so that no turn is missed
+  static constexpr int deepest = 14;              // halvings of a step for that
+
+  static double regular(bool at_sine, double angle) { return at_sine ? std::sin(angle) : std::cos(angle); }
+
+  struct Sample {
+    double t;
+    std::vector<double> x;  // in the own charts
+  };
+  bool is_second(std::size_t j) const { return (in_ >> j & 1) != 0; }
+  void guard(const double* x);
+  unsigned wanted(const double* x, const double* own) const;
+  void sample(const StepView& step, double until, const double* x, int depth);
+  void made_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const;
+
+  const Problem& problem_;
+  const Code* code_;
+  std::size_t n_;
+  unsigned in_ = 0, due_ = 0;
+  std::vector<double> floor_;    // per chart: the zero of its sine or cosine below the guarded angle
+  std::vector<double> side_;     // 1, -1: the sign of the own sine or cosine where the own chart was left
+  std::vector<Sample> samples_;  // along the last step, while some chart is a second one
+};
+
+inline ChartSwitch::ChartSwitch(const Problem& problem)
+    : problem_(problem),
+      code_(problem.code),
+      n_(problem.code->free.size()),
+      floor_(problem.charts.size()),
+      side_(problem.charts.size(), 1) {}
+
+inline int ChartSwitch::mode() const { return mode_of_charts(in_); }
+
+inline void ChartSwitch::guard(const double* x) {
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    const ExchangedChart& chart = problem_.charts[j];
+    const bool at_sine = is_second(j) ? chart.second_at_sine : chart.at_sine;
+    const double shift = at_sine ? 0 : pi / 2;
+    floor_[j] = std::floor((x[chart.angles[chart.guarded]] - shift) / pi) * pi + shift;
+  }
+}
+
+inline int ChartSwitch::admits(const double* x) const {
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    const ExchangedChart& chart = problem_.charts[j];
+    const double above = x[chart.angles[chart.guarded]] - floor_[j];
+    if (above < forbidden || above > pi - forbidden) return 2;
+  }
+  return 0;
+}
+
+inline unsigned ChartSwitch::wanted(const double* x, const double* own) const {
+  unsigned result = in_;
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    const ExchangedChart& chart = problem_.charts[j];
+    const std::size_t angle = chart.angles[chart.guarded];
+    const double first = std::abs(regular(chart.at_sine, own[angle]));
+    if (!is_second(j)) {
+      if (first < leaves_below) result |= 1u << j;
+    } else if (first > returns_above || std::abs(regular(chart.second_at_sine, x[angle])) < leaves_below) {
+      result &= ~(1u << j);
+    }
+  }
+  return result;
+}
+
+inline bool ChartSwitch::start(double t, const double* x) {
+  in_ = 0;
+  samples_ = {{t, {x, x + 2 * n_}}};
+  guard(x);
+  due_ = wanted(x, x);
+  return due_ != in_;
+}
+
+inline bool ChartSwitch::follow(const StepView& step) {
+  if (in_ == 0) {
+    due_ = wanted(step.x1.data(), step.x1.data());
+    return due_ != in_;
+  }
+  samples_.erase(samples_.begin(), samples_.end() - 1);
+  sample(step, step.t1, step.x1.data(), 0);
+  due_ = wanted(step.x1.data(), samples_.back().x.data());
+  return due_ != in_;
+}
+
+/// The own charts at a time of the step, after what is between, if an angle turns fast there: near where the own chart
+/// fails the motion is slow in the second one only.
+inline void ChartSwitch::sample(const StepView& step, double until, const double* x, int depth) {
+  const Sample& last = samples_.back();
+  Sample next{until, std::vector<double>(2 * n_ + problem_.code->integrals)};
+  own(until, x, next.x);
+  double turned = 0;
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    for (const std::size_t angle : problem_.charts[j].angles) {
+      if (is_second(j)) turned = std::max(turned, std::abs(next.x[angle] - last.x[angle]));
+    }
+  }
+  if (turned > turns_in_a_sample && depth < deepest) {
+    const double middle = last.t + (until - last.t) / 2;
+    std::vector<double> between(step.x0.size());
+    step.interpolate(middle, between);
+    sample(step, middle, between.data(), depth + 1);
+    sample(step, until, x, depth + 1);
+    return;
+  }
+  for (std::size_t i = 0; i < next.x.size(); ++i) {
+    if (!std::isfinite(next.x[i])) next.x[i] = i < last.x.size() ? last.x[i] : 0;  // exactly where the own chart fails
+  }
+  samples_.push_back(std::move(next));
+}
+
+inline void ChartSwitch::own(double t, const double* x, std::span<double> result) const {
+  std::copy_n(x, result.size(), result.begin());
+  if (in_ == 0) return;
+  code_->chart(x, mode(), 0, result.data());
+  const auto nearest = std::min_element(samples_.begin(), samples_.end(), [t](const Sample& a, const Sample& b) {
+    return std::abs(a.t - t) < std::abs(b.t - t);
+  });
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    if (is_second(j)) made_continuous(j, nearest->x, result);
+  }
+}
+
+/// The formulas give the attitude with a positive sine or cosine; the same one has a negative one, and whole turns
+/// more.
+inline void ChartSwitch::made_continuous(std::size_t j, const std::vector<double>& near, std::span<double> own) const {
+  const ExchangedChart& chart = problem_.charts[j];
+  for (std::size_t k = 0; k < chart.angles.size(); ++k) {
+    double& angle = own[chart.angles[k]];
+    if (side_[j] < 0) {
+      angle = k != chart.guarded ? angle + pi : chart.at_sine ? -angle : pi - angle;
+      if (k == chart.guarded) own[n_ + chart.angles[k]] *= -1;
+    }
+    angle += 2 * pi * std::round((near[chart.angles[k]] - angle) / (2 * pi));
+  }
+}
+
+inline std::vector<std::string> ChartSwitch::exchange(double t, std::span<double> x) {
+  std::vector<double> before(x.begin(), x.end()), own_x(2 * n_ + problem_.code->integrals);
+  own(t, before.data(), own_x);
+  if (due_ != 0) code_ = &problem_.in_charts(due_);
+  code_->chart(before.data(), mode(), mode_of_charts(due_), x.data());
+  std::vector<std::string> names;
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    const ExchangedChart& chart = problem_.charts[j];
+    if (((in_ ^ due_) >> j & 1) == 0) continue;
+    names.push_back(chart.of);
+    if (!is_second(j)) side_[j] = regular(chart.at_sine, before[chart.angles[chart.guarded]]) < 0 ? -1 : 1;
+    for (const std::size_t angle : chart.angles) {
+      if (is_second(j)) x[angle] = own_x[angle], x[n_ + angle] = own_x[n_ + angle];
+    }
+  }
+  in_ = due_;
+  samples_ = {{t, std::move(own_x)}};
+  guard(x.data());
+  return names;
+}
+
+inline bool ChartSwitch::has_exchanged(std::uint32_t coordinate) const {
+  for (std::size_t j = 0; j < problem_.charts.size(); ++j) {
+    const std::vector<std::uint32_t>& all = problem_.charts[j].coordinates;
+    if (is_second(j) && std::find(all.begin(), all.end(), coordinate) != all.end()) return true;
+  }
+  return false;
+}
+
+inline std::span<const std::uint32_t> ChartSwitch::own_outputs() const {
+  for (const OwnOutputs& own : code_->own_outputs) {
+    if (own.in_charts == mode()) return own.outputs;
+  }
+  return {};
+}
+
+}  // namespace eom::hybrid

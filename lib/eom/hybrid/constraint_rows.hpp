@@ -1,0 +1,229 @@
+// SPDX-License-Identifier: MIT
+// What a run projects its states onto: constraints on positions, then integrals of constraints on velocities with the
+// constants of the start, then constraints on velocities, then slip 0 of contacts that stick. Rows that the mode has
+// let go are 0. In: the compiled code. Out: rows as eom::Projection takes them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "eom/hybrid/problem.hpp"
+#include "eom/modes/contact_state.hpp"
+
+namespace eom::hybrid {
+
+class ConstraintRows {
+ public:
+  explicit ConstraintRows(const Problem& problem);
+
+  std::size_t size() const { return order_.size() + integrals_.size() + slips_.size(); }
+  std::size_t on_positions() const { return holonomic_ + integrals_.size(); }
+  /// Which of the active constraints a row is; their number for one of an integral or of slip.
+  std::size_t constraint_of(std::size_t row) const {
+    if (row < holonomic_) return order_[row];
+    return row < on_positions() || row - integrals_.size() >= order_.size() ? order_.size()
+                                                                            : order_[row - integrals_.size()];
+  }
+
+  /// The state whose integrals are kept; u: the inputs there.
+  void start(double t, const double* x, const double* u);
+  int operator()(double t, const double* x, const double* u, double* psi, double* A, double* b);
+  /// The mode of the contacts, with all others that touch sliding in slide_all().
+  void mode(int contacts) { mode_ = contacts, all_slide_ = false; }
+  /// The charts that states are in from here on.
+  void charts(const Code& code, int bits) { code_ = &code, charts_ = bits; }
+  void slide_all(int contacts) { mode_ = contacts, all_slide_ = true; }
+  /// A row is to have this value in place of 0.
+  void target(std::size_t row, double value) { targets_.at(row) = value; }
+  void clear_targets() { targets_.assign(size(), 0.0); }
+  /// The row of a contact that can be left; the first of its slip.
+  std::size_t row_of(std::size_t contact) const;
+  std::size_t slip_row_of(std::size_t contact) const;
+  /// A qdot + b of a row.
+  double rate(double t, const double* x, const double* u, std::size_t row);
+
+  /// Largest |psi|, |f . qdot + b| of a state; infinite where one has no value. Integrals are watched as invariants.
+  double defect(double t, const double* x);
+
+ private:
+  static constexpr double largest_drift = 1e-3;  // of an integral, relative to what its terms may change
+
+  struct Integral {
+    std::size_t psi;                  // places among the outputs
+    std::vector<std::size_t> slopes;  // by the free coordinates, then by t
+    double constant = 0;
+  };
+
+  struct Slip {
+    std::size_t contact, slip;        // the contact; place of the slip among the outputs
+    std::vector<std::size_t> slopes;  // by the rates of the free coordinates
+  };
+
+  bool is_apart(std::size_t active_constraint) const;
+  int constraints(double t, const double* x);
+  void fill_integrals(const double* x, double* psi, double* A, double* b) const;
+  void fill_slips(const double* x, double* psi, double* A, double* b) const;
+
+  const Problem& problem_;
+  const Code* code_;
+  int charts_ = 0;
+  std::size_t n_, holonomic_ = 0;
+  int mode_ = 0;
+  bool all_slide_ = false;
+  std::vector<Slip> slips_;
+  std::vector<double> targets_;
+  std::vector<std::size_t> order_;  // of the active constraints: those on positions first
+  std::vector<Integral> integrals_;
+  std::vector<double> y_, psi_, A_, b_;
+  std::vector<double> row_psi_, row_A_, row_b_;  // for rate()
+};
+
+inline ConstraintRows::ConstraintRows(const Problem& problem)
+    : problem_(problem), code_(problem.code), n_(problem.code->free.size()) {
+  const Code& code = *problem.code;
+  for (const bool positions : {true, false}) {
+    for (std::size_t k = 0; k < code.active_constraints; ++k) {
+      if (code.holonomic[k] == positions) order_.push_back(k);
+    }
+    if (positions) holonomic_ = order_.size();
+  }
+  for (const IntegralOutputs& outputs : problem.integrals) integrals_.push_back({outputs.psi, outputs.slopes});
+  for (std::size_t j = 0; j < problem.contacts.size(); ++j) {
+    for (std::size_t a = 0; a < problem.contacts[j].slip.size() && code.contacts[j].sticks; ++a) {
+      slips_.push_back({j, problem.contacts[j].slip[a], problem.contacts[j].slopes[a]});
+    }
+  }
+  clear_targets();
+  y_.resize(code.output_names.size());
+  psi_.resize(order_.size());
+  A_.resize(order_.size() * n_);
+  b_.resize(order_.size());
+}
+
+inline void ConstraintRows::start(double t, const double* x, const double* u) {
+  if (integrals_.empty()) return;
+  problem_.code->outputs(t, x, problem_.parameters.data(), u, 0, y_.data());
+  for (Integral& integral : integrals_) integral.constant = y_[integral.psi];
+}
+
+inline bool ConstraintRows::is_apart(std::size_t k) const {
+  for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
+    if (problem_.code->contacts[j].unilateral && problem_.contacts[j].constraint == k)
+      return contact_leaf(mode_, 2 * j + 1) < 0;
+  }
+  return false;
+}
+
+inline std::size_t ConstraintRows::row_of(std::size_t contact) const {
+  const auto found = std::find(order_.begin(), order_.end(), problem_.contacts[contact].constraint);
+  return static_cast<std::size_t>(found - order_.begin());  // on positions: before the integrals
+}
+
+inline std::size_t ConstraintRows::slip_row_of(std::size_t contact) const {
+  const auto found =
+      std::find_if(slips_.begin(), slips_.end(), [=](const Slip& slip) { return slip.contact == contact; });
+  return order_.size() + integrals_.size() + static_cast<std::size_t>(found - slips_.begin());
+}
+
+inline int ConstraintRows::constraints(double t, const double* x) {
+  const double* p = problem_.parameters.data();
+  if (charts_ == 0) return code_->constraints(t, x, p, psi_.data(), A_.data(), b_.data());
+  return code_->constraints_in(t, x, p, charts_, psi_.data(), A_.data(), b_.data());
+}
+
+inline int ConstraintRows::operator()(double t, const double* x, const double* u, double* psi, double* A, double* b) {
+  const double* p = problem_.parameters.data();
+  const std::size_t m = order_.size(), rows = size();
+  if (m > 0) {
+    if (const int code = constraints(t, x); code != 0) return code;
+  }
+  for (std::size_t k = 0; k < m; ++k) {
+    const std::size_t row = k < holonomic_ ? k : k + integrals_.size();
+    const bool apart = is_apart(order_[k]);
+    psi[row] = apart ? 0 : psi_[order_[k]];
+    b[row] = apart ? 0 : b_[order_[k]];
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = apart ? 0 : A_[order_[k] + m * i];
+  }
+  if (!integrals_.empty() || !slips_.empty()) {
+    if (const int code = problem_.code->outputs(t, x, p, u, mode_, y_.data()); code != 0) return code;
+    fill_integrals(x, psi, A, b);
+    fill_slips(x, psi, A, b);
+  }
+  for (std::size_t row = 0; row < rows; ++row) b[row] -= targets_[row];
+  return 0;
+}
+
+inline void ConstraintRows::fill_integrals(const double* x, double* psi, double* A, double* b) const {
+  const std::size_t rows = size();
+  for (std::size_t k = 0; k < integrals_.size(); ++k) {
+    const Integral& integral = integrals_[k];
+    const std::size_t row = holonomic_ + k;
+    psi[row] = y_[integral.psi] - integral.constant;
+    b[row] = y_[integral.slopes[n_]];
+    bool finite = std::isfinite(psi[row]) && std::isfinite(b[row]);
+    for (std::size_t i = 0; i < n_; ++i) {
+      A[row + rows * i] = y_[integral.slopes[i]];
+      finite = finite && std::isfinite(A[row + rows * i]);
+    }
+    // Outside of its domain, or on another branch of an arc tangent, an integral says nothing, and its constraint goes
+    // on; the watch reports the drift. A true drift is far smaller than the coordinates.
+    double size = 0;
+    for (std::size_t i = 0; i < n_; ++i) size += std::abs(A[row + rows * i]) * std::max(1.0, std::abs(x[i]));
+    if (finite && std::abs(psi[row]) <= largest_drift * size) continue;
+    psi[row] = b[row] = 0;
+    for (std::size_t i = 0; i < n_; ++i) A[row + rows * i] = 0;
+  }
+}
+
+// The slip is linear in the rates: w = A qdot + b.
+inline void ConstraintRows::fill_slips(const double* x, double* psi, double* A, double* b) const {
+  const std::size_t rows = size(), first = order_.size() + integrals_.size();
+  for (std::size_t k = 0; k < slips_.size(); ++k) {
+    const Slip& slip = slips_[k];
+    const int digit = contact_digit(mode_, slip.contact);
+    const bool held =
+        !all_slide_ && digit % 3 == 0 && !(problem_.code->contacts[slip.contact].unilateral && digit >= 3);
+    const std::size_t row = first + k;
+    psi[row] = 0;
+    b[row] = held ? y_[slip.slip] : 0;
+    for (std::size_t i = 0; i < n_; ++i) {
+      A[row + rows * i] = held ? y_[slip.slopes[i]] : 0;
+      b[row] -= A[row + rows * i] * x[n_ + i];
+    }
+  }
+}
+
+inline double ConstraintRows::rate(double t, const double* x, const double* u, std::size_t row) {
+  const std::size_t rows = size();
+  row_psi_.resize(rows), row_b_.resize(rows), row_A_.resize(rows * n_);
+  const int mode = mode_;
+  mode_ = 0;  // everything touches
+  const int code = (*this)(t, x, u, row_psi_.data(), row_A_.data(), row_b_.data());
+  mode_ = mode;
+  if (code != 0) return std::nan("");
+  double sum = row_b_[row] + targets_[row];
+  for (std::size_t i = 0; i < n_; ++i) sum += row_A_[row + rows * i] * x[n_ + i];
+  return sum;
+}
+
+inline double ConstraintRows::defect(double t, const double* x) {
+  if (psi_.empty()) return 0;
+  const Code& code = *problem_.code;
+  // Where psi has no value the drift is infinite, not what it was a step ago.
+  if (constraints(t, x) != 0) return HUGE_VAL;
+  double largest = 0;
+  for (std::size_t k = 0; k < psi_.size(); ++k) {
+    if (is_apart(k)) continue;
+    double defect = psi_[k];
+    if (!code.holonomic[k]) {
+      defect = b_[k];
+      for (std::size_t i = 0; i < n_; ++i) defect += A_[k + psi_.size() * i] * x[n_ + i];
+    }
+    largest = std::isnan(defect) ? HUGE_VAL : std::max(largest, std::abs(defect));
+  }
+  return largest;
+}
+
+}  // namespace eom::hybrid

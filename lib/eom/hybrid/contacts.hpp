@@ -1,0 +1,291 @@
+// SPDX-License-Identifier: MIT
+// The modes of the contacts during one run: eom::Contacts on compiled code. In: the state where a function of a contact
+// crosses zero. Out: the next mode, velocities after it, what is to be told of it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eom/hybrid/impacts.hpp"
+#include "eom/hybrid/model.hpp"
+#include "eom/modes/contacts.hpp"
+
+namespace eom::hybrid {
+
+class ContactModes {
+ public:
+  /// `changed`: told where velocities change, with the state before and after.
+  using Changed = std::function<void(double t, std::span<const double> before, std::span<const double> after)>;
+  ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed);
+
+  /// What is not a number is neither within a law nor beyond it.
+  static int code_of(const double* g, std::size_t count) {
+    return std::any_of(g, g + count, [](double value) { return std::isnan(value); }) ? code_not_finite : 0;
+  }
+  int mode() const { return switch_ ? switch_->mode : 0; }
+  /// The mode of a start; what slides off at once is told.
+  std::vector<ModeEvent> start(double t, std::span<double> x);
+  void watch(std::span<EventFunction> functions) const { switch_->watch(functions); }
+  /// Makes the functions those that are watched; sizes of slips are kept in mind.
+  void adjust(double* g);
+  /// A step begins at (t, x).
+  void hold(double t, const double* x);
+  void tolerances(double rtol, double atol) { velocities_.tolerances(rtol, atol); }
+  /// Whether slip in two directions changes in a step h by so much beside its speed that the step follows neither its
+  /// direction nor its end. `now`: the answer before, so that it does not go to and fro.
+  bool slow_slip(double t, const double* x, double h, bool now);
+  /// A crossing of one of the functions; what is to be told of it.
+  AtEvent take(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions);
+  const ModeEvent* told() const { return told_ ? &*told_ : nullptr; }
+  /// Where the run was ended by a contact.
+  std::optional<Outcome> ended() const;
+  const std::string& detail() const { return switch_->detail; }
+
+ private:
+  static constexpr double known_gap = 3e-14;       // of the largest: rounding of what it is made of
+  static constexpr double most_restitution = 0.9;  // beyond it bounces go on for long
+
+  struct Motion {
+    ContactModes* self;
+    int impact(double t, std::span<double> x, int mode, std::size_t j, double e) const;
+    int close(double t, std::span<double> x, int mode) const;
+    int stick(double t, std::span<double> x, int mode, std::size_t j) const;
+    int stop(double& t, std::span<double> x, int mode, std::size_t j) const;
+    int slide(double t, std::span<double> x, int mode, std::size_t j) const;
+    double least_slip(std::size_t j) const { return self->velocities_.least_slip(j); }
+    double approach(double t, std::span<const double> x, std::size_t j) const;
+    double still() const { return self->velocities_.still(); }
+  };
+  void end_bounces(double& t, std::span<double> x, std::size_t j);
+
+  /// As eom::Contacts asks for them: the mode is that of the contacts.
+  struct Rhs {
+    Model* model;
+    int operator()(double t, const double* x, int mode, double* dx) const { return model->rhs_of(mode, t, x, dx); }
+  };
+  struct Functions {
+    Functions(Model& of, std::size_t before, std::size_t values)
+        : model(&of), first(before), count(values), all(before + values) {}
+    Model* model;
+    std::size_t first, count;  // of the values of contacts among all event functions
+    std::vector<double> all;
+    int operator()(double t, const double* x, int mode, double* g) {
+      const int code = model->events_of(mode, t, x, all.data());
+      std::copy_n(all.begin() + static_cast<std::ptrdiff_t>(first), count, g);
+      return code != 0 ? code : code_of(g, count);
+    }
+  };
+  using Rule = Contacts<Rhs, Functions, Motion>;
+
+  const Problem& problem_;
+  Model& model_;
+  ConstraintRows& rows_;
+  ContactVelocities velocities_;
+  bool two_directions_ = false;      // some contact slides in two
+  std::vector<double> restitution_;  // of each contact, at the start
+  double largest_gap_ = 0;           // of contacts that are apart
+  Changed changed_;
+  Rhs rhs_;
+  Functions functions_;
+  Rule rule_;
+  std::vector<double> g_, k_, middle_;
+  std::optional<modes::Switch<Rule>> switch_;
+  std::optional<ModeEvent> told_;
+};
+
+inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed)
+    : problem_(problem),
+      model_(model),
+      rows_(rows),
+      velocities_(problem, rows),
+      changed_(std::move(changed)),
+      rhs_{&model},
+      functions_(model, problem.events.size() + problem.code->kinks.size(),
+                 contact_values * problem.code->contacts.size()),
+      rule_(problem.code->contacts, problem.states(), rhs_, functions_, Motion{this}),
+      g_(rule_.functions()) {
+  for (const Contact& contact : problem.code->contacts) two_directions_ = two_directions_ || contact.dimensions == 2;
+}
+
+inline int ContactModes::Motion::impact(double t, std::span<double> x, int mode, std::size_t j, double e) const {
+  const std::vector<double> before(x.begin(), x.end());
+  const int code = self->velocities_.impact(t, x, self->model_.inputs(t), mode, j, e);
+  if (code == 0) self->changed_(t, before, x);
+  return code;
+}
+inline int ContactModes::Motion::close(double t, std::span<double> x, int mode) const {
+  const std::vector<double> before(x.begin(), x.end());
+  const int code = self->velocities_.close(t, x, self->model_.inputs(t), mode);
+  if (code == 0) self->changed_(t, before, x);
+  return code;
+}
+inline int ContactModes::Motion::stick(double t, std::span<double> x, int mode, std::size_t j) const {
+  const std::vector<double> before(x.begin(), x.end());
+  const int code = self->velocities_.stick(t, x, self->model_.inputs(t), mode, j);
+  if (code == 0) self->changed_(t, before, x);
+  return code;
+}
+inline int ContactModes::Motion::slide(double t, std::span<double> x, int mode, std::size_t j) const {
+  const std::vector<double> before(x.begin(), x.end());
+  const int code = self->velocities_.slide(t, x, self->model_.inputs(t), mode, j);
+  if (code == 0) self->changed_(t, before, x);
+  return code;
+}
+inline double ContactModes::Motion::approach(double t, std::span<const double> x, std::size_t j) const {
+  return self->velocities_.approach(t, x, self->model_.inputs(t), j);
+}
+
+inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x) {
+  const std::vector<Contact>& contacts = problem_.code->contacts;
+  std::vector<double> g(rule_.functions());
+  velocities_.forget();
+  largest_gap_ = 0;
+  restitution_.assign(contacts.size(), 0.0);
+  if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t), 0);  // how much slip counts, before any is given
+  std::vector<double> slip(contacts.size(), 0.0);
+  std::array<bool, max_contacts> apart{};
+  for (std::size_t j = 0; j < contacts.size(); ++j) {
+    apart[j] = problem_.apart[j];
+    restitution_[j] = velocities_.restitution(t, x.data(), model_.inputs(t), j);
+    rule_.restitution(j, restitution_[j]);
+  }
+  if (functions_(t, x.data(), 0, g.data()) == 0) {
+    for (std::size_t j = 0; j < contacts.size(); ++j) {
+      const double* const value = g.data() + contact_values * j;
+      slip[j] = contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
+    }
+    adjust(g.data());
+  }
+  const int mode = rule_.start(t, x, std::span<const bool>(apart.data(), contacts.size()));
+  rows_.mode(mode);
+  switch_.emplace(rule_.table(), rule_, mode);
+  hold(t, x.data());
+  std::vector<ModeEvent> told;
+  for (std::size_t j = 0; j < contacts.size(); ++j) {
+    const int digit = contact_digit(mode, j);
+    const bool touches = !contacts[j].unilateral || digit < 3;
+    if (contacts[j].sticks && touches && digit % 3 != 0 && slip[j] <= velocities_.still())
+      told.push_back({t, "slip", contacts[j].name, 0, mode});
+    if (!touches && !apart[j]) told.push_back({t, "lose_contact", contacts[j].name, 0, mode});
+  }
+  return told;
+}
+
+inline void ContactModes::hold(double t, const double* x) {
+  if (two_directions_) velocities_.hold(t, x, model_.inputs(t), mode());
+}
+
+inline bool ContactModes::slow_slip(double t, const double* x, double h, bool now) {
+  const double steps = now ? 8 : 4;
+  bool slow = false, moved = false;
+  for (std::size_t j = 0; j < problem_.code->contacts.size() && !slow; ++j) {
+    const Contact& contact = problem_.code->contacts[j];
+    if (contact.dimensions != 2 || !contact.sticks || contact_digit(mode(), j) % 3 == 0 ||
+        (contact.unilateral && contact_digit(mode(), j) >= 3))
+      continue;
+    if (!moved) {
+      k_.resize(problem_.states());
+      if (rhs_(t, x, mode(), k_.data()) != 0) return now;
+      middle_.resize(k_.size());
+      for (std::size_t i = 0; i < k_.size(); ++i) middle_[i] = x[i] + h * k_[i];
+      moved = true;
+    }
+    const std::array<double, 2> here = velocities_.slip(t, x, model_.inputs(t), mode(), j);
+    const std::array<double, 2> there = velocities_.slip(t + h, middle_.data(), model_.inputs(t + h), mode(), j);
+    slow = std::hypot(here[0], here[1]) < steps * std::hypot(there[0] - here[0], there[1] - here[1]);
+  }
+  return slow;
+}
+
+/// Where the slip of contact j vanishes, by the midpoint rule over the short time that is left: the slip along its
+/// direction is all but linear there.
+inline int ContactModes::Motion::stop(double& t, std::span<double> x, int mode, std::size_t j) const {
+  const auto slip = [&](double at, const double* state) {
+    return self->velocities_.slip(at, state, self->model_.inputs(at), mode, j);
+  };
+  const std::array<double, 2> w = slip(t, x.data());
+  const double speed = std::hypot(w[0], w[1]);
+  if (!(speed > 0)) return 0;
+  std::vector<double>& k = self->k_;
+  std::vector<double>& middle = self->middle_;
+  k.resize(x.size()), middle.resize(x.size());
+  if (const int code = self->rhs_(t, x.data(), mode, k.data()); code != 0) return code;
+  const auto moved = [&](double h) {
+    for (std::size_t i = 0; i < x.size(); ++i) middle[i] = x[i] + h * k[i];
+    const std::array<double, 2> after = slip(t + h, middle.data());
+    return (w[0] * after[0] + w[1] * after[1]) / speed;
+  };
+  // The rate of the slip from a step in which it changes by a small part of itself.
+  double h = 1e-6, rate = (moved(h) - speed) / h;
+  if (rate < 0) h = -speed / rate / 8, rate = (moved(h) - speed) / h;
+  if (!(rate < 0)) return slips_on;
+  h = -speed / rate;
+  for (std::size_t i = 0; i < x.size(); ++i) middle[i] = x[i] + h / 2 * k[i];
+  if (const int code = self->rhs_(t + h / 2, middle.data(), mode, k.data()); code != 0) return code;
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += h * k[i];
+  t += h;
+  return 0;
+}
+
+inline void ContactModes::adjust(double* g) {
+  for (std::size_t j = 0; j < problem_.code->contacts.size(); ++j) {
+    const double* const value = g + contact_values * j;
+    const double slip =
+        problem_.code->contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
+    if (problem_.code->contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.see_slip(slip);
+    if (problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3 && std::isfinite(value[3]))
+      largest_gap_ = std::max(largest_gap_, std::abs(value[3]));
+  }
+  rule_.shift(g);
+}
+
+/// Where the bounce that follows is lower than the gap is known, so are all after it: they are over after the sum of
+/// their times, in which the motion goes on as it begins, and the contact stays.
+inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
+  const Motion motion{this};
+  const double e = restitution_[j], up = -e * motion.approach(t, x, j);
+  k_.resize(x.size()), middle_.resize(x.size());
+  if (!(up > 0) || rhs_(t, x.data(), mode(), k_.data()) != 0) return;
+  const double h = 1e-6;
+  for (std::size_t i = 0; i < x.size(); ++i) middle_[i] = x[i] + h * k_[i];
+  const double falls = (motion.approach(t, x, j) - motion.approach(t + h, middle_, j)) / h;
+  if (!(falls > 0) || up * up / (2 * falls) > known_gap * largest_gap_) return;
+  if (motion.impact(t, x, with_contact_digit(mode(), j, 0), j, e) != 0 || rhs_(t, x.data(), mode(), k_.data()) != 0)
+    return;
+  const double time = 2 * up / (falls * (1 - e));
+  const std::size_t n = problem_.code->free.size();
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * (k_[i] + (i < n ? time / 2 * k_[n + i] : 0));
+  t += time;
+  rule_.restitution(j, 0);
+}
+
+inline AtEvent ContactModes::take(double& t, std::span<double> x, const Crossing& crossing,
+                                  std::span<EventFunction> functions) {
+  const std::size_t before = switch_->events.size();
+  const std::size_t j = crossing.function / contact_values;
+  const bool hits =
+      crossing.function % contact_values == 3 && problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3;
+  const double e = hits ? restitution_[j] : 0;
+  if (e > 0 && e < most_restitution) end_bounces(t, x, j);
+  const AtEvent answer = switch_->take(t, x, crossing, functions);
+  if (e > 0) rule_.restitution(j, e);
+  rows_.mode(switch_->mode);
+  if (answer == AtEvent::restart) hold(t, x.data());
+  told_.reset();
+  if (switch_->events.size() > before) told_ = switch_->events.back();
+  return answer;
+}
+
+inline std::optional<Outcome> ContactModes::ended() const {
+  if (!switch_ || switch_->ended == Outcome::done) return std::nullopt;
+  return switch_->ended;
+}
+
+}  // namespace eom::hybrid

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: MIT
+// How far off the end of a run is: further runs, and what fixed steps hide from them.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <numbers>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/error_estimate.hpp"
+#include "eom/hybrid/integration.hpp"
+#include "eom/hybrid/rounding.hpp"
+#include "eom/hybrid/run_result.hpp"
+#include "eom/hybrid/step_adequacy.hpp"
+#include "eom/hybrid/text.hpp"
+#include "eom/hybrid/unresolved_impulses.hpp"
+
+namespace eom::hybrid {
+
+class EndEstimate {
+ public:
+  /// first: the run, in the model's own charts; adequacy: of fixed steps, else null. error: with a doubt, if there is
+  /// one already.
+  EndEstimate(const Problem& problem, const Result& first, const Options& options, StepAdequacy* adequacy,
+              EndError& error)
+      : problem_(problem),
+        first_(first),
+        options_(options),
+        method_(method_named(problem.solver)),
+        adequacy_(adequacy),
+        error_(error),
+        impulses_(problem.n(), problem.n()) {}
+
+  void run() {
+    const auto start = std::chrono::steady_clock::now();
+    ErrorEstimate estimate = repeat();
+    if (adequacy_ != nullptr) see_rounding(estimate);
+    if (method_.variational) see_rounding_of_rates(estimate);
+    const std::size_t states = 2 * problem_.n() + problem_.code->integrals;
+    error_.states.assign(estimate.x.begin(), estimate.x.begin() + static_cast<std::ptrdiff_t>(states));
+    for (const double e : error_.states) error_.max = std::max(error_.max, e);
+    if (first_.outcome == Outcome::stopped_by_event) error_.t = stop_;
+    error_.rhs_evaluations = estimate.statistics.rhs_evaluations + impulses_.evaluations();
+    if (estimate.outcome != Outcome::done) {
+      error_.doubt = Doubt::tighter_run;
+      error_.note =
+          std::string("a tighter run ended with '") + name(estimate.outcome) + "'; the estimate is not to be trusted";
+    }
+    if (!same_end_)
+      doubt(Doubt::event_missed,
+            "a tighter run did not stop at the event: the ends that are compared are not of the same time");
+    if (adequacy_ != nullptr) see_unresolved();
+    impulses_.finish();
+    see_impulses();
+    if (!estimate.converging)
+      doubt(Doubt::not_converging,
+            "steps of this size are too long for the method's order to show: shorter ones change the end by as much "
+            "again; the estimate is not to be trusted");
+    if (method_.variational) see_frozen();
+    error_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  }
+
+ private:
+  static constexpr double worth_a_note = 1e-3;  // of a velocity
+
+  void doubt(Doubt doubt, const std::string& note) {
+    if (error_.doubt != Doubt::none) return;
+    error_.doubt = doubt;
+    error_.note = note;
+  }
+
+  void at_least(std::size_t state, double estimate) {
+    error_.states[state] = std::max(error_.states[state], estimate);
+    error_.max = std::max(error_.max, error_.states[state]);
+  }
+
+  /// Whole turns between two runs are no difference where the angles were read off another chart.
+  void align(const std::vector<double>& first, std::vector<double>& other) const {
+    constexpr double turn = 2 * std::numbers::pi;
+    for (const ExchangedChart& chart : problem_.charts) {
+      for (const std::size_t angle : chart.angles)
+        other[angle] += turn * std::round((first[angle] - other[angle]) / turn);
+    }
+  }
+
+  /// Further runs; the first of them is compared with the run on the way, if its steps are fixed.
+  ErrorEstimate repeat() {
+    Integration again(problem_);
+    Parts& parts = again.parts();
+    bool compared = false;
+    stop_ = std::numeric_limits<double>::epsilon() * std::abs(first_.t);
+    return estimate_error(method_.order, problem_.t0, first_, options_, [&](const Options& tighter) {
+      const Observer compare = [&](const StepView& step) {
+        if (parts.charts.second() != 0) return true;
+        adequacy_->compare(step, [&](const auto& one, auto& two) { align(one, two); });
+        impulses_.see(step, [&](double t, const double* x, double* dx) { return parts.rhs(t, x, dx); });
+        return true;
+      };
+      const bool on_the_way = adequacy_ != nullptr && !std::exchange(compared, true);
+      Result other = again.run(tighter, on_the_way ? compare : Observer{});
+      if (other.outcome == first_.outcome) {
+        other.x = parts.own_state(other.t, other.x);
+        align(first_.x, other.x);
+      }
+      same_end_ = same_end_ && other.outcome == first_.outcome;
+      stop_ = std::max(stop_, std::abs(other.t - first_.t));
+      return other;
+    });
+  }
+
+  /// Of fixed steps: what the last digits of the start do to the end.
+  void see_rounding(ErrorEstimate& estimate) {
+    Result other = from_rounded_start(problem_, options_);
+    ++estimate.runs;
+    estimate.statistics += other.statistics;
+    if (other.outcome != first_.outcome) {
+      error_.doubt = Doubt::rounded_start;
+      error_.note = std::string("from a start that differs in its last digits the run ends with '") +
+                    name(other.outcome) + "'; the estimate is not to be trusted";
+      return;
+    }
+    align(first_.x, other.x);
+    for (std::size_t i = 0; i < first_.x.size(); ++i) {
+      const double difference = std::abs(first_.x[i] - other.x[i]);
+      estimate.x[i] =
+          std::max(estimate.x[i], std::isnan(difference) ? std::numeric_limits<double>::infinity() : difference);
+    }
+  }
+
+  void see_rounding_of_rates(ErrorEstimate& estimate) const {
+    const std::vector<double> rates = rounding_of_rates(problem_, first_.t, first_.x);
+    for (std::size_t i = 0; i < rates.size(); ++i) {
+      double& of = estimate.x[problem_.n() + i];
+      of = std::max(of, rates[i]);
+    }
+  }
+
+  /// Where fixed steps do not resolve the motion the ends say little: the differences on the way are the estimate then.
+  void see_unresolved() {
+    if (!(adequacy_->largest() > StepAdequacy::unresolved)) return;
+    const std::vector<double>& differences = adequacy_->differences();
+    for (std::size_t i = 0; i < std::min(differences.size(), error_.states.size()); ++i) at_least(i, differences[i]);
+    doubt(Doubt::unresolved, "steps of this size do not resolve the motion: halving them moves states on the way by " +
+                                 printed(adequacy_->largest(), 2) +
+                                 " of their size; take shorter ones, or a solver that chooses its steps");
+  }
+
+  /// Where a force turns within one step, what it changes the velocity by in the wrong place is in the end, and not in
+  /// the differences of ends.
+  void see_impulses() {
+    double at = 0;
+    const double part = 2 * impulses_.largest(at);  // seen in steps of half the size
+    if (!(part > 0)) return;
+    for (std::size_t i = 0; i < error_.states.size(); ++i) at_least(i, part * std::abs(first_.x[i]));
+    if (part < worth_a_note) return;
+    doubt(Doubt::impulse,
+          "near t = " + printed(at, 6) + " a force turns within one step, which changes the velocity by up to " +
+              printed(part, 2) +
+              " of its size in the wrong place; take shorter steps, or a solver that chooses its steps");
+  }
+
+  /// Steps so short that positions move in their last digits only: constraints on positions are then met by rounding,
+  /// and rates follow from that.
+  void see_frozen() {
+    constexpr double digits = 100 * std::numeric_limits<double>::epsilon();
+    const std::size_t n = problem_.n();
+    double position = 0, rate = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      position = std::max(position, std::abs(first_.x[i]));
+      rate = std::max(rate, std::abs(first_.x[n + i]));
+    }
+    if (problem_.code->active_constraints == 0 || !(rate > 0) || options_.fixed_step * rate >= digits * position)
+      return;
+    doubt(Doubt::frozen, "steps of " + printed(options_.fixed_step, 3) +
+                             " move the positions by less than their last digits, so that the constraints say nothing "
+                             "about rates; the estimate is not to be trusted");
+  }
+
+  const Problem& problem_;
+  const Result& first_;
+  const Options& options_;
+  const MethodInfo& method_;
+  StepAdequacy* adequacy_;
+  EndError& error_;
+  UnresolvedImpulses impulses_;
+  bool same_end_ = true;
+  double stop_ = 0;
+};
+
+}  // namespace eom::hybrid

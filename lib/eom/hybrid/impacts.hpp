@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: MIT
+// What happens to velocities where a contact changes its mode: impacts, sliding in two directions that starts or ends.
+// In: the compiled code. Out: the state with the velocities that are nearest in the metric of M, which is what an
+// impulse along the constraints gives.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "eom/constraints/projection.hpp"
+#include "eom/hybrid/constraint_rows.hpp"
+
+namespace eom::hybrid {
+
+/// Of the steps in place of fixed ones where slip in two directions changes by too much in one of these.
+inline constexpr double slow_slip_rtol = 1e-12, slow_slip_atol = 1e-15;
+
+class ContactVelocities {
+ public:
+  ContactVelocities(const Problem& problem, ConstraintRows& rows);
+
+  /// As ContactMotion; u: the inputs there.
+  int impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact, double restitution);
+  int close(double t, std::span<double> x, const double* u, int mode);
+  int stick(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
+  int slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact);
+  double approach(double t, std::span<const double> x, const double* u, std::size_t contact);
+
+  /// Slip and gap speeds up to here count as none: within the tolerances of the run.
+  double still() const;
+  void forget();
+  /// Of the steps that are made.
+  void tolerances(double rtol, double atol) { rtol_ = rtol, atol_ = atol; }
+  void see_slip(double speed) { largest_slip_ = std::max(largest_slip_, speed); }
+  /// A step begins at (t, x): how much slip in two directions counts there.
+  void hold(double t, const double* x, const double* u, int mode);
+  double least_slip(std::size_t contact) const { return least_[contact]; }
+  std::array<double, 2> slip(double t, const double* x, const double* u, int mode, std::size_t contact);
+  double restitution(double t, const double* x, const double* u, std::size_t contact);
+
+ private:
+  int move(double t, std::span<double> x, const double* u);
+
+  const Problem& problem_;
+  ConstraintRows& rows_;
+  Projection projection_;
+  std::vector<double> y_;
+  std::vector<double> least_;  // per contact
+  double rtol_, atol_;
+  double largest_slip_ = 0;
+};
+
+inline ContactVelocities::ContactVelocities(const Problem& problem, ConstraintRows& rows)
+    : problem_(problem),
+      rows_(rows),
+      projection_(problem.code->free.size(), rows.size(), 0),
+      y_(problem.code->output_names.size()),
+      rtol_(problem.rtol),
+      atol_(problem.atol) {}
+
+inline double ContactVelocities::still() const {
+  constexpr double rounding = 1e-15, share = 1e-3, roundings = 1e-14;
+  return std::max({rounding, atol_, std::max(share * rtol_, roundings) * largest_slip_});
+}
+
+inline double ContactVelocities::restitution(double t, const double* x, const double* u, std::size_t contact) {
+  if (!problem_.contacts[contact].restitution) return 0;
+  problem_.code->outputs(t, x, problem_.parameters.data(), u, 0, y_.data());
+  return y_[*problem_.contacts[contact].restitution];
+}
+
+inline void ContactVelocities::forget() {
+  largest_slip_ = 0;
+  least_.assign(problem_.contacts.size(), still());
+}
+
+// Slip is known to the tolerance of the rates that it is made of.
+inline void ContactVelocities::hold(double t, const double* x, const double* u, int mode) {
+  constexpr double tolerances = 30;
+  const std::size_t n = problem_.code->free.size();
+  if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return;
+  for (std::size_t j = 0; j < least_.size(); ++j) {
+    if (problem_.contacts[j].slip.size() != 2) continue;
+    double known = 0;
+    for (std::size_t a = 0; a < 2; ++a) {
+      double sum = 0;
+      for (std::size_t i = 0; i < n; ++i) {
+        const double slope = y_[problem_.contacts[j].slopes[a][i]];
+        sum += std::abs(slope) * (atol_ + rtol_ * std::abs(x[n + i]));
+      }
+      known = std::max(known, sum);
+    }
+    least_[j] = std::max(still(), tolerances * known);
+  }
+}
+
+inline std::array<double, 2> ContactVelocities::slip(double t, const double* x, const double* u, int mode,
+                                                     std::size_t contact) {
+  std::array<double, 2> w{};
+  if (problem_.code->outputs(t, x, problem_.parameters.data(), u, mode, y_.data()) != 0) return w;
+  for (std::size_t a = 0; a < 2; ++a) w[a] = y_[problem_.contacts[contact].slip[a]];
+  return w;
+}
+
+inline int ContactVelocities::move(double t, std::span<double> x, const double* u) {
+  const Code& code = *problem_.code;
+  const double* p = problem_.parameters.data();
+  return projection_(
+             t, x.data(),
+             [&](double at, const double* state, double* psi, double* A, double* b) {
+               return rows_(at, state, u, psi, A, b);
+             },
+             [&](double at, const double* state, double* M, double* h) { return code.mass(at, state, p, M, h); })
+      .code;
+}
+
+inline double ContactVelocities::approach(double t, std::span<const double> x, const double* u, std::size_t contact) {
+  return rows_.rate(t, x.data(), u, rows_.row_of(contact));
+}
+
+// Contacts that touch and would be driven into one another by the impulse take part in it; others are left alone.
+inline int ContactVelocities::impact(double t, std::span<double> x, const double* u, int mode, std::size_t contact,
+                                     double restitution) {
+  const std::vector<double> before(x.begin(), x.end());
+  const double after = -restitution * approach(t, x, u, contact);
+  int part = mode;
+  for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
+    if (j != contact && problem_.code->contacts[j].unilateral) part = with_contact_digit(part, j, 3);
+  }
+  for (std::size_t round = 0; round <= problem_.contacts.size(); ++round) {
+    std::copy(before.begin(), before.end(), x.begin());
+    rows_.slide_all(part);
+    rows_.target(rows_.row_of(contact), after);
+    const int code = move(t, x, u);
+    rows_.clear_targets();
+    if (code != 0) return code;
+    bool more = false;
+    for (std::size_t j = 0; j < problem_.contacts.size(); ++j) {
+      const bool left_out = contact_digit(part, j) == 3 && contact_digit(mode, j) != 3;
+      if (!problem_.code->contacts[j].unilateral || !left_out || approach(t, x, u, j) >= -still()) continue;
+      part = with_contact_digit(part, j, 0);
+      more = true;
+    }
+    if (!more) break;
+  }
+  return 0;
+}
+
+inline int ContactVelocities::close(double t, std::span<double> x, const double* u, int mode) {
+  rows_.slide_all(mode);
+  return move(t, x, u);
+}
+
+inline int ContactVelocities::stick(double t, std::span<double> x, const double* u, int mode, std::size_t) {
+  rows_.mode(mode);
+  return move(t, x, u);
+}
+
+// Sliding starts against the friction that held. Where none held, along the tangents' sum: any direction is as good.
+inline int ContactVelocities::slide(double t, std::span<double> x, const double* u, int mode, std::size_t contact) {
+  if (const int code = problem_.code->outputs(t, x.data(), problem_.parameters.data(), u, mode, y_.data()); code != 0)
+    return code;
+  std::vector<double> direction;
+  double length = 0;
+  for (const std::size_t phi : problem_.contacts[contact].phi) direction.push_back(-y_[phi]);
+  for (const double d : direction) length = std::hypot(length, d);
+  if (!(length > 0)) direction.assign(direction.size(), length = 1);
+  rows_.mode(mode);
+  for (std::size_t a = 0; a < direction.size(); ++a)
+    rows_.target(rows_.slip_row_of(contact) + a, 2 * least_slip(contact) * direction[a] / length);
+  const int code = move(t, x, u);
+  rows_.clear_targets();
+  return code;
+}
+
+}  // namespace eom::hybrid

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: MIT
+// A kink of time at which the velocity of a support or a potential jumps. In: the state before it, what jumps there.
+// Out: the state after it, the event with its work; or a sentence where no equation says what the impulse does.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "eom/hybrid/parts.hpp"
+#include "eom/hybrid/segments.hpp"
+#include "eom/hybrid/text.hpp"
+
+namespace eom::hybrid {
+
+inline bool any_contact_touches(const Parts& parts) {
+  const std::vector<Contact>& contacts = parts.problem.code->contacts;
+  for (std::size_t j = 0; j < contacts.size(); ++j) {
+    if (!contacts[j].unilateral || contact_digit(parts.model.contact_mode(), j) < 3) return true;
+  }
+  return false;
+}
+
+/// Names of the rates that an impulse changes, from x to what `end` has; "" where it changes none.
+inline std::string changed_rates(const Problem& problem, const std::vector<double>& x, const Result& end) {
+  const std::size_t n = problem.n();
+  std::string names;
+  double largest = 0;
+  for (std::size_t i = n; i < 2 * n; ++i) largest = std::max(largest, std::abs(end.x[i] - x[i]));
+  for (std::size_t i = n; i < 2 * n; ++i) {
+    if (largest == 0 || std::abs(end.x[i] - x[i]) < 1e-9 * largest) continue;
+    names += (names.empty() ? "" : ", ") + problem.state_names[i];
+  }
+  return names;
+}
+
+/// From the end of a segment to the start of the next one. Returns what is not determined, or "": `total` is as it was
+/// then.
+inline std::string cross_impulse(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
+  const Problem& problem = parts.problem;
+  const double from = parts.outputs.energy(before.end, total.x.data());
+  const double* at_end = parts.model.inputs(before.end);
+  const std::vector<double> u(at_end, at_end + std::max<std::size_t>(1, problem.inputs.size()));
+  const std::vector<double> x = total.x;
+  const double side = parts.model.side(std::nextafter(before.next, problem.t1));
+  const Impulse impulse =
+      problem.jumps.at_time({before.end, x, u.data()}, before.next, parts.model.inputs(before.next), total.x);
+  std::string open = impulse.undetermined;
+  if (!impulse.velocities && !impulse.potential) return open;
+  if (open.empty() && impulse.velocities && parts.contacts && any_contact_touches(parts))
+    open = "the velocity of a support jumps at t = " + printed(before.next) +
+           " while a contact touches: the equations do not say what the impulse does there; make it a motion that "
+           "takes some time";
+  total.t = before.next;
+  parts.hold_sides(total.t, total.x.data(), true);
+  if (open.empty() && impulse.velocities && parts.rows.size() > 0) {
+    const StateProjection::Corrections largest = parts.projection.largest();
+    if (parts.projection(before.next, total.x.data()) != 0)
+      open = "the velocity of a support jumps at t = " + printed(before.next) +
+             ", and no velocities satisfy the constraints after it";
+    parts.projection.undo(largest);
+  }
+  if (!open.empty()) {
+    parts.model.side(side);
+    total.x = x;
+    total.t = before.end;
+    return open;
+  }
+  const double done = parts.outputs.energy(before.next, total.x.data()) - from;
+  parts.impulse_work += done;
+  const std::string names = changed_rates(problem, x, total);
+  const std::string what = !names.empty()          ? names
+                           : !impulse.what.empty() ? impulse.what
+                           : impulse.velocities    ? "constraints"
+                                                   : "potential";
+  if (event) event({before.next, "impulse", what, done}, total.x);
+  return "";
+}
+
+/// Beyond what lies between two segments: sides of kinks are counted, and what jumps is told. Returns what is not
+/// determined there, or "".
+inline std::string begin_segment(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
+  const int sides = parts.model.mode();
+  const bool kink = before.next > before.end;
+  std::string open;
+  if (kink && parts.problem.jumps.at_time) open = cross_impulse(parts, before, total, event);
+  total.t = before.next;
+  if (!kink) return open;
+  parts.hold_sides(total.t, total.x.data(), true);
+  parts.kinks.count(sides);
+  return open;
+}
+
+}  // namespace eom::hybrid

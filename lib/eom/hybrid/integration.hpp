@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+// One integration of a Problem, restarted where inputs jump, charts are exchanged, or steps over a place of lost rank
+// are made; hybrid::run makes one for the result and others for the error estimate. In: a Problem. Out: the end, what
+// happened on the way to whoever asks.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/events/integrate.hpp"
+#include "eom/hybrid/explain.hpp"
+#include "eom/hybrid/impulses.hpp"
+#include "eom/hybrid/methods.hpp"
+#include "eom/hybrid/motion.hpp"
+#include "eom/hybrid/parts.hpp"
+#include "eom/hybrid/passage.hpp"
+#include "eom/hybrid/segments.hpp"
+#include "eom/hybrid/slow_slip.hpp"
+
+namespace eom::hybrid {
+
+class Integration {
+ public:
+  /// The problem has to stay. Its solver needs what it calls in the code.
+  explicit Integration(const Problem& problem);
+  Integration(const Integration&) = delete;
+  Integration& operator=(const Integration&) = delete;
+
+  /// observer, event may be empty. May be called again.
+  Result run(const Options& options, const Observer& observer, const OnEvent& event = {});
+
+  Parts& parts() { return parts_; }
+  const Choice& choice() const { return choice_; }  // of the solver auto, and its changes in the run
+  /// Where fixed steps first went over a force that is narrow in the state.
+  std::optional<double> passed_over() const { return passed_over_; }
+
+ private:
+  bool start(Result& total, const OnEvent& event);
+  void integrate_until(double end, Options options, const Observer& observer, const OnEvent& event, Result& total);
+  bool see(const StepView& step, const Observer& observer, const OnEvent& event, bool fixed);
+  bool go_over(const Result& from, double end, const Options& options, std::size_t& evaluations);
+  bool go_on(const Result& part, double begin, double end, const OnEvent& event, Result& total);
+  AtEvent at_event(const EventPoint& point, const OnEvent& event);
+  AtEvent change_contact(const EventPoint& point, const OnEvent& event);
+  double longest_step(const StepView& step);
+
+  const Problem& problem_;
+  Parts parts_;
+  bool keeps_constraints_;  // the solver itself
+  SlowSlip slow_slip_;
+  std::unique_ptr<Passage> passage_;  // where constraints without contacts may lose their rank
+  Sampling sampling_;
+  Choice choice_;
+  std::optional<double> passed_over_;
+  double fixed_step_ = 0;  // of the run
+  bool stopped_ = false, exchange_due_ = false;
+  std::string jump_;        // what jumped that nothing says the consequences of
+  double last_step_ = 0;    // with its sign
+  double passage_due_ = 0;  // length of a step over a place of lost rank, with its sign
+  bool passing_ = false;    // it is being made
+  int idle_ = 0;            // restarts without time going on
+};
+
+inline Integration::Integration(const Problem& problem)
+    : problem_(problem),
+      parts_(problem),
+      keeps_constraints_(method_named(problem.solver).variational || method_named(problem.solver).constrained),
+      slow_slip_(parts_) {
+  if (!parts_.contacts && parts_.rows.size() > 0 && !keeps_constraints_) passage_ = std::make_unique<Passage>(parts_);
+  sampling_ = {[this](double t) { return parts_.model.inputs(t); },
+               [this](double t, const double* x, double* dx) { return parts_.rhs(t, x, dx); }, problem.rtol,
+               problem.atol, method_named(problem.solver).series};
+}
+
+inline Result Integration::run(const Options& options, const Observer& observer, const OnEvent& event) {
+  parts_.projection.forget();
+  parts_.kinks.start();
+  stopped_ = false;
+  jump_.clear();
+  fixed_step_ = options.fixed_step;
+  slow_slip_.start(fixed_step_);
+  if (parts_.contacts)
+    parts_.contacts->tolerances(fixed_step_ > 0 ? slow_slip_rtol : options.rtol,
+                                fixed_step_ > 0 ? slow_slip_atol : options.atol);
+  choice_ = {};
+  passed_over_.reset();
+  Options segment = options;
+  segment.choice = &choice_;
+  segment.step_bounds = problem_.bounds;
+  if (problem_.bounded.longest) segment.admit = [this](const StepView& step) { return longest_step(step); };
+  // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
+  segment.quadratures = problem_.power && problem_.code->contacts.empty() ? 1 : 0;
+  Result total;
+  if (!start(total, event)) return total;
+  const std::vector<Segment> all = segments(problem_);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    if (k > 0) jump_ = begin_segment(parts_, all[k - 1], total, event);
+    parts_.model.side((total.t + all[k].end) / 2);
+    segment.max_steps =
+        options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
+    if (options.fixed_step > 0 && problem_.step > 0)
+      segment.fixed_step = options.fixed_step * all[k].step / problem_.step;
+    if (jump_.empty()) integrate_until(all[k].end, segment, observer, event, total);
+    explain(parts_, jump_, total);
+    if (total.outcome != Outcome::done) break;
+  }
+  return total;
+}
+
+/// False: the run ends here.
+inline bool Integration::start(Result& total, const OnEvent& event) {
+  total.x = parts_.own_start();
+  total.t = problem_.t0;
+  for (const std::string& whose : parts_.start_charts(total.t, total.x)) {
+    if (event) event({total.t, "chart", whose}, total.x);
+  }
+  parts_.rows.start(total.t, total.x.data(), parts_.model.inputs(total.t));
+  for (const ModeEvent& told : parts_.start_contacts(total.t, total.x)) {
+    if (event) event({told.t, told.kind, told.name}, total.x);
+  }
+  // It has to begin on the constraints, to rounding.
+  if (method_named(problem_.solver).constrained && parts_.projection(total.t, total.x.data()) != 0) {
+    total.outcome = Outcome::inconsistent_start;
+    total.detail = "the start cannot be moved onto the constraints";
+    return false;
+  }
+  parts_.projection.forget();
+  return true;
+}
+
+/// One segment: its end, or why the run ends before.
+inline void Integration::integrate_until(double end, Options options, const Observer& observer, const OnEvent& event,
+                                         Result& total) {
+  const Motion f{parts_, keeps_constraints_};
+  const BoundedEvents g{parts_, sampling_};
+  const auto observe = [&](const StepView& step) { return see(step, observer, event, options.fixed_step > 0); };
+  const auto at = [&](const EventPoint& point) { return at_event(point, event); };
+  const auto after = [this](double t, double* x) {
+    return parts_.rows.size() == 0 || keeps_constraints_ ? 0 : parts_.projection(t, x);
+  };
+  idle_ = 0;
+  passage_due_ = 0;
+  while (true) {
+    parts_.hold_sides(total.t, total.x.data(), true);
+    exchange_due_ = false;
+    if (slow_slip_.changes_at(total.t, total.x.data())) slow_slip_.change();
+    const double begin = total.t, length = passage_due_;
+    passing_ = go_over(total, end, options, total.statistics.rhs_evaluations);
+    Options now = slow_slip_.finer() ? slow_slip_.finer(options) : options;
+    if (passing_) now.fixed_step = std::abs(length);
+    const std::string method = passing_             ? Passage::solver
+                               : slow_slip_.finer() ? Automatic::name
+                                                    : problem_.solver.c_str();
+    const Result part = integrate_events(method, f, total.t, total.x, passing_ ? total.t + length : end, now, g,
+                                         parts_.events.watched(), at, observe, after);
+    if (!go_on(part, begin, end, event, total)) return;
+    options.initial_step = std::abs(last_step_);
+    options.max_steps -= std::min(options.max_steps, part.statistics.steps + part.statistics.rejected);
+  }
+}
+
+/// An accepted step; false: the integration stops at its end, for good or to go on in another way.
+inline bool Integration::see(const StepView& step, const Observer& observer, const OnEvent& event, bool fixed) {
+  parts_.projection.accept(step);
+  last_step_ = step.t1 - step.t0;
+  exchange_due_ = parts_.charts.any() && parts_.charts.follow(step);
+  const bool wanted = !observer || observer(step);
+  parts_.hold_sides(step.t1, step.x1.data(), false);
+  if (parts_.contacts) parts_.contacts->hold(step.t1, step.x1.data());
+  if (passing_) passage_->tell(step, event);
+  exchange_due_ = exchange_due_ && wanted;
+  slow_slip_.due(wanted && slow_slip_.changes_at(step.t1, step.x1.data()));
+  passage_due_ =
+      passage_ && !passing_ && wanted && !exchange_due_ && !fixed ? std::copysign(passage_->due(step), last_step_) : 0;
+  return wanted && !exchange_due_ && !slow_slip_.due() && passage_due_ == 0;
+}
+
+/// Whether the step over a place of lost rank that is due is to be made.
+inline bool Integration::go_over(const Result& from, double end, const Options& options, std::size_t& evaluations) {
+  const double length = std::exchange(passage_due_, 0.0);
+  if (length == 0) return false;
+  const bool made = std::abs(length) < std::abs(end - from.t) && passage_->passable(from, length, options, evaluations);
+  if (!made) passage_->refused();
+  return made;
+}
+
+/// After an integration that ended somewhere in the segment: false where the segment ends, or the run.
+inline bool Integration::go_on(const Result& part, double begin, double end, const OnEvent& event, Result& total) {
+  const Statistics before = total.statistics;
+  total = part;
+  total.statistics += before;
+  const bool passed = passing_ && part.outcome == Outcome::done;
+  const bool paused =
+      (exchange_due_ || slow_slip_.due() || passage_due_ != 0) && part.outcome == Outcome::stopped_by_event;
+  if (stopped_ || !jump_.empty() || (parts_.contacts && parts_.contacts->ended()) || !(passed || paused)) return false;
+  if (exchange_due_) {
+    for (const std::string& whose : parts_.exchange_charts(total.t, total.x)) {
+      if (event) event({total.t, "chart", whose}, total.x);
+    }
+  }
+  idle_ = total.t > begin ? 0 : idle_ + 1;
+  if (idle_ >= events_without_progress) {
+    total.outcome = Outcome::step_too_small;
+    total.detail = "slip starts and ends at t = " + printed(total.t) + " without time going on";
+    return false;
+  }
+  total.outcome = Outcome::done;
+  total.detail.clear();
+  return total.t != end;
+}
+
+inline AtEvent Integration::at_event(const EventPoint& point, const OnEvent& event) {
+  const std::size_t i = point.crossing.function;
+  const EventFunctions& functions = parts_.events;
+  if (i >= functions.first_jump()) {
+    jump_ = problem_.jumps.across({point.t, point.x, parts_.model.inputs(point.t)}, i - functions.first_jump());
+    return jump_.empty() ? AtEvent::go_on : AtEvent::stop;
+  }
+  if (i >= functions.first_contact()) return change_contact(point, event);
+  if (i < functions.first_kink()) {
+    const WatchedEvent& watched = problem_.events[i];
+    if (event) event({point.t, watched.stop ? "stop" : "custom", watched.name}, point.x);
+    stopped_ = stopped_ || watched.stop;
+    return AtEvent::stop;
+  }
+  parts_.kinks.cross(point.t, i - functions.first_kink(), point.crossing.up);
+  return AtEvent::go_on;
+}
+
+inline AtEvent Integration::change_contact(const EventPoint& point, const OnEvent& event) {
+  Crossing crossing = point.crossing;
+  crossing.function -= parts_.events.first_contact();
+  const AtEvent answer = parts_.contacts->take(point.t, point.x, crossing, parts_.events.of_contacts(point.functions));
+  parts_.model.contact_mode(parts_.contacts->mode());
+  if (const ModeEvent* told = parts_.contacts->told(); told != nullptr && event)
+    event({told->t, told->kind, told->name}, point.x);
+  if (answer != AtEvent::restart) return answer;
+  parts_.hold_sides(point.t, point.x.data(), true);
+  slow_slip_.due(slow_slip_.due() || slow_slip_.changes_at(point.t, point.x.data()));
+  return slow_slip_.due() ? AtEvent::stop : answer;
+}
+
+/// Of a step of the method: infinity, unless a force that is narrow in the state lies in it unseen.
+inline double Integration::longest_step(const StepView& step) {
+  if (parts_.charts.second() != 0) return std::numeric_limits<double>::infinity();
+  const double longest = problem_.bounded.longest(step, sampling_);
+  if (fixed_step_ > 0 && !slow_slip_.finer() && !passed_over_ && longest < step.t1 - step.t0) passed_over_ = step.t0;
+  return longest;
+}
+
+}  // namespace eom::hybrid

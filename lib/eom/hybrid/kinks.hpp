@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Sides of kinks (abs, sign, min, max, if) during one run. A branch is held during a step, so that the right-hand side
+// is smooth there, and changes where the surface is crossed. In: values of the surfaces. Out: bits of `mode`, counts.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "eom/hybrid/model.hpp"
+
+namespace eom::hybrid {
+
+class Kinks {
+ public:
+  Kinks(const Problem& problem, Model& model) : problem_(problem), model_(model), size_(problem.code->kinks.size()) {
+    start();
+  }
+
+  bool any() const { return !problem_.code->kinks.empty(); }
+  void start() {
+    crossings_.assign(size_.size(), 0);
+    at_ = std::nan("");
+  }
+
+  /// Whether every branch is held: nothing is left to find out.
+  bool all_held() const {
+    for (std::size_t k = 0; k < size_.size(); ++k)
+      if ((model_.mode() >> bit(k) & 3) == 0) return false;
+    return true;
+  }
+
+  /// Holds each kink on the side where the state is; where it is on the surface itself its branch follows the state.
+  /// anew: at the start of a segment, or after a change of mode. surfaces: their values there.
+  void hold(const double* surfaces, bool anew) {
+    for (std::size_t k = 0; k < size_.size(); ++k) {
+      const double g = surfaces[k];
+      if (std::isfinite(g)) size_[k] = std::max(size_[k], std::abs(g));
+      // What is small beside former values may be rounding, and the side another than the locator of events will find.
+      if ((model_.mode() >> bit(k) & 3) != 0 || !(std::abs(g) > (anew ? 0 : beyond_rounding * size_[k]))) continue;
+      model_.mode(model_.mode() | 1 << (g > 0 ? bit(k) : bit(k) + 1));
+    }
+  }
+
+  void cross(double t, std::size_t k, bool up) {
+    ++crossings_[k];
+    last_ = k;
+    at_ = t;
+    model_.mode((model_.mode() & ~(3 << bit(k))) | 1 << (up ? bit(k) : bit(k) + 1));
+  }
+
+  /// Between two segments, from the mode `before` to that of now.
+  void count(int before) {
+    for (std::size_t k = 0; k < size_.size(); ++k) {
+      const int was = before >> bit(k) & 3, is = model_.mode() >> bit(k) & 3;
+      if (was != 0 && is != 0 && was != is) ++crossings_[k];
+    }
+  }
+
+  const std::vector<std::size_t>& crossings() const { return crossings_; }
+  /// The kink that was crossed last, and when; not a number where none was.
+  std::size_t last() const { return last_; }
+  double at() const { return at_; }
+
+ private:
+  static constexpr double beyond_rounding = 1e-6;  // of the largest value seen
+  std::size_t bit(std::size_t k) const { return problem_.code->first_kink_bit + 2 * k; }
+
+  const Problem& problem_;
+  Model& model_;
+  std::vector<double> size_;  // largest |g| seen of each
+  std::vector<std::size_t> crossings_;
+  std::size_t last_ = 0;
+  double at_ = 0;
+};
+
+}  // namespace eom::hybrid

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: MIT
+// The compiled model at work in one run: its functions in the mode, the charts and the segment of the inputs that the
+// run is in. In: a Problem. Out: codes of the C ABI, arrays of the caller's.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/hybrid/problem.hpp"
+#include "eom/modes/chart_state.hpp"
+#include "eom/modes/contact_state.hpp"
+#include "eom/with_jacobian.hpp"
+
+namespace eom::hybrid {
+
+class Model {
+ public:
+  explicit Model(const Problem& problem)
+      : problem_(problem),
+        code_(problem.code),
+        n_(problem.n()),
+        u_(std::max<std::size_t>(1, problem.inputs.size())),
+        h_(n_),
+        y_(problem.code->output_names.size()) {
+    // Before the first segment starts: just inside it, so that a table gives its value right of t0.
+    side_ = std::nextafter(problem.t0, problem.t1);
+    prepare();
+  }
+
+  const Code& code() const { return *code_; }  // knows all charts that the run is or was in
+  void use(const Code& code) {
+    if (code_ == &code) return;
+    code_ = &code;
+    prepare();
+  }
+
+  int mode() const { return mode_; }
+  int contact_mode() const { return mode_ & contact_bits; }
+  void mode(int mode) { mode_ = mode; }
+  void contact_mode(int contacts) { mode_ = (mode_ & ~contact_bits) | contacts; }
+  void charts(int bits) { mode_ = (mode_ & ~chart_bits) | bits; }
+  void forget_sides() { mode_ &= contact_bits | chart_bits; }
+
+  /// A time inside the segment of the inputs that is being integrated.
+  double side() const { return side_; }
+  double side(double t) { return std::exchange(side_, t); }
+  /// Valid until the next call.
+  const double* inputs(double t) const {
+    for (std::size_t i = 0; i < problem_.inputs.size(); ++i) u_[i] = problem_.inputs[i](t, side_);
+    return u_.data();
+  }
+  const double* parameters() const { return problem_.parameters.data(); }
+
+  int rhs(double t, const double* x, double* dx) {
+    const double* u = inputs(t);
+    const int code = motion(t, x, u, mode_, dx);
+    // A branch that is held beyond its surface may have no value there (a root); what the surface separates always has.
+    return code != 0 && mode_ != live() ? motion(t, x, u, live(), dx) : code;
+  }
+
+  /// In a mode of the contacts.
+  int rhs_of(int contacts, double t, const double* x, double* dx) {
+    return motion(t, x, inputs(t), (mode_ & ~contact_bits) | contacts, dx);
+  }
+
+  /// Of the states without the work, which is a quadrature; partial, with the inputs held: df/dt along them is not
+  /// told.
+  int jacobian(double t, const double* x, double* dfdx, double* dfdt) {
+    if (code_->jac == nullptr) return no_jacobian_here;
+    const double* u = inputs(t);
+    int code = code_->jac(t, x, parameters(), u, mode_, dfdx, dfdt);
+    if (code != 0 && mode_ != live()) code = code_->jac(t, x, parameters(), u, live(), dfdx, dfdt);
+    return code == 0 && !problem_.inputs.empty() ? no_time_derivative_here : code;
+  }
+
+  /// Of the states without the work, which is integrated along them.
+  int taylor(double t, const double* x, int order, double* coefficients) {
+    const double* u = inputs(t);
+    const int code = code_->taylor(t, x, parameters(), u, mode_, order, coefficients);
+    return code != 0 && mode_ != live() ? code_->taylor(t, x, parameters(), u, live(), order, coefficients) : code;
+  }
+
+  int momenta(double t, const double* x, double* p, double* rate) {
+    return code_->momenta(t, x, parameters(), inputs(t), mode_, p, rate);
+  }
+
+  int mass(double t, const double* x, double* M) {
+    return charts_of(mode_) != 0 ? code_->mass_in(t, x, parameters(), mode_, M, h_.data())
+                                 : code_->mass(t, x, parameters(), M, h_.data());
+  }
+
+  /// Entries that only the own charts have are left alone in second ones.
+  int outputs(double t, const double* x, double* y) const {
+    return code_->outputs(t, x, parameters(), inputs(t), mode_, y);
+  }
+
+  /// Of the model's events, kinks and contacts; nothing where there are none.
+  int events(double t, const double* x, double* g) {
+    return code_->events == nullptr ? 0 : code_->events(t, x, parameters(), inputs(t), mode_, g);
+  }
+  int events_of(int contacts, double t, const double* x, double* g) {
+    return code_->events(t, x, parameters(), inputs(t), (mode_ & ~contact_bits) | contacts, g);
+  }
+
+ private:
+  int live() const { return mode_ & (contact_bits | chart_bits); }
+
+  void prepare() {
+    w_.assign(code_->prepare != nullptr ? code_->prepared : 0, 0.0);
+    // A code of prepare is told by rhs, which is asked then.
+    if (code_->prepare != nullptr && code_->prepare(parameters(), w_.data()) != 0) w_.clear();
+  }
+
+  int motion(double t, const double* x, const double* u, int mode, double* dx) {
+    const int code = w_.empty() ? code_->rhs(t, x, parameters(), u, mode, dx)
+                                : code_->rhs_prepared(t, x, parameters(), w_.data(), u, mode, dx);
+    if (code != 0 || !problem_.power) return code;
+    const int watched = code_->outputs(t, x, parameters(), u, mode, y_.data());
+    dx[2 * n_ + code_->integrals] = y_[*problem_.power];
+    return watched;
+  }
+
+  const Problem& problem_;
+  const Code* code_;
+  std::size_t n_;
+  int mode_ = 0;  // of the step that is being made: contacts, sides of kinks, charts
+  double side_ = 0;
+  mutable std::vector<double> u_;
+  std::vector<double> w_;  // of Code::prepare
+  std::vector<double> h_, y_;
+};
+
+}  // namespace eom::hybrid

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The right-hand side of a run, with its derivatives, as eom::integrate takes them; event functions with their bounds.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <optional>
+#include <utility>
+
+#include "eom/hybrid/parts.hpp"
+
+namespace eom::hybrid {
+
+struct Motion {
+  Parts& of;
+  bool keeps_constraints = false;  // the method itself
+
+  int operator()(double t, const double* x, double* dx) const { return of.rhs(t, x, dx); }
+  int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {
+    return of.model.jacobian(t, x, dfdx, dfdt);
+  }
+  int taylor(double t, const double* x, int order, double* coefficients) const {
+    return of.model.taylor(t, x, order, coefficients);
+  }
+  int taylor_order() const { return of.model.code().taylor_order; }
+  std::size_t taylor_states() const { return 2 * of.problem.n() + of.problem.code->integrals; }
+  int momenta(double t, const double* x, double* p, double* rate) const { return of.model.momenta(t, x, p, rate); }
+  int mass(double t, const double* x, double* M) const { return of.model.mass(t, x, M); }
+  int constrain(double t, const double* x, double* psi, double* A, double* b) const {
+    return of.rows(t, x, of.model.inputs(t), psi, A, b);
+  }
+  std::size_t coordinates() const { return keeps_constraints ? of.problem.n() : 0; }
+  std::size_t constraints() const { return of.rows.size(); }
+  std::size_t position_constraints() const { return of.rows.on_positions(); }
+};
+
+struct BoundedEvents {
+  Parts& of;
+  const Sampling& sampling;
+
+  int operator()(double t, const double* x, double* g) const { return of.events(t, x, g); }
+  std::optional<std::pair<double, double>> hidden(const StepView& step, std::size_t i, int side, double from,
+                                                  double to) const {
+    return of.events.hidden(step, i, side, from, to, sampling);
+  }
+};
+
+}  // namespace eom::hybrid

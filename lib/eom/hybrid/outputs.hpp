@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+// Outputs of a state of the run, whatever charts it is in. In: the compiled model. Out: the array y.
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "eom/hybrid/charts.hpp"
+#include "eom/hybrid/model.hpp"
+
+namespace eom::hybrid {
+
+class Outputs {
+ public:
+  Outputs(const Problem& problem, const Model& model, const ChartSwitch& charts)
+      : problem_(problem), model_(model), charts_(charts), y_(problem.code->output_names.size()) {}
+
+  /// A code of the compiled function.
+  int operator()(double t, const double* x, std::span<double> y) const {
+    const int result = model_.outputs(t, x, y.data());
+    if (charts_.second() != 0) own_values(t, x, y);
+    return result;
+  }
+
+  double energy(double t, const double* x) {
+    (*this)(t, x, y_);
+    return y_[problem_.energy];
+  }
+
+ private:
+  /// What second charts do not give: the coordinates, and what is conserved or defined in the own charts only.
+  void own_values(double t, const double* x, std::span<double> y) const {
+    const Code& code = model_.code();
+    const std::size_t n = problem_.n();
+    own_x_.resize(2 * n + code.integrals);
+    charts_.own(t, x, own_x_);
+    for (std::size_t i = 0; i < n; ++i) {
+      y[2 * code.free[i]] = own_x_[i];
+      y[2 * code.free[i] + 1] = own_x_[n + i];
+    }
+    if (charts_.own_outputs().empty()) return;
+    own_y_.resize(y.size());
+    const int result = code.outputs(t, own_x_.data(), model_.parameters(), model_.inputs(t),
+                                    model_.mode() & ~chart_bits, own_y_.data());
+    for (const std::uint32_t i : charts_.own_outputs())
+      y[i] = result == 0 ? own_y_[i] : std::numeric_limits<double>::quiet_NaN();
+  }
+
+  const Problem& problem_;
+  const Model& model_;
+  const ChartSwitch& charts_;
+  std::vector<double> y_;
+  mutable std::vector<double> own_x_, own_y_;
+};
+
+}  // namespace eom::hybrid

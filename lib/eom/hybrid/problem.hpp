@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: MIT
+// What a run is asked for: compiled model, numbers, inputs, what is watched. Plain data; names are for events and
+// sentences only, outputs are known by their places in the array y.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "eom/events/locator.hpp"
+#include "eom/hybrid/code.hpp"
+#include "eom/hybrid/signal.hpp"
+#include "eom/run_types.hpp"
+
+namespace eom::hybrid {
+
+/// An event of the model, as this run takes it.
+struct WatchedEvent {
+  std::string name;
+  Direction direction = Direction::any;
+  bool stop = false;
+};
+
+/// A kink of time alone is crossed between these two times, which differ by rounding; functions are on one side at
+/// either.
+struct Break {
+  double before = 0, after = 0;
+};
+
+/// Outputs that are an integral of constraints on velocities, and its derivatives by the n free coordinates and t.
+struct IntegralOutputs {
+  std::size_t psi = 0;
+  std::vector<std::size_t> slopes;
+};
+
+/// Outputs of a contact: along each tangent the slip, its slopes by the rates of the free coordinates, the friction.
+struct ContactOutputs {
+  std::vector<std::size_t> slip;
+  std::vector<std::vector<std::size_t>> slopes;
+  std::vector<std::size_t> phi;
+  std::size_t constraint = 0;                   // active, of one that can be left
+  std::optional<std::size_t> restitution = {};  // of one that can be left
+};
+
+/// A chart that the run leaves near where it fails, and comes back to.
+struct ExchangedChart {
+  std::string of;
+  std::vector<std::size_t> angles;             // places in the state
+  std::vector<std::uint32_t> coordinates;      // of the model
+  std::size_t guarded = 0;                     // which of them tells how far the chart is from failing
+  bool at_sine = true, second_at_sine = true;  // by its sine or cosine, in the own and in the second chart
+};
+
+/// An output that the motion does not change.
+struct Invariant {
+  std::string name;
+  std::size_t output = 0;
+  std::optional<std::size_t> magnitude = {};  // the output that tells the size of its terms
+  bool energy = false;                        // an impulse of a support changes it
+};
+
+/// A place of a motion: q, qdot and what follows them, inputs.
+struct Place {
+  double t = 0;
+  std::span<const double> x;
+  const double* u = nullptr;
+};
+
+/// What an impulse at a kink of time does.
+struct Impulse {
+  bool velocities = false;  // they may have to jump: those of x did, and constraints move otherwise
+  bool potential = false;
+  std::string what;          // the velocity of a place that jumps, or ""
+  std::string undetermined;  // a sentence: what jumps that no equation says the consequences of
+};
+
+/// Where energies, momenta or constraints jump, which the equations tell and compiled code does not. Empty: nowhere.
+struct Jumps {
+  /// From just before a Break to just after it: changes velocities in x to what they are without impulses of
+  /// constraints.
+  std::function<Impulse(const Place& before, double after, const double* u_after, std::span<double> x)> at_time = {};
+  std::size_t surfaces = 0;                                           // in the state
+  std::function<void(const Place&, double* g)> values = {};           // of them: above 0 on one side
+  std::function<std::string(const Place&, std::size_t)> across = {};  // what jumps at one, or ""
+};
+
+/// What is asked with, of functions between the places at which a step is sampled.
+struct Sampling {
+  std::function<const double*(double t)> inputs;
+  std::function<int(double t, const double* x, double* dx)> derivative;
+  double rtol = 0, atol = 0;
+  bool series = false;  // the method sees the equations at the start of its steps only
+};
+
+/// Bounds along a step, where the caller can give any; samples decide else.
+struct Bounds {
+  /// Between which places of the step (0 to 1) event function i first leaves its side.
+  std::function<std::optional<std::pair<double, double>>(const StepView&, std::size_t i, int side, double from,
+                                                         double to, const Sampling&)>
+      hidden = {};
+  /// The longest step that may be taken in place of one, since a force is narrow in the state; infinity where it may.
+  std::function<double(const StepView&, const Sampling&)> longest = {};
+  /// The first step for which they were too wide to tell; since the last call.
+  std::function<std::optional<double>()> unsure = {};
+};
+
+/// Open range of a coordinate of the model; infinite where there is none.
+struct Range {
+  double lower = -std::numeric_limits<double>::infinity(), upper = std::numeric_limits<double>::infinity();
+};
+
+struct Problem {
+  const Code* code = nullptr;
+  std::vector<double> parameters;
+  double t0 = 0, t1 = 0;
+  std::vector<double> start;    // free coordinates, then their rates, at t0: 2 n; integrals start at 0
+  std::vector<Signal> inputs;   // one per input of the model
+  std::string solver = "auto";  // a method of eom::methods(), or auto
+  double rtol = 1e-9, atol = 1e-12;
+  double step = 0;                              // fixed; 0: steps are chosen
+  double max_step = 0;                          // of chosen steps; 0: not bounded
+  std::size_t max_steps = Options{}.max_steps;  // accepted and rejected together
+
+  // Places among the outputs.
+  std::size_t kinetic = 0, potential = 0, energy = 0;
+  std::optional<std::size_t> power = {};    // where it is not identically zero: its work is integrated alongside
+  std::vector<std::size_t> redundant = {};  // that are 0 as long as constraints that were left out hold
+  std::vector<Invariant> invariants = {};
+  std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
+  std::vector<ContactOutputs> contacts = {};    // per Code::contacts
+
+  std::vector<bool> apart = {};           // per contact: does not touch at the start
+  std::vector<WatchedEvent> events = {};  // of the model, all
+  std::vector<Break> breaks = {};         // inside the span, ascending; without the jumps of tables
+  std::vector<StepBound> bounds = {};     // of steps, that follow functions of time
+  Jumps jumps = {};
+  Bounds bounded = {};
+  std::vector<ExchangedChart> charts = {};                     // none: the run keeps to the coordinates that it has
+  std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those before
+  std::vector<Range> ranges = {};                              // of the coordinates of the model; none: not watched
+  /// Whether the equations hold where a coordinate has left its range; none: they do not.
+  std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
+  std::vector<std::string> state_names = {};       // of x
+  std::vector<std::string> constraint_names = {};  // of Code::active_constraints
+
+  bool estimate = true;  // of the error, by further runs
+  double every = 0;      // interval of rows; 0: no rows
+  std::function<void(double t, std::span<const double> y)> row = {};
+  std::function<void(double fraction)> progress = {};
+  const std::atomic<bool>* interrupt = nullptr;
+
+  std::size_t n() const { return code->free.size(); }
+  /// Entries of the state: coordinates, rates, integrals, the work done since the start.
+  std::size_t states() const { return 2 * n() + code->integrals + (power ? 1 : 0); }
+};
+
+/// What happened on the way: "custom", "stop", "chart", "impulse", "singular_configuration", or of a contact.
+struct Event {
+  double t = 0;
+  std::string kind, name;
+  double work = 0;  // of an impulse
+};
+
+/// One of the model: a recorded one before the observer sees the step that it lies in, a stop after it; or a change of
+/// mode of a contact, after the step that ends there.
+using OnEvent = std::function<void(const Event& event, std::span<const double> x)>;
+/// Called after each accepted step; false ends the run.
+using Observer = std::function<bool(const StepView&)>;
+
+}  // namespace eom::hybrid

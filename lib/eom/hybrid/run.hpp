@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+// A run with events, contacts, kinks, exchanged charts and projection: all that `eomgen run` does, for compiled models
+// (docs/runtime.md, "Runs of models"). In: a Problem. Out: its RunResult, and rows to whoever wants them.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eom/hybrid/balance.hpp"
+#include "eom/hybrid/estimate.hpp"
+#include "eom/hybrid/integration.hpp"
+#include "eom/hybrid/run_result.hpp"
+#include "eom/hybrid/watch.hpp"
+
+namespace eom::hybrid {
+
+inline Options options_of(const Problem& problem) {
+  Options options;
+  options.rtol = problem.rtol;
+  options.atol = problem.atol;
+  options.fixed_step = problem.step;
+  if (problem.max_step > 0) options.max_step = problem.max_step;
+  options.interrupt = problem.interrupt;
+  options.max_steps = problem.max_steps;
+  return options;
+}
+
+/// Of a parameter that is no number nothing follows, also where no number that the run gives shows it (a comparison is
+/// false then).
+inline void require_parameters(const Problem& problem, RunResult& result) {
+  if (!result.ended() || std::all_of(problem.parameters.begin(), problem.parameters.end(),
+                                     [](double value) { return std::isfinite(value); }))
+    return;
+  result.outcome = Outcome::not_finite;
+  result.detail = "a parameter is infinite or not a number";
+}
+
+/// Throws std::invalid_argument for a solver that is not there, or that the code has not what it needs for (a series,
+/// momenta, constraints), or options that make no sense. Where t1 is t0 nothing is integrated.
+inline RunResult run(const Problem& problem) {
+  const Options options = options_of(problem);
+  Integration integration(problem);
+  Parts& parts = integration.parts();
+  RunWatch watch(problem, parts);
+  std::optional<StepAdequacy> adequacy;
+  const std::vector<Contact>& contacts = problem.code->contacts;
+  const bool impacts =
+      std::any_of(contacts.begin(), contacts.end(), [](const Contact& contact) { return contact.unilateral; });
+  if (problem.estimate && options.fixed_step > 0) adequacy.emplace(impacts);
+  const auto see = [&](const StepView& view) {
+    if (adequacy && parts.charts.second() == 0) adequacy->see(view);
+    return watch.step(view);
+  };
+  const auto tell = [&](const Event& event, std::span<const double> x) { watch.event(event, x); };
+  const auto begin = std::chrono::steady_clock::now();
+  const bool moves = problem.t1 != problem.t0;
+  Result end = moves ? integration.run(options, see, tell) : Result{Outcome::done, problem.t0, parts.start, {}, ""};
+  RunResult result;
+  result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  watch.finish(end);
+  watch.report(result);
+  result.choice = integration.choice();
+  result.solver = result.choice.method != nullptr ? result.choice.method : problem.solver;
+  result.outcome = end.outcome;
+  result.detail = end.detail;
+  result.t = end.t;
+  result.statistics = end.statistics;
+  result.kink_crossings = parts.kinks.crossings();
+  result.projection_position = parts.projection.largest().position;
+  result.projection_velocity = parts.projection.largest().velocity;
+  result.projection_work = parts.projection.work();
+  result.impulse_work = parts.impulse_work;
+  result.outputs.resize(problem.code->output_names.size());
+  parts.outputs(end.t, end.x.data(), result.outputs);
+  result.state = parts.own_state(end.t, end.x);
+  require_parameters(problem, result);
+  result.error.passed_over = integration.passed_over();
+  if (result.error.passed_over) {
+    result.error.doubt = Doubt::passed_over;
+    result.error.note = "a step after t = " + printed(*result.error.passed_over, 6) +
+                        " goes over a force that is narrow in the state, and sees nothing of it: the estimate says "
+                        "nothing; give shorter steps, or let them be chosen";
+  }
+  if (problem.bounded.unsure) result.unsure_from = problem.bounded.unsure();
+  const bool ended = result.ended();
+  if (problem.estimate && ended && moves) {
+    Result own = end;
+    own.x = result.state;
+    EndEstimate(problem, own, options, adequacy ? &*adequacy : nullptr, result.error).run();
+  }
+  if (ended) require_balance(problem, result);
+  return result;
+}
+
+}  // namespace eom::hybrid

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: MIT
+// What a run knows beforehand: times at which inputs jump or a kink of time is crossed, and where fixed steps have to
+// be shorter. In: a Problem. Out: segments between such times.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "eom/hybrid/problem.hpp"
+
+namespace eom::hybrid {
+
+/// Where fixed steps have to be shorter than asked for to follow a function of time.
+struct FinerSteps {
+  double begin, end, step;
+};
+inline constexpr double steps_of_bound = 0.03125;  // of a bound of chosen steps
+
+inline std::vector<FinerSteps> finer_steps(const Problem& problem) {
+  std::vector<FinerSteps> result;
+  const std::vector<StepBound>& bounds = problem.bounds;
+  for (std::size_t k = 0; k < bounds.size(); ++k) {
+    const double step = bounds[k].step * steps_of_bound, end = k + 1 < bounds.size() ? bounds[k + 1].t : problem.t1;
+    if (step < problem.step && end > bounds[k].t) result.push_back({bounds[k].t, end, step});
+  }
+  return result;
+}
+
+/// Between two times at which something jumps, or fixed steps change their size.
+struct Segment {
+  double end, next;  // the one after it begins at `next`, a rounding behind the end where a kink of time lies between
+  double step;       // of fixed steps
+};
+
+inline std::vector<Segment> segments(const Problem& problem) {
+  std::vector<Segment> result;
+  const std::vector<FinerSteps> finer = finer_steps(problem);
+  for (const Signal& signal : problem.inputs) {
+    for (const double t : signal.times) {
+      if (t > problem.t0 && t < problem.t1) result.push_back({t, t, problem.step});
+    }
+  }
+  for (const Break& b : problem.breaks) result.push_back({b.before, b.after, problem.step});
+  if (problem.step > 0) {
+    for (const auto& [begin, end, step] : finer) {
+      if (begin > problem.t0) result.push_back({begin, begin, problem.step});
+      if (end < problem.t1) result.push_back({end, end, problem.step});
+    }
+  }
+  std::sort(result.begin(), result.end(), [](const Segment& a, const Segment& b) { return a.end < b.end; });
+  std::size_t kept = 0;
+  for (const Segment& segment : result) {
+    if (segment.next >= problem.t1 || segment.end <= problem.t0) continue;
+    if (kept > 0 && segment.end <= result[kept - 1].next)
+      result[kept - 1].next = std::max(result[kept - 1].next, segment.next);
+    else
+      result[kept++] = segment;
+  }
+  result.resize(kept);
+  result.push_back({problem.t1, problem.t1, problem.step});
+  if (problem.step > 0) {
+    double from = problem.t0;
+    for (Segment& segment : result) {
+      for (const auto& [begin, end, step] : finer) {
+        if (from < end && segment.end > begin) segment.step = std::min(segment.step, step);
+      }
+      from = segment.next;
+    }
+  }
+  return result;
+}
+
+}  // namespace eom::hybrid

@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: MIT
+// What is looked at after every step of a run: invariants, power balance, constraints, ranges of coordinates; and the
+// rows in between. In: accepted steps, events. Out: rows to whoever wants them, what is told at the end.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/hybrid/parts.hpp"
+#include "eom/hybrid/run_result.hpp"
+#include "eom/hybrid/text.hpp"
+#include "eom/watch/drift.hpp"
+
+namespace eom::hybrid {
+
+/// Rows at multiples of the interval, at recorded events, and at the end.
+class Rows {
+ public:
+  Rows(const Problem& problem, Parts& parts)
+      : problem_(problem), parts_(parts), y_(problem.code->output_names.size()), between_(problem.states()) {}
+
+  bool any() const { return problem_.every > 0; }
+
+  /// The time of the last row where the run was interrupted meanwhile: it ends there.
+  std::optional<double> within(const StepView& view) {
+    // Multiples of the interval, counted, so that the grid does not drift; a last sliver belongs to the end.
+    while (true) {
+      const double t = problem_.t0 + static_cast<double>(next_) * problem_.every;
+      of_events(std::min(t, view.t1));
+      if (t > view.t1 || t > problem_.t1) return std::nullopt;
+      if (t == last_) {
+        // an event's row stands there already
+      } else if (t == view.t1) {
+        row(t, view.x1.data());
+      } else {
+        view.interpolate(t, between_);
+        row(t, between_.data());
+        if (problem_.interrupt != nullptr && problem_.interrupt->load(std::memory_order_relaxed)) return t;
+      }
+      ++next_;
+    }
+  }
+
+  /// Put in order when the rest of its step is written.
+  void event(double t, std::span<const double> x) { pending_.emplace_back(t, std::vector<double>(x.begin(), x.end())); }
+
+  void row(double t, const double* x) {
+    if (!any() || !problem_.row) return;
+    parts_.outputs(t, x, y_);
+    problem_.row(t, y_);
+    last_ = t;
+  }
+  double last() const { return last_; }
+  const std::vector<double>& last_state() const { return between_; }  // of an interruption
+
+ private:
+  void of_events(double until) {
+    std::size_t written = 0;
+    for (; written < pending_.size() && pending_[written].first <= until; ++written) {
+      if (pending_[written].first != last_) row(pending_[written].first, pending_[written].second.data());
+    }
+    pending_.erase(pending_.begin(), pending_.begin() + static_cast<std::ptrdiff_t>(written));
+  }
+
+  const Problem& problem_;
+  Parts& parts_;
+  std::vector<double> y_, between_;
+  std::vector<std::pair<double, std::vector<double>>> pending_;  // of the step that is being made
+  std::uint64_t next_ = 1;
+  double last_ = std::numeric_limits<double>::quiet_NaN();
+};
+
+class RunWatch {
+ public:
+  RunWatch(const Problem& problem, Parts& parts)
+      : problem_(problem),
+        parts_(parts),
+        rows_(problem, parts),
+        y_(problem.code->output_names.size()),
+        last_(problem.invariants.size()),
+        shift_(problem.invariants.size()) {
+    for (const Invariant& invariant : problem.invariants) drifts_.emplace_back(invariant.name);
+    const std::vector<double> x = parts.start;
+    see(problem.t0, x.data());
+    rows_.row(problem.t0, x.data());
+  }
+
+  bool step(const StepView& view) {
+    see(view.t1, view.x1.data());
+    if (left_range(view)) {
+      ends_at(view.t0, view.x0);
+      return false;
+    }
+    if (const std::optional<double> t = rows_.any() ? rows_.within(view) : std::nullopt) {
+      interrupted_ = true;
+      ends_at(*t, rows_.last_state());
+      return false;
+    }
+    if (problem_.progress) problem_.progress((view.t1 - problem_.t0) / (problem_.t1 - problem_.t0));
+    return true;
+  }
+
+  /// An event: told, and a row of its own.
+  void event(const Event& event, std::span<const double> x) {
+    events_.push_back(event);
+    if (event.kind == "impulse") shift_invariants(event.t, x.data());
+    if (rows_.any() && event.kind == "custom") rows_.event(event.t, x);
+  }
+
+  /// Where a coordinate left its range, the run ends with the step before; where it was interrupted between two rows,
+  /// with the last one. The end is a last row, unless it is on the grid already.
+  void finish(Result& end) {
+    if (interrupted_) {
+      end.outcome = Outcome::interrupted;
+      end.detail = "while rows were written";
+    }
+    if (left_) {
+      end.outcome = Outcome::chart_left;
+      end.detail = problem_.code->output_names[2 * left_->coordinate] + " leaves its range (" +
+                   printed(left_->range.lower) + ", " + printed(left_->range.upper) +
+                   ") between t = " + printed(left_->t0) + " and " + printed(left_->t1);
+    }
+    if (interrupted_ || left_) {
+      end.t = end_t_;
+      end.x = end_x_;
+    }
+    if (rows_.any() && end.t != rows_.last()) rows_.row(end.t, end.x.data());
+  }
+
+  void report(RunResult& result) const {
+    result.events = events_;
+    result.left_range = left_;
+    if (left_) {  // what lay in the step that left the range is no result
+      std::erase_if(result.events, [&](const Event& event) { return event.t > end_t_; });
+    }
+    for (const Drift& drift : drifts_) result.invariants.push_back({drift.initial(), drift.max_relative_drift()});
+    result.power_balance = balance_.max_relative_defect();
+    result.constraint_drift = defect_;
+  }
+
+ private:
+  void ends_at(double t, std::span<const double> x) {
+    end_t_ = t;
+    end_x_.assign(x.begin(), x.end());
+  }
+
+  void see(double t, const double* x) {
+    parts_.outputs(t, x, y_);
+    const double magnitude = std::abs(y_[problem_.kinetic]) + std::abs(y_[problem_.potential]);
+    const std::span<const std::uint32_t> own = parts_.charts.own_outputs();
+    for (std::size_t i = 0; i < drifts_.size(); ++i) {
+      const Invariant& invariant = problem_.invariants[i];
+      // Near where the own chart fails its formulas say little.
+      if (std::find(own.begin(), own.end(), invariant.output) != own.end()) continue;
+      const double terms = invariant.magnitude ? y_[*invariant.magnitude] : 0;
+      last_[i] = y_[invariant.output];
+      drifts_[i].see(y_[invariant.output] - shift_[i], invariant.output == problem_.energy ? magnitude : terms);
+    }
+    const double work = problem_.power ? x[2 * problem_.n() + problem_.code->integrals] : 0;
+    balance_.see(y_[problem_.energy] - parts_.projection.work() - parts_.impulse_work, work, magnitude);
+    defect_ = std::max(defect_, parts_.constraint_defect(t, x));
+    for (const std::size_t i : problem_.redundant) defect_ = std::max(defect_, std::abs(y_[i]));
+  }
+
+  // An energy is conserved between the impulses of supports; momenta are, through them.
+  void shift_invariants(double t, const double* x) {
+    parts_.outputs(t, x, y_);
+    for (std::size_t i = 0; i < drifts_.size(); ++i) {
+      if (problem_.invariants[i].energy) shift_[i] += y_[problem_.invariants[i].output] - last_[i];
+    }
+  }
+
+  // Every coordinate, eliminated ones too, comes first among the outputs, with its rate.
+  bool left_range(const StepView& view) {
+    for (std::size_t i = 0; i < problem_.ranges.size(); ++i) {
+      const Range& range = problem_.ranges[i];
+      const double q = y_[2 * i];
+      if (parts_.charts.has_exchanged(static_cast<std::uint32_t>(i))) continue;
+      if (q > range.lower && q < range.upper) continue;
+      if (std::find(beyond_.begin(), beyond_.end(), i) != beyond_.end()) continue;
+      if (problem_.beyond_range && parts_.charts.second() == 0 &&
+          problem_.beyond_range(static_cast<std::uint32_t>(i), view.t1, view.x1)) {
+        beyond_.push_back(i);
+        continue;
+      }
+      left_ = LeftRange{i, range, view.t0, view.t1};
+      return true;
+    }
+    return false;
+  }
+
+  const Problem& problem_;
+  Parts& parts_;
+  Rows rows_;
+  std::vector<double> y_;
+  std::vector<Drift> drifts_;
+  std::vector<double> last_, shift_;  // of invariants: where the last step ended; by which impulses changed them
+  PowerBalance balance_;
+  double defect_ = 0;
+  std::vector<Event> events_;
+  std::vector<std::size_t> beyond_;  // coordinates whose range the equations do not need
+  std::optional<LeftRange> left_;
+  bool interrupted_ = false;
+  double end_t_ = 0;
+  std::vector<double> end_x_;
+};
+
+}  // namespace eom::hybrid

@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Runs of models that are written by hand after the C ABI: what the runtime does without the generator.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/hybrid/run.hpp>
+#include <string>
+#include <vector>
+
+using namespace eom::hybrid;
+
+namespace {
+
+constexpr double gravity = 10;
+
+/// A ball above the ground: q = z, psi = z, restitution p[0]. Outputs: z, z_dot, kinetic, potential, energy,
+/// restitution.
+namespace ball {
+
+bool apart(int mode) { return eom::contact_digit(mode, 0) >= 3; }
+int rhs(double, const double* x, const double*, const double*, int mode, double* dx) {
+  const double acceleration = apart(mode) ? -gravity : 0;
+  dx[0] = x[1];
+  dx[1] = acceleration;
+  return 0;
+}
+int outputs(double, const double* x, const double* p, const double*, int, double* y) {
+  y[0] = x[0], y[1] = x[1];
+  y[2] = x[1] * x[1] / 2, y[3] = gravity * x[0], y[4] = y[2] + y[3], y[5] = p[0];
+  return 0;
+}
+int events(double, const double* x, const double*, const double*, int mode, double* g) {
+  g[0] = g[1] = g[2] = 0;
+  g[3] = apart(mode) ? x[0] : gravity;  // the gap; the normal force
+  g[4] = 1;
+  return 0;
+}
+int mass(double, const double*, const double*, double* M, double* h) {
+  M[0] = 1, h[0] = gravity;
+  return 0;
+}
+int constraints(double, const double* x, const double*, double* psi, double* A, double* b) {
+  psi[0] = x[0], A[0] = 1, b[0] = 0;
+  return 0;
+}
+
+Code code() {
+  Code code;
+  code.rhs = rhs, code.outputs = outputs, code.events = events, code.mass = mass, code.constraints = constraints;
+  code.output_names = {"z", "z_dot", "kinetic", "potential", "energy", "restitution"};
+  code.free = {0};
+  code.active_constraints = 1;
+  code.holonomic = {true};
+  code.contacts = {{{0, false, true, false, false}, "ground", 0}};
+  return code;
+}
+
+Problem problem(const Code& code, double restitution) {
+  Problem problem;
+  problem.code = &code;
+  problem.parameters = {restitution};
+  problem.t1 = 3;
+  problem.start = {1, 0};
+  problem.solver = "dop853";
+  problem.kinetic = 2, problem.potential = 3, problem.energy = 4;
+  problem.contacts = {{{}, {}, {}, 0, 5}};
+  problem.apart = {true};
+  problem.state_names = {"z", "z_dot"};
+  return problem;
+}
+
+}  // namespace ball
+
+/// x'' = -sign(x), the kink's branch held; g: an event at x_dot, then the kink.
+namespace corner {
+
+int rhs(double, const double* x, const double*, const double*, int mode, double* dx) {
+  const int held = mode >> 8 & 3;
+  const double side = held == 1 ? 1 : held == 2 ? -1 : x[0] > 0 ? 1 : x[0] < 0 ? -1 : 0;
+  dx[0] = x[1];
+  dx[1] = -side;
+  return 0;
+}
+int outputs(double, const double* x, const double*, const double*, int, double* y) {
+  y[0] = x[0], y[1] = x[1];
+  y[2] = x[1] * x[1] / 2, y[3] = std::abs(x[0]), y[4] = y[2] + y[3];
+  return 0;
+}
+int events(double, const double* x, const double*, const double*, int, double* g) {
+  g[0] = x[1], g[1] = x[0];
+  return 0;
+}
+
+Code code() {
+  Code code;
+  code.rhs = rhs, code.outputs = outputs, code.events = events;
+  code.output_names = {"x", "x_dot", "kinetic", "potential", "energy"};
+  code.free = {0};
+  code.kinks = {"sign"};
+  code.first_kink_bit = 8;
+  return code;
+}
+
+Problem problem(const Code& code) {
+  Problem problem;
+  problem.code = &code;
+  problem.t1 = 20;
+  problem.start = {0.5, 0};
+  problem.solver = "dop853";
+  problem.kinetic = 2, problem.potential = 3, problem.energy = 4;
+  problem.invariants = {{"energy", 4, {}, true}};
+  problem.events = {{"turns", eom::Direction::any, false}};
+  problem.state_names = {"x", "x_dot"};
+  return problem;
+}
+
+}  // namespace corner
+
+/// x'' = u.
+int pushed(double, const double* x, const double*, const double* u, int, double* dx) {
+  const double force = u[0];
+  dx[0] = x[1];
+  dx[1] = force;
+  return 0;
+}
+
+std::size_t count(const RunResult& result, const std::string& kind) {
+  return static_cast<std::size_t>(
+      std::count_if(result.events.begin(), result.events.end(), [&](const Event& e) { return e.kind == kind; }));
+}
+
+}  // namespace
+
+TEST_CASE("hybrid: a ball bounces at the times of its closed form, and lies still where they accumulate") {
+  const Code code = ball::code();
+  Problem problem = ball::problem(code, 0.5);
+  const RunResult result = run(problem);
+  REQUIRE(result.outcome == eom::Outcome::done);
+  const double fall = std::sqrt(2 / gravity);
+  double hit = fall, speed = gravity * fall;
+  std::size_t seen = 0;
+  for (const Event& event : result.events) {
+    CHECK(event.kind == "contact");
+    if (seen == 12) break;
+    CHECK(event.t == doctest::Approx(hit).epsilon(1e-10));
+    speed *= 0.5;
+    hit += 2 * speed / gravity;
+    ++seen;
+  }
+  CHECK(seen == 12);
+  CHECK(result.events.back().t == doctest::Approx(3 * fall).epsilon(1e-6));  // fall (1 + 2 e/(1 - e))
+  CHECK(std::abs(result.state[0]) < 1e-12);
+  CHECK(std::abs(result.state[1]) < 1e-12);
+  CHECK(result.impulse_work == doctest::Approx(-gravity));  // all of the energy
+}
+
+TEST_CASE("hybrid: a ball without restitution stays where it falls") {
+  const Code code = ball::code();
+  Problem problem = ball::problem(code, 0);
+  const RunResult result = run(problem);
+  REQUIRE(result.outcome == eom::Outcome::done);
+  REQUIRE(result.events.size() == 1);
+  CHECK(result.events[0].t == doctest::Approx(std::sqrt(2 / gravity)).epsilon(1e-12));
+  CHECK(result.error.max < 1e-8);
+}
+
+TEST_CASE("hybrid: a kink is crossed where it lies, and counted; recorded events have rows of their own") {
+  const Code code = corner::code();
+  Problem problem = corner::problem(code);
+  problem.every = 0.7;
+  std::vector<double> times;
+  problem.row = [&](double t, std::span<const double>) { times.push_back(t); };
+  const RunResult result = run(problem);
+  REQUIRE(result.outcome == eom::Outcome::done);
+  // A quarter of the period is 1: the surface is crossed at 1, 3, 5, .., and the motion turns at 2, 4, ..
+  CHECK(result.kink_crossings[0] == 10);
+  CHECK(count(result, "custom") >= 9);
+  for (const Event& event : result.events) {
+    CHECK(std::abs(event.t - 2 * std::round(event.t / 2)) < 1e-9);
+    CHECK(std::find(times.begin(), times.end(), event.t) != times.end());
+  }
+  CHECK(std::is_sorted(times.begin(), times.end()));
+  CHECK(result.state[0] == doctest::Approx(0.5).epsilon(1e-9));
+  CHECK(result.invariants[0].max_relative_drift < 1e-12);
+}
+
+TEST_CASE("hybrid: an event may stop the run, whose end then has an error in time too") {
+  const Code code = corner::code();
+  Problem problem = corner::problem(code);
+  problem.events[0].stop = true;
+  const RunResult result = run(problem);
+  CHECK(result.outcome == eom::Outcome::stopped_by_event);
+  CHECK(result.t == doctest::Approx(2).epsilon(1e-12));
+  CHECK(result.state[0] == doctest::Approx(-0.5).epsilon(1e-12));
+  REQUIRE(result.error.t);
+  CHECK(*result.error.t < 1e-9);
+}
+
+TEST_CASE("hybrid: segments end where a table jumps, and each side has its value") {
+  Code code = corner::code();
+  code.kinks.clear();
+  code.events = nullptr;
+  code.rhs = pushed;
+  Problem problem = corner::problem(code);
+  problem.events.clear();
+  problem.invariants.clear();
+  problem.inputs = {{{}, {0, 1, 1.5}, {1, -2, 0}}};
+  problem.start = {0, 0};
+  problem.t1 = 2;
+  const RunResult result = run(problem);
+  REQUIRE(result.outcome == eom::Outcome::done);
+  CHECK(std::abs(result.state[1]) < 1e-13);                        // 1 - 2/2
+  CHECK(result.state[0] == doctest::Approx(0.75).epsilon(1e-13));  // 1/2 + 1/4
+  REQUIRE(segments(problem).size() == 3);
+  CHECK(segments(problem)[1].end == 1.5);
+}
+
+TEST_CASE("hybrid: a coordinate that leaves its range ends the run with the step before") {
+  const Code code = corner::code();
+  Problem problem = corner::problem(code);
+  problem.ranges = {{-0.25, 1}};
+  const RunResult result = run(problem);
+  CHECK(result.outcome == eom::Outcome::chart_left);
+  REQUIRE(result.left_range);
+  CHECK(result.left_range->coordinate == 0);
+  CHECK(result.t == result.left_range->t0);
+  CHECK(result.state[0] >= -0.25);
+}
+
+TEST_CASE("hybrid: a solver that does not exist, and one that needs what the code has not, are told") {
+  const Code code = corner::code();
+  Problem problem = corner::problem(code);
+  problem.solver = "dopri9";
+  CHECK_THROWS_AS(run(problem), std::invalid_argument);
+  problem.solver = "taylor";
+  CHECK_THROWS_AS(run(problem), std::invalid_argument);
+}
