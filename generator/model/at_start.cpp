@@ -111,7 +111,10 @@ double AtStart::scalar_value(NodeId id) {
     case Op::negate: return -arg(0);
     case Op::multiply: return arg(0) * arg(1);
     case Op::divide: return arg(0) / arg(1);
-    default: return Samples(model_).value(id);  // of parameters; NaN where a vector is inside
+    case Op::power: return std::pow(arg(0), arg(1));
+    case Op::call: return value_of(node.fn, arg(0), node.args[1] == no_node ? 0 : arg(1));
+    case Op::conditional: return arg(0) < arg(1) ? arg(2) : arg(3);
+    default: return Samples(model_).value(id);  // of parameters
   }
 }
 

@@ -71,15 +71,13 @@ double Samples::fresh(const Node& node) {
     case Op::divide: return arg(0) / arg(1);
     case Op::power: return std::pow(arg(0), arg(1));
     case Op::conditional: return arg(0) < arg(1) ? arg(2) : arg(3);
-    case Op::call: return call(node);
+    case Op::call: return value_of(node.fn, arg(0), arg(1));
     default: return none;
   }
 }
 
-double Samples::call(const Node& node) {
-  const double x = value(node.args[0]);
-  const double y = node.args[1] == no_node ? none : value(node.args[1]);
-  switch (node.fn) {
+double value_of(Fn fn, double x, double y) {
+  switch (fn) {
     case Fn::sin: return std::sin(x);
     case Fn::cos: return std::cos(x);
     case Fn::tan: return std::tan(x);

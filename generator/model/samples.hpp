@@ -10,6 +10,9 @@
 
 namespace eomgen::model {
 
+/// f(x) in binary64, f(x, y) of functions of two arguments.
+double value_of(Fn fn, double x, double y);
+
 class Samples {
  public:
   explicit Samples(const Model& model) : model_(model) {}
@@ -27,7 +30,6 @@ class Samples {
 
  private:
   double fresh(const Node& node);
-  double call(const Node& node);
   double random();
 
   const Model& model_;

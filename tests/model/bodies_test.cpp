@@ -74,3 +74,12 @@ TEST_CASE("a point on a body is its centre of mass and components along its axes
   CHECK(sum.op == Op::add);
   CHECK(model.arena[model.arena[sum.args[1]].args[1]].op == Op::axis);
 }
+
+TEST_CASE("a pin as placed at the start may have an axis of a body that is turned about a slanted axis") {
+  const Model model = read(
+      "format = 1\n[[body]]\nname = \"B\"\nmass = 1\ninertia = { sphere = 1 }\nposition = { cartesian = [\"x\", \"y\"] "
+      "}\nrotation = { axis = \"E1 + E2\", angle = \"q\" }\n"
+      "[[joint]]\nname = \"j\"\ntype = \"pin\"\nbodies = [\"ground\", \"B\"]\nat = \"B\"\naxis = \"B.e3\"\n"
+      "[scene.default]\ninitial = { q = 0.3 }\n");
+  CHECK(model.constraints.at(0).psi.size() == 5);
+}

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "random/between_bodies.hpp"
 #include "random/dice.hpp"
 
 namespace eomgen::random_models {
@@ -22,12 +23,13 @@ struct Place {
 };
 
 // The models of the seeds before it are what they were when these kinds were added: findings are told by their seeds.
-constexpr std::uint64_t first_with_contacts = 1001;
+constexpr std::uint64_t first_with_contacts = 1001, first_with_forces_between_bodies = 2001;
 
 // Writes one model. Every member adds some lines and keeps account of what later ones may refer to.
 class Builder {
  public:
-  explicit Builder(std::uint64_t seed) : dice_(seed), contacts_(seed >= first_with_contacts) {}
+  explicit Builder(std::uint64_t seed)
+      : dice_(seed), contacts_(seed >= first_with_contacts), between_(seed >= first_with_forces_between_bodies) {}
 
   Mechanism build() {
     planar_ = dice_.chance(35);
@@ -47,6 +49,13 @@ class Builder {
     if (contacts_) {
       if (dice_.chance(35)) add_joint_of_all_axes();
       if (dice_.chance(75)) add_contacts();
+    }
+    if (between_) {
+      std::vector<std::string> turning;
+      for (const Place& place : places_) {
+        if (place.body && !place.angles.empty()) turning.push_back(place.name);
+      }
+      force_lines_ += forces_between(dice_, turning, planar_, result_.features);
     }
     return finish();
   }
@@ -591,6 +600,7 @@ class Builder {
   Dice dice_;
   Mechanism result_;
   bool contacts_ = false, planar_ = false, equal_ = false, rolling_ = false;
+  bool between_ = false;
   int named_parameters_ = 50, parameters_ = 0, functions_ = 0, inputs_ = 0, constraints_ = 0, joints_ = 0;
   std::vector<Place> places_;
   std::vector<std::string> coordinates_, spins_;

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Forces between bodies of a random mechanism: bushings, struts, actuators. In: bodies that turn. Out: [[force]]
+// tables.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "random/dice.hpp"
+
+namespace eomgen::random_models {
+
+std::string forces_between(Dice& dice, const std::vector<std::string>& bodies, bool planar,
+                           std::set<std::string>& features);
+
+}  // namespace eomgen::random_models
