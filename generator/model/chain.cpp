@@ -37,13 +37,13 @@ void ChainsReader::declare(const Value& table) {
     const std::string name = fmt::format("{}{}", coordinate, k);
     Symbol* known = scope_.find(name);
     if (known == nullptr || known->kind != SymbolKind::coordinate || known->entry == nullptr) {
-      NamesReader(reading_).declare_coordinate(name, coordinate_span, nullptr);
+      NamesReader(context_).declare_coordinate(name, coordinate_span, nullptr);
       known = scope_.find(name);
     }
     known->used = true;
     chain.coordinates.push_back(known->index);
     if (measured_.insert(known->index).second) model_.coordinates[known->index].unit = Unit{"rad", Dimension{}};
-    chain.places.push_back(PlacesReader(reading_).declare_place(
+    chain.places.push_back(PlacesReader(context_).declare_place(
         fmt::format("{}{}", chain.name, k), table.find("name")->span, PlaceSource{&table, true, false, index, k}));
   }
   chains_.push_back(std::move(chain));

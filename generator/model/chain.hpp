@@ -2,13 +2,13 @@
 // [[chain]]: a shorthand for particles on rods.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class ChainsReader : private Room {
+class ChainsReader : private SectionReader {
  public:
-  explicit ChainsReader(Reading& reading) : Room(reading) {}
+  explicit ChainsReader(ReaderContext& context) : SectionReader(context) {}
   void declare(const Value& table);
   Typed position(const PlaceSource& where);
   Typed entry(const Value& table, std::string_view key, long link, const Context& context);

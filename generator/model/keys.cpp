@@ -4,11 +4,11 @@
 
 #include <algorithm>
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-void Room::check_keys(const Value& table, const Keys& keys) const {
+void SectionReader::check_keys(const Value& table, const Keys& keys) const {
   for (const Entry& entry : table.entries) {
     if (std::find(keys.known.begin(), keys.known.end(), entry.key) != keys.known.end()) continue;
     if (std::find(keys.later.begin(), keys.later.end(), entry.key) != keys.later.end()) {
@@ -23,19 +23,20 @@ void Room::check_keys(const Value& table, const Keys& keys) const {
   }
 }
 
-void Room::not_yet(Span span, const std::string& what) const {
+void SectionReader::not_yet(Span span, const std::string& what) const {
   source_.fail(span, what + " is not supported yet",
                "a later version brings it; docs/model-format.md lists what works now");
 }
 
-const Value& Room::needed(const Value& table, std::string_view key, const std::string& what,
-                          const std::string& remedy) const {
+const Value& SectionReader::needed(const Value& table, std::string_view key, const std::string& what,
+                                   const std::string& remedy) const {
   const Value* value = table.find(key);
   if (value == nullptr) source_.fail(table.span, fmt::format("{} has no {}", what, key), remedy);
   return *value;
 }
 
-const Value& Room::as(Value::Kind kind, const Value& value, const std::string& what, const std::string& remedy) const {
+const Value& SectionReader::as(Value::Kind kind, const Value& value, const std::string& what,
+                               const std::string& remedy) const {
   if (!value.is(kind)) {
     source_.fail(value.span,
                  fmt::format("{} is {}, and {} is asked", what, model::kind_name(value.kind), model::kind_name(kind)),
@@ -44,14 +45,14 @@ const Value& Room::as(Value::Kind kind, const Value& value, const std::string& w
   return value;
 }
 
-const Value* Room::section(std::string_view name) const {
+const Value* SectionReader::section(std::string_view name) const {
   const Entry* entry = root_.entry(name);
   if (entry == nullptr) return nullptr;
   return &as(Value::Kind::table, entry->value, fmt::format("[{}]", name),
              fmt::format("write [{}] and its keys below", name));
 }
 
-std::vector<const Value*> Room::sections(std::string_view name) const {
+std::vector<const Value*> SectionReader::sections(std::string_view name) const {
   std::vector<const Value*> result;
   const Entry* entry = root_.entry(name);
   if (entry == nullptr) return result;
@@ -64,17 +65,17 @@ std::vector<const Value*> Room::sections(std::string_view name) const {
   return result;
 }
 
-std::string Room::text_of_key(const Value& table, std::string_view key, const std::string& what) const {
+std::string SectionReader::text_of_key(const Value& table, std::string_view key, const std::string& what) const {
   const Value& value = needed(table, key, what, fmt::format("add {} = \"...\"", key));
   return as(Value::Kind::text, value, fmt::format("the {} of {}", key, what), "write it in quotes").text;
 }
 
-Span Room::key_span(const Value& table, std::string_view key) const {
+Span SectionReader::key_span(const Value& table, std::string_view key) const {
   const Entry* entry = table.entry(key);
   return entry == nullptr ? table.span : entry->span;
 }
 
-std::string Room::tex_of(const Value& table, const std::string& what) const {
+std::string SectionReader::tex_of(const Value& table, const std::string& what) const {
   const Value* value = table.find("tex");
   if (value == nullptr) return "";
   as(Value::Kind::text, *value, fmt::format("the tex of {}", what), "write it in quotes, such as '\\theta_{1}'");
@@ -86,7 +87,7 @@ std::string Room::tex_of(const Value& table, const std::string& what) const {
   return value->text;
 }
 
-MeasuredUnit Room::any_unit(const Value& value, const std::string& what) const {
+MeasuredUnit SectionReader::any_unit(const Value& value, const std::string& what) const {
   as(Value::Kind::text, value, fmt::format("the unit of {}", what), "write it in quotes, such as \"m/s\"");
   const auto unit = parse_unit(value.text);
   if (!unit) {
@@ -97,7 +98,7 @@ MeasuredUnit Room::any_unit(const Value& value, const std::string& what) const {
   return *unit;
 }
 
-Unit Room::si_unit(const Value& value, const std::string& what) const {
+Unit SectionReader::si_unit(const Value& value, const std::string& what) const {
   const MeasuredUnit unit = any_unit(value, what);
   if (unit.scale != 1 || unit.pi_power != 0) {
     source_.fail(value.span, fmt::format("{} is measured in SI units, and {} is not one", what, quote(value.text)),

@@ -37,8 +37,8 @@ void BodiesReader::declare_angles(const Value& table) {
     const bool angles = entry.key == "angles" || entry.key == "angle";
     if (!angles && entry.key != "euler_parameters" && entry.key != "rodrigues") continue;
     const char* unit = angles ? "rad" : "1";
-    if (entry.key == "angle") PositionsReader(reading_).declare_entry(entry.value, unit);
-    for (const Value& item : entry.value.items) PositionsReader(reading_).declare_entry(item, unit);
+    if (entry.key == "angle") PositionsReader(context_).declare_entry(entry.value, unit);
+    for (const Value& item : entry.value.items) PositionsReader(context_).declare_entry(item, unit);
   }
 }
 
@@ -288,7 +288,7 @@ void BodiesReader::read() {
       source_.fail(value.span, fmt::format("the mass of {} is not positive", what), "a mass is greater than 0");
     }
     body.mass = mass.node;
-    InertiaReader(reading_).read(body, *source.table);
+    InertiaReader(context_).read(body, *source.table);
     model_.bodies.push_back(body);
   }
 }

@@ -4,14 +4,14 @@
 
 #include <map>
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 #include "rotations/rotation.hpp"
 
 namespace eomgen::model {
 
-class BodiesReader : private Room {
+class BodiesReader : private SectionReader {
  public:
-  explicit BodiesReader(Reading& reading) : Room(reading) {}
+  explicit BodiesReader(ReaderContext& context) : SectionReader(context) {}
   void declare_frame(const Value& table, std::uint32_t place, Symbol& symbol);
   void declare_angles(const Value& table);
   Typed define_axes(Symbol& symbol);

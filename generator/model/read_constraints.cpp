@@ -46,7 +46,7 @@ void ConstraintsReader::read() {
             : needed(*table, "holonomic", what,
                      "add holonomic = \"psi\", the expression that is 0, or velocity = \"..\" for one of velocities"));
     read_holds(constraint, *table);
-    if (const Value* friction = table->find("friction")) FrictionReader(reading_).of_constraint(constraint, *friction);
+    if (const Value* friction = table->find("friction")) FrictionReader(context_).of_constraint(constraint, *friction);
   }
 }
 
@@ -61,15 +61,15 @@ bool ConstraintsReader::read_contact(Constraint& constraint, const Value& table)
                  fmt::format("the constraint '{}' is both '{}' and '{}'", constraint.name, kind.key, other),
                  "write one [[constraint]] for each");
   }
-  ContactsReader(reading_).read(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
+  ContactsReader(context_).read(constraint, kind.value, rolling != nullptr, table.find("friction") != nullptr);
   read_holds(constraint, table);
-  if (const Value* friction = table.find("friction")) FrictionReader(reading_).of_constraint(constraint, *friction);
+  if (const Value* friction = table.find("friction")) FrictionReader(context_).of_constraint(constraint, *friction);
   return true;
 }
 
 // gear = { .. } and such; false for any other constraint.
 bool ConstraintsReader::read_coupling(Constraint& constraint, const Value& table) {
-  CouplingsReader couplings(reading_);
+  CouplingsReader couplings(context_);
   const Entry* coupling = couplings.found(table);
   if (coupling == nullptr) return false;
   for (const Entry& other : table.entries) {

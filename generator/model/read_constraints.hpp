@@ -2,13 +2,13 @@
 // [[constraint]] and [energy].
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class ConstraintsReader : private Room {
+class ConstraintsReader : private SectionReader {
  public:
-  explicit ConstraintsReader(Reading& reading) : Room(reading) {}
+  explicit ConstraintsReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void read();
   void read_energy();

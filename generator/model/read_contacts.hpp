@@ -4,13 +4,13 @@
 
 #include <map>
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class ContactsReader : private Room {
+class ContactsReader : private SectionReader {
  public:
-  explicit ContactsReader(Reading& reading) : Room(reading) {}
+  explicit ContactsReader(ReaderContext& context) : SectionReader(context) {}
   void read(Constraint& constraint, const Value& table, bool rolling, bool rough);
 
  private:

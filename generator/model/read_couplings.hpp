@@ -6,13 +6,13 @@
 #include <map>
 
 #include "couplings/coupling.hpp"
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class CouplingsReader : private Room {
+class CouplingsReader : private SectionReader {
  public:
-  explicit CouplingsReader(Reading& reading) : Room(reading) {}
+  explicit CouplingsReader(ReaderContext& context) : SectionReader(context) {}
   /// The coupling that a [[constraint]] is; nullptr where it is none.
   const Entry* found(const Value& table) const;
   void read(Constraint& constraint, const Entry& entry);

@@ -2,13 +2,13 @@
 // [draw]: how a report draws particles and bodies.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class DrawReader : private Room {
+class DrawReader : private SectionReader {
  public:
-  explicit DrawReader(Reading& reading) : Room(reading) {}
+  explicit DrawReader(ReaderContext& context) : SectionReader(context) {}
   void read();
 
  private:

@@ -2,13 +2,13 @@
 // [[event]], and the events that end a scene.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class EventsReader : private Room {
+class EventsReader : private SectionReader {
  public:
-  explicit EventsReader(Reading& reading) : Room(reading) {}
+  explicit EventsReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void read();
   void read_stop(Scene& scene, const Value& value);

@@ -107,7 +107,7 @@ void ForcesReader::read_force(Force& force, const Value& table) {
     as(Value::Kind::table, entry.value, what, fmt::format("write {} = {{ ... }}", kind.name));
   if (kind.form == forces::Form::components) return read_components(force, entry.value, what);
   if (kind.form == forces::Form::friction) {
-    force.dry = FrictionReader(reading_).dry(entry.value, what);
+    force.dry = FrictionReader(context_).dry(entry.value, what);
     return;
   }
   Open open{kind, force, kind.form == forces::Form::value ? table : entry.value, what, named, {}};

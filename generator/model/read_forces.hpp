@@ -5,13 +5,13 @@
 #include <map>
 
 #include "forces/kind.hpp"
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class ForcesReader : private Room {
+class ForcesReader : private SectionReader {
  public:
-  explicit ForcesReader(Reading& reading) : Room(reading) {}
+  explicit ForcesReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void read();
 

@@ -2,13 +2,13 @@
 // Coulomb friction: friction = { .. } of a constraint, and the force dry = { .. } on one coordinate.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class FrictionReader : private Room {
+class FrictionReader : private SectionReader {
  public:
-  explicit FrictionReader(Reading& reading) : Room(reading) {}
+  explicit FrictionReader(ReaderContext& context) : SectionReader(context) {}
   void of_constraint(Constraint& constraint, const Value& value);
   Dry dry(const Value& table, const std::string& what);
   /// friction.NAME, friction.NAME.1 .. 3, slip.NAME, slip.NAME.1 .. 2 and mode.NAME of a contact.

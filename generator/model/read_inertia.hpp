@@ -2,13 +2,13 @@
 // The inertia of a [[body]].
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class InertiaReader : private Room {
+class InertiaReader : private SectionReader {
  public:
-  explicit InertiaReader(Reading& reading) : Room(reading) {}
+  explicit InertiaReader(ReaderContext& context) : SectionReader(context) {}
   void read(Body& body, const Value& table);
 
  private:

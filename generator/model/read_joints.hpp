@@ -4,13 +4,13 @@
 
 #include "joints/joint.hpp"
 #include "model/at_start.hpp"
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class JointsReader : private Room {
+class JointsReader : private SectionReader {
  public:
-  explicit JointsReader(Reading& reading) : Room(reading) {}
+  explicit JointsReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void read();
 

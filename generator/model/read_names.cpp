@@ -108,8 +108,8 @@ Typed NamesReader::define(Symbol& symbol) {
     case SymbolKind::function: return define_function(symbol);
     case SymbolKind::input: return define_input(symbol);
     case SymbolKind::definition: return define_definition(symbol);
-    case SymbolKind::place: return PlacesReader(reading_).define_place(symbol);
-    case SymbolKind::frame: return BodiesReader(reading_).define_axes(symbol);
+    case SymbolKind::place: return PlacesReader(context_).define_place(symbol);
+    case SymbolKind::frame: return BodiesReader(context_).define_axes(symbol);
     default: return Typed{};
   }
 }

@@ -2,13 +2,13 @@
 // [parameters] [functions] [inputs] [coordinates] [definitions]: names, and what they stand for when it is needed.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class NamesReader : private Room {
+class NamesReader : private SectionReader {
  public:
-  explicit NamesReader(Reading& reading) : Room(reading) {}
+  explicit NamesReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   std::uint32_t declare_coordinate(const std::string& name, Span span, const Entry* entry);
   Typed define(Symbol& symbol);

@@ -41,7 +41,7 @@ void PlacesReader::declare() {
                    [](const Item& a, const Item& b) { return a.table->begin < b.table->begin; });
   for (const auto& [table, which] : items) {
     if (which == 2) {
-      ChainsReader(reading_).declare(*table);
+      ChainsReader(context_).declare(*table);
       continue;
     }
     if (which == 0) check_keys(*table, {"[[particle]]", {"name", "mass", "position"}, {}});
@@ -54,11 +54,11 @@ void PlacesReader::declare() {
         text_of_key(*table, "name", fmt::format("this [[{}]]", kinds[static_cast<std::size_t>(which)]));
     const Span span = table->find("name")->span;
     if (which == 4) {
-      BodiesReader(reading_).declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
+      BodiesReader(context_).declare_frame(*table, 0, scope_.declare(SymbolKind::frame, name, span));
       continue;
     }
     const std::uint32_t place = declare_place(name, span, PlaceSource{table, which == 0, which == 3, 0, 0});
-    if (which == 3) BodiesReader(reading_).declare_frame(*table, place, *scope_.find(name));
+    if (which == 3) BodiesReader(context_).declare_frame(*table, place, *scope_.find(name));
   }
 }
 
@@ -66,7 +66,7 @@ void PlacesReader::declare() {
 void PlacesReader::declare_coordinates() {
   const auto position = [&](const Value& table) {
     const Value* found = table.find("position");
-    if (found != nullptr && found->is(Value::Kind::table)) PositionsReader(reading_).declare_entries(*found);
+    if (found != nullptr && found->is(Value::Kind::table)) PositionsReader(context_).declare_entries(*found);
   };
   std::size_t place = 1;
   // Those of a body's rotation follow those of its position; frames come where they stand among the bodies.
@@ -78,7 +78,7 @@ void PlacesReader::declare_coordinates() {
          ++place) {
       if (place_sources_[place].chain == 0) position(*place_sources_[place].table);
     }
-    if (frame < frame_sources_.size()) BodiesReader(reading_).declare_angles(*frame_sources_[frame].table);
+    if (frame < frame_sources_.size()) BodiesReader(context_).declare_angles(*frame_sources_[frame].table);
   }
 }
 
@@ -86,19 +86,19 @@ Typed PlacesReader::define_place(Symbol& symbol) {
   const PlaceSource where = place_sources_[symbol.index];
   Typed position;
   if (where.chain > 0) {
-    position = ChainsReader(reading_).position(where);
+    position = ChainsReader(context_).position(where);
   } else if (where.body && where.table->find("position") == nullptr) {
     position = resolver_.meet(resolver_.number(0, symbol.span), symbol.span,
                               Context{"a position", 0, Shape::vector, std::nullopt, ""});
   } else if (!where.particle && !where.body &&
              (where.table->find("on") != nullptr || where.table->find("at") != nullptr)) {
-    position = BodiesReader(reading_).point_on_body(*where.table, fmt::format("'{}'", symbol.name));
+    position = BodiesReader(context_).point_on_body(*where.table, fmt::format("'{}'", symbol.name));
   } else {
     const std::string what = fmt::format("'{}'", symbol.name);
     const Value& value = needed(*where.table, "position", what,
                                 "add position = { cartesian = [\"x\", \"y\", \"z\"] } or a vector expression");
     if (value.is(Value::Kind::table)) {
-      position = PositionsReader(reading_).position(symbol.index, value);
+      position = PositionsReader(context_).position(symbol.index, value);
     } else {
       const Context context{fmt::format("the position of {}", what), on_motion, Shape::vector, dimension_of("m"), ""};
       position = resolver_.value(value, context);
@@ -120,7 +120,7 @@ void PlacesReader::read_particles() {
     const std::string what = fmt::format("'{}'", symbol.name);
     const Context context{fmt::format("the mass of {}", what), on_time, Shape::scalar, dimension_of("kg"), ""};
     if (where.chain == 0) needed(*where.table, "mass", what, "add mass = \"m\" or a value such as \"2 kg\"");
-    const Typed mass = where.chain > 0 ? ChainsReader(reading_).entry(*where.table, "mass", where.link, context)
+    const Typed mass = where.chain > 0 ? ChainsReader(context_).entry(*where.table, "mass", where.link, context)
                                        : resolver_.value(*where.table->find("mass"), context);
     if (mass.constant && !cln::plusp(*mass.constant)) {
       source_.fail(where.table->find("mass")->span, fmt::format("the mass of {} is not positive", what),

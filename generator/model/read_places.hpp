@@ -2,13 +2,13 @@
 // [[particle]] [[point]], and where the places of bodies and chains are.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class PlacesReader : private Room {
+class PlacesReader : private SectionReader {
  public:
-  explicit PlacesReader(Reading& reading) : Room(reading) {}
+  explicit PlacesReader(ReaderContext& context) : SectionReader(context) {}
   void declare();
   void declare_coordinates();
   std::uint32_t declare_place(const std::string& name, Span span, PlaceSource where);

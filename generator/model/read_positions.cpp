@@ -36,8 +36,8 @@ void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
     const Derivative derivative = split_derivative(entry.text);
     if (is_reserved(entry.text) || (derivative.order > 0 && scope_.find(derivative.base) != nullptr))
       return;  // told later
-    NamesReader(reading_).declare_coordinate(entry.text, entry.span, nullptr);
-    NamesReader(reading_).warn_misspelt(entry.text, entry.span);
+    NamesReader(context_).declare_coordinate(entry.text, entry.span, nullptr);
+    NamesReader(context_).warn_misspelt(entry.text, entry.span);
     known = scope_.find(entry.text);
   }
   if (known->kind != SymbolKind::coordinate || unit.empty()) return;

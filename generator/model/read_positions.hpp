@@ -3,13 +3,13 @@
 #pragma once
 
 #include "coordinates/coordinate_system.hpp"
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class PositionsReader : private Room {
+class PositionsReader : private SectionReader {
  public:
-  explicit PositionsReader(Reading& reading) : Room(reading) {}
+  explicit PositionsReader(ReaderContext& context) : SectionReader(context) {}
   void declare_entries(const Value& position);
   void declare_entry(const Value& entry, std::string_view unit);
   Typed position(std::uint32_t place, const Value& table);

@@ -43,7 +43,7 @@ void ScenesReader::read() {
     scene.name = "default";
     scene.t0 = resolver_.number(0, Span{}).node;
     scene.t1 = resolver_.number(10, Span{}).node;
-    BodiesReader(reading_).complete_parameters(scene);
+    BodiesReader(context_).complete_parameters(scene);
     model_.scenes.push_back(std::move(scene));
   } else {
     read_scene(*table->entry("default"));
@@ -139,7 +139,7 @@ void ScenesReader::read_scene(const Entry& entry) {
     } else if (key == "solver") {
       read_solver(scene, value);
     } else if (key == "stop") {
-      EventsReader(reading_).read_stop(scene, value);
+      EventsReader(context_).read_stop(scene, value);
     } else {
       const bool time = key == "step" || key == "every";
       const NodeId node = positive_number(value, fmt::format("'{}'", key), time ? "s" : "1");
@@ -150,8 +150,8 @@ void ScenesReader::read_scene(const Entry& entry) {
   read_scene_inputs(scene, merged_table(entries, "inputs"));
   read_initial(scene, merged_table(entries, "initial"), false);
   read_initial(scene, merged_table(entries, "guess"), true);
-  BodiesReader(reading_).complete_parameters(scene);
-  BodiesReader(reading_).check_initial_rotations(scene);
+  BodiesReader(context_).complete_parameters(scene);
+  BodiesReader(context_).check_initial_rotations(scene);
   model_.scenes.push_back(std::move(scene));
 }
 
@@ -199,7 +199,7 @@ void ScenesReader::read_initial(Scene& scene, const std::vector<const Entry*>& e
     for (const InitialValue& known : scene.initial) given.insert({known.coordinate, known.order});
   }
   for (const Entry* entry : entries) {
-    if (BodiesReader(reading_).read_initial_rotation(scene, *entry, guess)) continue;
+    if (BodiesReader(context_).read_initial_rotation(scene, *entry, guess)) continue;
     InitialValue initial{};
     const Symbol& symbol = coordinate_of_key(*entry, what, initial.order);
     initial.coordinate = symbol.index;

@@ -2,13 +2,13 @@
 // [scene.NAME]: starts, parameters, inputs, outputs and the solver.
 #pragma once
 
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 namespace eomgen::model {
 
-class ScenesReader : private Room {
+class ScenesReader : private SectionReader {
  public:
-  explicit ScenesReader(Reading& reading) : Room(reading) {}
+  explicit ScenesReader(ReaderContext& context) : SectionReader(context) {}
   void read();
   void refuse_shadowed_outputs();
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A model file, section by section: each is read by a class of its own (room.hpp).
+// A model file, section by section: each is read by a class of its own (section_reader.hpp).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -51,10 +51,10 @@ bool states_units(const Value& value, std::string_view section, std::string_view
          });
 }
 
-class Reader : private Room {
+class Reader : private SectionReader {
  public:
-  explicit Reader(Reading& reading) : Room(reading) {
-    reading.define = [&reading](Symbol& symbol) { return NamesReader(reading).define(symbol); };
+  explicit Reader(ReaderContext& context) : SectionReader(context) {
+    context.define = [&context](Symbol& symbol) { return NamesReader(context).define(symbol); };
   }
   void read();
 
@@ -66,28 +66,28 @@ class Reader : private Room {
 // way, so that the order of the file does not matter.
 void Reader::read() {
   read_head();
-  NamesReader(reading_).declare();
-  PlacesReader(reading_).declare();
-  ConstraintsReader(reading_).declare();
-  JointsReader(reading_).declare();
-  BodiesReader(reading_).declare_units();
-  ForcesReader(reading_).declare();
-  EventsReader(reading_).declare();
-  PlacesReader(reading_).declare_coordinates();
+  NamesReader(context_).declare();
+  PlacesReader(context_).declare();
+  ConstraintsReader(context_).declare();
+  JointsReader(context_).declare();
+  BodiesReader(context_).declare_units();
+  ForcesReader(context_).declare();
+  EventsReader(context_).declare();
+  PlacesReader(context_).declare_coordinates();
 
   for (const SymbolKind kind : {SymbolKind::parameter, SymbolKind::function, SymbolKind::input}) {
     for (Symbol* symbol : scope_.all(kind)) resolver_.symbol(*symbol, symbol->span);
   }
-  NamesReader(reading_).read_ranges();
-  PlacesReader(reading_).read_particles();
-  BodiesReader(reading_).read();
+  NamesReader(context_).read_ranges();
+  PlacesReader(context_).read_particles();
+  BodiesReader(context_).read();
   for (Symbol* symbol : scope_.all(SymbolKind::definition)) resolver_.symbol(*symbol, symbol->span);
-  ConstraintsReader(reading_).read_energy();
-  ForcesReader(reading_).read();
-  ConstraintsReader(reading_).read();
-  BodiesReader(reading_).read_units();
-  EventsReader(reading_).read();
-  DrawReader(reading_).read();
+  ConstraintsReader(context_).read_energy();
+  ForcesReader(context_).read();
+  ConstraintsReader(context_).read();
+  BodiesReader(context_).read_units();
+  EventsReader(context_).read();
+  DrawReader(context_).read();
   if (model_.particles.empty() && model_.bodies.empty() && model_.energy.kinetic == no_node) {
     source_.fail(root_.span, "nothing moves: the model has no particle, no body and no kinetic energy",
                  "add a [[particle]] or [[body]], or kinetic = \"..\" in [energy]");
@@ -96,10 +96,10 @@ void Reader::read() {
     source_.fail(root_.span, "nothing moves: the model has no coordinate",
                  "name coordinates in a position or in [coordinates]");
   }
-  ScenesReader(reading_).refuse_shadowed_outputs();
-  ScenesReader(reading_).read();
-  JointsReader(reading_).read();
-  NamesReader(reading_).warn_unused();
+  ScenesReader(context_).refuse_shadowed_outputs();
+  ScenesReader(context_).read();
+  JointsReader(context_).read();
+  NamesReader(context_).warn_unused();
 }
 
 void Reader::read_head() {
@@ -134,12 +134,12 @@ void Reader::read_head() {
 Model read_model_text(const std::string& text, const std::string& file) {
   const Source source(file, text);
   const Value root = read_document(source);
-  Reading reading(source, root);
-  Reader(reading).read();
-  Model& model = reading.model;
+  ReaderContext context(source, root);
+  Reader(context).read();
+  Model& model = context.model;
   restore_declared_order(model);
   name_start_values(model);
-  add_start_time(model, reading.resolver.units_stated());
+  add_start_time(model, context.resolver.units_stated());
   model.file = file;
   model.id = std::filesystem::path(file).stem().string();
   model.lines = source.lines();

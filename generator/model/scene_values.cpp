@@ -137,7 +137,7 @@ void ScenesReader::check_output(const Value& value) {
   if (parts.size() == 1 &&
       std::find(built_in_outputs.begin(), built_in_outputs.end(), value.text) != built_in_outputs.end())
     return;
-  if (FrictionReader(reading_).is_output(parts)) return;
+  if (FrictionReader(context_).is_output(parts)) return;
   if (parts.size() == 2 && is_axis(parts[1], "omega")) {
     const Symbol* turning = scope_.find(parts[0]);
     if (turning != nullptr && turning->frame > 0) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers of the sections share. A section is read by one class, a Room, on one Reading: the file as values,
-// the Model that is being made, the names, and the sources of what is resolved only when it is needed.
+// What the readers of the sections share. A section is read by one class, a SectionReader, on one ReaderContext: the
+// file as values, the Model that is being made, the names, and the sources of what is resolved only when it is needed.
 #pragma once
 
 #include <functional>
@@ -31,7 +31,7 @@ struct PlaceSource {
   const Value* table = nullptr;
   bool particle = false;
   bool body = false;
-  std::uint32_t chain = 0;  // index + 1 into Reading::chains, for links
+  std::uint32_t chain = 0;  // index + 1 into ReaderContext::chains, for links
   long link = 0;            // from 1
 };
 
@@ -60,10 +60,10 @@ struct FrameSource {
       false;  // it turns about that axis alone, from E1, E2, E3 on: the axis has the same components in space
 };
 
-struct Reading {
-  Reading(const Source& file, const Value& tree);
-  Reading(const Reading&) = delete;
-  Reading& operator=(const Reading&) = delete;
+struct ReaderContext {
+  ReaderContext(const Source& file, const Value& tree);
+  ReaderContext(const ReaderContext&) = delete;
+  ReaderContext& operator=(const ReaderContext&) = delete;
 
   const Source& source;
   const Value& root;
@@ -77,9 +77,9 @@ struct Reading {
   std::set<std::uint32_t> ranged, measured;  // coordinates whose range or unit [coordinates] states
 };
 
-class Room {
+class SectionReader {
  protected:
-  explicit Room(Reading& reading);
+  explicit SectionReader(ReaderContext& context);
 
   // keys.cpp
   void check_keys(const Value& table, const Keys& keys) const;
@@ -96,7 +96,7 @@ class Room {
   Unit si_unit(const Value& value, const std::string& what) const;
   MeasuredUnit any_unit(const Value& value, const std::string& what) const;
 
-  // room.cpp
+  // section_reader.cpp
   /// Index into Model::places, 0 of "origin"; refused if it is no name of a place.
   std::uint32_t place_named(const Value& value, const std::string& what);
   /// Index into Model::frames, 0 of "ground"; refused if it is no name of a body or frame.
@@ -104,7 +104,7 @@ class Room {
   /// A place by its name, or a vector.
   Typed point(const Value& value, const std::string& what);
 
-  Reading& reading_;
+  ReaderContext& context_;
   const Source& source_;
   const Value& root_;
   Model& model_;

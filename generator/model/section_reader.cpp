@@ -1,30 +1,30 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "model/room.hpp"
+#include "model/section_reader.hpp"
 
 #include <fmt/format.h>
 
 namespace eomgen::model {
 
-Reading::Reading(const Source& file, const Value& tree)
+ReaderContext::ReaderContext(const Source& file, const Value& tree)
     : source(file),
       root(tree),
       scope(source),
       resolver(source, model, scope, [this](Symbol& symbol) { return define(symbol); }) {}
 
-Room::Room(Reading& reading)
-    : reading_(reading),
-      source_(reading.source),
-      root_(reading.root),
-      model_(reading.model),
-      scope_(reading.scope),
-      resolver_(reading.resolver),
-      place_sources_(reading.place_sources),
-      frame_sources_(reading.frame_sources),
-      chains_(reading.chains),
-      ranged_(reading.ranged),
-      measured_(reading.measured) {}
+SectionReader::SectionReader(ReaderContext& context)
+    : context_(context),
+      source_(context.source),
+      root_(context.root),
+      model_(context.model),
+      scope_(context.scope),
+      resolver_(context.resolver),
+      place_sources_(context.place_sources),
+      frame_sources_(context.frame_sources),
+      chains_(context.chains),
+      ranged_(context.ranged),
+      measured_(context.measured) {}
 
-std::uint32_t Room::place_named(const Value& value, const std::string& what) {
+std::uint32_t SectionReader::place_named(const Value& value, const std::string& what) {
   as(Value::Kind::text, value, what, "write the name of a particle or point, or \"origin\"");
   if (value.text == "origin") return 0;
   Symbol* symbol = scope_.find(value.text);
@@ -42,7 +42,7 @@ std::uint32_t Room::place_named(const Value& value, const std::string& what) {
   return symbol->index;
 }
 
-std::uint32_t Room::frame_named(const Value& value, const std::string& what) {
+std::uint32_t SectionReader::frame_named(const Value& value, const std::string& what) {
   as(Value::Kind::text, value, what, "write the name of a body or frame");
   if (value.text == "ground") return 0;
   Symbol* symbol = scope_.find(value.text);
@@ -62,7 +62,7 @@ std::uint32_t Room::frame_named(const Value& value, const std::string& what) {
   return symbol->frame;
 }
 
-Typed Room::point(const Value& value, const std::string& what) {
+Typed SectionReader::point(const Value& value, const std::string& what) {
   // A misspelt name of a particle deserves to be told as one.
   if (value.is(Value::Kind::text) && is_identifier(value.text) && scope_.find(value.text) == nullptr &&
       value.text != "origin" && !is_reserved(value.text)) {
