@@ -108,7 +108,8 @@ std::string Ledger::beginning() const { return mark + key_ + "\n" + header_ + "\
 
 void Ledger::write(const std::function<void(std::string_view)>& to) const {
   constexpr std::size_t enough = 1 << 20;
-  std::string text = beginning();
+  to(beginning());  // at once: what is killed before that leaves a file that nobody knows
+  std::string text;
   rows_.each(0, rows_.size(), [&](std::size_t, std::string_view line) {
     text.append(line);
     text += '\n';

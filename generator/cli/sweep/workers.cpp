@@ -104,7 +104,10 @@ Child start(const std::vector<std::size_t>& jobs, std::size_t first, std::size_t
   const pid_t id = fork();
   if (id < 0) lost();
   if (id == 0) {
-    close(ends[0]);
+    // Nothing else is the child's: it would keep the lock of a table whose process was killed.
+    const unsigned pipe = static_cast<unsigned>(ends[1]);
+    ::close_range(STDERR_FILENO + 1, pipe - 1, 0);
+    ::close_range(pipe + 1, ~0U, 0);
     work(jobs, first, stride, ends[1], line);
   }
   close(ends[1]);
