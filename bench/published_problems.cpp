@@ -15,7 +15,7 @@
 #include <sstream>
 
 #include "bench/bench.hpp"
-#include "cli/simulate.hpp"
+#include "pipeline/simulate.hpp"
 #include "published_equations.hpp"
 #include "reference/reference.hpp"
 #include "run/integration.hpp"
@@ -61,14 +61,14 @@ ByHand by_hand(const Problem& problem, const Values& p, const Values& start, Qua
           problem.end(p, published::integrate(rhs, x, t1, other_columns, published::number("1e-27")))};
 }
 
-cli::Simulation prepare(const Problem& problem) {
-  cli::SimulationRequest request;
-  request.model = problem.model;
+pipeline::Simulation prepare(const Problem& problem) {
+  pipeline::SimulationRequest request;
+  request.model = std::make_shared<const model::Model>(model::read_model(problem.model));
   request.scene = problem.scene;
   request.overrides.solver = "dop853";
   request.overrides.t_end = static_cast<double>(published::number(problem.t1));
   request.integrate = false;
-  return cli::simulate(request);
+  return pipeline::simulate(request);
 }
 
 /// Where the reference route cannot follow.
@@ -86,9 +86,9 @@ void by_hand_alone(const Problem& problem) {
 }
 
 void compare(const Problem& problem) {
-  const cli::Simulation simulation = prepare(problem);
+  const pipeline::Simulation simulation = prepare(problem);
   const run::Code code = simulation.code.for_run();
-  run::RunRequest request = cli::run_request(*simulation.derived, simulation.scene, code, false);
+  run::RunRequest request = pipeline::run_request(*simulation.derived, simulation.scene, code, false);
   request.watch_power = false;
   const run::Scene& scene = simulation.scene;
   reference::Problem posed{simulation.program.functions.front(),

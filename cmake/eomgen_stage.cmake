@@ -1,3 +1,12 @@
+# eomgen_precompile(TARGET header ...): what most files of it include is parsed once. Every file still names what it
+# needs: builds without precompiled headers (the sanitizers') tell where one does not.
+function(eomgen_precompile target)
+  if(EOMGEN_PRECOMPILE)
+    target_precompile_headers(${target} PRIVATE ${ARGN})
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  endif()
+endfunction()
+
 # eomgen_stage(NAME SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
 # Headers are included as "stage/file.hpp" from generator/.

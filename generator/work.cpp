@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cstdio>
 #include <mutex>
+#include <utility>
 
 namespace eomgen::work {
 namespace {
@@ -18,6 +19,7 @@ static_assert(std::atomic<bool>::is_always_lock_free);
 std::mutex line;  // on the terminal
 bool line_is_shown = false;
 
+thread_local Listener* listener = nullptr;
 thread_local std::size_t left = std::numeric_limits<std::size_t>::max();
 
 }  // namespace
@@ -31,7 +33,22 @@ Kept::Kept() noexcept {
 Kept::~Kept() { --keeping; }
 
 bool abandoned() noexcept {
-  return stop.load(std::memory_order_relaxed) && keeping.load(std::memory_order_relaxed) == 0;
+  const bool asked = stop.load(std::memory_order_relaxed) || (listener != nullptr && listener->stop_ != nullptr &&
+                                                              listener->stop_->load(std::memory_order_relaxed));
+  return asked && keeping.load(std::memory_order_relaxed) == 0;
+}
+
+Listener::Listener(const std::atomic<bool>* asked) noexcept : stop_(asked), around_(std::exchange(listener, this)) {}
+Listener::~Listener() { listener = around_; }
+void Listener::begins(const char*) {}
+void Listener::warns(const std::string&) {}
+
+void warn(const std::string& text) {
+  if (listener != nullptr) listener->warns(text);
+}
+
+const std::atomic<bool>& stop_flag() noexcept {
+  return listener != nullptr && listener->stop_ != nullptr ? *listener->stop_ : stop;
 }
 
 void check() {
@@ -50,7 +67,9 @@ void spend(std::size_t operations) {
 Budget::Budget(std::size_t operations) : around_(left), given_(std::min(operations, left)) { left = given_; }
 Budget::~Budget() { left = around_ - (given_ - left); }
 
-Stage::Stage(const char* name) noexcept : around_(under_way.exchange(name)) {}
+Stage::Stage(const char* name) : around_(under_way.exchange(name)) {
+  if (listener != nullptr) listener->begins(name);
+}
 Stage::~Stage() {
   under_way.store(around_);
   if (around_ == nullptr) clear_line();

@@ -5,6 +5,7 @@
 // subtraction.
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <limits>
 #include <stdexcept>
@@ -41,6 +42,30 @@ class Kept {
 /// Whether what is under way has to be left: a stop was requested, and nothing is kept.
 bool abandoned() noexcept;
 
+/// Who called for what this thread does, while one exists: is told what begins and what to know beside the result, and
+/// may ask for an end as request_stop does for the process. Listeners within listeners are in place of these.
+class Listener {
+ public:
+  /// `stop` becomes true where what is under way is to end.
+  explicit Listener(const std::atomic<bool>* stop = nullptr) noexcept;
+  virtual ~Listener();
+  Listener(const Listener&) = delete;
+  Listener& operator=(const Listener&) = delete;
+  virtual void begins(const char* stage);
+  /// A warning as format_warning gives it.
+  virtual void warns(const std::string& text);
+
+ private:
+  friend bool abandoned() noexcept;
+  friend const std::atomic<bool>& stop_flag() noexcept;
+  const std::atomic<bool>* stop_;
+  Listener* around_;
+};
+/// To the listener of this thread; lost where there is none.
+void warn(const std::string& text);
+/// What is true once an end was asked for: of the listener where it has one, or else of the process.
+const std::atomic<bool>& stop_flag() noexcept;
+
 /// Counts operations of some ten nanoseconds to a microsecond. Throws Interrupted, OverBudget.
 void spend(std::size_t operations);
 /// Throws Interrupted.
@@ -61,7 +86,7 @@ class Budget {
 /// While one exists, this is what the process says it does. Stages within stages are told in place of these.
 class Stage {
  public:
-  explicit Stage(const char* name) noexcept;
+  explicit Stage(const char* name);
   ~Stage();
   Stage(const Stage&) = delete;
   Stage& operator=(const Stage&) = delete;

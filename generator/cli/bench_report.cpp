@@ -19,12 +19,12 @@ std::string setting(const bench::Row& row) {
 }  // namespace
 
 Json BenchReport::json() const {
-  const run::Scene& scene = simulation.scene;
+  const run::Scene& scene = found.simulation.scene;
   const bench::Machine machine = bench::machine();
   Json list = Json::array();
-  for (const bench::Row& row : rows) {
+  for (const bench::Row& row : found.rows) {
     Json errors = Json::object();
-    for (std::size_t i = 0; i < row.errors.size(); ++i) errors[states[i]] = number(row.errors[i]);
+    for (std::size_t i = 0; i < row.errors.size(); ++i) errors[found.states[i]] = number(row.errors[i]);
     list.push_back({{"solver", row.solver},
                     {"rtol", row.step > 0 ? Json(nullptr) : Json(row.rtol)},
                     {"step", row.step > 0 ? Json(row.step) : Json(nullptr)},
@@ -39,57 +39,57 @@ Json BenchReport::json() const {
                     {"outcome", row.outcome}});
   }
   Json end = Json::object();
-  for (std::size_t i = 0; i < states.size(); ++i) end[states[i]] = reference.x.back()[i];
+  for (std::size_t i = 0; i < found.states.size(); ++i) end[found.states[i]] = found.reference.x.back()[i];
   Json missing = Json::array();
-  for (const auto& [solver, why] : left_out) missing.push_back({{"solver", solver}, {"why", why}});
+  for (const auto& [solver, why] : found.left_out) missing.push_back({{"solver", solver}, {"why", why}});
   return {{"format", 1},
-          {"model", simulation.derived->model.id},
+          {"model", found.simulation.derived->model.id},
           {"scene", scene.name},
           {"t", {scene.t0, scene.t1}},
           {"reference",
-           {{"method", reference.method},
-            {"digits", reference.digits},
-            {"digits_at_end", reference.digits_at_end},
-            {"steps", reference.steps},
-            {"seconds", seconds_reference},
+           {{"method", found.reference.method},
+            {"digits", found.reference.digits},
+            {"digits_at_end", found.reference.digits_at_end},
+            {"steps", found.reference.steps},
+            {"seconds", found.seconds_reference},
             {"end", end}}},
           {"rows", list},
           {"left_out", missing},
           {"machine", {{"processor", machine.processor}, {"cores", machine.cores}, {"compiler", compiler}}},
-          {"advice", bench::advice(rows)}};
+          {"advice", bench::advice(found.rows)}};
 }
 
 std::string BenchReport::text() const {
-  const run::Scene& scene = simulation.scene;
+  const run::Scene& scene = found.simulation.scene;
   const bench::Machine machine = bench::machine();
-  std::string out = fmt::format("model       {}, scene {}, t = {} to {}\n", simulation.derived->model.id, scene.name,
-                                scene.t0, scene.t1);
-  out += fmt::format("reference   {}: they agree in {} digits, at the end in {} ({:.1f} s)\n", reference.method,
-                     reference.digits, reference.digits_at_end, seconds_reference);
+  std::string out = fmt::format("model       {}, scene {}, t = {} to {}\n", found.simulation.derived->model.id,
+                                scene.name, scene.t0, scene.t1);
+  out += fmt::format("reference   {}: they agree in {} digits, at the end in {} ({:.1f} s)\n", found.reference.method,
+                     found.reference.digits, found.reference.digits_at_end, found.seconds_reference);
   out += fmt::format("machine     {}, {} cores, {}; medians\n\n", machine.processor, machine.cores, compiler);
   out += fmt::format("{:<20} {:>13} {:>10} {:>10} {:>12} {:>9} {:>11}  {}\n", "solver", "rtol, or step", "error",
                      "along", "ms", "steps", "evaluations", "outcome");
   std::string last;
-  for (const bench::Row& row : rows) {
+  for (const bench::Row& row : found.rows) {
     if (!last.empty() && last != row.solver) out += "\n";
     last = row.solver;
     out += fmt::format("{:<20} {:>13} {:>10} {:>10} {:>12.4g} {:>9} {:>11}  {}\n", row.solver, setting(row),
                        error_text(row.error), error_text(row.error_along), 1e3 * row.seconds, row.steps,
                        row.rhs_evaluations, row.outcome);
   }
-  for (const auto& [solver, why] : left_out) out += fmt::format("\nleft out    {}: {}", solver, why);
-  return out + (left_out.empty() ? "\n" : "\n\n") + bench::advice(rows) + "\n";
+  for (const auto& [solver, why] : found.left_out) out += fmt::format("\nleft out    {}: {}", solver, why);
+  return out + (found.left_out.empty() ? "\n" : "\n\n") + bench::advice(found.rows) + "\n";
 }
 
 std::string BenchReport::csv() const {
   std::string out = "solver,rtol,step,error,error_along,seconds,repeats,steps,rejected,rhs_evaluations,outcome";
-  for (const std::string& state : states) out += ",error_" + state;
+  for (const std::string& state : found.states) out += ",error_" + state;
   out += "\n";
-  for (const bench::Row& row : rows) {
+  for (const bench::Row& row : found.rows) {
     out += fmt::format("{},{:.17g},{:.17g},{:.17g},{:.17g},{:.17g},{},{},{},{},{}", row.solver, row.rtol, row.step,
                        row.error, row.error_along, row.seconds, row.repeats, row.steps, row.rejected,
                        row.rhs_evaluations, row.outcome);
-    for (std::size_t i = 0; i < states.size(); ++i)
+    for (std::size_t i = 0; i < found.states.size(); ++i)
       out += i < row.errors.size() ? fmt::format(",{:.17g}", row.errors[i]) : ",";
     out += "\n";
   }

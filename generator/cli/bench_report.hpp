@@ -4,22 +4,14 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <utility>
-#include <vector>
 
-#include "bench/bench.hpp"
-#include "cli/simulate.hpp"
+#include "analysis/benchmark.hpp"
 
 namespace eomgen::cli {
 
 struct BenchReport {
-  const Simulation& simulation;
-  const reference::Solution& reference;
-  const std::vector<bench::Row>& rows;
-  const std::vector<std::string>& states;
-  std::vector<std::pair<std::string, std::string>> left_out;  // solver, why
+  const analysis::Benchmark& found;
   std::string compiler;
-  double seconds_reference = 0;
 
   nlohmann::ordered_json json() const;
   std::string text() const;

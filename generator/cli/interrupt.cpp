@@ -27,6 +27,6 @@ void heed_signals() {
   std::signal(SIGTERM, on_signal);
 }
 
-const std::atomic<bool>& Interrupt::flag() { return raised; }
+const std::atomic<bool>& Interrupt::flag() { return work::stop_flag(); }
 
 }  // namespace eomgen::cli

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
@@ -113,9 +114,11 @@ void tell_warnings(const model::Model& model) {
   for (const Warning& warning : model.warnings) tell(format_warning(warning));
 }
 
-model::Model load_model(const std::string& name) {
-  model::Model model = model::read_model(locate_model(name));
-  tell_warnings(model);
+std::shared_ptr<const model::Model> load_model(const std::string& name, double* seconds) {
+  const auto start = std::chrono::steady_clock::now();
+  auto model = std::make_shared<const model::Model>(model::read_model(locate_model(name)));
+  tell_warnings(*model);
+  if (seconds != nullptr) *seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return model;
 }
 

@@ -2,6 +2,7 @@
 // From what the user typed as MODEL to a Model, with its warnings told.
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "model/model.hpp"
@@ -15,8 +16,8 @@ std::string locate_model(const std::string& name);
 /// Prints what the reader warned of to standard error.
 void tell_warnings(const model::Model& model);
 
-/// Reads it and tells its warnings.
-model::Model load_model(const std::string& name);
+/// Reads it and tells its warnings; `seconds`: that it took.
+std::shared_ptr<const model::Model> load_model(const std::string& name, double* seconds = nullptr);
 
 /// Where a page of the documentation is: beside the installed program, in the source tree that the program was built
 /// in, or else its name in that tree.

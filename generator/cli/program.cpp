@@ -60,6 +60,12 @@ void take_closed_streams() {
   std::signal(SIGPIPE, SIG_IGN);  // a reader that is gone is a failure of that place, told like a full disk
 }
 
+/// Warnings of the stages go to standard error.
+class Teller : public work::Listener {
+ public:
+  void warns(const std::string& text) override { tell(text); }
+};
+
 }  // namespace
 
 int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands, Team* team) try {
@@ -93,6 +99,7 @@ int run_program(std::span<char* const> typed, const char* name, std::span<const 
   }
   heed_signals();
   const Watch watch;
+  const Teller teller;
   const work::Stage stage("reading the model");
   const int code = actions.at(app.get_subcommands().front())(common);
   // A full disk or a closed pipe loses results; that is a failure, not a silence.

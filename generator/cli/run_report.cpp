@@ -9,6 +9,7 @@
 
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
+#include "cli/sensitivity_report.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -23,7 +24,7 @@ Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nul
 std::string line(const std::string& label, const std::string& value) { return fmt::format("{:<18}{}\n", label, value); }
 
 // What `final` holds: coordinates, energy, reactions and what was asked for; the rest served the watches.
-bool is_final(const Simulation& simulation, const std::string& name) {
+bool is_final(const pipeline::Simulation& simulation, const std::string& name) {
   for (const model::Coordinate& c : simulation.derived->model.coordinates) {
     if (name == c.name || name == c.name + "_dot") return true;
   }
@@ -34,7 +35,7 @@ bool is_final(const Simulation& simulation, const std::string& name) {
 }
 
 /// Components of joints, and forces of constraints, that the motion leaves open, and so are not in `final`.
-std::vector<std::string> undetermined(const Simulation& simulation) {
+std::vector<std::string> undetermined(const pipeline::Simulation& simulation) {
   const mechanics::Mechanics& m = simulation.derived->mechanics;
   std::vector<std::string> names;
   for (const mechanics::Constraint& c : m.constraints) {
@@ -50,7 +51,7 @@ std::vector<std::string> undetermined(const Simulation& simulation) {
   return names;
 }
 
-std::string final_values(const Simulation& simulation) {
+std::string final_values(const pipeline::Simulation& simulation) {
   const run::RunResult& result = simulation.result;
   std::string out;
   for (const auto& [name, value] : result.final) {
@@ -75,7 +76,7 @@ std::string implicit_cost(const eom::Statistics& cost) {
 }
 
 /// What became of that which must not change, and how much to believe.
-std::string watched(const Simulation& simulation) {
+std::string watched(const pipeline::Simulation& simulation) {
   const run::RunResult& result = simulation.result;
   std::string out;
   if (!result.error_estimate.empty()) {
@@ -103,9 +104,9 @@ std::string watched(const Simulation& simulation) {
 
 nlohmann::ordered_json RunReport::json() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
-  const Derived& derived = *derived_model;
+  const pipeline::Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
-  const Timings& seconds = derived.seconds;
+  const pipeline::Timings& seconds = derived.seconds;
   Json final = Json::object(), invariants = Json::object(), events = Json::array(), kinks = Json::array();
   for (const auto& [name, value] : result.final) {
     if (is_final(simulation, name)) final[name] = number(value);
@@ -173,7 +174,7 @@ nlohmann::ordered_json RunReport::json() const {
     if (file.rows) written.back()["rows"] = *file.rows;
   }
   document["files"] = written;
-  if (sensitivities) document["sensitivities"] = json_of(*sensitivities, state_names(derived));
+  if (sensitivities) document["sensitivities"] = json_of(*sensitivities, pipeline::state_names(derived));
   if (!estimate_wanted) return document;
   Json estimate = nullptr;
   for (const auto& [name, value] : result.error_estimate) estimate[name] = std::isfinite(value) ? value : unbounded;
@@ -185,9 +186,9 @@ nlohmann::ordered_json RunReport::json() const {
 
 std::string RunReport::text() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
-  const Derived& derived = *derived_model;
+  const pipeline::Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();
-  const Timings& seconds = derived.seconds;
+  const pipeline::Timings& seconds = derived.seconds;
   std::string out =
       line("model", fmt::format("{}, scene {}, t = {} to {}", derived.model.id, scene.name, scene.t0, scene.t1));
   for (const std::string& sentence : scene.solved) out += line("start", sentence);
@@ -233,7 +234,7 @@ std::string RunReport::text() const {
     out += line("wrote", fmt::format("{} ({}{})", file.path, file.rows ? fmt::format("{} rows, ", *file.rows) : "",
                                      size_text(static_cast<double>(file.bytes))));
   }
-  if (sensitivities) out += text_of(*sensitivities, state_names(derived));
+  if (sensitivities) out += text_of(*sensitivities, pipeline::state_names(derived));
   return out;
 }
 

@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/sensitivities.hpp"
-#include "cli/simulate.hpp"
+#include "analysis/sensitivities.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
 
@@ -20,7 +20,7 @@ struct WrittenFile {
 };
 
 struct RunReport {
-  const Simulation& simulation;
+  const pipeline::Simulation& simulation;
   bool estimate_wanted = true;                           // else the document has no error_estimate
   std::optional<run::Sensitivities> sensitivities = {};  // where they were asked for
   std::vector<WrittenFile> files = {};

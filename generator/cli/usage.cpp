@@ -138,12 +138,6 @@ CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::s
   return app.add_option(flag, target, help)->delimiter(delimiter)->allow_extra_args(false);
 }
 
-std::string choice_of(const std::string& name, const std::vector<std::string>& known) {
-  const std::string hint = model::did_you_mean(name, known);
-  const std::string all = fmt::format("choose from: {}", fmt::join(known, ", "));
-  return hint.empty() ? all : hint + " " + all;
-}
-
 void require_command(std::span<char* const> words, const std::vector<std::string>& commands) {
   if (words.size() < 2 || words[1][0] == '-') return;
   const std::string word = words[1];

@@ -8,8 +8,11 @@
 #include <vector>
 
 #include "error.hpp"
+#include "model/names.hpp"
 
 namespace eomgen::cli {
+
+using model::choice_of;
 
 /// Validators of numbers; infinite and "nan" are refused by each.
 CLI::Validator finite_number();
@@ -24,9 +27,6 @@ CLI::Option* add_place(CLI::App& app, const std::string& flags, std::string& tar
 /// MODEL.
 CLI::Option* add_list(CLI::App& app, const std::string& flag, std::vector<std::string>& target, const std::string& help,
                       char delimiter = ',');
-
-/// "did you mean 'x'?", or else "choose from: ...".
-std::string choice_of(const std::string& name, const std::vector<std::string>& known);
 
 /// Throws Error where the first word is no command: with the nearest one, or with what can be done with a model.
 void require_command(std::span<char* const> words, const std::vector<std::string>& commands);

@@ -129,9 +129,9 @@ void add_masses(Mechanics& m, Lowering& lower) {
   for (const model::Body& body : m.model->bodies) add(body.place, body.mass, body.span);
 }
 
-Mechanics build_mechanics(const model::Model& model) {
+Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
   Mechanics m;
-  m.model = &model;
+  m.model = std::move(model);
   m.dag = std::make_shared<Dag>();
   add_symbols(m);
   add_integrals(m);

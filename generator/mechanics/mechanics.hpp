@@ -131,7 +131,7 @@ struct JointReaction {
 };
 
 struct Mechanics {
-  const model::Model* model = nullptr;
+  std::shared_ptr<const model::Model> model;
   std::shared_ptr<Dag> dag;  // later stages add nodes to it
 
   std::vector<Ref> q, qdot, qddot;  // all coordinates of the model
@@ -175,7 +175,12 @@ struct Mechanics {
 
 /// Spells the model out on a Dag and classifies its constraints. Throws Error{stage "mechanics"}: a constraint or force
 /// that changes no equation, a coordinate without inertia that nothing determines.
-Mechanics build_mechanics(const model::Model& model);
+Mechanics build_mechanics(std::shared_ptr<const model::Model> model);
+
+/// The same with a copy of the model.
+inline Mechanics build_mechanics(model::Model model) {
+  return build_mechanics(std::make_shared<const model::Model>(std::move(model)));
+}
 
 /// The friction of a body along tangent 0 or 1; 0 along one that is left out.
 Ref rolling_friction(const Mechanics& mechanics, const Contact& contact, std::uint32_t tangent);

@@ -111,6 +111,12 @@ std::string did_you_mean(std::string_view name, const std::vector<std::string>& 
   return meant ? fmt::format("did you mean '{}'?", *meant) : std::string();
 }
 
+std::string choice_of(const std::string& name, const std::vector<std::string>& known) {
+  const std::string hint = did_you_mean(name, known);
+  const std::string all = fmt::format("choose from: {}", fmt::join(known, ", "));
+  return hint.empty() ? all : hint + " " + all;
+}
+
 bool looks_misspelt(std::string_view name, std::string_view known) {
   if (std::min(name.size(), known.size()) < 2 || std::max(name.size(), known.size()) < 3) return false;
   const std::size_t shortest = std::min(name.size(), known.size());

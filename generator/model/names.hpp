@@ -33,6 +33,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b, std::size_t li
 std::optional<std::string> nearest(std::string_view name, const std::vector<std::string>& candidates);
 /// "did you mean 'x'?" or nothing.
 std::string did_you_mean(std::string_view name, const std::vector<std::string>& candidates);
+/// The same, and "choose from: ..." behind it.
+std::string choice_of(const std::string& name, const std::vector<std::string>& known);
 /// Whether two names, one edit apart, look like one name misspelt (theta1 and theta2, x and y do not).
 bool looks_misspelt(std::string_view name, std::string_view known);
 

@@ -119,7 +119,7 @@ Glyph split_name(std::string_view name) {
 }
 
 Notation::Notation(const mechanics::Mechanics& mechanics)
-    : model_(mechanics.model), multipliers_(mechanics.constraints.size()), multiplier_letter_("lambda") {
+    : model_(mechanics.model.get()), multipliers_(mechanics.constraints.size()), multiplier_letter_("lambda") {
   const auto taken = [&](const char* letter) {
     const auto in = [&](const auto& list) {
       return std::any_of(list.begin(), list.end(), [&](const auto& e) { return split_name(e.name).base == letter; });

@@ -217,7 +217,8 @@ TEST_CASE("the runtime and emitted code include neither the generator nor comput
         INFO(place(file, include));
         CHECK_FALSE(include.path.starts_with("ginac/"));
         CHECK_FALSE(include.path.starts_with("cln/"));
-        CHECK_FALSE(fs::exists(root / "generator" / include.path));
+        // But for the library's public headers in its own example.
+        if (!include.path.starts_with("eomgen/")) CHECK_FALSE(fs::exists(root / "generator" / include.path));
       }
     }
   }

@@ -96,5 +96,10 @@ TEST_CASE("kept certificates: what needs no folder does without one") {
     CHECK(result.status == 0);
     CHECK(contains(result.out, "certificate pass"));
   }
+  ChildCommand call = command(folder, {"run", "p.toml"});
+  call.environment["EOMGEN_CACHE_DIR"] = folder / "open";
+  const ChildResult told = Child(call).finish();
+  CHECK(told.status == 0);
+  CHECK(contains(told.err, "what is compiled now is kept in a private one"));
   CHECK(std::filesystem::is_empty(folder / "open"));
 }

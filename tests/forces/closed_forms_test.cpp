@@ -15,8 +15,8 @@ namespace {
 Finished run_text(const std::string& name, const std::string& text) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   write_text(path, "format = 1\ntitle = \"" + name + "\"\n" + text);
-  return run_model(path,
-                   [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
+  return run_model(
+      path, [](pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
 }
 
 // Runs of a second or two at 1e-12, with motions and forces of the order of 1 to 10.

@@ -37,6 +37,17 @@ done
 grep -q 'int__rhs(' "$scratch/consumer/reserved_equations_eom/int_.h" || refuse "a model called int.toml is not int_"
 if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these installed headers include computer algebra"; fi
 
+echo "-- a stranger's program makes a model in code with the library, prints its LaTeX, emits C and runs it"
+cp -R "$source/examples/library" "$scratch/library"
+"$cmake" -S "$scratch/library" -B "$scratch/library/build" -G Ninja -DCMAKE_BUILD_TYPE=Release \
+  -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/library.log" 2>&1 ||
+  { cat "$scratch/library.log"; refuse "find_package(eomgen) for the library"; }
+"$cmake" --build "$scratch/library/build"
+said=$(cd "$scratch/library/build" && EOMGEN_CACHE_DIR="$scratch/library-cache" ./pendulum) || refuse "the library's example"
+grep -qF '\frac{d}{dt}' <<<"$said" || refuse "the library's example printed no LaTeX: $said"
+grep -q '^done at t = 10: phi = ' <<<"$said" || refuse "the library's example did not run: $said"
+[[ -s $scratch/library/build/pendulum.c ]] || refuse "the library's example emitted no C"
+
 echo "-- eom_generate runs again when the model or eomgen changes, and only then"
 generated="$scratch/consumer/pendulum_equations_eom/pendulum.c"
 rebuilds() { # what a build generates now

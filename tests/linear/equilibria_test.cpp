@@ -2,7 +2,7 @@
 // Equilibria and steady motions against closed forms, with their stability.
 #include <fmt/format.h>
 
-#include "cli/steady_search.hpp"
+#include "analysis/steady_search.hpp"
 #include "linearised.hpp"
 #include "support/folders.hpp"
 
@@ -12,20 +12,21 @@ using linear::Stability;
 
 namespace {
 
-cli::SteadyMotions found(const std::string& model, const std::map<std::string, symbolic::Rational>& hold = {},
-                         const std::string& scene = "default", const std::string& more = "") {
-  cli::SteadyRequest request;
-  request.model = model_path(model);
+analysis::SteadyMotions found(const std::string& model, const std::map<std::string, symbolic::Rational>& hold = {},
+                              const std::string& scene = "default", const std::string& more = "") {
+  analysis::SteadyRequest request;
+  std::string path = model_path(model);
   request.scene = scene;
   request.hold = hold;
   if (!more.empty()) {
-    request.model = test::build_folder() + "/" + model + "_" + scene + "_steady.toml";
-    write_text(request.model, read_text(model_path(model)) + more);
+    path = test::build_folder() + "/" + model + "_" + scene + "_steady.toml";
+    write_text(path, read_text(model_path(model)) + more);
   }
-  return cli::steady_motions(request);
+  request.model = test::model_at(path);
+  return analysis::steady_motions(request);
 }
 
-double value(const cli::SteadyMotions& all, std::size_t point, const std::string& name) {
+double value(const analysis::SteadyMotions& all, std::size_t point, const std::string& name) {
   const auto& names = all.problem.flow->names();
   return linear::to_double(
       all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
@@ -36,7 +37,7 @@ const double pi = std::acos(-1.0);
 }  // namespace
 
 TEST_CASE("double pendulum: four equilibria, of which the hanging one is stable by its energy") {
-  const cli::SteadyMotions all = found("S5_double_pendulum");
+  const analysis::SteadyMotions all = found("S5_double_pendulum");
   REQUIRE(all.points.size() == 4);
   for (std::size_t i = 0; i < 4; ++i) {
     const double a = value(all, i, "theta1"), b = value(all, i, "theta2");
@@ -49,7 +50,7 @@ TEST_CASE("double pendulum: four equilibria, of which the hanging one is stable 
 }
 
 TEST_CASE("cart and pendulum: with friction on the track the hanging one attracts") {
-  const cli::SteadyMotions all = found("cart_pendulum");
+  const analysis::SteadyMotions all = found("cart_pendulum");
   REQUIRE(all.points.size() == 2);
   CHECK(all.held.empty());  // friction keeps no momentum
   CHECK(all.points[0].verdict.stability == Stability::stable);
@@ -58,7 +59,7 @@ TEST_CASE("cart and pendulum: with friction on the track the hanging one attract
 }
 
 TEST_CASE("rotating hoop: two equilibria below the critical rate, four above, a pitchfork") {
-  const cli::SteadyMotions fast = found("rotating_hoop");
+  const analysis::SteadyMotions fast = found("rotating_hoop");
   REQUIRE(fast.points.size() == 4);
   const double beta = std::acos(9.81 / (0.5 * 36));
   const double expected[] = {-beta, 0, beta, pi};
@@ -67,7 +68,7 @@ TEST_CASE("rotating hoop: two equilibria below the critical rate, four above, a 
     CHECK(fast.points[i].verdict.stability == (i % 2 == 0 ? Stability::stable : Stability::unstable));
   }
   same(fast.points[2].l.spectrum.values[0].im, 6 * std::sin(beta));
-  const cli::SteadyMotions slow =
+  const analysis::SteadyMotions slow =
       found("rotating_hoop", {}, "slow", "\n[scene.slow]\nfrom = \"default\"\nparameters = { w = 3 }\n");
   REQUIRE(slow.points.size() == 2);
   CHECK(slow.points[0].verdict.stability == Stability::stable);
@@ -77,18 +78,19 @@ TEST_CASE("rotating hoop: two equilibria below the critical rate, four above, a 
 TEST_CASE(
     "Lagrange top: at a tilt and spin the slow and the fast precession; at the momenta of a start the tilt that they "
     "have") {
-  const cli::SteadyMotions all = found("R10_lagrange_top", {{"theta", symbolic::Rational(3) / 5}, {"top.omega3", 150}});
+  const analysis::SteadyMotions all =
+      found("R10_lagrange_top", {{"theta", symbolic::Rational(3) / 5}, {"top.omega3", 150}});
   REQUIRE(all.points.size() == 2);
   const double I = 0.004 + 0.01, a = 0.002 * 150, weight = 9.81 * 0.1, c = std::cos(0.6),
                root = std::sqrt(a * a - 4 * I * c * weight);
   same(value(all, 0, "psi_dot"), (a - root) / (2 * I * c));
   same(value(all, 1, "psi_dot"), (a + root) / (2 * I * c));
-  for (const cli::SteadyMotion& point : all.points) {
+  for (const analysis::SteadyMotion& point : all.points) {
     CHECK(point.l.kind == linear::Kind::steady);
     CHECK(point.verdict.stability == Stability::stable);
     CHECK(point.l.structural_zeros == 4);
   }
-  const cli::SteadyMotions kept = found("R10_lagrange_top");
+  const analysis::SteadyMotions kept = found("R10_lagrange_top");
   REQUIRE(kept.points.size() == 1);
   REQUIRE(kept.held.size() == 2);
   const double t = value(kept, 0, "theta"), p = value(kept, 0, "psi_dot"),
@@ -98,7 +100,7 @@ TEST_CASE(
 }
 
 TEST_CASE("rolling disk: a circle at the start's tilt and rate of turning, one of a family of two dimensions") {
-  const cli::SteadyMotions all = found("R6_rolling_disk");
+  const analysis::SteadyMotions all = found("R6_rolling_disk");
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].family == 2);
   const double m = 0.5, R = 0.2, g = 9.81, A = m * R * R / 4, K = 3 * m * R * R / 2, s = std::sin(1.2),
@@ -112,7 +114,7 @@ TEST_CASE("sleigh: straight ahead is stable, astern is not") {
       "\n[scene.ahead]\nfrom = \"default\"\ninitial = { x1_dot = 5, phi_dot = 0 }\n"
       "[scene.astern]\nfrom = \"default\"\ninitial = { x1_dot = -5, phi_dot = 0 }\n";
   for (const char* scene : {"ahead", "astern"}) {
-    const cli::SteadyMotions all = found("R13_sleigh", {}, scene, scenes);
+    const analysis::SteadyMotions all = found("R13_sleigh", {}, scene, scenes);
     REQUIRE(all.points.size() == 1);
     CHECK(all.points[0].family == 2);  // which way, how fast
     CHECK(all.points[0].verdict.stability == (scene == std::string("ahead") ? Stability::stable : Stability::unstable));
@@ -125,9 +127,9 @@ TEST_CASE("a degenerate equilibrium is not called stable by its linear terms") {
   write_text(path,
              "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"-x^4/4\"\n"
              "[[force]]\ngeneralized = { x = \"-x_dot\" }\n[scene.default]\ninitial = { x = 0 }\n");
-  cli::SteadyRequest request;
-  request.model = path;
-  const cli::SteadyMotions all = cli::steady_motions(request);
+  analysis::SteadyRequest request;
+  request.model = test::model_at(path);
+  const analysis::SteadyMotions all = analysis::steady_motions(request);
   REQUIRE(!all.points.empty());
-  for (const cli::SteadyMotion& point : all.points) CHECK(point.verdict.stability == Stability::unknown);
+  for (const analysis::SteadyMotion& point : all.points) CHECK(point.verdict.stability == Stability::unknown);
 }

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "cli/steady.hpp"
+#include "analysis/steady.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
 
@@ -16,7 +16,7 @@ namespace eomgen::test {
 inline constexpr double linear_tolerance = 1e-12;
 
 struct Linearised {
-  cli::SteadyProblem problem;
+  analysis::SteadyProblem problem;
   linear::Linearisation l;
 
   double parameter(const std::string& name) const {
@@ -59,7 +59,8 @@ inline Linearised linearised(const std::string& model, const std::string& scene 
   }
   run::Overrides overrides;
   overrides.parameters = set;
-  cli::SteadyProblem problem = cli::steady_problem("linearize", path, scene, overrides, at, 1);
+  analysis::SteadyProblem problem =
+      analysis::steady_problem("linearize", test::model_at(path), scene, overrides, at, 1);
   linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, 1);
   return {std::move(problem), std::move(l)};
 }

@@ -3,7 +3,7 @@
 // roots that are multiple, balances that hold but for roundings; chains of damped bodies.
 #include <fmt/format.h>
 
-#include "cli/steady_search.hpp"
+#include "analysis/steady_search.hpp"
 #include "linearised.hpp"
 #include "support/folders.hpp"
 
@@ -20,18 +20,18 @@ std::string file(const std::string& name, const std::string& text) {
 }
 
 Linearised linearised_at(const std::string& path) {
-  cli::SteadyProblem problem = cli::steady_problem("linearize", path, "default", {}, {}, 1);
+  analysis::SteadyProblem problem = analysis::steady_problem("linearize", test::model_at(path), "default", {}, {}, 1);
   linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, 1);
   return {std::move(problem), std::move(l)};
 }
 
-cli::SteadyMotions found(const std::string& path) {
-  cli::SteadyRequest request;
-  request.model = path;
-  return cli::steady_motions(request);
+analysis::SteadyMotions found(const std::string& path) {
+  analysis::SteadyRequest request;
+  request.model = test::model_at(path);
+  return analysis::steady_motions(request);
 }
 
-double value(const cli::SteadyMotions& all, std::size_t point, const std::string& name) {
+double value(const analysis::SteadyMotions& all, std::size_t point, const std::string& name) {
   const auto& names = all.problem.flow->names();
   return linear::to_double(
       all.points.at(point).l.z[static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin())]);
@@ -55,7 +55,7 @@ TEST_CASE("a mass on a spring and a damper: where the points of the damper meet 
   CHECK(here.l.kind == linear::Kind::equilibrium);
   same(here.A("x_dot", "x_dot"), -0.25);
   same(here.A("x_dot", "x"), -4);
-  const cli::SteadyMotions all = found(path);
+  const analysis::SteadyMotions all = found(path);
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].verdict.stability == Stability::stable);
 }
@@ -157,7 +157,7 @@ TEST_CASE("a search begins where linearize does: at the edge of an `if` that is 
   same(linearised_at(path).A("x_dot", "x_dot"), -1);
   CHECK(found(path).points.size() == 1);
   // At x = 0 this spring has a kink; the search leaves it.
-  const cli::SteadyMotions all = found(file(
+  const analysis::SteadyMotions all = found(file(
       "length", numbers + particle +
                     "[[force]]\nspring = { between = [\"P\", \"origin\"], stiffness = \"k\", length = \"0.5\" }\n" +
                     at_rest));
@@ -179,7 +179,7 @@ TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance
   CHECK(here.l.off > 0);
   CHECK(here.l.off < 1e-15);
   same(here.A("x_dot", "th"), -9.81);
-  const cli::SteadyMotions all = found(path);
+  const analysis::SteadyMotions all = found(path);
   REQUIRE(all.points.size() == 1);
   CHECK(all.points[0].l.off < 1e-15);
   // A balance that is off by more than roundings is none.
@@ -191,7 +191,7 @@ TEST_CASE("hover of a planar rotorcraft: found though its inputs are off balance
 }
 
 TEST_CASE("slider-crank with all coordinates bound to one another: both rests of both ways to put it together") {
-  const cli::SteadyMotions all = found(
+  const analysis::SteadyMotions all = found(
       file("slider",
            "[parameters]\nr = 0.2\nL = 0.6\n[coordinates]\na = {}\nb = {}\nx = {}\n"
            "[[particle]]\nname = \"C\"\nmass = 1\nposition = { cartesian = [\"r*cos(a)\", \"r*sin(a)\", \"0\"] }\n"
@@ -218,7 +218,7 @@ TEST_CASE("equilibria that are multiple roots are found, each once, and are no f
                         Case{"mixed", "(x + 2*y - 1)^4 + (x - y)^6", 1.0 / 3, 1.0 / 3, 4},
                         Case{"valley", "(x - y)^4 + (x + y - 2)^2", 1, 1, 2}}) {
     CAPTURE(c.name);
-    const cli::SteadyMotions all = found(file(
+    const analysis::SteadyMotions all = found(file(
         c.name,
         std::string("[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"") +
             c.potential + "\"\n[scene.default]\ninitial = { x = 0.3 }\n"));

@@ -45,7 +45,7 @@ TEST_CASE("G4: the failure at a right angle is told, by check and by a run") {
   CHECK(sets[0].approach == "both");
   CHECK(same(sets[0].factor, cos(g4("alpha"))));
   try {
-    run_model("G4_oblique", [](cli::SimulationRequest& request) { request.scene = "upright"; });
+    run_model("G4_oblique", [](pipeline::SimulationRequest& request) { request.scene = "upright"; });
     FAIL("the run went through");
   } catch (const Error& error) {
     CHECK(error.message().find("singular configuration") != std::string::npos);

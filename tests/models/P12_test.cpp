@@ -22,7 +22,7 @@ TEST_CASE("P12: of the set (1.79) the first constraint is integrable, the others
 }
 
 TEST_CASE("P12: the integral is kept with the constant of the start, and all three constraints hold") {
-  const test::Finished run = test::run_model("P12_pfaffian_set", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P12_pfaffian_set", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-6;  // so loose that the distance would drift
     request.overrides.atol = 1e-6;
   });
@@ -71,7 +71,7 @@ name = "circle"
     const std::string path = test::build_folder() + "/circle.toml";
     test::write_text(path, text);
     return test::run_model(
-        path, [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
+        path, [](pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
   };
   const test::Finished bound = circle("velocity = \"phi_dot\""), fixed = circle("holonomic = \"phi - 1\"");
   CHECK(bound.drift("integral.circle") == 0);

@@ -106,7 +106,7 @@ TEST_CASE(
 }
 
 TEST_CASE("P13: forces with potentials leave the energy with them conserved, and T + U not") {
-  const test::Finished run = test::run_model("P13_saddle_field", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P13_saddle_field", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

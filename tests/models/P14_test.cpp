@@ -13,7 +13,7 @@ namespace {
 constexpr double inclination = 30 * 3.14159265358979323846 / 180;
 constexpr double tolerance = 1e-9;  // twenty seconds, some three periods, at rtol 1e-12
 
-void tighten(cli::SimulationRequest& request) {
+void tighten(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-13;
   request.overrides.outputs = {"energy", "h", "P.position1", "P.position2", "P.position3"};
@@ -48,7 +48,7 @@ TEST_CASE("P14: in Cartesian, spherical and parabolic coordinates it follows Kep
 
 TEST_CASE("P14: after one period it is back where it started") {
   const double period = 2 * std::acos(-1.0);  // GM = a = 1
-  const test::Finished run = test::run_model("P14_kepler_cartesian", [&](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P14_kepler_cartesian", [&](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.t_end = period;
   });

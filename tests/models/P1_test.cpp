@@ -8,7 +8,7 @@
 using namespace eomgen;
 
 TEST_CASE("P1: of constant length it keeps E and h_z to 1e-10 over 100 s") {
-  const test::Finished run = test::run_model("P1_spherical_pendulum", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) {
     request.scene = "long";  // DOP853, rtol = atol = 1e-12, 100 s
   });
   CHECK(run.simulation.result.solver == "dop853");
@@ -19,7 +19,7 @@ TEST_CASE("P1: of constant length it keeps E and h_z to 1e-10 over 100 s") {
 
 TEST_CASE("P1: a conical pendulum circles at a constant height with the tension that the circle needs") {
   const test::Finished run =
-      test::run_model("P1_spherical_pendulum", [](cli::SimulationRequest& request) { request.scene = "conical"; });
+      test::run_model("P1_spherical_pendulum", [](pipeline::SimulationRequest& request) { request.scene = "conical"; });
   const double m = run.parameter("m"), g = run.parameter("g"), L = run.parameter("L");
   const double rate = std::sqrt(2 * g / L);  // phi = 2 pi/3: rate^2 = -g/(L cos phi)
   // The circle is neutral to first order: errors of the steps (rtol 1e-9) grow linearly over some 44 radians.
@@ -31,7 +31,7 @@ TEST_CASE("P1: a conical pendulum circles at a constant height with the tension 
 }
 
 TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
-  const test::Finished run = test::run_model("P1_spherical_pendulum_varying", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P1_spherical_pendulum_varying", [](pipeline::SimulationRequest& request) {
     // Rows are read off the dense output, whose error the differences below divide by 0.01.
     request.overrides.rtol = 1e-14;
     request.overrides.atol = 1e-14;
@@ -58,14 +58,14 @@ TEST_CASE("P1: with L(t), dE/dt = lambda Ldot along the run") {
 }
 
 TEST_CASE("P1: approach I and approach II give the same motion") {
-  const auto run = [](cli::ApproachChoice approach) {
-    return test::run_model("P1_spherical_pendulum_varying", [approach](cli::SimulationRequest& request) {
+  const auto run = [](pipeline::ApproachChoice approach) {
+    return test::run_model("P1_spherical_pendulum_varying", [approach](pipeline::SimulationRequest& request) {
       request.approach = approach;
       request.overrides.rtol = 1e-12;
       request.overrides.atol = 1e-12;
     });
   };
-  const test::Finished one = run(cli::ApproachChoice::one), two = run(cli::ApproachChoice::two);
+  const test::Finished one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
   CHECK(one.simulation.program.approach == system::Approach::one);
   CHECK(two.simulation.program.approach == system::Approach::two);
   for (const char* name : {"phi", "theta", "phi_dot", "theta_dot", "reaction.rod"}) {

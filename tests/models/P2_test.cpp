@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("P2: of constant length it swings as the elliptic functions say, and both reactions are known") {
-  const test::Finished run = test::run_model("P2_planar_pendulum", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P2_planar_pendulum", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
@@ -29,7 +29,7 @@ TEST_CASE("P2: of constant length it swings as the elliptic functions say, and b
 }
 
 TEST_CASE("P2: of varying length it keeps the power balance and the reaction of (2.43)") {
-  const test::Finished run = test::run_model("P2_planar_pendulum_varying", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P2_planar_pendulum_varying", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });

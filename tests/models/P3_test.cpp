@@ -12,7 +12,7 @@ using namespace eomgen;
 
 namespace {
 
-void tight(cli::SimulationRequest& request) {
+void tight(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-12;
 }
@@ -29,7 +29,7 @@ void check_swing(const test::Finished& run, std::size_t i) {
 TEST_CASE("P3: height and reaction have their closed forms, wherever the run starts") {
   for (const char* scene : {"default", "later"}) {
     CAPTURE(scene);
-    const test::Finished run = test::run_model("P3_moving_plane", [&](cli::SimulationRequest& request) {
+    const test::Finished run = test::run_model("P3_moving_plane", [&](pipeline::SimulationRequest& request) {
       tight(request);
       request.scene = scene;
     });
@@ -81,7 +81,7 @@ TEST_CASE("P3: the start of the run is the scene's affair, and a factor of t tha
   const auto problem = [](const char* parameter, long value) -> std::string {
     try {
       test::run_model("P3_moving_plane",
-                      [&](cli::SimulationRequest& request) { request.overrides.parameters[parameter] = value; });
+                      [&](pipeline::SimulationRequest& request) { request.overrides.parameters[parameter] = value; });
     } catch (const Error& error) {
       return std::string(error.what());
     }

@@ -8,10 +8,10 @@
 using namespace eomgen;
 
 TEST_CASE("P7: both approaches and the reading form agree with the judge to 45 digits at 20 random points") {
-  const std::unique_ptr<cli::Derived> derived =
-      cli::derive_model(test::model_path("P7_moving_sphere"), cli::ApproachChoice::automatic);
-  const program::Program program = cli::make_program(*derived, {});
-  const verify::Certificate certificate = cli::certify(*derived, program, {50, 20, 1, nullptr});
+  const std::unique_ptr<pipeline::Derived> derived =
+      pipeline::derive_model(test::model_at(test::model_path("P7_moving_sphere")), pipeline::ApproachChoice::automatic);
+  const program::Program program = pipeline::make_program(*derived, {});
+  const verify::Certificate certificate = pipeline::certify(*derived, program, {50, 20, 1, nullptr});
   CHECK(certificate.pass);
   CHECK(certificate.points == 20);
   std::size_t against_judge = 0;
@@ -27,7 +27,7 @@ TEST_CASE("P7: both approaches and the reading form agree with the judge to 45 d
 }
 
 TEST_CASE("P7: the reaction along the run is (2.111), and the power balance holds") {
-  const test::Finished run = test::run_model("P7_moving_sphere", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P7_moving_sphere", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
     request.overrides.t_end = 2;  // before it comes near the pole
@@ -44,7 +44,7 @@ TEST_CASE("P7: the reaction along the run is (2.111), and the power balance hold
 }
 
 TEST_CASE("P7: with a constraint on velocities both reactions are those of (2.114)") {
-  const test::Finished run = test::run_model("P7_moving_sphere_pfaffian", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("P7_moving_sphere_pfaffian", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });

@@ -14,7 +14,7 @@ using namespace eomgen::test;
 namespace {
 
 Finished top(const std::string& scene) {
-  return run_model("R10_lagrange_top", [&](cli::SimulationRequest& request) {
+  return run_model("R10_lagrange_top", [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;

@@ -11,7 +11,7 @@ using namespace eomgen::test;
 
 namespace {
 
-void tighten(cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; }
+void tighten(pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; }
 
 // Runs of 2 s at 1e-12 with motions of the order of 1.
 constexpr double same = 1e-9;

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 namespace {
 
 test::Finished flight(const std::string& scene) {
-  return test::run_model("R17_follower_force", [&](cli::SimulationRequest& request) {
+  return test::run_model("R17_follower_force", [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;

@@ -15,7 +15,7 @@ namespace {
 constexpr std::array<double, 3> J{1, 2, 2.5};
 constexpr double tolerance = 1e-9;  // twenty seconds, some four turns, at rtol 1e-12
 
-void tighten(cli::SimulationRequest& request) {
+void tighten(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-13;
 }
@@ -73,7 +73,7 @@ TEST_CASE("R1: the angular velocity is Jacobi's, in angles and in Euler paramete
 TEST_CASE("R1: with two equal moments w turns at a constant rate, with three it does not change") {
   for (const char* scene : {"axisymmetric", "symmetric"}) {
     INFO(scene);
-    const test::Finished run = test::run_model("R1_free_body", [&](cli::SimulationRequest& request) {
+    const test::Finished run = test::run_model("R1_free_body", [&](pipeline::SimulationRequest& request) {
       tighten(request);
       request.scene = scene;
     });
@@ -88,7 +88,7 @@ TEST_CASE("R1: with two equal moments w turns at a constant rate, with three it 
 }
 
 TEST_CASE("R1: near the middle axis it tumbles: e2 turns over, and E and H are kept") {
-  const test::Finished run = test::run_model("R1_free_body_euler_parameters", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("R1_free_body_euler_parameters", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.rtol = request.overrides.atol = 1e-13;
     request.scene = "tumbling";

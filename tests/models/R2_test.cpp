@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 namespace {
 
-void tighten(cli::SimulationRequest& request) {
+void tighten(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-12;
 }
@@ -61,7 +61,7 @@ TEST_CASE("R2: without drag the ball follows the closed form of (8.63)") {
 }
 
 TEST_CASE("R2: with drag it follows an integration of vdot alone") {
-  const test::Finished run = test::run_model("R2_ball_in_flight", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("R2_ball_in_flight", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.scene = "drag";
   });

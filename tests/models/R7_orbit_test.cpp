@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "cli/steady_search.hpp"
+#include "analysis/steady_search.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -16,7 +16,7 @@ struct Attitude {
 };
 
 /// The axes of the body in those of the orbit, from its Euler parameters.
-Attitude attitude(const cli::SteadyMotions& all, const cli::SteadyMotion& point) {
+Attitude attitude(const analysis::SteadyMotions& all, const analysis::SteadyMotion& point) {
   const auto value = [&](const std::string& name) {
     const auto& names = all.problem.flow->names();
     return linear::to_double(
@@ -43,12 +43,12 @@ Attitude attitude(const cli::SteadyMotions& all, const cli::SteadyMotion& point)
 TEST_CASE(
     "R7_orbit: 24 attitudes rest against the orbit; the rate is Kepler's but for the second order; stable ones have "
     "J_across > J_along > J_radial") {
-  cli::SteadyRequest request;
-  request.model = test::model_path("R7_satellite_in_orbit");
+  analysis::SteadyRequest request;
+  request.model = test::model_at(test::model_path("R7_satellite_in_orbit"));
   request.hold = {{"theta_dot", 1}};
-  const cli::SteadyMotions all = cli::steady_motions(request);
+  const analysis::SteadyMotions all = analysis::steady_motions(request);
   int count = 0, stable = 0;
-  for (const cli::SteadyMotion& point : all.points) {
+  for (const analysis::SteadyMotion& point : all.points) {
     const Attitude x = attitude(all, point);
     if (x.R < 0.5) continue;  // as near as its own size the second order says nothing
     ++count;
@@ -74,7 +74,7 @@ TEST_CASE(
 }
 
 TEST_CASE("R7_orbit: energy and the angular momentum about the axis of the frame are kept") {
-  const test::Finished run = test::run_model("R7_satellite_in_orbit", [](cli::SimulationRequest& r) {
+  const test::Finished run = test::run_model("R7_satellite_in_orbit", [](pipeline::SimulationRequest& r) {
     r.overrides.rtol = 1e-11;
     r.overrides.atol = 1e-12;
   });

@@ -20,7 +20,9 @@ TEST_CASE("R8: the constrained energies are (9.99)") {
 TEST_CASE(
     "R8: the joint's force is Newton's, the moment that stops the spin Euler's, and the motion is the same without the "
     "joint") {
-  const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
+  const auto tighten = [](pipeline::SimulationRequest& request) {
+    request.overrides.rtol = request.overrides.atol = 1e-12;
+  };
   const Finished free = run_model("R8_pendulum_body", tighten), joint = run_model("R8_pendulum_body_joint", tighten);
   for (const char* name : {"phi", "theta", "phi_dot", "theta_dot"})
     CHECK(std::abs(free.final(name) - joint.final(name)) < 1e-9);

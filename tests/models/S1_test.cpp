@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("S1: the two masses move as the sum of their two modes") {
-  const test::Finished run = test::run_model("S1_two_masses", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("S1_two_masses", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

@@ -34,7 +34,7 @@ struct Masses {
 }  // namespace
 
 TEST_CASE("S2: the multiplier form moves as y' = f(y) with the dependent velocity solved by hand") {
-  const test::Finished run = test::run_model("S2_two_masses_pfaffian", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });
@@ -60,8 +60,8 @@ TEST_CASE("S2: the multiplier form moves as y' = f(y) with the dependent velocit
 }
 
 TEST_CASE("S2: the start gives the velocity that the constraint fixes") {
-  const test::Finished run =
-      test::run_model("S2_two_masses_pfaffian", [](cli::SimulationRequest& request) { request.overrides.t_end = 0.1; });
+  const test::Finished run = test::run_model(
+      "S2_two_masses_pfaffian", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 0.1; });
   CHECK(run.rows.at(0, "x1_dot") == doctest::Approx((0.3 - 0.5 * 0.1) / 0.64).epsilon(1e-15));
   REQUIRE(run.simulation.scene.solved.size() == 1);
   CHECK(run.simulation.scene.solved[0].starts_with("x1_dot = "));
@@ -69,10 +69,11 @@ TEST_CASE("S2: the start gives the velocity that the constraint fixes") {
 
 TEST_CASE(
     "S2: the multiplier, null space and Chaplygin forms agree to 45 digits at random points and to 1e-9 along a run") {
-  const std::unique_ptr<cli::Derived> derived = cli::derive_model(
-      test::model_path("S2_two_masses_pfaffian"), cli::ApproachChoice::automatic, system::Form::multipliers);
-  const program::Program multipliers = cli::make_program(*derived, {});
-  const verify::Certificate certificate = cli::certify(*derived, multipliers, {50, 20, 1, nullptr});
+  const std::unique_ptr<pipeline::Derived> derived =
+      pipeline::derive_model(test::model_at(test::model_path("S2_two_masses_pfaffian")),
+                             pipeline::ApproachChoice::automatic, system::Form::multipliers);
+  const program::Program multipliers = pipeline::make_program(*derived, {});
+  const verify::Certificate certificate = pipeline::certify(*derived, multipliers, {50, 20, 1, nullptr});
   CHECK(certificate.pass);
   std::size_t forms = 0;
   for (const verify::Comparison& c : certificate.comparisons) {
@@ -83,7 +84,7 @@ TEST_CASE(
   }
   CHECK(forms == 2);  // the other two
   const auto run = [](system::Form form) {
-    return test::run_model("S2_two_masses_pfaffian", [form](cli::SimulationRequest& request) {
+    return test::run_model("S2_two_masses_pfaffian", [form](pipeline::SimulationRequest& request) {
       request.form = form;
       request.overrides.rtol = request.overrides.atol = 1e-12;
     });

@@ -109,7 +109,7 @@ TEST_CASE(
 TEST_CASE("S3: a run at any tolerance goes on where a mass starts from rest at rounding") {
   // Velocities of 1e-17 beside a small atol once asked for first steps that were lost in the rounding of t.
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const Finished run = run_rough("S3_rough_line", "default", [=](cli::SimulationRequest& request) {
+    const Finished run = run_rough("S3_rough_line", "default", [=](pipeline::SimulationRequest& request) {
       request.overrides.solver = solver;
       request.overrides.rtol = 1e-9;
       request.overrides.atol = 1e-14;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double tolerance = 1e-8;  // ten seconds at rtol 1e-12: errors of 1e-12 grow by some 1e2 to 1e3 in this swing
 
-void tighten(cli::SimulationRequest& request) {
+void tighten(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-12;
 }
@@ -47,14 +47,14 @@ TEST_CASE(
 
 TEST_CASE("S5: approach I and approach II give the same motion, planar and spherical") {
   for (const char* name : {"S5_double_pendulum", "S5_spherical_double_pendulum"}) {
-    const auto run = [&](cli::ApproachChoice approach) {
-      return test::run_model(name, [&](cli::SimulationRequest& request) {
+    const auto run = [&](pipeline::ApproachChoice approach) {
+      return test::run_model(name, [&](pipeline::SimulationRequest& request) {
         tighten(request);
         request.approach = approach;
         request.overrides.t_end = 3;
       });
     };
-    const test::Finished one = run(cli::ApproachChoice::one), two = run(cli::ApproachChoice::two);
+    const test::Finished one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
     for (const auto& [key, value] : one.simulation.result.final) {
       const auto& shown = key;
       INFO(name, " ", shown);
@@ -64,7 +64,7 @@ TEST_CASE("S5: approach I and approach II give the same motion, planar and spher
 }
 
 TEST_CASE("S5: the spherical double pendulum keeps E and the moment of momentum about the vertical") {
-  const test::Finished run = test::run_model("S5_spherical_double_pendulum", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("S5_spherical_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity1", "P1.velocity2",
                                  "P2.position1", "P2.position2", "P2.velocity1", "P2.velocity2"};
@@ -82,7 +82,7 @@ TEST_CASE("S5: the spherical double pendulum keeps E and the moment of momentum 
 }
 
 TEST_CASE("S5: a spherical double pendulum that starts in a plane swings as the planar one") {
-  const test::Finished planar = test::run_model("S5_double_pendulum", [](cli::SimulationRequest& request) {
+  const test::Finished planar = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.t_end = 3;
     request.overrides.parameters = {{"m2", symbolic::Rational(1) / 2}, {"L2", symbolic::Rational(4) / 5}};
@@ -127,15 +127,15 @@ initial = { phi1 = "pi/2", phi2 = "pi/2", theta1 = 0.8, theta2 = 0.4 }
 
 TEST_CASE(
     "S5: a constraint on the velocities of both masses holds, by either approach, and does the work that balances") {
-  const auto run = [](cli::ApproachChoice approach) {
-    return test::run_model("S5_double_pendulum_pfaffian", [approach](cli::SimulationRequest& request) {
+  const auto run = [](pipeline::ApproachChoice approach) {
+    return test::run_model("S5_double_pendulum_pfaffian", [approach](pipeline::SimulationRequest& request) {
       tighten(request);
       request.approach = approach;
       request.overrides.outputs = {"P1.position1", "P1.position2", "P1.velocity3",
                                    "P2.velocity1", "P2.velocity2", "power"};
     });
   };
-  const test::Finished one = run(cli::ApproachChoice::one), two = run(cli::ApproachChoice::two);
+  const test::Finished one = run(pipeline::ApproachChoice::one), two = run(pipeline::ApproachChoice::two);
   const double c = one.parameter("c"), w = one.parameter("w"), L1 = one.parameter("L1");
   for (std::size_t i = 0; i < one.rows.size(); ++i) {
     const auto y = [&](const char* name) { return one.rows.at(i, name); };

@@ -44,7 +44,7 @@ test::Finished run_chain(int n, bool relative) {
   std::filesystem::create_directories(folder);
   const std::string path = fmt::format("{}/chain_{}_{}.toml", folder, n, relative ? "relative" : "absolute");
   test::write_text(path, chain_text(n, relative));
-  return test::run_model(path, [](cli::SimulationRequest& request) {
+  return test::run_model(path, [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-11;
     request.overrides.atol = 1e-12;
     request.estimate = false;

@@ -16,7 +16,7 @@ namespace {
 constexpr double span = 3;  // seconds: before the chains become chaotic
 
 test::Finished chain(int n) {
-  return test::run_model("S6_chain_" + std::to_string(n), [](cli::SimulationRequest& request) {
+  return test::run_model("S6_chain_" + std::to_string(n), [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
     request.overrides.t_end = span;

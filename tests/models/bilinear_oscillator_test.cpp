@@ -16,7 +16,7 @@ namespace {
 // Ten periods at rtol 1e-13.
 constexpr double tolerance = 1e-10;
 
-cli::SimulationRequest& tight(cli::SimulationRequest& request) {
+pipeline::SimulationRequest& tight(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-13;
   request.overrides.atol = 1e-14;
   return request;
@@ -39,8 +39,9 @@ std::string variant(const std::string& name, const std::string& forces, const st
 
 TEST_CASE("bilinear_oscillator: after ten periods it is where it started, and the kink was crossed twice in each") {
   for (const char* solver : {"dopri5", "tsit5", "dop853"}) {
-    const test::Finished run = test::run_model(
-        "bilinear_oscillator", [solver](cli::SimulationRequest& request) { tight(request).overrides.solver = solver; });
+    const test::Finished run = test::run_model("bilinear_oscillator", [solver](pipeline::SimulationRequest& request) {
+      tight(request).overrides.solver = solver;
+    });
     const run::RunResult& result = run.simulation.result;
     CAPTURE(solver);
     CHECK(result.outcome == eom::Outcome::done);

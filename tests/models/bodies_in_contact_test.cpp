@@ -31,8 +31,8 @@ struct Rod {
 }  // namespace
 
 TEST_CASE("bodies_in_contact: the rod at the critical slope: below mu = 4/3 it slides as the balances by hand say") {
-  const Finished run =
-      run_rough("painleve_rod", "default", [](cli::SimulationRequest& request) { request.overrides.every = 0.002; });
+  const Finished run = run_rough("painleve_rod", "default",
+                                 [](pipeline::SimulationRequest& request) { request.overrides.every = 0.002; });
   const Rod rod(run);
   CHECK(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(run.rows.at(0, "reaction.end") == doctest::Approx(rod.m * rod.g / (1.6 - 1.2 * rod.mu)).epsilon(rounding));
@@ -52,7 +52,7 @@ TEST_CASE("bodies_in_contact: the rod at the critical slope: below mu = 4/3 it s
 TEST_CASE(
     "bodies_in_contact: the rod at the critical slope: 4/3 is where no force obeys the law any more, from both sides") {
   const auto at = [](const char* scene, double mu) {
-    return run_rough("painleve_rod", scene, [mu](cli::SimulationRequest& request) {
+    return run_rough("painleve_rod", scene, [mu](pipeline::SimulationRequest& request) {
       with({{"mu", mu}})(request);
       request.overrides.t_end = 1e-9;
     });
@@ -68,7 +68,7 @@ TEST_CASE(
     "bodies_in_contact: the rod that turns fast: above 4/3 pressing and leaving both obey the law, below it leaves") {
   CHECK(run_rough("painleve_rod", "several").simulation.result.outcome == eom::Outcome::friction_many_solutions);
   const Finished leaves =
-      run_rough("painleve_rod", "leaves", [](cli::SimulationRequest& request) { request.overrides.t_end = 0.05; });
+      run_rough("painleve_rod", "leaves", [](pipeline::SimulationRequest& request) { request.overrides.t_end = 0.05; });
   const Rod rod(leaves);
   CHECK(rod.normal(std::atan(2.0), 10, -1) < 0);
   REQUIRE(!events_of(leaves).empty());

@@ -9,7 +9,7 @@
 using namespace eomgen;
 
 TEST_CASE("cart_pendulum: p_x + c x stays, since friction is the only force along the track") {
-  const test::Finished run = test::run_model("cart_pendulum", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("cart_pendulum", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-12;
   });
@@ -29,7 +29,7 @@ TEST_CASE("cart_pendulum: a force that jumps restarts the run, and its work is i
   text += "\n[scene.pushed]\nfrom = \"default\"\nt = [0, 4]\ninputs = { F = { t = [0, 1, 2], value = [0, 5, 0] } }\n";
   test::write_text(path, text);
   const auto run_at = [&](double rtol) {
-    return test::run_model(path, [rtol](cli::SimulationRequest& request) {
+    return test::run_model(path, [rtol](pipeline::SimulationRequest& request) {
       request.scene = "pushed";
       request.overrides.rtol = rtol;
       request.overrides.atol = rtol;

@@ -24,7 +24,7 @@ std::size_t exchanges(const test::Finished& run, const std::string& whose = "B")
 }
 
 test::Finished run_text(const std::string& name, const std::string& text,
-                        const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);
@@ -53,7 +53,7 @@ test::Finished thousand_turns(const rotations::Rotation& r, const std::string& s
   const test::Attitude written = *test::attitude_in(r, axes.transpose());
   std::string names;
   const std::string definitions = cosines(names);
-  const auto adjust = [&solver](cli::SimulationRequest& request) {
+  const auto adjust = [&solver](pipeline::SimulationRequest& request) {
     request.estimate = false;
     request.overrides.rtol = request.overrides.atol = 1e-13;
     request.overrides.solver = solver;
@@ -172,8 +172,9 @@ TEST_CASE(
   CHECK(run.rows.at(0, "B.omega3") == doctest::Approx(0.7).epsilon(1e-14));  // a_dot + c_dot
   CHECK(run.drift("energy") < 1e-11);
   CHECK(run.simulation.result.error_estimate.back().second < 1e-10);
-  CHECK_THROWS_WITH_AS(run_text("charts_start", text, [](cli::SimulationRequest& request) { request.charts = false; }),
-                       doctest::Contains("the start is a singular configuration"), Error);
+  CHECK_THROWS_WITH_AS(
+      run_text("charts_start", text, [](pipeline::SimulationRequest& request) { request.charts = false; }),
+      doctest::Contains("the start is a singular configuration"), Error);
 }
 
 TEST_CASE("charts: a particle in spherical coordinates goes straight past the pole and through it") {

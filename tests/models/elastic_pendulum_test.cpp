@@ -12,7 +12,7 @@ using namespace eomgen;
 namespace {
 
 test::Finished motion(const std::string& scene, const std::string& solver, double rtol, double step = 0) {
-  return test::run_model("elastic_pendulum", [&](cli::SimulationRequest& request) {
+  return test::run_model("elastic_pendulum", [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
     request.overrides.rtol = rtol;
@@ -57,7 +57,7 @@ TEST_CASE(
 
 TEST_CASE("elastic_pendulum: the scene 'stiff' names its solver") {
   const test::Finished stiff =
-      test::run_model("elastic_pendulum", [](cli::SimulationRequest& request) { request.scene = "stiff"; });
+      test::run_model("elastic_pendulum", [](pipeline::SimulationRequest& request) { request.scene = "stiff"; });
   CHECK(stiff.simulation.result.solver == "radau5");
   CHECK(stiff.simulation.result.statistics.steps < 2000);
 }
@@ -82,7 +82,7 @@ TEST_CASE("elastic_pendulum: midpoint keeps the energy within bounds that do not
                        fine = motion("stretched", "midpoint", 1e-9, 2.5e-4);
   const double order = std::log2(difference(coarse, reference) / difference(fine, reference)) / 2;
   CHECK(std::abs(order - 2) < 0.3);
-  const test::Finished longer = test::run_model("elastic_pendulum", [](cli::SimulationRequest& request) {
+  const test::Finished longer = test::run_model("elastic_pendulum", [](pipeline::SimulationRequest& request) {
     request.scene = "stretched";
     request.overrides.solver = "midpoint";
     request.overrides.step = 1e-3;

@@ -47,7 +47,9 @@ TEST_CASE(
     "four_bar: of ten equations of spatial pins seven keep multipliers, and the motion is that of the planar linkage") {
   const std::string path = test::build_folder() + "/four_bar_planar.toml";
   write_text(path, planar);
-  const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
+  const auto tighten = [](pipeline::SimulationRequest& request) {
+    request.overrides.rtol = request.overrides.atol = 1e-12;
+  };
   const Finished flat = run_model(path, tighten), spatial = run_model("four_bar_spatial_pins", tighten);
   const mechanics::Mechanics& m = spatial.simulation.derived->mechanics;
   CHECK(m.freedom() == 1);

@@ -15,7 +15,7 @@ constexpr int digits = 50;
 // A difference quotient with steps of 1e-12 in 50 digits is right to some 1e-24.
 constexpr double as_good_as_exact = 1e-18;
 
-program::Arguments<cln::cl_R> anywhere(const cli::Derived& derived, const program::Program& program) {
+program::Arguments<cln::cl_R> anywhere(const pipeline::Derived& derived, const program::Program& program) {
   const cln::float_format_t precision = cln::float_format(digits);
   const auto value = [&](std::uint32_t k) {
     return cln::cl_float(symbolic::sample({symbolic::SymbolKind::extra, k, 0}, 1), precision);
@@ -33,10 +33,10 @@ TEST_CASE(
     "in Euler parameters the Jacobian is that of the right-hand side in every direction, off the unit sphere too") {
   for (const char* name : {"R1_free_body_euler_parameters", "R2_ball_in_flight", "R17_follower_force", "heavy_top"}) {
     CAPTURE(name);
-    const auto derived = cli::derive_model(model_path(name), cli::ApproachChoice::automatic);
+    const auto derived = pipeline::derive_model(test::model_at(model_path(name)), pipeline::ApproachChoice::automatic);
     program::Request request;
     request.with = {"jac", "jac_p"};
-    const program::Program program = cli::make_program(*derived, request);
+    const program::Program program = pipeline::make_program(*derived, request);
     const auto base = anywhere(*derived, program);
     const std::size_t n = base.x.size();
     const auto jac = program::interpret(program.functions[1], base, digits).results[0];

@@ -109,15 +109,15 @@ TEST_CASE(
         "R6_rough_disk", "R10_lagrange_top", "R15_ball_joint", "R18_rodrigues", "bilinear_oscillator", "cart_pendulum",
         "knife_edge", "six_bar_spatial", "n_four_bar_2", "stick_slip_belt"}) {
     CAPTURE(name);
-    const auto derived = cli::derive_model(model_path(name), cli::ApproachChoice::automatic);
+    const auto derived = pipeline::derive_model(test::model_at(model_path(name)), pipeline::ApproachChoice::automatic);
     program::Request request;
     request.with = {"jac", "mass", "constraints", "events"};
     request.outputs = {"energy", "kinetic"};
-    const program::Program program = cli::make_program(*derived, request);
+    const program::Program program = pipeline::make_program(*derived, request);
     const run::Scene scene =
         run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
-    const emit::EmissionContext context = cli::emission_context(*derived, program, scene, {});
-    const cli::CompiledCode code = cli::compile(program, context);
+    const emit::EmissionContext context = pipeline::emission_context(*derived, program, scene, {});
+    const pipeline::CompiledCode code = pipeline::compile(program, context);
     files.push_back(emit::emit(program, context, "javascript").front());
     all.push_back({{"file", files.back().name}, {"calls", values_of_c(code.compiled().model, program, context)}});
     CHECK(all.back()["calls"].size() >= 6);

@@ -12,7 +12,7 @@ using namespace eomgen;
 namespace {
 
 test::Finished skate() {
-  return test::run_model("knife_edge", [](cli::SimulationRequest& request) {
+  return test::run_model("knife_edge", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

@@ -18,7 +18,7 @@ double time_between(double phi0, double phi1, double a, double g) {
 constexpr double tolerance = 1e-11;
 
 test::Finished run_scene(const char* scene, const char* solver = "dop853") {
-  return test::run_model("leaving_sphere", [=](cli::SimulationRequest& request) {
+  return test::run_model("leaving_sphere", [=](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
     request.overrides.rtol = request.overrides.atol = 1e-12;
@@ -70,7 +70,7 @@ TEST_CASE("leaving_sphere: `stop` of a scene ends it at an event that is only re
 TEST_CASE(
     "leaving_sphere: the estimate of a run that an event ends has the time of the stop, within ten times of the "
     "truth") {
-  const test::Finished run = test::run_model("leaving_sphere", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("leaving_sphere", [](pipeline::SimulationRequest& request) {
     request.overrides.solver = "dopri5";
     request.overrides.rtol = request.overrides.atol = 1e-7;
   });

@@ -68,7 +68,7 @@ TEST_CASE(
   CHECK(none.simulation.result.t == 0);
   const double critical = 2 * std::sqrt(2.0);
   for (const double off : {1e-6, -1e-6}) {
-    const Finished run = run_rough("painleve_dumbbell", "none", [&](cli::SimulationRequest& request) {
+    const Finished run = run_rough("painleve_dumbbell", "none", [&](pipeline::SimulationRequest& request) {
       with({{"mu", critical + off}})(request);
       request.overrides.t_end = 1e-6;
     });

@@ -26,7 +26,7 @@ namespace {
 using Values = std::vector<std::pair<std::string, double>>;
 
 test::Finished motion(const std::string& model, const std::string& scene, const std::string& solver, double rtol) {
-  return test::run_model(model, [&](cli::SimulationRequest& request) {
+  return test::run_model(model, [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.solver = solver;
     request.overrides.rtol = rtol;
@@ -235,7 +235,7 @@ TEST_CASE(
 TEST_CASE(
     "published: solvers that choose their steps pass the flat places of the N-four-bar mechanism as well, and tell "
     "them") {
-  const test::Finished run = test::run_model("n_four_bar_2", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("n_four_bar_2", [](pipeline::SimulationRequest& request) {
     request.scene = "chosen";
     request.estimate = false;
     request.with = {"jac", "taylor"};
@@ -246,7 +246,7 @@ TEST_CASE(
     overrides.rtol = overrides.atol = tolerance;
     if (step > 0) overrides.step = step;
     overrides.t_end = t_end;
-    return cli::run_again(run.simulation, overrides, false);
+    return pipeline::run_again(run.simulation, overrides, false);
   };
   const auto holds = [](const run::RunResult& result, double bound) {
     CAPTURE(result.solver);
@@ -283,11 +283,11 @@ TEST_CASE(
 }
 
 TEST_CASE("published: the reference starts where the constraints hold in all digits") {
-  cli::SimulationRequest request;
-  request.model = test::model_path("andrews_squeezer");
+  pipeline::SimulationRequest request;
+  request.model = test::model_at(test::model_path("andrews_squeezer"));
   request.overrides.solver = "dop853";
   request.integrate = false;
-  const cli::Simulation simulation = cli::simulate(request);
+  const pipeline::Simulation simulation = pipeline::simulate(request);
   const auto& functions = simulation.program.functions;
   const auto constraints = std::find_if(functions.begin(), functions.end(),
                                         [](const program::Function& f) { return f.name == "constraints"; });

@@ -13,7 +13,7 @@ using namespace eomgen::test;
 
 namespace {
 
-void tighten(cli::SimulationRequest& request) {
+void tighten(pipeline::SimulationRequest& request) {
   request.overrides.rtol = 1e-12;
   request.overrides.atol = 1e-13;
 }
@@ -87,7 +87,8 @@ TEST_CASE("rolling: R6: the constraints are (9.79), two not integrable and one t
 }
 
 TEST_CASE("rolling: R6: the disk keeps its energy to 1e-10 over 100 s") {
-  const Finished run = run_model("R6_rolling_disk", [](cli::SimulationRequest& request) { request.scene = "long"; });
+  const Finished run =
+      run_model("R6_rolling_disk", [](pipeline::SimulationRequest& request) { request.scene = "long"; });
   CHECK(run.simulation.result.solver == "dop853");
   CHECK(run.simulation.result.t == 100);
   CHECK(run.drift("energy") < 1e-10);

@@ -23,8 +23,8 @@ constexpr double by_hand = 1e-10;
 constexpr double rounding = 1e-12;
 
 inline Finished run_rough(const std::string& model, const std::string& scene = "default",
-                          const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
-  return run_model(model, [&](cli::SimulationRequest& request) {
+                          const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
+  return run_model(model, [&](pipeline::SimulationRequest& request) {
     request.scene = scene;
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
@@ -34,8 +34,8 @@ inline Finished run_rough(const std::string& model, const std::string& scene = "
 }
 
 /// Other values of parameters, exactly.
-inline std::function<void(cli::SimulationRequest&)> with(std::map<std::string, double> parameters) {
-  return [parameters](cli::SimulationRequest& request) {
+inline std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters) {
+  return [parameters](pipeline::SimulationRequest& request) {
     for (const auto& [name, value] : parameters) request.overrides.parameters[name] = cln::rational(cln::cl_R(value));
   };
 }

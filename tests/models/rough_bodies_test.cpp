@@ -216,8 +216,8 @@ TEST_CASE(
 
 TEST_CASE("rough_bodies: R6: the disk rolls as without friction until the plane cannot hold it, and slips there") {
   const Finished run = run_rough("R6_rough_disk");
-  const Finished held =
-      run_rough("R6_rolling_disk", "default", [](cli::SimulationRequest& request) { request.overrides.t_end = 2; });
+  const Finished held = run_rough("R6_rolling_disk", "default",
+                                  [](pipeline::SimulationRequest& request) { request.overrides.t_end = 2; });
   REQUIRE(events_of(run).size() == 2);
   CHECK(events_of(run)[0].kind == "slip");
   CHECK(events_of(run)[1].kind == "roll");

@@ -58,7 +58,7 @@ TEST_CASE("rough_incline_puck: from rest it slides straight down if tan(beta) ex
 TEST_CASE("rough_incline_puck: fixed steps that are longer than the slip lasts stop it all the same") {
   for (const double step : {0.7, 2.0}) {
     CAPTURE(step);
-    const Finished run = run_rough("rough_incline_puck", "level", [&](cli::SimulationRequest& request) {
+    const Finished run = run_rough("rough_incline_puck", "level", [&](pipeline::SimulationRequest& request) {
       request.overrides.solver = "rk4";
       request.overrides.step = step;
       request.overrides.t_end = 4;

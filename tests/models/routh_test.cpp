@@ -84,7 +84,7 @@ TEST_CASE("routh: a wrong sign in a reduced equation is noticed") {
 
 TEST_CASE("routh: integrated by itself P9's single equation moves as the full system does") {
   constexpr double tolerance = 1e-9;  // both at rtol 1e-12 over 10 s
-  const Finished run = run_model("P9_paraboloid", [](cli::SimulationRequest& request) {
+  const Finished run = run_model("P9_paraboloid", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
   });

@@ -36,7 +36,9 @@ initial = { a = 0.6, a_dot = 1 }
 TEST_CASE("six_bar: Sarrus' linkage is overconstrained by one, and moves along its straight line") {
   const std::string path = test::build_folder() + "/six_bar_one.toml";
   write_text(path, one_coordinate);
-  const auto tighten = [](cli::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; };
+  const auto tighten = [](pipeline::SimulationRequest& request) {
+    request.overrides.rtol = request.overrides.atol = 1e-12;
+  };
   const Finished one = run_model(path, tighten), all = run_model("six_bar_spatial", tighten);
   const mechanics::Mechanics& m = all.simulation.derived->mechanics;
   CHECK(m.freedom() == 1);

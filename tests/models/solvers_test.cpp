@@ -15,7 +15,7 @@ using namespace eomgen;
 namespace {
 
 test::Finished motion(const std::string& model, const std::string& solver, double t_end) {
-  return test::run_model(model, [&](cli::SimulationRequest& request) {
+  return test::run_model(model, [&](pipeline::SimulationRequest& request) {
     request.overrides.solver = solver;
     request.overrides.rtol = 1e-10;
     request.overrides.atol = 1e-12;
@@ -60,7 +60,7 @@ TEST_CASE("solvers: an implicit one on code that was compiled without df/dx take
   overrides.solver = "radau5";
   overrides.rtol = 1e-10;
   overrides.t_end = 1.5;
-  const run::RunResult again = cli::run_again(first.simulation, overrides, false);
+  const run::RunResult again = pipeline::run_again(first.simulation, overrides, false);
   CHECK(again.outcome == eom::Outcome::done);
   CHECK(again.reason == "as asked for, df/dx by differences, since it was not compiled");
   CHECK(again.statistics.difference_evaluations > 0);
@@ -69,7 +69,7 @@ TEST_CASE("solvers: an implicit one on code that was compiled without df/dx take
 
 TEST_CASE("solvers: auto hands a stiff spring to radau5 and says when, why, and where df/dx is from") {
   const auto stiff = [](double rtol) {
-    return test::run_model("elastic_pendulum", [&](cli::SimulationRequest& request) {
+    return test::run_model("elastic_pendulum", [&](pipeline::SimulationRequest& request) {
       request.scene = "stiff";
       request.overrides.solver = "auto";
       request.overrides.rtol = request.overrides.atol = rtol;
@@ -94,7 +94,7 @@ TEST_CASE(
     "solvers: variational ones converge to dop853 with their order: free, with multipliers, moving constraints, "
     "damping, inputs") {
   for (const char* model : {"P2_planar_pendulum", "S5_double_pendulum_cartesian", "P3_moving_plane", "cart_pendulum"}) {
-    const test::Finished reference = test::run_model(model, [&](cli::SimulationRequest& request) {
+    const test::Finished reference = test::run_model(model, [&](pipeline::SimulationRequest& request) {
       request.overrides.solver = "dop853";
       request.overrides.rtol = request.overrides.atol = 1e-13;
       request.overrides.t_end = 1;
@@ -105,7 +105,7 @@ TEST_CASE(
       CAPTURE(std::string(solver));
       const int order = run::method_named(solver).order;
       const auto error = [&](double step) {
-        const test::Finished found = test::run_model(model, [&](cli::SimulationRequest& request) {
+        const test::Finished found = test::run_model(model, [&](pipeline::SimulationRequest& request) {
           request.overrides.solver = solver;
           request.overrides.step = step;
           request.overrides.t_end = 1;
@@ -126,7 +126,7 @@ TEST_CASE(
 TEST_CASE("solvers: variational ones keep energy within bounds, and tell why they refuse a model") {
   const auto drift = [](double end) {
     return test::run_model("S5_double_pendulum_cartesian",
-                           [&](cli::SimulationRequest& request) {
+                           [&](pipeline::SimulationRequest& request) {
                              request.overrides.solver = "variational4";
                              request.overrides.step = 0.02;
                              request.overrides.t_end = end;
@@ -143,7 +143,7 @@ TEST_CASE("solvers: variational ones keep energy within bounds, and tell why the
     const std::string of_model = model;
     CAPTURE(of_model);
     try {
-      test::run_model(model, [&](cli::SimulationRequest& request) {
+      test::run_model(model, [&](pipeline::SimulationRequest& request) {
         request.overrides.solver = "variational2";
         request.overrides.step = 0.01;
       });
@@ -158,7 +158,7 @@ TEST_CASE(
     "solvers: long runs of variational ones: angles that have gone far do not end the iteration, rounding does not add "
     "up in the momentum") {
   const auto run = [](const char* model, const char* solver, double step, double end) {
-    return test::run_model(model, [&](cli::SimulationRequest& request) {
+    return test::run_model(model, [&](pipeline::SimulationRequest& request) {
       request.overrides.solver = solver;
       request.overrides.step = step;
       request.overrides.t_end = end;
@@ -205,7 +205,7 @@ TEST_CASE(
   const test::Finished first = motion("cart_pendulum", "dop853", 0.5);
   run::Overrides overrides;
   overrides.solver = "taylor";
-  CHECK_THROWS_WITH_AS(cli::run_again(first.simulation, overrides, false),
+  CHECK_THROWS_WITH_AS(pipeline::run_again(first.simulation, overrides, false),
                        doctest::Contains("compiled without its Taylor series"), Error);
 }
 
@@ -223,7 +223,7 @@ TEST_CASE(
     overrides.rtol = 1e-10;
     overrides.atol = 1e-12;
     overrides.t_end = 1;
-    const run::RunResult found = cli::run_again(reference.simulation, overrides, false);
+    const run::RunResult found = pipeline::run_again(reference.simulation, overrides, false);
     CHECK(found.outcome == eom::Outcome::done);
     CHECK(found.reason.find("equations of each step") != std::string::npos);
     CHECK(found.projection_position == 0);
@@ -261,7 +261,7 @@ TEST_CASE("solvers: fixed implicit steps where components stay at rounding level
       overrides.solver = solver;
       overrides.step = 1e-3;
       overrides.t_end = t_end;
-      const run::RunResult found = cli::run_again(reference.simulation, overrides, false);
+      const run::RunResult found = pipeline::run_again(reference.simulation, overrides, false);
       CHECK(found.outcome == eom::Outcome::done);
       for (const auto& [name, value] : found.final) {
         const auto& shown = name;

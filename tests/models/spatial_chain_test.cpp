@@ -4,7 +4,7 @@
 #include <doctest/doctest.h>
 #include <fmt/format.h>
 
-#include "cli/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 #include "program/build.hpp"
 #include "support/folders.hpp"
 #include "support/simulation.hpp"
@@ -37,15 +37,15 @@ std::string chain_text(int n) {
 std::size_t operations(const std::string& text, int n) {
   const std::string path = fmt::format("{}/spatial_chain_of_{}.toml", test::build_folder(), n);
   test::write_text(path, text);
-  const auto derived = cli::derive_model(path, cli::ApproachChoice::automatic, std::nullopt);
-  const program::Program program = cli::make_program(*derived, {});
+  const auto derived = pipeline::derive_model(test::model_at(path), pipeline::ApproachChoice::automatic, std::nullopt);
+  const program::Program program = pipeline::make_program(*derived, {});
   return program.functions.front().operations.flops();
 }
 
 }  // namespace
 
 TEST_CASE("spatial_chain: energy and the angular momentum about the vertical are kept") {
-  const test::Finished run = test::run_model("spatial_chain_3", [](cli::SimulationRequest& request) {
+  const test::Finished run = test::run_model("spatial_chain_3", [](pipeline::SimulationRequest& request) {
     request.overrides.rtol = 1e-12;
     request.overrides.atol = 1e-13;
     request.estimate = false;

@@ -21,7 +21,7 @@ void check_refused(const std::string& text, const char* message) {
   const std::string path = test::build_folder() + "/freedom.toml";
   test::write_text(path, text);
   try {
-    cli::derive_model(path, cli::ApproachChoice::automatic);
+    pipeline::derive_model(test::model_at(path), pipeline::ApproachChoice::automatic);
     FAIL("accepted");
   } catch (const Error& error) {
     CHECK(error.message() == message);

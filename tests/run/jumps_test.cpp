@@ -14,7 +14,7 @@ namespace {
 constexpr double g = 9.81;
 
 test::Finished run_text(const std::string& name, const std::string& text,
-                        const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);

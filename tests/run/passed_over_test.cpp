@@ -15,7 +15,7 @@ using namespace eomgen;
 namespace {
 
 test::Finished run_text(const std::string& name, const std::string& text,
-                        const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
+                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
   const std::string path = test::build_folder() + "/" + name + ".toml";
   test::write_text(path, "format = 1\n" + text);
   return test::run_model(path, adjust);
@@ -57,7 +57,7 @@ TEST_CASE(
       run::Overrides overrides;
       overrides.solver = method.name;
       if (!method.adaptive) overrides.step = 0.05;
-      const run::RunResult result = cli::run_again(finished.simulation, overrides);
+      const run::RunResult result = pipeline::run_again(finished.simulation, overrides);
       CHECK(result.outcome == eom::Outcome::done);
       const double error = std::abs(test::value_of(result.final, "x_dot") - c.impulse);
       CHECK(error < (method.adaptive ? c.allowed : c.smooth ? 0.02 * c.impulse : c.allowed));
@@ -141,7 +141,7 @@ TEST_CASE(
       CAPTURE(std::string(method.name));
       run::Overrides overrides;
       overrides.solver = method.name;
-      const run::RunResult result = cli::run_again(finished.simulation, overrides);
+      const run::RunResult result = pipeline::run_again(finished.simulation, overrides);
       CHECK(result.outcome == eom::Outcome::done);
       CHECK(std::abs(test::value_of(result.final, "x") - c.x) < 2e-3);
       CHECK(std::abs(test::value_of(result.final, "x_dot") - c.x_dot) < 1e-6);
@@ -149,6 +149,7 @@ TEST_CASE(
     run::Overrides fixed;
     fixed.solver = "rk4";
     fixed.step = 0.29;  // none ends at 3
-    CHECK(cli::run_again(finished.simulation, fixed).estimate_note.find("narrow in the state") != std::string::npos);
+    CHECK(pipeline::run_again(finished.simulation, fixed).estimate_note.find("narrow in the state") !=
+          std::string::npos);
   }
 }

@@ -36,7 +36,7 @@ const test::Finished& made() {
 run::RunResult with(std::map<std::string, Rational> parameters) {
   run::Overrides overrides;
   overrides.parameters = std::move(parameters);
-  return cli::run_again(made().simulation, overrides);
+  return pipeline::run_again(made().simulation, overrides);
 }
 
 }  // namespace

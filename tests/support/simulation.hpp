@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/simulate.hpp"
+#include "pipeline/simulate.hpp"
 #include "support/folders.hpp"
 
 namespace eomgen::test {
@@ -36,7 +36,7 @@ inline double value_of(const std::vector<std::pair<std::string, double>>& values
 }
 
 struct Finished {
-  cli::Simulation simulation;
+  pipeline::Simulation simulation;
   Rows rows;
 
   double final(const std::string& name) const { return value_of(simulation.result.final, name); }
@@ -70,12 +70,17 @@ inline void write_text(const std::string& path, const std::string& text) {
   if (!file.flush()) throw std::runtime_error("cannot write " + path);
 }
 
+inline std::shared_ptr<const model::Model> model_at(const std::string& path) {
+  return std::make_shared<const model::Model>(model::read_model(path));
+}
+
 /// Runs models/NAME.toml (or a path that ends in .toml); `adjust` may set scene, overrides and so on. Rows are kept.
-inline Finished run_model(const std::string& name, const std::function<void(cli::SimulationRequest&)>& adjust = {}) {
-  cli::SimulationRequest request;
-  request.model = name.ends_with(".toml") ? name : model_path(name);
+inline Finished run_model(const std::string& name,
+                          const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
+  pipeline::SimulationRequest request;
+  request.model = model_at(name.ends_with(".toml") ? name : model_path(name));
   Rows rows;
-  request.begin = [&rows](const cli::Derived&, const run::Scene&, const std::vector<std::string>& names) {
+  request.begin = [&rows](const pipeline::Derived&, const run::Scene&, const std::vector<std::string>& names) {
     rows.names = names;
   };
   request.row = [&rows](double t, std::span<const double> y) {
@@ -83,7 +88,7 @@ inline Finished run_model(const std::string& name, const std::function<void(cli:
     rows.y.emplace_back(y.begin(), y.end());
   };
   if (adjust) adjust(request);
-  cli::Simulation simulation = cli::simulate(request);
+  pipeline::Simulation simulation = pipeline::simulate(request);
   return {std::move(simulation), std::move(rows)};
 }
 

@@ -14,11 +14,11 @@
 #include <set>
 #include <sstream>
 
-#include "cli/code.hpp"
-#include "cli/pipeline.hpp"
 #include "emit/shared_library/process.hpp"
 #include "emit/targets.hpp"
 #include "error.hpp"
+#include "pipeline/code.hpp"
+#include "pipeline/pipeline.hpp"
 #include "program/abi_values.hpp"
 
 using namespace eomgen;
@@ -187,7 +187,7 @@ struct Folder {
 };
 
 struct Subject {
-  std::unique_ptr<cli::Derived> derived;
+  std::unique_ptr<pipeline::Derived> derived;
   program::Program program;
   emit::EmissionContext context;
   std::string name, source, header;
@@ -195,8 +195,9 @@ struct Subject {
 
 Subject subject(const std::string& model) {
   Subject s;
-  s.derived =
-      cli::derive_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml", cli::ApproachChoice::automatic);
+  s.derived = pipeline::derive_model(
+      std::make_shared<const model::Model>(model::read_model(std::string(EOMGEN_TEST_MODELS) + "/" + model + ".toml")),
+      pipeline::ApproachChoice::automatic);
   program::Request request;
   request.with = {"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
   request.outputs = {"energy", "kinetic", "power"};
@@ -204,10 +205,10 @@ Subject subject(const std::string& model) {
     if (output.name.find("position") != std::string::npos || output.name.find("velocity") != std::string::npos)
       request.outputs.push_back(output.name);
   }
-  s.program = cli::make_program(*s.derived, request);
+  s.program = pipeline::make_program(*s.derived, request);
   const run::Scene scene =
       run::resolve_scene(s.derived->mechanics, s.derived->candidates.front(), s.derived->model.scene("default"), {});
-  s.context = cli::emission_context(*s.derived, s.program, scene, {});
+  s.context = pipeline::emission_context(*s.derived, s.program, scene, {});
   s.name = emit::mangled_id(s.context.id);
   const std::vector<emit::EmittedFile> files = emit::emit(s.program, s.context, "c");
   s.source = files.at(0).text;
@@ -231,9 +232,9 @@ std::string library(const Folder& folder, const Subject& s, const Mutator& mutat
 }
 
 /// Code without its self test, which is asked for by itself.
-std::optional<cli::CompiledCode> loaded(const std::string& library, const std::string& name, const Subject& s) {
+std::optional<pipeline::CompiledCode> loaded(const std::string& library, const std::string& name, const Subject& s) {
   try {
-    return cli::CompiledCode({emit::LoadedModel(library, name), library, false, 0}, s.program);
+    return pipeline::CompiledCode({emit::LoadedModel(library, name), library, false, 0}, s.program);
   } catch (const Error& error) {
     CAPTURE(error.message());
     REQUIRE(error.message().find("self test") != std::string::npos);
@@ -299,9 +300,9 @@ TEST_CASE(
       const verify::CompiledForm wrong = code->form();
       if (!differ(right, wrong, s)) continue;
       ++changing;
-      cli::Verification verification{50, 5, 1, &wrong};
+      pipeline::Verification verification{50, 5, 1, &wrong};
       for (const emit::Quantity& input : s.context.inputs) verification.default_inputs.push_back(input.value);
-      if (!cli::certify(*s.derived, s.program, verification).pass) {
+      if (!pipeline::certify(*s.derived, s.program, verification).pass) {
         ++noticed;
         continue;
       }

@@ -5,15 +5,14 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "cli/article.hpp"
-#include "cli/charts.hpp"
-#include "cli/code.hpp"
+#include "analysis/article.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/locate.hpp"
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
-#include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
 #include "model/names.hpp"
+#include "pipeline/emission.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -26,101 +25,29 @@ struct Options {
   bool print_name = false;
 };
 
-program::Request request_of(const Options& options, Derived& derived, const run::Scene& scene) {
-  program::Request request;
-  for (const std::string& name : options.with) {
-    if (name == "energy") {
-      request.outputs.push_back("energy");
-    } else if (name == "outputs") {
-      request.outputs.insert(request.outputs.end(), scene.outputs.begin(), scene.outputs.end());
-      if (scene.outputs.empty() && options.outputs.empty()) {
-        tell(
-            "warning: the default scene asks for no outputs, so there is no function for them\n"
-            "  remedy: name them: --output energy,..\n");
-      }
-    } else if (name != "charts") {
-      request.with.push_back(name);
-    }
-  }
-  std::vector<model::Named> wanted;
-  for (const std::string& name : options.outputs) wanted.push_back({name, {}});
-  for (const std::string& name : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted)) {
-    request.outputs.push_back(name);
-  }
-  std::vector<std::string> unique;
-  for (const std::string& name : request.outputs) {
-    if (std::find(unique.begin(), unique.end(), name) == unique.end()) unique.push_back(name);
-  }
-  request.outputs = unique;
-  for (const std::string& name : options.fix) {
-    const auto& parameters = derived.model.parameters;
-    const auto found =
-        std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
-    if (found == parameters.end()) {
-      std::vector<std::string> names;
-      for (const model::Parameter& p : parameters) names.push_back(p.name);
-      throw Error("emit", {}, fmt::format("there is no parameter {} to fix", model::quote(name)),
-                  choice_of(name, names));
-    }
-    const auto index = static_cast<std::uint32_t>(found - parameters.begin());
-    request.fix[index] = cln::rational(cln::cl_R(scene.parameters[index]));
-  }
-  return request;
-}
-
-void require_with(const std::vector<std::string>& with) {
-  const std::vector<std::string> known{"jac",     "jac_p",  "mass",   "momenta", "constraints", "reactions",
-                                       "outputs", "events", "energy", "taylor",  "charts"};
-  for (const std::string& name : with) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    const bool batch = name.ends_with("_batch");
-    throw Error("emit", {}, fmt::format("there is no function {} to emit", model::quote(name)),
-                batch ? "--target batch writes batches of rhs and of all that --with and --output ask for"
-                      : choice_of(name, known));
-  }
-}
-
 void require_target(const std::string& target) {
   std::vector<std::string> known;
   for (const emit::TargetEntry& entry : emit::targets()) known.emplace_back(entry.name);
   known.emplace_back("latex");
   if (std::find(known.begin(), known.end(), target) != known.end()) return;
-  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), choice_of(target, known));
+  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
 }
 
 int emit_document(const Options& options, const Common& common) {
   if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty()) {
     tell("warning: a document has no functions: --with, --output and --fix change nothing\n");
   }
-  const ArticleText written = article(options.model, common.seed);
+  const auto model = load_model(options.model);
+  const std::string text = analysis::article(model, common.seed);
   const work::Kept kept;  // all files or none
   const std::vector<std::string> files =
-      write_results(options.folder, {{emit::mangled_id(written.id) + ".tex", written.text}}, written.file);
+      write_results(options.folder, {{emit::mangled_id(model->id) + ".tex", text}}, model->file);
   if (common.json) {
     print_document(json{{"format", 1}, {"files", files}});
   } else {
     for (const std::string& file : files) fmt::print("wrote {}\n", file);
   }
   return 0;
-}
-
-/// All second charts and what can be combined of them; warns of what cannot be exchanged.
-void add_all_charts(Derived& derived, program::Program& program, const ChartRequest& request) {
-  const std::vector<model::SwitchedChart> all = charts_of(derived.mechanics);
-  for (const model::SwitchedChart& chart : all) {
-    if (chart.refusal.empty()) continue;
-    tell(
-        fmt::format("warning: '{}' keeps its chart {}: {}\n  remedy: where that fails use other coordinates, such as "
-                    "euler_parameters or cartesian ones\n",
-                    chart.of, chart.own, chart.refusal));
-  }
-  const std::vector<model::SwitchedChart> charts = exchangeable(all);
-  if (charts.empty()) {
-    throw Error("emit", Where{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
-                "leave charts out of --with; eomgen check tells the charts");
-  }
-  for (unsigned mask = 1; mask < 1u << charts.size(); ++mask)
-    add_second_charts(derived, program, charts, mask, request);
 }
 
 /// What is computed once for the parameters, and the right-hand side that is left; null where it is not split.
@@ -142,29 +69,21 @@ int execute(const Options& options, const Common& common) {
     throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");
   require_folder(options.folder);
   require_target(options.target);
-  const FormChoice form = form_choice(options.form);
-  require_with(options.with);
-  const ApproachChoice approach = approach_choice(options.approach);
+  const pipeline::EmissionRequest request{options.target,
+                                          pipeline::approach_choice(options.approach),
+                                          pipeline::form_choice(options.form),
+                                          options.with,
+                                          options.outputs,
+                                          options.fix,
+                                          common.seed};
   if (options.target == "latex") return emit_document(options, common);
-  const auto derived = derive_model(options.model, approach, form);
-  const run::Scene scene =
-      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
-  const program::Request request = request_of(options, *derived, scene);
-  program::Program program = make_program(*derived, request);
-  if (std::find(options.with.begin(), options.with.end(), "charts") != options.with.end()) {
-    if (std::find(options.with.begin(), options.with.end(), "taylor") != options.with.end()) {
-      throw Error("emit", {}, "the function taylor has the series of one chart only",
-                  "leave taylor or charts out of --with");
-    }
-    add_all_charts(*derived, program, {request, approach, form, common.seed});
-  }
-  const verify::Certificate certificate =
-      certify(*derived, program, {50, emission_points, common.seed, nullptr, request.fix});
-  require_pass(certificate, derived->model);
-  const emit::EmissionContext context = emission_context(*derived, program, scene, certificate);
-  const std::vector<std::string> files =
-      write_results(options.folder, emit::emit(program, context, options.target), derived->model.file);
-  const Timings& seconds = derived->seconds;
+  double reading = 0;
+  const auto model = load_model(options.model, &reading);
+  const pipeline::Emission emission = pipeline::emit_model(model, request);
+  const program::Program& program = emission.program;
+  const verify::Certificate& certificate = emission.certificate;
+  const std::vector<std::string> files = write_results(options.folder, emission.files, model->file);
+  const pipeline::Timings& seconds = emission.seconds;
   if (common.json) {
     json tried = json::array();
     for (const program::Tried& t : program.tried)
@@ -182,7 +101,7 @@ int execute(const Options& options, const Common& common) {
                         {"hoisted", hoisted(program)},
                         {"certificate", certificate.summary()},
                         {"seconds",
-                         {{"read", seconds.read},
+                         {{"read", reading},
                           {"derive", seconds.derive},
                           {"optimise", seconds.optimise},
                           {"verify", seconds.verify},

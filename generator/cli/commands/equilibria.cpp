@@ -5,10 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
+#include "analysis/steady_search.hpp"
+#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/decimal.hpp"
+#include "cli/eigenvalues.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/steady_search.hpp"
 #include "cli/usage.hpp"
 #include "cli/watch.hpp"
 #include "work.hpp"
@@ -38,10 +40,10 @@ const char* to_text(const linear::Verdict& verdict) {
   return "stability unknown";
 }
 
-json to_json(const SteadyMotions& found, const Options& options) {
+json to_json(const analysis::SteadyMotions& found, const Options& options) {
   const std::vector<std::string>& names = found.problem.flow->names();
   json points = json::array(), held = json::array();
-  for (const SteadyMotion& point : found.points) {
+  for (const analysis::SteadyMotion& point : found.points) {
     json values = json::object(), eigenvalues = json::array();
     for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = shown(point.l.z[i]);
     for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
@@ -54,7 +56,8 @@ json to_json(const SteadyMotions& found, const Options& options) {
                       {"family", point.family},
                       {"off", point.l.off}});
   }
-  for (const HeldValue& h : found.held) held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
+  for (const analysis::HeldValue& h : found.held)
+    held.push_back({{"name", h.name}, {"value", h.value}, {"why", h.why}});
   return {{"format", 1},
           {"points", points},
           {"held", held},
@@ -66,7 +69,7 @@ json to_json(const SteadyMotions& found, const Options& options) {
           {"certificate", found.problem.certificate}};
 }
 
-std::string text(const SteadyMotion& point, const std::vector<std::string>& names) {
+std::string text(const analysis::SteadyMotion& point, const std::vector<std::string>& names) {
   std::string out =
       fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), to_text(point.verdict), point.verdict.reason);
   if (point.family > 0)
@@ -89,13 +92,13 @@ std::string text(const SteadyMotion& point, const std::vector<std::string>& name
   return out + fmt::format("  and {} zeros, {} of them structural\n", point.l.spectrum.zeros, point.l.structural_zeros);
 }
 
-std::string text(const SteadyMotions& found, const Options& options) {
+std::string text(const analysis::SteadyMotions& found, const Options& options) {
   std::string out =
       fmt::format("{}, scene {}: {} found\n", found.problem.derived->model.id, found.problem.scene.name,
                   found.points.empty() ? "no equilibrium and no steady motion"
                                        : fmt::format("{} equilibria and steady motions", found.points.size()));
-  for (const HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
-  for (const SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
+  for (const analysis::HeldValue& h : found.held) out += fmt::format("  held: {} = {} ({})\n", h.name, h.value, h.why);
+  for (const analysis::SteadyMotion& point : found.points) out += text(point, found.problem.flow->names());
   if (found.search.refused > 0) {
     out += fmt::format("\nrefused           {} of the starts ended where the equations have no slope: {}\n",
                        found.search.refused, found.search.reason);
@@ -107,8 +110,8 @@ std::string text(const SteadyMotions& found, const Options& options) {
 }
 
 int execute(const Options& options, const Common& common) {
-  SteadyRequest request;
-  request.model = options.model;
+  analysis::SteadyRequest request;
+  request.model = load_model(options.model);
   request.scene = options.scene;
   request.overrides.parameters = parse_assignments("equilibria", options.set);
   request.hold = parse_assignments("equilibria", options.hold);
@@ -121,7 +124,7 @@ int execute(const Options& options, const Common& common) {
       tell(fmt::format("\r{:5.1f} % of the starts ", 100 * fraction));
     };
   }
-  const SteadyMotions found = steady_motions(request);
+  const analysis::SteadyMotions found = analysis::steady_motions(request);
   const work::Kept kept;
   if (shown) tell(fmt::format("\r{:40}\r", ""));
   if (common.json) {

@@ -6,10 +6,12 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/steady.hpp"
+#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/decimal.hpp"
+#include "cli/eigenvalues.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/steady.hpp"
 #include "cli/usage.hpp"
 #include "work.hpp"
 
@@ -25,7 +27,7 @@ struct Options {
 };
 
 struct Answer {
-  const SteadyProblem& problem;
+  const analysis::SteadyProblem& problem;
   const linear::Linearisation& l;
 
   std::vector<std::string> names(const std::vector<std::size_t>& places) const {
@@ -135,8 +137,8 @@ std::string text(const Answer& a) {
 int execute(const Options& options, const Common& common) {
   run::Overrides overrides;
   overrides.parameters = parse_assignments("linearize", options.set);
-  const SteadyProblem problem =
-      steady_problem("linearize", options.model, options.scene, overrides, options.at, common.seed);
+  const analysis::SteadyProblem problem = analysis::steady_problem("linearize", load_model(options.model),
+                                                                   options.scene, overrides, options.at, common.seed);
   try {
     const work::Stage stage("linearising");
     const linear::Linearisation l =
@@ -148,7 +150,7 @@ int execute(const Options& options, const Common& common) {
       fmt::print("{}", text(answer));
     }
   } catch (const std::domain_error& error) {
-    const Source source = without_slope(problem, problem.z);
+    const analysis::Source source = analysis::without_slope(problem, problem.z);
     throw Error("linearize", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
                 "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
   }

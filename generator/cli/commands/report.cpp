@@ -8,8 +8,8 @@
 #include <optional>
 #include <set>
 
+#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/decimal.hpp"
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
@@ -18,9 +18,9 @@
 #include "cli/report/live_model.hpp"
 #include "cli/report/recorded_motion.hpp"
 #include "cli/run_report.hpp"
-#include "cli/simulate.hpp"
 #include "cli/usage.hpp"
 #include "mechanics/dependent.hpp"
+#include "pipeline/simulate.hpp"
 #include "print/render.hpp"
 
 namespace eomgen::cli {
@@ -129,7 +129,7 @@ void add_certificate(Html& html, const verify::Certificate& certificate) {
   html.markup("</details>");
 }
 
-void add_run(Html& html, const Simulation& simulation, const Json& run, const std::string& plots) {
+void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run, const std::string& plots) {
   html.heading(2, "The run: scene " + simulation.scene.name);
   html.markup("<section id=\"plots\">\n" + plots + "</section>");
   html.table({"", ""},
@@ -170,8 +170,8 @@ int execute(const Options& options, const Common& common) {
   const std::string file = options.out.empty() ? "report.html" : options.out;
   require_places({{"--out", file, ".html"}}, locate_model(options.model), common.json);
   RecordedMotion recorded;
-  SimulationRequest request;
-  request.model = options.model;
+  pipeline::SimulationRequest request;
+  request.model = load_model(options.model);
   request.scene = options.scene;
   request.seed = common.seed;
   request.overrides.parameters = parse_assignments("report", options.set);
@@ -184,7 +184,7 @@ int execute(const Options& options, const Common& common) {
   std::optional<Drawing> drawing;
   std::vector<std::string> outputs;  // what the page draws and plots beside the state
   std::vector<Panel> curves;
-  request.prepare = [&](Derived& derived) {
+  request.prepare = [&](pipeline::Derived& derived) {
     drawing.emplace(derived);
     outputs = drawing->outputs();
     curves = panels(derived.model, run::expand_outputs(derived.mechanics, derived.candidates.front(),
@@ -196,11 +196,11 @@ int execute(const Options& options, const Common& common) {
     }
     return outputs;
   };
-  request.begin = [&](const Derived&, const run::Scene&, const std::vector<std::string>& names) {
+  request.begin = [&](const pipeline::Derived&, const run::Scene&, const std::vector<std::string>& names) {
     recorded.begin(names);
   };
   request.row = [&](double t, std::span<const double> y) { recorded.row(t, y); };
-  const Simulation simulation = simulate(request);
+  const pipeline::Simulation simulation = pipeline::simulate(request);
   const model::Model& model = simulation.derived->model;
   const Json run = RunReport{simulation, true}.json();
   std::set<std::string> set;
@@ -211,7 +211,7 @@ int execute(const Options& options, const Common& common) {
   add_head(html, model, !moving.is_null());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved);
   add_run(html, simulation, run, recorded.plots(curves));
-  add_model(html, model, examine(model));
+  add_model(html, model, to_json(model, analysis::examine(simulation.derived->shared)));
   add_certificate(html, simulation.certificate);
   write_text(file, page({model.title.empty() ? model.id : model.title, html.text(),
                          moving.is_null() ? "" : moving.dump(), live.script, live.name}));

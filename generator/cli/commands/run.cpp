@@ -9,8 +9,9 @@
 #include <filesystem>
 #include <optional>
 
+#include "analysis/sensitivities.hpp"
+#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/decimal.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
@@ -19,10 +20,9 @@
 #include "cli/picture/svg_picture.hpp"
 #include "cli/run_plot.hpp"
 #include "cli/run_report.hpp"
-#include "cli/sensitivities.hpp"
-#include "cli/simulate.hpp"
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -66,7 +66,7 @@ class Rows {
       index_.push_back(static_cast<std::size_t>(std::find(code.begin(), code.end(), column) - code.begin()));
     }
     values_.resize(columns_.size());
-    const double every = row_interval(scene);
+    const double every = pipeline::row_interval(scene);
     require_size(scene.t0, scene.t1, every, csv.empty() ? 0 : columns_.size(), yes);
     // A plot has no use for more points than it can show, and they are kept in memory.
     stride_ =
@@ -125,9 +125,9 @@ class Progress {
 };
 
 /// The run; an error while the user asked it to stop is an interruption.
-Simulation simulate_until_interrupted(const SimulationRequest& request) {
+pipeline::Simulation simulate_until_interrupted(const pipeline::SimulationRequest& request) {
   try {
-    return simulate(request);
+    return pipeline::simulate(request);
   } catch (const Error&) {
     if (!Interrupt::flag()) throw;
     throw Error("run", {}, "interrupted before the run began", "nothing was computed that could be kept",
@@ -136,7 +136,7 @@ Simulation simulate_until_interrupted(const SimulationRequest& request) {
 }
 
 /// Outputs that are plotted, by all their names; coordinates are in every row.
-std::vector<std::string> plotted_outputs(const Options& options, Derived& derived) {
+std::vector<std::string> plotted_outputs(const Options& options, pipeline::Derived& derived) {
   std::vector<model::Named> wanted;
   for (const std::string& item : options.plot_of) {
     const std::size_t comma = item.find(',');
@@ -168,17 +168,17 @@ int execute(const Options& options, const Common& common) {
   if (!options.out.empty()) places.push_back({"--out", options.out, ".csv"});
   if (!options.plot.empty()) places.push_back({"--plot", options.plot, is_png(options.plot) ? ".png" : ".svg"});
   require_places(places, locate_model(options.model), common.json);
-  SimulationRequest request;
-  request.model = options.model;
+  pipeline::SimulationRequest request;
+  request.model = load_model(options.model);
   request.scene = options.scene;
   request.overrides = overrides_of(options);
-  request.approach = approach_choice(options.approach);
-  request.form = form_choice(options.form);
+  request.approach = pipeline::approach_choice(options.approach);
+  request.form = pipeline::form_choice(options.form);
   request.estimate = !options.no_error_estimate;
   request.charts =
       !options.no_charts && options.sensitivity.empty();  // derivatives are those of the model's own coordinates
   if (!options.sensitivity.empty())
-    request.with.assign(std::begin(sensitivity_functions), std::end(sensitivity_functions));
+    request.with.assign(std::begin(analysis::sensitivity_functions), std::end(analysis::sensitivity_functions));
   request.seed = common.seed;
   Progress progress;
   if (isatty(STDERR_FILENO) != 0) request.progress = [&progress](double fraction) { progress(fraction); };
@@ -191,9 +191,10 @@ int execute(const Options& options, const Common& common) {
     throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",
                 "add --plot F.svg, or --plot - for characters");
   }
-  request.prepare = [&options](Derived& derived) { return plotted_outputs(options, derived); };
+  request.prepare = [&options](pipeline::Derived& derived) { return plotted_outputs(options, derived); };
   if (!options.out.empty() || !options.plot.empty()) {
-    request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
+    request.begin = [&](const pipeline::Derived& derived, const run::Scene& scene,
+                        const std::vector<std::string>& names) {
       std::vector<Panel> panels;
       if (!options.plot.empty())
         panels =
@@ -202,7 +203,7 @@ int execute(const Options& options, const Common& common) {
     };
     request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
   }
-  const Simulation simulation = simulate_until_interrupted(request);
+  const pipeline::Simulation simulation = simulate_until_interrupted(request);
   progress.wipe();
   const model::Model& model = simulation.derived->model;
   if (rows) rows->finish(simulation.result.outcome);
@@ -224,7 +225,7 @@ int execute(const Options& options, const Common& common) {
                 "give a later --t-end, or leave --sensitivity out");
   }
   if (!options.sensitivity.empty() && ended)
-    report.sensitivities = sensitivities(simulation, request, options.sensitivity);
+    report.sensitivities = analysis::sensitivities(simulation, request, options.sensitivity);
   if (common.json) {
     print_document(report.json());
   } else {

@@ -3,28 +3,22 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cmath>
-#include <limits>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "analysis/stress_test.hpp"
+#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/decimal.hpp"
 #include "cli/interrupt.hpp"
+#include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/simulate.hpp"
 #include "cli/usage.hpp"
-#include "run/integration.hpp"
-#include "stress/audit.hpp"
-#include "stress/start.hpp"
 
 namespace eomgen::cli {
 namespace {
 
 using Json = nlohmann::ordered_json;
-using stress::Row;
 using stress::Verdict;
 
 struct Options {
@@ -35,104 +29,6 @@ struct Options {
   std::size_t steps = 20000;
   bool quick = false;
 };
-
-struct LeftOut {
-  std::string test, reason;
-};
-
-/// Denormal numbers too, which CLN's own conversion refuses.
-symbolic::Rational exactly(double value) {
-  if (std::abs(value) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(value));
-  constexpr int shift = 200;
-  return cln::rational(cln::cl_DF(std::ldexp(value, shift))) / cln::expt_pos(cln::cl_I(2), shift);
-}
-
-/// The scene of one case, made anew from the model where constants change.
-class Variation {
- public:
-  Variation(const Simulation& simulation, const run::Overrides& overrides, const run::Code& code)
-      : simulation_(simulation), overrides_(overrides), code_(code) {}
-
-  std::optional<run::Scene> scene(const stress::Case& test, std::string& why) const {
-    Derived& derived = *simulation_.derived;
-    run::Overrides overrides = overrides_;
-    for (const auto& [p, factor] : test.factor) {
-      overrides.parameters[derived.model.parameters[p].name] = exactly(simulation_.scene.parameters[p] * factor);
-    }
-    for (const auto& [p, value] :
-         test.value) {  // what follows from them is computed anew, and a start that they break is refused
-      if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = exactly(value);
-    }
-    if (test.rtol) {
-      overrides.rtol = *test.rtol;
-      overrides.atol = *test.rtol * (simulation_.scene.rtol > 0 ? simulation_.scene.atol / simulation_.scene.rtol : 1);
-    }
-    run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
-                                          derived.model.scene(simulation_.scene.name), overrides);
-    for (const auto& [p, value] : test.value) {
-      if (!std::isfinite(value)) scene.parameters[p] = value;
-    }
-    const bool constrained = !derived.mechanics.active.empty();
-    std::vector<std::uint32_t> kept;
-    for (const auto& [i, value] : test.start) {
-      scene.q[i] = value;
-      kept.push_back(i);
-    }
-    for (const std::uint32_t i : derived.mechanics.free) {
-      if (test.zeros && scene.q[i] == 0) scene.q[i] = *test.zeros;
-      if (test.zeros && scene.qdot[i] == 0) scene.qdot[i] = *test.zeros;
-    }
-    if (constrained && !kept.empty() &&
-        !stress::meet_constraints(scene, run_request(derived, scene, code_, false), kept)) {
-      why = "the constraints allow no start there";
-      return std::nullopt;
-    }
-    for (double& rate : scene.qdot) rate *= test.speed;
-    scene.t1 = scene.t0 + (scene.t1 - scene.t0) * test.span / (test.speed > 1 ? test.speed : 1);
-    if (constrained && test.speed != 1 && broken(scene, test.speed)) {
-      why = "the constraints move, so that their velocities cannot be multiplied";
-      return std::nullopt;
-    }
-    return scene;
-  }
-
- private:
-  bool broken(const run::Scene& scene, double speed) const {
-    const run::RunRequest request = run_request(*simulation_.derived, scene, code_, false);
-    run::Integration integration(request, "dop853");
-    const std::vector<double> x = integration.initial_state();
-    double largest = 0;
-    for (const double v : x) largest = std::max(largest, std::abs(v));
-    return integration.constraint_defect(scene.t0, x.data()) >
-           run::start_tolerance * std::max(1.0, largest) * std::max(1.0, speed);
-  }
-
-  const Simulation& simulation_;
-  const run::Overrides& overrides_;
-  const run::Code& code_;
-};
-
-/// Each constraint once more under another name: what follows from others has to be found before anything is derived.
-void repeat_constraints(const model::Model& given, std::vector<Row>& rows, std::vector<LeftOut>& left_out) {
-  for (std::size_t c = 0; c < given.constraints.size(); ++c) {
-    if (given.constraints[c].joint) continue;  // its equations may repeat others, and are left out where they do
-    model::Model model = given;
-    model.constraints.push_back(given.constraints[c]);
-    model.constraints.back().name += "_again";
-    model.constraints.back().unit = false;  // the second one is no part of a rotation
-    const std::string test = fmt::format("constraint {} twice", given.constraints[c].name);
-    try {
-      mechanics::build_mechanics(model);
-      rows.push_back({.test = test,
-                      .solver = "none",
-                      .verdict = Verdict::silent,
-                      .outcome = "accepted",
-                      .note = "a constraint that repeats another is taken for one more"});
-    } catch (const Error& error) {
-      left_out.push_back({test, "refused: " + error.message()});
-    }
-  }
-}
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -161,12 +57,9 @@ Json of(const stress::Audit& audit) {
           {"without_value", audit.without_digits}};
 }
 
-Json document(const Simulation& simulation, const std::vector<Row>& rows, const std::vector<LeftOut>& left_out,
-              const stress::Audit& audit) {
+Json document(const model::Model& model, const analysis::StressFindings& found) {
   Json list = Json::array(), without = Json::array();
-  std::map<Verdict, std::size_t> count;
-  for (const Row& row : rows) {
-    ++count[row.verdict];
+  for (const stress::Row& row : found.rows) {
     list.push_back({{"case", row.test},
                     {"solver", row.solver},
                     {"verdict", stress::name(row.verdict)},
@@ -177,17 +70,17 @@ Json document(const Simulation& simulation, const std::vector<Row>& rows, const 
                     {"outcome", row.outcome},
                     {"note", row.note}});
   }
-  for (const LeftOut& l : left_out) without.push_back({{"case", l.test}, {"reason", l.reason}});
+  for (const auto& [test, why] : found.left_out) without.push_back({{"case", test}, {"reason", why}});
   return {{"format", 1},
-          {"model", simulation.derived->model.id},
-          {"scene", simulation.scene.name},
+          {"model", model.id},
+          {"scene", found.scene},
           {"rows", list},
           {"left_out", without},
-          {"kept", count[Verdict::kept]},
-          {"told", count[Verdict::told]},
-          {"silent", count[Verdict::silent]},
-          {"denominator_audit", of(audit)},
-          {"verdict", count[Verdict::silent] == 0 ? "pass" : "fail"}};
+          {"kept", found.count(Verdict::kept)},
+          {"told", found.count(Verdict::told)},
+          {"silent", found.count(Verdict::silent)},
+          {"denominator_audit", of(found.audit)},
+          {"verdict", found.count(Verdict::silent) == 0 ? "pass" : "fail"}};
 }
 
 void print_audit(const Json& audit) {
@@ -244,78 +137,28 @@ void print_readable(const Json& found, const std::vector<std::string>& solvers) 
              found["told"].get<std::size_t>(), found["silent"].get<std::size_t>());
 }
 
-std::vector<std::string> chosen_solvers(const Options& options) {
-  std::vector<std::string> known{eom::Automatic::name};
-  for (const eom::MethodInfo& method : eom::methods()) {
-    known.emplace_back(method.name);
-  }
-  for (const std::string& name : options.solvers) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error("stress", {}, fmt::format("there is no solver '{}'", name), choice_of(name, known));
-  }
-  if (options.solvers.empty()) return known;
-  std::erase_if(known, [&](const std::string& name) {
-    return std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end();
-  });
-  return known;
-}
-
-SimulationRequest simulation_request(const Options& options, const Common& common) {
-  SimulationRequest request;
-  request.model = options.model;
+int execute(const Options& options, const Common& common) {
+  analysis::StressRequest request;
+  request.model = load_model(options.model);
   request.scene = options.scene;
   request.overrides.parameters = parse_assignments("stress", options.set);
   request.overrides.t_end = options.t_end;
-  request.overrides.solver = "dop853";
-  request.overrides.step = 0;
-  request.with = {"mass"};
-  request.every_solver = true;
-  request.integrate = false;
+  request.solvers = options.solvers;
+  request.seconds = options.seconds;
+  request.steps = options.steps;
+  request.quick = options.quick;
   request.seed = common.seed;
-  return request;
-}
-
-int execute(const Options& options, const Common& common) {
-  const std::vector<std::string> solvers = chosen_solvers(options);
-  const SimulationRequest wanted = simulation_request(options, common);
-  const Simulation simulation = simulate(wanted);
-  const Interrupt interrupt;
-  const run::Code code = simulation.code.for_run();
-  const Variation variation(simulation, wanted.overrides, code);
-  stress::Request request;
-  request.run = [&](const run::Scene& scene) { return run_request(*simulation.derived, scene, code, true); };
-  request.solvers = solvers;
-  request.seconds_limit = options.seconds;
-  request.steps_limit = options.steps;
   request.interrupt = &Interrupt::flag();
   const bool terminal = isatty(STDERR_FILENO) != 0;
   if (terminal) request.progress = [](const std::string& what) { tell(fmt::format("\r{:60}\r{}", "", what)); };
-  stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
-  request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) {
-    auditor.see(test.name, scene, code, samples);
-  };
-  std::vector<Row> rows;
-  std::vector<LeftOut> left_out;
-  for (const stress::Case& test : stress::cases(simulation.derived->mechanics, simulation.scene, options.quick)) {
-    if (Interrupt::flag()) break;
-    std::string why;
-    try {
-      if (const std::optional<run::Scene> scene = variation.scene(test, why)) {
-        for (Row& row : stress::judge(test, *scene, request, why)) rows.push_back(std::move(row));
-      }
-    } catch (const Error& error) {  // a start or a value that is refused is told
-      if (error.stage() != "scene") throw;
-      why = "refused: " + error.message();
-    }
-    if (!why.empty()) left_out.push_back({test.name, why});
-  }
-  repeat_constraints(simulation.derived->model, rows, left_out);
+  const analysis::StressFindings findings = analysis::stress_test(request);
+  const Interrupt interrupt;
   if (terminal) tell(fmt::format("\r{:60}\r", ""));
-  const Json found = document(simulation, rows, left_out, auditor.audit());
+  const Json found = document(*request.model, findings);
   if (common.json) {
     print_document(found);
   } else {
-    print_readable(found, solvers);
+    print_readable(found, findings.solvers);
   }
   return Interrupt::flag() ? 3 : found["verdict"] == "pass" ? 0 : 1;
 }

@@ -4,13 +4,12 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "cli/code.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/pipeline.hpp"
 #include "cli/usage.hpp"
 #include "cli/watch.hpp"
+#include "pipeline/verification.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -63,34 +62,6 @@ void print_readable(const verify::Certificate& certificate) {
   fmt::print("\n{}\n", certificate.summary());
 }
 
-/// Every function that `emit` may be asked for, but for Taylor series where the program is too large for them.
-program::Program with_every_function(Derived& derived) {
-  program::Request request;
-  request.with = {"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
-  for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
-  try {
-    return make_program(derived, request);
-  } catch (const Error&) {
-    request.with.pop_back();
-    return make_program(derived, request);
-  }
-}
-
-/// Where the constraints fix the whole motion there is nothing to integrate and no code: the routes and the reading
-/// forms are held against the judge, their constraint forces above all.
-std::optional<verify::Certificate> certify_prescribed(const Options& options, std::uint64_t seed) {
-  const model::Model model = load_model(options.model);
-  std::size_t equations = 0;
-  for (const model::Constraint& constraint : model.constraints) equations += constraint.psi.size();
-  if (equations < model.coordinates.size()) return std::nullopt;
-  mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
-  if (mechanics.freedom() > 0) return std::nullopt;
-  verify::Subjects subjects;
-  subjects.systems = verify::all_routes(mechanics, &subjects.left_out);
-  add_reading_forms(mechanics, subjects);
-  return verify::certify(mechanics, subjects, {options.digits, static_cast<std::size_t>(options.points), seed, {}});
-}
-
 int show(const verify::Certificate& certificate, const Common& common) {
   const work::Kept kept;
   if (common.json) {
@@ -106,22 +77,9 @@ int show(const verify::Certificate& certificate, const Common& common) {
 }
 
 int execute(const Options& options, const Common& common) {
-  if (const auto prescribed = certify_prescribed(options, common.seed)) return show(*prescribed, common);
-  std::unique_ptr<Derived> derived = derive_model(options.model, ApproachChoice::automatic);
-  const program::Program program = with_every_function(*derived);
-  Verification verification{options.digits, static_cast<std::size_t>(options.points), common.seed, nullptr};
-  verification.reductions = true;
-  verification.partial = true;
-  verification.keep = false;
-  std::optional<CompiledCode> code;
-  verify::CompiledForm compiled;
-  if (!options.no_compile) {
-    code.emplace(compile_for_check(*derived, program));
-    compiled = code->form();
-    verification.compiled = &compiled;
-    verification.default_inputs = default_inputs(*derived);
-  }
-  return show(certify(*derived, program, verification), common);
+  const pipeline::VerificationRequest request{options.digits, static_cast<std::size_t>(options.points), common.seed,
+                                              !options.no_compile};
+  return show(pipeline::verify_model(load_model(options.model), request), common);
 }
 
 }  // namespace

@@ -23,7 +23,7 @@ bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
                      [](const symbolic::Symbol& s) { return s.kind == SymbolKind::parameter; });
 }
 
-Drawing::Drawing(Derived& derived) {
+Drawing::Drawing(pipeline::Derived& derived) {
   places(derived.model);
   bodies(derived);
   forces(derived);
@@ -37,7 +37,7 @@ std::size_t Drawing::vector_of(const std::string& base) {
   return outputs_.size() - 3;
 }
 
-std::size_t Drawing::vector(Derived& derived, const Vec3& value) {
+std::size_t Drawing::vector(pipeline::Derived& derived, const Vec3& value) {
   symbolic::Substitution imposed = mechanics::impose(derived.mechanics),
                          written = mechanics::write_out(derived.mechanics);
   const std::string base = drawn_prefix + std::to_string(outputs_.size()) + ".";
@@ -49,7 +49,7 @@ std::size_t Drawing::vector(Derived& derived, const Vec3& value) {
   return vector_of(base);
 }
 
-std::size_t Drawing::size(Derived& derived, model::NodeId value) {
+std::size_t Drawing::size(pipeline::Derived& derived, model::NodeId value) {
   symbolic::Dag& dag = *derived.mechanics.dag;
   Ref lowered = value == model::no_node ? dag.integer(-1) : mechanics::lower_scalar(derived.mechanics, value);
   if (!is_of_parameters(dag, lowered)) lowered = dag.integer(-1);
@@ -76,7 +76,7 @@ void Drawing::places(const model::Model& model) {
   }
 }
 
-void Drawing::bodies(Derived& derived) {
+void Drawing::bodies(pipeline::Derived& derived) {
   parts_["bodies"] = Json::array();
   for (const model::Body& body : derived.model.bodies) {
     const model::Frame& frame = derived.model.frames[body.frame];
@@ -93,7 +93,7 @@ void Drawing::bodies(Derived& derived) {
   }
 }
 
-void Drawing::forces(Derived& derived) {
+void Drawing::forces(pipeline::Derived& derived) {
   parts_["springs"] = parts_["dampers"] = Json::array();
   for (const model::Force& force : derived.model.forces) {
     const auto add = [&](const char* list, const forces::Line& line) {
@@ -110,7 +110,7 @@ void Drawing::forces(Derived& derived) {
   }
 }
 
-void Drawing::joints(Derived& derived) {
+void Drawing::joints(pipeline::Derived& derived) {
   parts_["joints"] = Json::array();
   const auto place_of = [&](std::uint32_t frame) -> Json {
     for (const model::Body& body : derived.model.bodies) {
@@ -126,7 +126,7 @@ void Drawing::joints(Derived& derived) {
   }
 }
 
-void Drawing::contacts(Derived& derived) {
+void Drawing::contacts(pipeline::Derived& derived) {
   parts_["contacts"] = Json::array();
   mechanics::Mechanics& m = derived.mechanics;
   for (const model::Constraint& constraint : derived.model.constraints) {
@@ -144,7 +144,7 @@ void Drawing::contacts(Derived& derived) {
   }
 }
 
-void Drawing::shapes(Derived& derived) {
+void Drawing::shapes(pipeline::Derived& derived) {
   parts_["shapes"] = Json::array();
   for (const model::Drawn& drawn : derived.model.drawn) {
     Json lengths = Json::array(), at = Json::array();
@@ -155,7 +155,7 @@ void Drawing::shapes(Derived& derived) {
   }
 }
 
-std::optional<std::array<double, 3>> falling(Derived& derived, const std::vector<double>& parameters) {
+std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const std::vector<double>& parameters) {
   constexpr int digits = 20;
   for (const model::Force& force : derived.model.forces) {
     const model::NodeId gravity = force.acceleration();

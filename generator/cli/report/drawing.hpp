@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/pipeline.hpp"
+#include "pipeline/pipeline.hpp"
 
 namespace eomgen::cli {
 
@@ -19,7 +19,7 @@ inline constexpr const char* drawn_prefix = "draw.";
 class Drawing {
  public:
   /// Adds the outputs that the model has not got by itself to every candidate.
-  explicit Drawing(Derived& derived);
+  explicit Drawing(pipeline::Derived& derived);
 
   /// In the order of the array that the page draws from.
   const std::vector<std::string>& outputs() const { return outputs_; }
@@ -30,15 +30,15 @@ class Drawing {
   const nlohmann::ordered_json& parts() const { return parts_; }
 
  private:
-  std::size_t vector_of(const std::string& base);                     // of outputs that are there: base1 .. base3
-  std::size_t vector(Derived& derived, const symbolic::Vec3& value);  // of new ones
-  std::size_t size(Derived& derived, model::NodeId value);
+  std::size_t vector_of(const std::string& base);  // of outputs that are there: base1 .. base3
+  std::size_t vector(pipeline::Derived& derived, const symbolic::Vec3& value);  // of new ones
+  std::size_t size(pipeline::Derived& derived, model::NodeId value);
   void places(const model::Model& model);
-  void bodies(Derived& derived);
-  void forces(Derived& derived);
-  void joints(Derived& derived);
-  void contacts(Derived& derived);
-  void shapes(Derived& derived);
+  void bodies(pipeline::Derived& derived);
+  void forces(pipeline::Derived& derived);
+  void joints(pipeline::Derived& derived);
+  void contacts(pipeline::Derived& derived);
+  void shapes(pipeline::Derived& derived);
 
   std::vector<std::string> outputs_;
   std::vector<symbolic::Ref> sizes_;
@@ -46,7 +46,7 @@ class Drawing {
 };
 
 /// The direction in which things fall, where gravity is uniform; nothing where there is none.
-std::optional<std::array<double, 3>> falling(Derived& derived, const std::vector<double>& parameters);
+std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const std::vector<double>& parameters);
 
 /// Whether parameters are all that an expression depends on.
 bool is_of_parameters(const symbolic::Dag& dag, symbolic::Ref expression);

@@ -26,7 +26,7 @@ Ref exact(symbolic::Dag& dag, double value) { return dag.constant(cln::rational(
 
 class Live {
  public:
-  Live(const Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
+  Live(const pipeline::Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
        const std::set<std::string>& set)
       : s_(simulation),
         derived_(*simulation.derived),
@@ -56,7 +56,7 @@ class Live {
     program.reactions.clear();
     program.functions.push_back(setup());
     program.functions.push_back(signals());
-    emit::EmissionContext context = emission_context(derived_, s_.program, s_.scene, s_.certificate);
+    emit::EmissionContext context = pipeline::emission_context(derived_, s_.program, s_.scene, s_.certificate);
     context.tests.clear();
     const emit::EmittedFile file = emit::emit(program, context, "javascript").front();
     if (file.text.size() > largest_script) {
@@ -221,8 +221,8 @@ class Live {
             {"size_count", drawing_.sizes().size()}};
   }
 
-  const Simulation& s_;
-  Derived& derived_;
+  const pipeline::Simulation& s_;
+  pipeline::Derived& derived_;
   mechanics::Mechanics& m_;
   symbolic::Dag& dag_;
   const Drawing& drawing_;
@@ -232,8 +232,8 @@ class Live {
 
 }  // namespace
 
-LiveModel live_model(const Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
-                     const std::set<std::string>& set) {
+LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& drawing,
+                     const std::vector<std::string>& outputs, const std::set<std::string>& set) {
   return Live(simulation, drawing, outputs, set).run();
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cli/report/drawing.hpp"
-#include "cli/simulate.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
 
@@ -23,7 +23,7 @@ struct LiveModel {
 
 /// `outputs`: names in the order of the array that the page draws and plots from; `set`: parameters that the command
 /// line made numbers.
-LiveModel live_model(const Simulation& simulation, const Drawing& drawing, const std::vector<std::string>& outputs,
-                     const std::set<std::string>& set);
+LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& drawing,
+                     const std::vector<std::string>& outputs, const std::set<std::string>& set);
 
 }  // namespace eomgen::cli

@@ -24,7 +24,7 @@ double shortened(double x, int digits) {
 }
 
 /// Sizes of the drawing at the parameters of the run.
-Json values(const std::vector<symbolic::Ref>& sizes, const Simulation& simulation) {
+Json values(const std::vector<symbolic::Ref>& sizes, const pipeline::Simulation& simulation) {
   constexpr int digits = 20;
   Json result = Json::array();
   const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R {
@@ -83,11 +83,11 @@ Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) con
   return result;
 }
 
-Json RecordedMotion::json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live,
+Json RecordedMotion::json(const pipeline::Simulation& simulation, const Drawing& drawing, const LiveModel& live,
                           const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const {
   if (t_.size() < 2) return nullptr;
   const model::Model& model = simulation.derived->model;
-  const std::vector<std::string> states = state_names(*simulation.derived);
+  const std::vector<std::string> states = pipeline::state_names(*simulation.derived);
   Json times = Json::array(), curves = Json::array(), events = Json::array();
   for (const double t : t_) times.push_back(shortened(t, digits_of_states));
   for (const Panel& panel : panels) {

@@ -23,7 +23,7 @@ class RecordedMotion {
 
   /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
   /// which the script computes the rest; else all `outputs`.
-  nlohmann::ordered_json json(const Simulation& simulation, const Drawing& drawing, const LiveModel& live,
+  nlohmann::ordered_json json(const pipeline::Simulation& simulation, const Drawing& drawing, const LiveModel& live,
                               const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
 
  private:

@@ -23,11 +23,11 @@ namespace {
 // made alone, where the energy is looked at after every step.
 constexpr double doubtful_energy = 1e-2;
 
-emit::LoadedBatch compile_batch(const Simulation& first) {
-  Derived& derived = *first.derived;
+emit::LoadedBatch compile_batch(const pipeline::Simulation& first) {
+  pipeline::Derived& derived = *first.derived;
   const run::Scene defaults =
       run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
-  const emit::EmissionContext context = emission_context(derived, first.program, defaults, first.certificate);
+  const emit::EmissionContext context = pipeline::emission_context(derived, first.program, defaults, first.certificate);
   std::vector<std::pair<std::string, std::string>> files;
   for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch"))
     files.emplace_back(file.name, file.text);
@@ -43,7 +43,7 @@ bool stands_still(const run::Scene& scene) {
 
 /// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands
 /// still.
-std::string ranged(const Simulation& first, const run::Code& code) {
+std::string ranged(const pipeline::Simulation& first, const run::Code& code) {
   const run::Scene& scene = first.scene;
   const std::size_t n = code.free.size();
   std::vector<double> u;
@@ -67,7 +67,7 @@ std::string ranged(const Simulation& first, const run::Code& code) {
 
 class Runs {
  public:
-  Runs(const Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
+  Runs(const pipeline::Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
       : first_(first),
         asked_(asked),
         graph_(first),
@@ -125,7 +125,7 @@ class Runs {
     std::fill(start.p.begin(), start.p.end(), 0.0);
     if (asked_.interrupt != nullptr && *asked_.interrupt) return;
     graph_.tidy();
-    Derived& derived = *first_.derived;
+    pipeline::Derived& derived = *first_.derived;
     std::optional<run::Scene> scene;
     try {
       scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
@@ -181,11 +181,11 @@ class Runs {
     }
     const std::lock_guard<std::mutex> guard(lock_);
     graph_.tidy();
-    result = run_again(first_, asked_.values(run), false);
+    result = pipeline::run_again(first_, asked_.values(run), false);
     if (asked_.interrupt == nullptr || !*asked_.interrupt) asked_.done(run, result);
   }
 
-  const Simulation& first_;
+  const pipeline::Simulation& first_;
   const EnsembleRuns& asked_;
   TidyGraph graph_;
   run::Code code_;
@@ -205,7 +205,7 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
   return overrides.step ? "rk4" : "dop853";
 }
 
-void require_plain(const Simulation& first) {
+void require_plain(const pipeline::Simulation& first) {
   const run::Code code = first.code.for_run();
   const eom::MethodInfo& method = run::method_named(first.scene.solver);
   std::string why;
@@ -238,7 +238,7 @@ void require_plain(const Simulation& first) {
               "leave --ensemble out; with it take --solver dop853, tsit5 or dopri5, or rk4 with --step");
 }
 
-Ensemble::Ensemble(const Simulation& first) : first_(first), batch_(compile_batch(first)) {}
+Ensemble::Ensemble(const pipeline::Simulation& first) : first_(first), batch_(compile_batch(first)) {}
 
 void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_, asked).run(); }
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/simulate.hpp"
 #include "emit/shared_library/loaded_batch.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
 
@@ -29,18 +29,18 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
 /// Throws Error{stage "sweep"} where the scene has what only a run alone looks after: contacts, events, kinks,
 /// constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals, a solver that is not
 /// explicit.
-void require_plain(const Simulation& first);
+void require_plain(const pipeline::Simulation& first);
 
 /// The code of a scene for many states, compiled once.
 class Ensemble {
  public:
   /// `first` has to live as long.
-  explicit Ensemble(const Simulation& first);
+  explicit Ensemble(const pipeline::Simulation& first);
   /// Runs that do not end as planned, and those in which time alone does something, are made once more alone.
   void run(const EnsembleRuns& asked);
 
  private:
-  const Simulation& first_;
+  const pipeline::Simulation& first_;
   emit::LoadedBatch batch_;
 };
 

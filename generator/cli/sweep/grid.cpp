@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cli/decimal.hpp"
+#include "cli/assignments.hpp"
 #include "cli/output.hpp"
 #include "error.hpp"
 #include "model/names.hpp"

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <string_view>
 
-#include "cli/decimal.hpp"
+#include "cli/assignments.hpp"
 #include "cli/output.hpp"
 #include "error.hpp"
 #include "model/content_hash.hpp"

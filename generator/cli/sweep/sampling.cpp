@@ -10,7 +10,7 @@
 #include <numbers>
 #include <numeric>
 
-#include "cli/decimal.hpp"
+#include "cli/assignments.hpp"
 #include "cli/output.hpp"
 #include "error.hpp"
 #include "model/names.hpp"

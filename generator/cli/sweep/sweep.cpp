@@ -9,7 +9,7 @@
 #include <eom/outcome.hpp>
 #include <thread>
 
-#include "cli/decimal.hpp"
+#include "cli/assignments.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep/npz.hpp"
@@ -230,8 +230,8 @@ run::Overrides Sweep::at(std::size_t run) const {
 }
 
 bool Sweep::simulate_first(std::size_t run, bool integrate) {
-  SimulationRequest request;
-  request.model = options_.model;
+  pipeline::SimulationRequest request;
+  request.model = load_model(options_.model);
   request.scene = options_.scene;
   request.estimate = !options_.no_error_estimate && !options_.ensemble;
   request.integrate = integrate;
@@ -240,7 +240,7 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
   request.interrupt = &Interrupt::flag();
   request.overrides = at(run);
   try {
-    first_.emplace(simulate(request));
+    first_.emplace(pipeline::simulate(request));
   } catch (const Error& error) {
     if (Interrupt::flag()) return false;
     throw;
@@ -252,9 +252,10 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
 
 /// One of the open runs; where none of these can begin, another one, which tells the columns.
 std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
-  const std::unique_ptr<Derived> derived = derive_model(options_.model, ApproachChoice::automatic);
+  const std::unique_ptr<pipeline::Derived> derived =
+      pipeline::derive_model(load_model(options_.model), pipeline::ApproachChoice::automatic);
   const symbolic::Dag was = *derived->mechanics.dag;
-  const bool charts = !exchangeable(charts_of(derived->mechanics)).empty();
+  const bool charts = !pipeline::exchangeable(pipeline::charts_of(derived->mechanics)).empty();
   std::string why, remedy;
   const auto begins = [&](std::size_t run) {
     *derived->mechanics.dag = was;
@@ -318,7 +319,7 @@ void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
 
 std::string Sweep::made(std::size_t run) const {
   try {
-    const run::RunResult result = run_again(*first_, at(run), !options_.no_error_estimate);
+    const run::RunResult result = pipeline::run_again(*first_, at(run), !options_.no_error_estimate);
     return Interrupt::flag() ? std::string() : row(run, result);
   } catch (const Error& error) {
     if (error.stage() != "scene") throw;

@@ -9,13 +9,13 @@
 
 #include "cli/command.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/simulate.hpp"
 #include "cli/sweep/ensemble.hpp"
 #include "cli/sweep/ledger.hpp"
 #include "cli/sweep/options.hpp"
 #include "cli/sweep/points.hpp"
 #include "cli/sweep/statistics.hpp"
 #include "cli/sweep/team.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
 
@@ -80,7 +80,7 @@ class Sweep {
   std::vector<std::string> names_;
   std::string solver_;  // of an ensemble
   std::optional<Interrupt> interrupt_;
-  std::optional<Simulation> first_;
+  std::optional<pipeline::Simulation> first_;
   std::optional<Ensemble> ensemble_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 
-#include "cli/simulate.hpp"
+#include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
 
@@ -11,7 +11,7 @@ namespace eomgen::cli {
 class TidyGraph {
  public:
   /// Where charts may be exchanged second ones stay in the graph, and it is left alone.
-  explicit TidyGraph(const Simulation& first)
+  explicit TidyGraph(const pipeline::Simulation& first)
       : graph_(*first.derived->mechanics.dag),
         was_(graph_),
         most_(2 * graph_.size() + room),

@@ -1,0 +1,133 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/article.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/named_functions.hpp"
+#include "analysis/steady_search.hpp"
+#include "derive/conservative.hpp"
+#include "derive/lagrange.hpp"
+#include "mechanics/dependent.hpp"
+#include "pipeline/pipeline.hpp"
+#include "print/article.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using mechanics::Mechanics;
+using reading::ReadingForm;
+
+// What a search costs grows with the coordinates and the starts; one that is larger is left to `equilibria`.
+constexpr std::size_t most_coordinates = 3, starts = 40;
+
+std::vector<print::ForceFinding> forces_of(Mechanics& m) {
+  std::vector<print::ForceFinding> result;
+  for (const derive::ForceClass& f : derive::classify_forces(m)) {
+    result.push_back({derive::name(f.conservative), f.potential, f.many_valued, f.reason});
+  }
+  return result;
+}
+
+std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const ReadingForm& two,
+                                                  const std::vector<derive::Conserved>& conserved) {
+  std::vector<print::ConservedFinding> result;
+  for (const derive::Conserved& c : conserved) {
+    result.push_back({c.name, c.title, c.expression, in_named_functions(m, two, c), c.cyclic,
+                      c.certainty == derive::Certainty::proven});
+  }
+  return result;
+}
+
+void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::uint64_t seed,
+           print::Findings& findings) {
+  const work::Stage stage("holding the derivations against one another");
+  verify::Subjects subjects;
+  subjects.systems = verify::all_routes(m, &subjects.left_out);
+  for (const ReadingForm* form : {&one, &two}) {
+    if (!form->by_parts)
+      subjects.reading.push_back(
+          {fmt::format("reading form {}", system::name(form->approach)), reading::residuals_on_dag(*form, m)});
+  }
+  if (findings.routh) subjects.reading.push_back({"Routh's reduction", reading::residuals_on_dag(*findings.routh, m)});
+  const verify::Certificate certificate = verify::certify(m, subjects, {50, pipeline::emission_points, seed, {}});
+  if (certificate.interrupted) throw work::Interrupted{};
+  pipeline::require_pass(certificate, *m.model);
+  // Without the measured differences, whose last digits depend on the word size of the machine: equal bytes everywhere.
+  findings.certificate = fmt::format("{} at {} random states in {} digits, {} comparisons", certificate.verdict(),
+                                     certificate.points, certificate.options.digits, certificate.comparisons.size());
+  for (const std::string& name : certificate.agreeing())
+    findings.judged += (findings.judged.empty() ? "" : ", ") + name;
+}
+
+print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion) {
+  print::SteadyFinding result;
+  result.kind = linear::name(motion.l.kind);
+  const std::vector<std::uint32_t>& free = p.system().free;
+  for (std::size_t i = 0; i < 2 * free.size(); ++i) {
+    const bool rate = i >= free.size();
+    const double value = shown(motion.l.z[i]);
+    if (rate && value == 0) continue;  // of an equilibrium all
+    result.values.emplace_back(
+        symbolic::Symbol{symbolic::SymbolKind::coordinate, free[i % free.size()], static_cast<std::uint8_t>(rate)},
+        value);
+  }
+  for (const linear::Eigenvalue& e : motion.l.spectrum.values) {
+    if (e.im < 0 || (e.re == 0 && e.im == 0)) continue;
+    result.eigenvalues.emplace_back(e.re, e.im);
+  }
+  result.zeros = motion.l.spectrum.zeros;
+  result.family = motion.family;
+  result.stability = motion.verdict.stability == linear::Stability::stable     ? "stable"
+                     : motion.verdict.stability == linear::Stability::unstable ? "unstable"
+                                                                               : "stability unknown";
+  result.reason = motion.verdict.reason;
+  return result;
+}
+
+void look_for_steady_motions(const Mechanics& m, const ReadingForm& two, std::uint64_t seed,
+                             print::Findings& findings) {
+  if (m.freedom() <= 0) {
+    findings.no_steady = "the constraints prescribe the motion";
+    return;
+  }
+  if (two.by_parts || two.equations.size() > most_coordinates) {
+    findings.no_steady = "the search takes long for a system of this size; eomgen equilibria makes it";
+    return;
+  }
+  SteadyRequest request;
+  request.model = m.model;
+  request.starts = starts;
+  request.seed = seed;
+  try {
+    const SteadyMotions found = steady_motions(request);
+    if (found.search.interrupted) throw work::Interrupted{};
+    for (const SteadyMotion& motion : found.points) findings.steady.push_back(finding(found.problem, motion));
+    for (const HeldValue& h : found.held) findings.held.emplace_back(h.name, h.value);
+  } catch (const Error& error) {
+    if (error.fault() == Fault::check) throw;
+    findings.no_steady = error.message();
+  }
+}
+
+}  // namespace
+
+std::string article(std::shared_ptr<const model::Model> model, std::uint64_t seed) {
+  const work::Stage stage("deriving the equations");
+  Mechanics m = mechanics::build_mechanics(std::move(model));
+  const ReadingForm one = reading::derive_reading(m, system::Approach::one),
+                    two = reading::derive_reading(m, system::Approach::two);
+  print::Findings findings;
+  findings.forces = forces_of(m);
+  system::EquationSystem system = derive::lagrange(m, system::Approach::two);
+  const std::vector<derive::Conserved> conserved = derive::conserved_quantities(m, system);
+  findings.conserved = conserved_of(m, two, conserved);
+  const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(conserved);
+  if (!cyclic.empty()) findings.routh = reading::routh_form(m, cyclic);
+  judge(m, one, two, seed, findings);
+  look_for_steady_motions(m, two, seed, findings);
+  return print::latex_document(m, one, two, findings);
+}
+
+}  // namespace eomgen::analysis

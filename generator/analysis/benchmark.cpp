@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/benchmark.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "bench/libraries.hpp"
+#include "error.hpp"
+#include "model/names.hpp"
+#include "run/integration.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using pipeline::Simulation;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t looks = 100;  // at the error along the run
+constexpr int fewest_digits = 8;    // of a reference that is worth the name
+
+[[noreturn]] void unsupported(const std::string& what, const std::string& remedy) {
+  throw Error("bench", {}, "there is no reference for this scene: " + what, remedy);
+}
+
+/// What the reference cannot follow is told before anything is measured.
+void require_smooth(const Simulation& simulation, const run::RunRequest& request) {
+  if (!simulation.program.contacts.empty())
+    unsupported("contacts and friction change the equations on the way", "eomgen run gives an error_estimate");
+  for (const run::Signal& signal : simulation.scene.inputs) {
+    if (signal.moves()) unsupported("an input is an expression of t", "write it into the force, or give it as a table");
+  }
+  // A scene that states a step has a reason: adaptive ones may not get through.
+  run::Integration trial(request, simulation.scene.step > 0 ? "rk4" : "dop853");
+  eom::Options options;
+  options.fixed_step = simulation.scene.step;
+  options.interrupt = request.interrupt;
+  const eom::Result end = trial.run(options, {});
+  for (const std::size_t crossings : trial.kink_crossings()) {
+    if (crossings > 0)
+      unsupported("the motion crosses a kink (abs, sign, min, max, if)",
+                  "shorten the run (--t-end), or smooth the law");
+  }
+  if (end.outcome == eom::Outcome::done) return;
+  throw Error("bench", {},
+              fmt::format("the run ends at t = {} with '{}' {}", end.t, eom::name(end.outcome), end.detail),
+              "give an end before that: --t-end",
+              end.outcome == eom::Outcome::stopped_by_event ? Fault::input : Fault::numerical);
+}
+
+reference::Problem problem_of(const Simulation& simulation, const run::RunRequest& request,
+                              const std::vector<double>& times) {
+  const run::Scene& scene = simulation.scene;
+  reference::Problem problem{simulation.program.functions.front(),
+                             run::Integration(request, "dop853").initial_state(),
+                             scene.parameters,
+                             scene.t0,
+                             {},
+                             times};
+  problem.interrupt = request.interrupt;
+  problem.coordinates = simulation.program.free.size();
+  for (const program::Function& function : simulation.program.functions) {
+    if (function.name == "constraints") problem.constraints = &function;
+  }
+  std::vector<double> ends;
+  const double direction = scene.t1 < scene.t0 ? -1 : 1;
+  for (const run::Signal& signal : scene.inputs) {
+    for (const double t : signal.jumps()) {
+      if ((t - scene.t0) * direction > 0 && (scene.t1 - t) * direction > 0) ends.push_back(t);
+    }
+  }
+  std::sort(ends.begin(), ends.end(), [direction](double a, double b) { return a * direction < b * direction; });
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  ends.push_back(scene.t1);
+  double from = scene.t0;
+  for (const double end : ends) {
+    problem.pieces.push_back({end, {}});
+    for (const run::Signal& signal : scene.inputs)
+      problem.pieces.back().u.push_back(signal((from + end) / 2, (from + end) / 2));
+    from = end;
+  }
+  return problem;
+}
+
+std::vector<std::string> solvers_for(const BenchmarkRequest& options, const run::Scene& scene, const run::Code& code,
+                                     std::vector<std::pair<std::string, std::string>>& left_out) {
+  std::vector<std::string> known{eom::Automatic::name}, chosen;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (!method.constrained || !options.solvers.empty() || run::unfit(method.name, code).empty())
+      known.emplace_back(method.name);
+  }
+  for (const std::string& name : options.solvers) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error("bench", {}, fmt::format("there is no solver '{}'", name), model::choice_of(name, known));
+  }
+  for (const std::string& name : known) {
+    if (!options.solvers.empty() &&
+        std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end())
+      continue;
+    std::string why = run::unfit(name, scene);
+    if (why.empty()) why = run::unfit(name, code);
+    if (why.empty())
+      chosen.push_back(name);
+    else
+      left_out.emplace_back(name, why);
+  }
+  return chosen;
+}
+
+pipeline::SimulationRequest simulation_request(const BenchmarkRequest& asked) {
+  pipeline::SimulationRequest request;
+  request.model = asked.model;
+  request.scene = asked.scene;
+  request.overrides = asked.overrides;
+  request.overrides.solver = "dop853";
+  request.approach = asked.approach;
+  request.form = asked.form;
+  request.every_solver = true;
+  request.integrate = false;
+  request.seed = asked.seed;
+  return request;
+}
+
+}  // namespace
+
+bool Benchmark::conclusive() const {
+  const bool any = std::any_of(rows.begin(), rows.end(), [](const bench::Row& row) { return row.outcome == "done"; });
+  return any && reference.digits_at_end >= fewest_digits;
+}
+
+Benchmark benchmark(const BenchmarkRequest& asked) {
+  Benchmark result{pipeline::simulate(simulation_request(asked)), {}, {}, {}, {}, 0};
+  const Simulation& simulation = result.simulation;
+  const work::Kept kept;
+  const auto show = [&asked](const std::string& what) {
+    if (asked.progress) asked.progress(what);
+  };
+  const run::Code code = simulation.code.for_run();
+  run::RunRequest request = pipeline::run_request(*simulation.derived, simulation.scene, code, false);
+  request.watch_power = false;
+  request.interrupt = asked.interrupt;
+  require_smooth(simulation, request);
+  const run::Scene& scene = simulation.scene;
+  std::vector<double> times;
+  for (std::size_t k = 1; k < looks; ++k)
+    times.push_back(scene.t0 + (scene.t1 - scene.t0) * static_cast<double>(k) / looks);
+  times.push_back(scene.t1);
+
+  reference::Problem problem = problem_of(simulation, request, times);
+  problem.progress = [&show](double fraction) { show(fmt::format("reference: {:.0f} %", 100 * fraction)); };
+  const Clock::time_point start = Clock::now();
+  result.reference = reference::solve(problem);
+  result.seconds_reference = std::chrono::duration<double>(Clock::now() - start).count();
+
+  bench::Request measured{request, result.reference, times, solvers_for(asked, scene, request.code, result.left_out)};
+  measured.seconds_limit = asked.seconds;
+  if (asked.libraries && asked.solvers.empty()) {
+    show("compiling what calls other libraries");
+    bench::LibrariesFound found = bench::find_libraries(request, problem.x, asked.seconds);
+    measured.others = std::move(found.others);
+    result.left_out.insert(result.left_out.end(), found.left_out.begin(), found.left_out.end());
+  }
+  measured.progress = show;
+  result.rows = bench::measure(measured);
+  result.states = request.state_names;
+  return result;
+}
+
+}  // namespace eomgen::analysis

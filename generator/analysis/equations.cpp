@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/equations.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "analysis/named_functions.hpp"
+#include "derive/lagrange.hpp"
+#include "error.hpp"
+#include "mechanics/dependent.hpp"
+#include "model/names.hpp"
+#include "print/notation.hpp"
+
+namespace eomgen::analysis {
+
+const std::vector<std::string>& equation_keys() {
+  static const std::vector<std::string> keys{
+      "basis",       "metric",    "christoffel", "line_element", "frenet",   "energies", "lagrangian", "equations",
+      "constraints", "reactions", "friction",    "conserved",    "singular", "routh",    "linear",     "all"};
+  return keys;
+}
+
+namespace {
+
+void require_keys(const std::vector<std::string>& show) {
+  for (const std::string& key : show) {
+    if (std::find(equation_keys().begin(), equation_keys().end(), key) == equation_keys().end()) {
+      throw Error("derive", {}, fmt::format("there is nothing called {} to show", model::quote(key)),
+                  model::choice_of(key, equation_keys()));
+    }
+  }
+}
+
+std::string name_of(const print::Item& item) {
+  std::string name = item.key;
+  for (const std::string* part : {&item.name, &item.coordinate, &item.role}) {
+    if (!part->empty()) name += (name == item.key ? ": " : ", ") + *part;
+  }
+  return name;
+}
+
+/// Items that took more than their budget, and the equations where they are shown by parts.
+std::vector<work::LeftOut> left_out_of(const std::vector<print::Item>& items, const reading::ReadingForm& form) {
+  std::vector<work::LeftOut> result;
+  if (form.by_parts) result.push_back({"equations written out", form.why_by_parts});
+  if (!form.no_spins.empty()) result.push_back({"angular velocities", form.no_spins});
+  for (const print::Item& item : items) {
+    if (!item.left_out.empty()) result.push_back({name_of(item), item.left_out});
+  }
+  return result;
+}
+
+/// Which multiplier is which, where there are several.
+std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::ReadingForm& form) {
+  std::vector<Multiplier> result;
+  const print::Notation notation(m);
+  const auto stands = [&](std::uint32_t k) {
+    const auto has = [k](const reading::Equation& e) {
+      return std::any_of(e.multipliers.begin(), e.multipliers.end(),
+                         [k](const auto& term) { return term.constraint == k; });
+    };
+    return form.by_parts || std::any_of(form.equations.begin(), form.equations.end(), has);
+  };
+  for (const print::MultiplierMeaning& meaning : print::multiplier_meanings(m)) {
+    if (!stands(meaning.constraint)) continue;
+    const print::Glyph glyph = notation.multiplier(meaning.constraint);
+    result.push_back({glyph.name, print::latex(glyph), m.constraints[meaning.constraint].label, meaning.text});
+  }
+  return result;
+}
+
+void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show,
+                   std::vector<print::Item>& items) {
+  const bool wanted =
+      std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
+  if (!wanted) return;
+  system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
+  const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
+  for (const derive::Conserved& c : derive::conserved_quantities(mechanics, system)) {
+    const auto named = in_named_functions(mechanics, form, c);
+    print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
+                             : print::render_expression(mechanics, "conserved", c.name, c.expression);
+    item.role = c.title;
+    items.push_back(std::move(item));
+  }
+}
+
+// Only on request: it is another form of the equations that `all` shows already.
+void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items,
+               std::vector<std::string>& notes) {
+  if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
+  system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
+  const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(derive::conserved_quantities(mechanics, system));
+  const reading::RouthForm form = reading::routh_form(mechanics, cyclic);
+  if (cyclic.empty()) notes.emplace_back("no coordinate is cyclic: there is nothing to reduce");
+  if (form.by_parts)
+    notes.emplace_back("the reduction is too long to be written out, or the momenta do not give the rates");
+  for (print::Item& item : print::render_routh(mechanics, form)) items.push_back(std::move(item));
+}
+
+// Only on request: n^2 entries of four matrices, twice.
+void add_linear(const mechanics::Mechanics& mechanics, const std::vector<std::string>& show,
+                std::vector<print::Item>& items) {
+  if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
+  for (print::Item& item : print::render_linear(mechanics, reading::linear_form(mechanics)))
+    items.push_back(std::move(item));
+}
+
+}  // namespace
+
+Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request) {
+  using pipeline::ApproachChoice;
+  require_keys(request.show);
+  const work::Stage stage("deriving the equations");
+  mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
+  // Approach I shows the constraint forces too, so it is what `automatic` means wherever something is eliminated.
+  const bool one = request.approach == ApproachChoice::one ||
+                   (request.approach == ApproachChoice::automatic &&
+                    !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
+  Equations result;
+  result.approach = one ? system::Approach::one : system::Approach::two;
+  const reading::ReadingForm form = reading::derive_reading(mechanics, result.approach);
+  result.items = print::render(mechanics, form, request.show, &result.interrupted);
+  try {
+    if (!result.interrupted) {
+      add_conserved(mechanics, request.show, result.items);
+      add_routh(mechanics, request.show, result.items, result.notes);
+      add_linear(mechanics, request.show, result.items);
+    }
+  } catch (const work::Interrupted&) {
+    result.interrupted = true;
+  }
+  const work::Kept kept;
+  result.left_out = left_out_of(result.items, form);
+  const bool about_forces = std::any_of(request.show.begin(), request.show.end(), [](const auto& key) {
+    return key == "equations" || key == "reactions" || key == "all";
+  });
+  if (about_forces) result.multipliers = legend(mechanics, form);
+  return result;
+}
+
+}  // namespace eomgen::analysis

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/examination.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "derive/conservative.hpp"
+#include "derive/conserved.hpp"
+#include "derive/lagrange.hpp"
+#include "pipeline/charts.hpp"
+#include "reading/reading.hpp"
+#include "symbolic/decimal.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+print::Item item_of(const mechanics::Mechanics& m, symbolic::Ref expression) {
+  return print::render_expression(m, "", "", expression);
+}
+std::string shown(const mechanics::Mechanics& m, symbolic::Ref expression) { return item_of(m, expression).text; }
+
+std::string use_of(const mechanics::Mechanics& m, const mechanics::Constraint& c, bool joint) {
+  std::string use = "keeps a multiplier";
+  for (const mechanics::FixedCoordinate& fixed : m.fixed) {
+    if (m.constraints[fixed.constraint].label == c.label) use = "fixes " + m.model->coordinates[fixed.coordinate].name;
+  }
+  if (c.need == mechanics::Need::identity) use = "holds identically, without a multiplier";
+  if (c.need == mechanics::Need::redundant) use = "follows from the others, without a multiplier; watched";
+  if (!c.determined && !joint) use += "; the motion does not determine its force";
+  return use;
+}
+
+void add_constraints(const mechanics::Mechanics& m, Examination& found) {
+  for (std::size_t k = 0; k < m.constraints.size(); ++k) {
+    const mechanics::Constraint& c = m.constraints[k];
+    const auto of_joint = [&](const model::Joint& joint) { return joint.name == c.name; };
+    const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(), of_joint);
+    ExaminedConstraint one;
+    one.name = c.label;
+    one.kind = c.holonomic() ? "holonomic" : "velocity";
+    one.integrable = mechanics::name(m.classification[k].integrable);
+    if (c.holonomic()) one.integral = shown(m, c.psi) + " = 0";  // it is its own integral
+    for (const mechanics::Integral& i : m.integrals) {
+      if (i.label != c.label) continue;
+      one.integral = shown(m, i.psi) + " = constant";
+      for (const std::uint32_t part : i.of) one.integral_of.push_back(m.constraints[part].label);
+    }
+    one.redundant = !m.holds(static_cast<std::uint32_t>(k));
+    if (!joint) one.determined = c.determined;
+    one.use = use_of(m, c, joint);
+    one.reason = m.classification[k].reason;
+    found.constraints.push_back(std::move(one));
+  }
+}
+
+void add_joints(const mechanics::Mechanics& m, Examination& found) {
+  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+    const model::Joint& joint = m.model->joints[i];
+    ExaminedJoint one{joint.name,
+                      joint.type,
+                      {m.model->frames[joint.frames[0]].name, m.model->frames[joint.frames[1]].name},
+                      m.model->frames[joint.axes].name,
+                      {},
+                      {}};
+    for (std::size_t j = 0; j < model::joint_components; ++j) {
+      (m.joints[i].determined[j] ? one.reactions : one.undetermined)
+          .push_back(fmt::format("reaction.{}.{}", joint.name, j + 1));
+    }
+    found.joints.push_back(std::move(one));
+  }
+}
+
+void add_forces(mechanics::Mechanics& m, Examination& found) {
+  for (const derive::ForceClass& force : derive::classify_forces(m)) {
+    ExaminedForce one;
+    one.name = force.name;
+    one.conservative = derive::name(force.conservative);
+    if (force.potential) one.potential = item_of(m, *force.potential);
+    for (const derive::DomainCondition& c : force.domain)
+      one.domain.push_back(shown(m, c.expression) + " " + c.relation);
+    one.many_valued = force.many_valued;
+    one.in_energy = force.in_energy;
+    one.reason = force.reason;
+    if (force.work) one.reason += ", of " + shown(m, *force.work) + " each time";
+    found.forces.push_back(std::move(one));
+  }
+}
+
+void add_contacts(const mechanics::Mechanics& m, Examination& found) {
+  for (const mechanics::Contact& contact : m.contacts) {
+    ExaminedContact one;
+    one.name = contact.name;
+    const std::size_t equations = contact.constraints.size();
+    one.kind = equations == 0 ? "coordinate" : equations == 1 ? "surface" : "curve";
+    one.law = contact.dimensions() == 0 ? "none" : contact.width ? "smooth" : "coulomb";
+    for (const symbolic::Ref w : contact.slip) one.slip.push_back(shown(m, w));
+    one.unilateral = contact.unilateral;
+    found.contacts.push_back(std::move(one));
+  }
+}
+
+void add_singular(const mechanics::Mechanics& m, Examination& found) {
+  for (const print::Item& item : print::render_singular(m)) {
+    if (item.left_out.empty())
+      found.singular.push_back({item, item.role});
+    else
+      found.left_out.push_back({"singular sets: " + item.name, item.left_out});
+  }
+}
+
+void add_charts(const mechanics::Mechanics& m, Examination& found) {
+  for (const model::SwitchedChart& chart : pipeline::charts_of(m)) {
+    ExaminedChart one{chart.of, chart.own, chart.second, {}, chart.refusal};
+    for (const std::uint32_t q : chart.angles) one.angles.push_back(m.model->coordinates[q].name);
+    found.charts.push_back(std::move(one));
+  }
+}
+
+// A number as a decimal; what other parameters determine as their expression.
+std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
+  return m.dag->is_constant(value) ? symbolic::decimal_text(m.dag->value(value)) : shown(m, value);
+}
+
+void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
+  const model::Model& model = *read;
+  mechanics::Mechanics m = mechanics::build_mechanics(std::move(read));
+  bool every_unit = true;
+  const auto unit_of = [&every_unit](const auto& quantity) {
+    every_unit = every_unit && quantity.unit.dimension.has_value();
+    return quantity.unit.text;
+  };
+  for (std::uint32_t i = 0; i < model.coordinates.size(); ++i)
+    found.coordinates.push_back({model.coordinates[i].name, unit_of(model.coordinates[i]), m.is_eliminated(i)});
+  found.degrees_of_freedom = m.freedom();
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const model::Parameter& p = model.parameters[i];
+    found.parameters.push_back({p.name, unit_of(p), value_of(m, m.parameter_value[i]), p.written});
+  }
+  for (const model::Input& input : model.inputs) {
+    const bool given = input.fallback != model::no_node;
+    found.inputs.push_back(
+        {input.name, unit_of(input), given ? value_of(m, mechanics::lower_scalar(m, input.fallback)) : "0", ""});
+  }
+  found.every_unit = every_unit;
+  add_constraints(m, found);
+  add_joints(m, found);
+  add_contacts(m, found);
+  add_charts(m, found);
+  add_forces(m, found);
+  system::EquationSystem system = derive::lagrange(m, system::Approach::two);
+  for (const derive::Conserved& c : derive::conserved_quantities(m, system))
+    found.conserved.push_back({c.name, c.title, item_of(m, c.expression), derive::name(c.certainty)});
+  add_singular(m, found);
+}
+
+}  // namespace
+
+Examination examine(std::shared_ptr<const model::Model> model, bool partial) {
+  const work::Stage stage("examining the model");
+  Examination found;
+  try {
+    fill_in(std::move(model), found);
+  } catch (const work::Interrupted&) {
+    if (!partial) throw;
+    found.interrupted = true;
+  }
+  return found;
+}
+
+}  // namespace eomgen::analysis

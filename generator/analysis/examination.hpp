@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What a model is before anything moves: degrees of freedom, classes of its constraints and forces, what is conserved,
+// where its equations fail.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "error.hpp"
+#include "model/model.hpp"
+#include "print/render.hpp"
+#include "work.hpp"
+
+namespace eomgen::analysis {
+
+struct ExaminedCoordinate {
+  std::string name, unit;
+  bool eliminated = false;  // fixed by a constraint
+};
+
+/// A parameter, or an input with what it is where a scene gives nothing.
+struct ExaminedValue {
+  std::string name, unit;
+  std::string value;    // a decimal, or the expression of the parameters that determine it
+  std::string written;  // in the model file
+};
+
+struct ExaminedConstraint {
+  std::string name, kind;                // "holonomic" or "velocity"
+  std::string integrable;                // "yes", "no", "unknown"
+  std::optional<std::string> integral;   // an equation
+  bool redundant = false;                // it has no multiplier
+  std::optional<bool> determined;        // whether the motion determines its force; none of joints
+  std::string use, reason;               // what becomes of it; of `integrable`
+  std::vector<std::string> integral_of;  // the constraints that together have this integral
+};
+
+struct ExaminedJoint {
+  std::string name, type;
+  std::array<std::string, 2> bodies;
+  std::string axes;
+  std::vector<std::string> reactions, undetermined;  // names of outputs
+};
+
+struct ExaminedForce {
+  std::string name, conservative;  // "yes", "no", "unknown"
+  std::optional<print::Item> potential;
+  std::vector<std::string> domain;  // conditions under which that is one
+  bool many_valued = false, in_energy = false;
+  std::string reason;
+};
+
+struct ExaminedContact {
+  std::string name, kind, law;    // "surface", "curve", "coordinate"; "coulomb", "smooth", "none"
+  std::vector<std::string> slip;  // velocities, along each tangent
+  bool unilateral = false;
+};
+
+struct ExaminedConserved {
+  std::string name, title;
+  print::Item expression;
+  std::string certainty;  // "proven" or "numerical"
+};
+
+struct ExaminedSet {
+  print::Item set;
+  std::string approach;  // "I", "II", "both"
+};
+
+struct ExaminedChart {
+  std::string of, own, second;
+  std::vector<std::string> angles;
+  std::string refusal;  // why it cannot be exchanged; empty where it can
+};
+
+struct Examination {
+  std::vector<ExaminedCoordinate> coordinates;
+  long degrees_of_freedom = 0;
+  std::vector<ExaminedValue> parameters, inputs;
+  std::vector<ExaminedConstraint> constraints;
+  std::vector<ExaminedJoint> joints;
+  std::vector<ExaminedForce> forces;
+  std::vector<ExaminedContact> contacts;
+  std::vector<ExaminedConserved> conserved;
+  std::vector<ExaminedSet> singular;
+  std::vector<ExaminedChart> charts;
+  bool every_unit = false;  // is given, and was checked
+  std::vector<work::LeftOut> left_out;
+  bool interrupted = false;  // what was found by then
+};
+
+/// Throws Error where the model has no equations. Where it is interrupted and `partial`, it says so and gives what it
+/// has; else it throws work::Interrupted.
+Examination examine(std::shared_ptr<const model::Model> model, bool partial = false);
+
+}  // namespace eomgen::analysis

@@ -1,0 +1,233 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/inverse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/ode.hpp>
+#include <utility>
+
+#include "derive/conserved.hpp"
+#include "derive/lagrange.hpp"
+#include "derive/prescribed_forces.hpp"
+#include "model/names.hpp"
+#include "run/jumps.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using pipeline::Derived;
+
+/// What the forces are asked of: constraints by label; those that read q = f(t) if none are named.
+std::vector<std::string> chosen_constraints(const mechanics::Mechanics& m, const std::vector<std::string>& names) {
+  if (names.empty()) {
+    std::vector<std::string> labels = derive::prescribing_constraints(m);
+    if (!labels.empty()) return labels;
+    throw Error("inverse", Where{m.model->file, 0, 0, 1, ""}, "no constraint of this model prescribes a motion",
+                "add one that reads coordinate = function of time, such as [[constraint]] name = \"drive\", holonomic "
+                "= \"R - f\", "
+                "or name others with --constraint");
+  }
+  std::vector<std::string> labels, known;
+  for (const mechanics::Constraint& c : m.constraints) known.push_back(c.label);
+  for (const std::string& name : names) {
+    const std::size_t before = labels.size();
+    for (const mechanics::Constraint& c : m.constraints) {
+      if (c.label == name || c.name == name) labels.push_back(c.label);
+    }
+    if (labels.size() == before) {
+      throw Error("inverse", {}, fmt::format("there is no constraint {}", model::quote(name)),
+                  model::choice_of(name, known));
+    }
+  }
+  return labels;
+}
+
+std::vector<std::string> columns_of(const model::Model& model, const std::vector<std::string>& forces,
+                                    const run::Scene& scene) {
+  std::vector<std::string> columns;
+  const auto add = [&](const std::string& name) {
+    if (std::find(columns.begin(), columns.end(), name) == columns.end()) columns.push_back(name);
+  };
+  for (const model::Coordinate& c : model.coordinates) {
+    add(c.name);
+    add(c.name + "_dot");
+  }
+  for (const std::string& name : forces) add(name);
+  for (const std::string& name : scene.outputs) add(name);
+  return columns;
+}
+
+std::vector<std::string> force_columns(mechanics::Mechanics& m, system::EquationSystem& system,
+                                       const std::vector<std::string>& labels) {
+  std::vector<std::string> names = derive::add_prescribed_forces(m, system, labels);
+  for (const std::string& label : labels) names.push_back("reaction." + label);
+  return names;
+}
+
+/// Every coordinate is prescribed: nothing is integrated.
+class Prescribed {
+ public:
+  explicit Prescribed(mechanics::Mechanics mechanics) : model_(*mechanics.model), m_(std::move(mechanics)) {}
+
+  InverseAnswer answer(const InverseRequest& request) {
+    InverseAnswer result;
+    verify::Subjects subjects;
+    subjects.systems = verify::all_routes(m_);
+    const verify::Certificate certificate =
+        verify::certify(m_, subjects, {50, pipeline::emission_points, request.seed, {}});
+    pipeline::require_pass(certificate, model_);
+    result.certificate = certificate.summary();
+    system_ = derive::lagrange(m_, system::Approach::one);
+    result.forces = force_columns(m_, system_, chosen_constraints(m_, request.constraints));
+    scene_ = run::resolve_scene(m_, system_, model_.scene(request.scene), request.overrides);
+    const double every = pipeline::row_interval(scene_);
+    result.columns = columns_of(model_, result.forces, scene_);
+    if (request.begin) request.begin(scene_, result.columns);
+    t_ = scene_.t0;
+    for (const std::string& name : result.columns) {
+      const auto output =
+          std::find_if(system_.outputs.begin(), system_.outputs.end(), [&](const auto& o) { return o.name == name; });
+      // What is 0 is shown as 0, not as the rounding of terms that cancel.
+      const bool nothing = derive::vanishing(*m_.dag, {output->value}) != derive::Certainty::no;
+      values_.push_back(nothing ? m_.dag->zero() : output->value);
+    }
+    integrals_.assign(system_.integrals.size(), 0.0);
+    for (std::uint64_t i = 0; result.outcome == eom::Outcome::done; ++i) {
+      const double t = scene_.t0 + static_cast<double>(i) * every;
+      const bool last = t >= scene_.t1 - 1e-9 * every;
+      if (i > 0) advance(last ? scene_.t1 : t, result);
+      if (result.outcome == eom::Outcome::done) write_row(request, result);
+      if (last) break;
+      if (request.interrupt != nullptr && *request.interrupt && result.outcome == eom::Outcome::done) {
+        result.outcome = eom::Outcome::interrupted;
+        result.detail = fmt::format("at t = {}", t_);
+      }
+    }
+    if (result.outcome == eom::Outcome::done) tell_jumps(result);
+    return result;
+  }
+
+ private:
+  std::vector<double> values_at(double t, const double* integrals,
+                                const std::vector<symbolic::Ref>& expressions) const {
+    const double side = std::nextafter(t, scene_.t1 + 1);
+    return symbolic::evaluate(*m_.dag, expressions, [&](const symbolic::Symbol& s) -> double {
+      switch (s.kind) {
+        case symbolic::SymbolKind::time: return t;
+        case symbolic::SymbolKind::parameter: return scene_.parameters[s.index];
+        case symbolic::SymbolKind::input: return scene_.inputs[s.index](t, side);
+        default: break;
+      }
+      for (std::size_t i = 0; i < system_.integrals.size(); ++i) {
+        if (s.kind == symbolic::SymbolKind::integral && system_.integrals[i].integral == s.index) return integrals[i];
+      }
+      throw std::logic_error("a prescribed motion leaves a symbol open");
+    });
+  }
+
+  /// Integrals of functions of time that have no closed form.
+  void advance(double t, InverseAnswer& result) {
+    const double from = std::exchange(t_, t);
+    if (integrals_.empty()) return;
+    std::vector<symbolic::Ref> rates;
+    for (const system::IntegralState& integral : system_.integrals) rates.push_back(integral.rate);
+    const auto f = [&](double at, const double* x, double* dx) {
+      const std::vector<double> rate = values_at(at, x, rates);
+      std::copy(rate.begin(), rate.end(), dx);
+      return 0;
+    };
+    eom::Options tolerances;
+    if (scene_.max_step > 0) tolerances.max_step = scene_.max_step;
+    tolerances.rtol = scene_.rtol;
+    tolerances.atol = scene_.atol;
+    const eom::Result end = eom::integrate("dop853", f, from, integrals_, t, tolerances);
+    integrals_ = end.x;
+    result.outcome = end.outcome;
+    result.detail = end.detail;
+  }
+
+  /// Where a velocity jumps the forces are an impulse, which no row shows.
+  void tell_jumps(InverseAnswer& result) const {
+    if (!scene_.jumps || !scene_.jumps->by_time()) return;
+    for (const run::Break& at : scene_.clock.breaks) {
+      std::vector<double> before, after, x = integrals_;
+      const double side = (at.before + at.after) / 2;
+      for (const run::Signal& input : scene_.inputs)
+        before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
+      const run::Jumps::Told told = scene_.jumps->cross({at.before, x, before.data()}, at.after, after.data(), x);
+      if (told.undetermined.empty() && !told.velocities) continue;
+      result.outcome = eom::Outcome::jump_undetermined;
+      result.detail = !told.undetermined.empty() ? told.undetermined
+                                                 : fmt::format(
+                                                       "{} jumps at t = {:.15g}: the forces there are an impulse, "
+                                                       "which no row shows; make it a motion that takes some time",
+                                                       told.what.empty() ? "a velocity" : told.what, at.after);
+      return;
+    }
+  }
+
+  void write_row(const InverseRequest& request, InverseAnswer& result) const {
+    const std::vector<double> row = values_at(t_, integrals_.data(), values_);
+    if (request.row) request.row(t_, row);
+    if (std::all_of(row.begin(), row.end(), [](double x) { return std::isfinite(x); })) return;
+    result.outcome = eom::Outcome::not_finite;
+    result.detail = fmt::format("at t = {} the motion or a force has no value", t_);
+  }
+
+  const model::Model& model_;
+  mechanics::Mechanics m_;
+  system::EquationSystem system_;
+  run::Scene scene_;
+  std::vector<symbolic::Ref> values_;
+  double t_ = 0;
+  std::vector<double> integrals_;
+};
+
+/// Some coordinates are free: they move as the equations of motion say.
+InverseAnswer along_a_run(const InverseRequest& asked) {
+  InverseAnswer result;
+  pipeline::SimulationRequest request;
+  request.model = asked.model;
+  request.scene = asked.scene;
+  request.overrides = asked.overrides;
+  request.estimate = false;
+  request.max_steps = asked.max_steps;
+  request.seed = asked.seed;
+  request.prepare = [&](Derived& derived) {
+    const std::vector<std::string> labels = chosen_constraints(derived.mechanics, asked.constraints);
+    for (system::EquationSystem& system : derived.candidates)
+      result.forces = force_columns(derived.mechanics, system, labels);
+    return result.forces;
+  };
+  std::vector<std::size_t> index;
+  request.begin = [&](const Derived& derived, const run::Scene& scene, const std::vector<std::string>& names) {
+    result.columns = columns_of(derived.model, result.forces, scene);
+    if (asked.begin) asked.begin(scene, result.columns);
+    for (const std::string& column : result.columns) {
+      index.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin()));
+    }
+  };
+  request.row = [&](double t, std::span<const double> y) {
+    std::vector<double> row;
+    for (const std::size_t i : index) row.push_back(y[i]);
+    if (asked.row) asked.row(t, row);
+  };
+  request.interrupt = asked.interrupt;
+  const pipeline::Simulation simulation = pipeline::simulate(request);
+  result.certificate = simulation.certificate.summary();
+  result.outcome = simulation.result.outcome;
+  result.detail = simulation.result.detail;
+  return result;
+}
+
+}  // namespace
+
+InverseAnswer inverse_dynamics(const InverseRequest& request) {
+  mechanics::Mechanics mechanics = mechanics::build_mechanics(request.model);
+  return mechanics.free.empty() ? Prescribed(std::move(mechanics)).answer(request) : along_a_run(request);
+}
+
+}  // namespace eomgen::analysis

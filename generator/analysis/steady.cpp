@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/steady.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "derive/imposition.hpp"
+#include "pipeline/simulate.hpp"
+#include "symbolic/calculus.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using linear::Precise;
+using linear::Setting;
+using pipeline::ApproachChoice;
+using pipeline::Derived;
+using pipeline::Simulation;
+using pipeline::SimulationRequest;
+
+constexpr int neighbour_count = 2;
+
+void require_one_mode(const std::string& command, const Derived& derived) {
+  const auto& contacts = derived.candidates.front().contacts;
+  if (contacts.empty()) return;
+  const model::Model& model = derived.model;
+  Where where{model.file, 0, 0, 1, ""};
+  for (const model::Constraint& c : model.constraints) {
+    if (c.name == contacts.front().name) where = model.where(c.span);
+  }
+  for (const model::Force& f : model.forces) {
+    if (f.name == contacts.front().name) where = model.where(f.span);
+  }
+  throw Error(
+      command, where,
+      fmt::format("'{}' sticks, slides or lets go, and each has equations of its own: there are no slopes across them",
+                  contacts.front().name),
+      "linearise a copy of the model without the friction (or with the contact held) where it stays in one mode");
+}
+
+std::string certified(Derived& derived, std::uint64_t seed) {
+  verify::Subjects subjects;
+  subjects.systems = verify::all_routes(derived.mechanics);
+  const verify::Certificate certificate =
+      verify::certify(derived.mechanics, subjects, {50, pipeline::emission_points, seed, {}});
+  pipeline::require_pass(certificate, derived.model);
+  return certificate.summary();
+}
+
+/// Coordinates, rates and integrals of time at the end of a run, by the model's indices.
+struct Reached {
+  std::vector<double> q, qdot, integrals;
+};
+
+Reached run_until(const std::string& command, SimulationRequest request, double t, const run::Scene& scene) {
+  request.overrides.t_end = t;
+  request.estimate = false;
+  request.prepare = [](Derived& derived) {
+    std::vector<std::string> names;
+    for (system::EquationSystem& s : derived.candidates) {
+      for (const system::IntegralState& i : s.integrals) {
+        const std::string& name = derived.model.integrals[i.integral].name;
+        s.outputs.push_back({name, derived.mechanics.dag->symbol({symbolic::SymbolKind::integral, i.integral, 0})});
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+      }
+    }
+    return names;
+  };
+  std::optional<work::Kept> interrupt;
+  request.ready = [&interrupt] { interrupt.emplace(); };
+  request.interrupt = &work::stop_flag();
+  const Simulation run = pipeline::simulate(request);
+  if (run.result.outcome != eom::Outcome::done) {
+    throw Error(
+        command, {},
+        fmt::format("the run ends at t = {} with '{}', before t = {}", run.result.t, eom::name(run.result.outcome), t),
+        fmt::format("give --at a time between {} and {}", scene.t0, run.result.t), Fault::numerical);
+  }
+  const auto value = [&run](const std::string& name) {
+    for (const auto& [key, number] : run.result.final) {
+      if (key == name) return number;
+    }
+    return 0.0;  // an integral in closed form, which is no symbol any more
+  };
+  Reached reached;
+  for (const model::Coordinate& c : run.derived->model.coordinates) {
+    reached.q.push_back(value(c.name));
+    reached.qdot.push_back(value(c.name + "_dot"));
+  }
+  for (const model::Integral& i : run.derived->model.integrals) reached.integrals.push_back(value(i.name));
+  return reached;
+}
+
+Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, const Reached& state,
+                            std::optional<std::uint64_t> moved) {
+  Derived& d = *p.derived;
+  Setting<Precise> setting;
+  setting.parameters =
+      run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::digits + 20, moved);
+  for (std::size_t i = 0; i < setting.parameters.size(); ++i) {
+    if (d.model.parameters[i].start_of || i == d.model.start_time)
+      setting.parameters[i] = Precise(p.scene.parameters[i]);
+    setting.parameters[i] = linear::number<Precise>(setting.parameters[i]);
+  }
+  for (const run::Signal& signal : p.scene.inputs)
+    setting.inputs.push_back(linear::number<Precise>(Precise(signal(p.t, p.t))));
+  for (std::size_t i = 0; i < d.model.integrals.size(); ++i) {
+    setting.integrals.push_back(linear::number<Precise>(Precise(state.integrals.empty() ? 0.0 : state.integrals[i])));
+  }
+  return setting;
+}
+
+}  // namespace
+
+SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const model::Model> model,
+                             const std::string& scene, const run::Overrides& overrides, std::optional<double> at,
+                             std::uint64_t seed) {
+  SteadyProblem p;
+  p.derived = pipeline::derive_model(model, ApproachChoice::two);
+  Derived& d = *p.derived;
+  require_one_mode(command, d);
+  p.certificate = certified(d, seed);
+  p.scene = run::resolve_scene(d.mechanics, p.system(), d.model.scene(scene), overrides);
+  p.t = at.value_or(p.scene.t0);
+  Reached state{p.scene.q, p.scene.qdot, {}};
+  if (p.t < p.scene.t0) {
+    throw Error(command, {}, fmt::format("t = {} lies before the scene's start at t = {}", p.t, p.scene.t0),
+                "give --at a later time, or leave it out for the start");
+  }
+  if (p.t > p.scene.t0) {
+    SimulationRequest request;
+    request.model = model;
+    request.scene = scene;
+    request.overrides = overrides;
+    request.seed = seed;
+    state = run_until(command, std::move(request), p.t, p.scene);
+  }
+  p.flow = std::make_unique<linear::Flow>(d.mechanics, p.system());
+  for (const auto* values : {&state.q, &state.qdot}) {
+    for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(Precise((*values)[i])));
+  }
+  p.z.push_back(linear::number<Precise>(Precise(p.t)));
+  p.setting = setting_of(p, overrides, state, {});
+  for (int k = 0; k < neighbour_count; ++k)
+    p.neighbours.push_back(setting_of(p, overrides, state, 100 * seed + static_cast<std::uint64_t>(k)));
+  try {
+    p.setting.leaf = p.flow->leaf(p.z, p.setting);
+  } catch (const std::domain_error& error) {
+    throw Error(command, d.model.where(d.model.scene(scene).span),
+                fmt::format("an integral of the constraints has no value at this state: {}", error.what()),
+                "start elsewhere");
+  }
+  return p;
+}
+
+Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
+  Derived& d = *p.derived;
+  const model::Model& model = d.model;
+  symbolic::Dag& dag = *d.mechanics.dag;
+  symbolic::Substitution imposed = derive::impose(d.mechanics), written = derive::write_out(d.mechanics);
+  const auto fails = [&](std::vector<symbolic::Ref> list, symbolic::Ref energy) {
+    for (const symbolic::Symbol& s : p.flow->symbols()) {
+      if (s.order == 0) list.push_back(symbolic::partial(dag, s)(written(imposed(energy))));
+    }
+    for (symbolic::Ref& r : list) r = written(imposed(r));
+    try {
+      p.flow->sloped(p.flow->tape(list), z, p.setting);
+      return false;
+    } catch (const std::domain_error&) {
+      return true;
+    }
+  };
+  for (std::size_t i = 0; i < model.forces.size(); ++i) {
+    if (fails(d.mechanics.force_components[i], d.mechanics.potential_by_force[i])) {
+      return {model.where(model.forces[i].span), fmt::format("'{}' has", model.forces[i].name)};
+    }
+  }
+  for (const model::NodeId energy : {model.energy.kinetic, model.energy.potential}) {
+    if (energy == model::no_node || !fails({}, mechanics::lower_scalar(d.mechanics, energy))) continue;
+    return {model.where(model.arena[energy].span), "this energy has"};
+  }
+  for (const mechanics::Constraint& c : d.mechanics.constraints) {
+    if (!fails({c.psi}, dag.zero())) continue;
+    for (const model::Constraint& written_one : model.constraints) {
+      if (written_one.name == c.name) return {model.where(written_one.span), fmt::format("'{}' has", c.name)};
+    }
+  }
+  return {model.where(model.scene(p.scene.name).span), "the equations of motion have"};
+}
+
+double shown(const Precise& x) {
+  constexpr int nothing = 40;  // no model has lengths or rates of this size
+  return linear::magnitude(x) < linear::tiny<Precise>(nothing) ? 0.0 : linear::to_double(x);
+}
+
+}  // namespace eomgen::analysis

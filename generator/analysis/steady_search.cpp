@@ -1,0 +1,278 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/steady_search.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "derive/imposition.hpp"
+#include "model/names.hpp"
+#include "symbolic/calculus.hpp"
+#include "work.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using linear::Precise;
+using linear::Quantity;
+using symbolic::SymbolKind;
+
+const char* const command = "equilibria";
+
+bool is_energy(const derive::Conserved& c) {
+  return c.name == "energy" || c.name == "jacobi" || c.name == "energy.applied";
+}
+bool is_leaf(const derive::Conserved& c) { return c.name.starts_with("integral."); }
+
+/// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
+bool is_kept(const SteadyProblem& p, const Quantity& quantity) {
+  const linear::Tape tape = p.flow->tape({quantity.expression});
+  for (const std::uint64_t seed : {21U, 22U, 23U}) {
+    linear::Setting<Precise> setting = p.setting;
+    const auto z = linear::beside(*p.flow, p.z, setting, seed);
+    if (!z) return false;
+    linear::Sloped<Precise> s;
+    try {
+      s = p.flow->sloped(tape, *z, setting);
+    } catch (const std::domain_error&) {
+      return false;  // it has no value everywhere: it can be no invariant
+    }
+    const linear::Field<Precise> field = p.flow->at(*z, setting);
+    Precise rate = s.slope(0, z->size() - 1), size(0);
+    for (std::size_t i = 0; i < field.X.rows; ++i) {
+      rate = rate + s.slope(0, i) * field.X(i, 0);
+      size = size + linear::magnitude(s.slope(0, i) * field.X(i, 0));
+    }
+    if (linear::magnitude(rate) > linear::tiny<Precise>(50) * (Precise(1) + size)) return false;
+  }
+  return true;
+}
+
+/// What the energies and the momenta of the coordinates may be, beside what is conserved for all parameters: a torque
+/// of size 0 keeps a momentum too.
+std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
+  const system::EquationSystem& s = p.system();
+  const mechanics::Mechanics& m = p.derived->mechanics;
+  symbolic::Dag& dag = *m.dag;
+  std::vector<Quantity> result, momenta;
+  symbolic::Ref jacobi = dag.sub(s.potential, s.kinetic);
+  for (const std::uint32_t i : s.free) {
+    const symbolic::Ref momentum = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(s.kinetic);
+    momenta.push_back({"momentum." + p.derived->model.coordinates[i].name, momentum});
+    jacobi = dag.add(jacobi, dag.mul(momentum, m.qdot[i]));
+  }
+  if (energies)
+    result = {{"energy", s.energy}, {"jacobi", jacobi}};
+  else
+    result = momenta;
+  for (const derive::Conserved& c : p.derived->conserved) {
+    if (is_leaf(c) || is_energy(c) != energies) continue;
+    const auto named = [&c](const Quantity& q) { return q.name == c.name; };
+    if (std::none_of(result.begin(), result.end(), named)) result.push_back({c.name, c.expression});
+  }
+  return result;
+}
+
+std::vector<Quantity> chosen(const SteadyProblem& p, bool energies) {
+  std::vector<Quantity> result = candidates(p, energies);
+  std::erase_if(result, [&p](const Quantity& q) { return !is_kept(p, q); });
+  return result;
+}
+
+/// Where in z a coordinate of the model is; nothing where it is eliminated.
+std::optional<std::size_t> place_of(const SteadyProblem& p, std::uint32_t coordinate) {
+  const auto& free = p.system().free;
+  const auto found = std::find(free.begin(), free.end(), coordinate);
+  return found == free.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - free.begin()));
+}
+
+/// The entries of a rotation, where each is a coordinate of its own.
+template <std::size_t size>
+std::optional<std::array<std::size_t, size>> places_of(const SteadyProblem& p, const model::Frame& frame) {
+  if (frame.entries.size() != size) return std::nullopt;
+  std::array<std::size_t, size> result{};
+  for (std::size_t k = 0; k < size; ++k) {
+    const model::Node& node = p.derived->model.arena[frame.entries[k]];
+    if (node.op != model::Op::coordinate) return std::nullopt;
+    const auto place = place_of(p, node.index);
+    if (!place) return std::nullopt;
+    result[k] = *place;
+  }
+  return result;
+}
+
+void name_attitudes(SteadyProblem& p, linear::SearchRequest& search) {
+  const model::Model& model = p.derived->model;
+  symbolic::Substitution imposed = derive::impose(p.derived->mechanics),
+                         written = derive::write_out(p.derived->mechanics);
+  for (std::size_t f = 1; f < model.frames.size(); ++f) {
+    const model::Frame& frame = model.frames[f];
+    if (frame.rotation == "euler_parameters") {
+      if (const auto places = places_of<4>(p, frame)) search.parameters.push_back(*places);
+    } else if (frame.regular != model::no_node) {
+      const symbolic::Ref regular = written(imposed(mechanics::lower_scalar(p.derived->mechanics, frame.regular)));
+      if (const auto places = places_of<3>(p, frame)) search.euler.push_back({*places, regular});
+    }
+  }
+}
+
+/// A conserved quantity that none of the coordinates feels which the motion does not feel: it can be held beside them.
+bool can_be_held(const SteadyProblem& p, const linear::Symmetry& symmetry, const Quantity& quantity) {
+  const linear::Flow& flow = *p.flow;
+  const linear::Tape tape = flow.tape({quantity.expression});
+  for (const std::uint64_t seed : {31U, 32U}) {
+    linear::Setting<Precise> setting = p.setting;
+    const auto z = linear::beside(flow, p.z, setting, seed);
+    if (!z) return false;
+    linear::Matrix<Precise> slope = flow.sloped(tape, *z, setting).slope;
+    const linear::Matrix<Precise> along = slope * linear::tangent(flow.at(*z, setting), symmetry.chart);
+    for (std::size_t k = 0; k < along.cols; ++k) {
+      const bool kept = k < symmetry.retained.size() && symmetry.retained[k];
+      if (!kept && linear::magnitude(along(0, k)) > linear::tiny<Precise>(50)) return false;
+    }
+  }
+  return true;
+}
+
+/// The start, or a state beside it where the start itself has no slopes: what is looked for is the same around it.
+linear::State<Precise> place_with_field(const SteadyProblem& p) {
+  try {
+    p.flow->at(p.z, p.setting);
+    return p.z;
+  } catch (const std::domain_error&) {
+    linear::Setting<Precise> setting = p.setting;
+    for (std::uint64_t seed = 500; seed < 510; ++seed) {
+      if (auto z = linear::beside(*p.flow, p.z, setting, seed)) return *z;
+    }
+    throw;
+  }
+}
+
+[[noreturn]] void refuse_hold(const std::string& name, const std::string& why) {
+  throw Error(command, {}, fmt::format("--hold: {} cannot be held: {}", model::quote(name), why),
+              "hold a coordinate, a rate, a momentum or another output that depends on them alone");
+}
+
+Quantity output_named(const SteadyProblem& p, const std::string& name) {
+  std::vector<std::string> names;
+  for (const system::Output& output : p.system().outputs) {
+    if (output.name == name) {
+      for (const symbolic::Symbol& s : p.derived->mechanics.dag->symbols({output.value})) {
+        if (s.kind == SymbolKind::time) refuse_hold(name, "it depends on t");
+        const bool of_state = (s.kind == SymbolKind::coordinate && s.order < 2) || s.kind == SymbolKind::parameter ||
+                              s.kind == SymbolKind::input;
+        if (!of_state) refuse_hold(name, "it depends on accelerations or constraint forces");
+      }
+      return {name, output.value};
+    }
+    names.push_back(output.name);
+  }
+  const std::string hint = model::did_you_mean(name, names);
+  throw Error(command, {}, fmt::format("--hold: there is no output {}", model::quote(name)),
+              hint.empty() ? "eomgen run --output shows the outputs of a model" : hint);
+}
+
+void hold(SteadyMotions& result, const SteadyRequest& request, linear::SearchRequest& search) {
+  SteadyProblem& p = result.problem;
+  const auto add = [&](const Quantity& quantity, const Precise& value, const char* why) {
+    search.held.push_back(quantity);
+    search.targets.push_back(value);
+    result.held.push_back({quantity.name, linear::to_double(value), why});
+  };
+  for (const auto& [name, value] : request.hold)
+    add(output_named(p, name), linear::number<Precise>(Precise(value)), "as asked for");
+  if (!request.hold.empty()) return;
+  const std::vector<Quantity> momenta = chosen(p, false);
+  if (momenta.empty()) return;
+  const linear::Symmetry symmetry = linear::find_symmetry(*p.flow, place_with_field(p), p.setting, 1);
+  for (const Quantity& momentum : momenta) {
+    if (!can_be_held(p, symmetry, momentum)) continue;
+    add(momentum, p.flow->tape({momentum.expression}).values<Precise>(p.flow->lookup(p.z, p.setting))[0],
+        "conserved: its value at the start");
+  }
+}
+
+void require_not_ignored(const SteadyMotions& result, const SteadyRequest& request) {
+  const linear::Symmetry& s = result.search.symmetry;
+  for (std::size_t k = 0; k < s.chart.positions; ++k) {
+    const std::string& name = result.problem.flow->names()[s.chart.independent[k]];
+    if (!s.retained[k] && request.hold.contains(name))
+      refuse_hold(name, "nothing feels it, and it advances in a steady motion");
+  }
+}
+
+/// Nothing was found, and starts ended where the equations have no value: that is the answer.
+void require_ends(const SteadyMotions& result) {
+  const linear::SearchResult& search = result.search;
+  if (!search.points.empty() || search.refused == 0) return;
+  const SteadyProblem& p = result.problem;
+  linear::State<Precise> z;
+  for (const double x : search.refused_at) z.push_back(linear::number<Precise>(Precise(x)));
+  const Source source = without_slope(p, z);
+  throw Error(
+      command, source.where,
+      fmt::format("no equilibrium and no steady motion found: {} of the starts end where {} no slope ({})",
+                  search.refused, source.what, search.reason),
+      "put a smooth law in place of the one that has a kink or a root there, or begin the search at another start");
+}
+
+void judge(SteadyMotions& result, const SteadyRequest& request) {
+  SteadyProblem& p = result.problem;
+  const linear::StabilityTest test(*p.flow, *p.derived->mechanics.dag, chosen(p, true), chosen(p, false));
+  for (const linear::FoundPoint& point : result.search.points) {
+    SteadyMotion motion{linear::linearise(*p.flow, point.z, p.setting, p.neighbours, request.seed), point.family, {}};
+    if (motion.l.kind == linear::Kind::motion) continue;  // in the coordinates there, none after all
+    motion.verdict = test(motion.l);
+    result.points.push_back(std::move(motion));
+  }
+}
+
+}  // namespace
+
+SteadyMotions steady_motions(const SteadyRequest& request) {
+  SteadyMotions result{
+      steady_problem(command, request.model, request.scene, request.overrides, {}, request.seed), {}, {}, {}};
+  SteadyProblem& p = result.problem;
+  const model::Model& model = p.derived->model;
+  try {
+    linear::SearchRequest search{*p.flow,        p.z,          p.setting,       {}, {}, {}, {}, {},
+                                 request.starts, request.seed, request.progress};
+    for (const std::uint32_t i : p.system().free) search.ranges.push_back({p.scene.lower[i], p.scene.upper[i]});
+    name_attitudes(p, search);
+    hold(result, request, search);
+    {
+      const work::Stage stage("looking for equilibria and steady motions");
+      result.search = linear::find_steady_motions(search);
+    }
+    // What was found is judged and shown where that is done at once.
+    constexpr std::size_t small = 8;  // coordinates
+    std::optional<work::Kept> kept;
+    if (result.search.interrupted) {
+      if (p.flow->coordinates() > small || result.search.points.empty()) throw work::Interrupted{};
+      kept.emplace();
+    }
+    require_not_ignored(result, request);
+    require_ends(result);
+    if (!result.search.symmetry.autonomous) {
+      throw Error(command, Where{model.file, 0, 0, 1, ""}, "the accelerations depend on t: no motion stays what it is",
+                  "eomgen linearize gives A(t) along a motion");
+    }
+    for (const std::size_t i : result.search.held) {
+      const std::string why = result.search.released
+                                  ? "a family leaves it open; with its value at the start there is none"
+                                  : "a family leaves it open: its value at the start";
+      result.held.push_back({p.flow->names()[i], linear::to_double(p.z[i]), why});
+    }
+    const work::Stage stage("judging stability");
+    judge(result, request);
+  } catch (const std::domain_error& error) {
+    const Source source = without_slope(p, p.z);
+    throw Error(command, source.where,
+                fmt::format("{} no slope at the start of this scene: {}", source.what, error.what()),
+                "begin the search at another start");
+  }
+  return result;
+}
+
+}  // namespace eomgen::analysis

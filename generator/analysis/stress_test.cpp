@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/stress_test.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "error.hpp"
+#include "model/names.hpp"
+#include "run/integration.hpp"
+#include "stress/start.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using pipeline::Derived;
+using stress::Row;
+using stress::Verdict;
+using LeftOut = std::vector<std::pair<std::string, std::string>>;
+
+/// Denormal numbers too, which CLN's own conversion refuses.
+symbolic::Rational exactly(double value) {
+  if (std::abs(value) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(value));
+  constexpr int shift = 200;
+  return cln::rational(cln::cl_DF(std::ldexp(value, shift))) / cln::expt_pos(cln::cl_I(2), shift);
+}
+
+/// The scene of one case, made anew from the model where constants change.
+class Variation {
+ public:
+  Variation(const pipeline::Simulation& simulation, const run::Overrides& overrides, const run::Code& code)
+      : simulation_(simulation), overrides_(overrides), code_(code) {}
+
+  std::optional<run::Scene> scene(const stress::Case& test, std::string& why) const {
+    pipeline::Derived& derived = *simulation_.derived;
+    run::Overrides overrides = overrides_;
+    for (const auto& [p, factor] : test.factor) {
+      overrides.parameters[derived.model.parameters[p].name] = exactly(simulation_.scene.parameters[p] * factor);
+    }
+    for (const auto& [p, value] :
+         test.value) {  // what follows from them is computed anew, and a start that they break is refused
+      if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = exactly(value);
+    }
+    if (test.rtol) {
+      overrides.rtol = *test.rtol;
+      overrides.atol = *test.rtol * (simulation_.scene.rtol > 0 ? simulation_.scene.atol / simulation_.scene.rtol : 1);
+    }
+    run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                          derived.model.scene(simulation_.scene.name), overrides);
+    for (const auto& [p, value] : test.value) {
+      if (!std::isfinite(value)) scene.parameters[p] = value;
+    }
+    const bool constrained = !derived.mechanics.active.empty();
+    std::vector<std::uint32_t> kept;
+    for (const auto& [i, value] : test.start) {
+      scene.q[i] = value;
+      kept.push_back(i);
+    }
+    for (const std::uint32_t i : derived.mechanics.free) {
+      if (test.zeros && scene.q[i] == 0) scene.q[i] = *test.zeros;
+      if (test.zeros && scene.qdot[i] == 0) scene.qdot[i] = *test.zeros;
+    }
+    if (constrained && !kept.empty() &&
+        !stress::meet_constraints(scene, pipeline::run_request(derived, scene, code_, false), kept)) {
+      why = "the constraints allow no start there";
+      return std::nullopt;
+    }
+    for (double& rate : scene.qdot) rate *= test.speed;
+    scene.t1 = scene.t0 + (scene.t1 - scene.t0) * test.span / (test.speed > 1 ? test.speed : 1);
+    if (constrained && test.speed != 1 && broken(scene, test.speed)) {
+      why = "the constraints move, so that their velocities cannot be multiplied";
+      return std::nullopt;
+    }
+    return scene;
+  }
+
+ private:
+  bool broken(const run::Scene& scene, double speed) const {
+    const run::RunRequest request = pipeline::run_request(*simulation_.derived, scene, code_, false);
+    run::Integration integration(request, "dop853");
+    const std::vector<double> x = integration.initial_state();
+    double largest = 0;
+    for (const double v : x) largest = std::max(largest, std::abs(v));
+    return integration.constraint_defect(scene.t0, x.data()) >
+           run::start_tolerance * std::max(1.0, largest) * std::max(1.0, speed);
+  }
+
+  const pipeline::Simulation& simulation_;
+  const run::Overrides& overrides_;
+  const run::Code& code_;
+};
+
+/// Each constraint once more under another name: what follows from others has to be found before anything is derived.
+void repeat_constraints(const model::Model& given, std::vector<Row>& rows, LeftOut& left_out) {
+  for (std::size_t c = 0; c < given.constraints.size(); ++c) {
+    if (given.constraints[c].joint) continue;  // its equations may repeat others, and are left out where they do
+    model::Model model = given;
+    model.constraints.push_back(given.constraints[c]);
+    model.constraints.back().name += "_again";
+    model.constraints.back().unit = false;  // the second one is no part of a rotation
+    const std::string test = fmt::format("constraint {} twice", given.constraints[c].name);
+    try {
+      mechanics::build_mechanics(model);
+      rows.push_back({.test = test,
+                      .solver = "none",
+                      .verdict = Verdict::silent,
+                      .outcome = "accepted",
+                      .note = "a constraint that repeats another is taken for one more"});
+    } catch (const Error& error) {
+      left_out.emplace_back(test, "refused: " + error.message());
+    }
+  }
+}
+
+std::vector<std::string> chosen_solvers(const StressRequest& options) {
+  std::vector<std::string> known{eom::Automatic::name};
+  for (const eom::MethodInfo& method : eom::methods()) {
+    known.emplace_back(method.name);
+  }
+  for (const std::string& name : options.solvers) {
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      throw Error("stress", {}, fmt::format("there is no solver '{}'", name), model::choice_of(name, known));
+  }
+  if (options.solvers.empty()) return known;
+  std::erase_if(known, [&](const std::string& name) {
+    return std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end();
+  });
+  return known;
+}
+
+pipeline::SimulationRequest simulation_request(const StressRequest& asked) {
+  pipeline::SimulationRequest request;
+  request.model = asked.model;
+  request.scene = asked.scene;
+  request.overrides = asked.overrides;
+  request.overrides.solver = "dop853";
+  request.overrides.step = 0;
+  request.with = {"mass"};
+  request.every_solver = true;
+  request.integrate = false;
+  request.seed = asked.seed;
+  return request;
+}
+
+}  // namespace
+
+std::size_t StressFindings::count(Verdict verdict) const {
+  return static_cast<std::size_t>(
+      std::count_if(rows.begin(), rows.end(), [verdict](const Row& row) { return row.verdict == verdict; }));
+}
+
+StressFindings stress_test(const StressRequest& asked) {
+  StressFindings found;
+  found.solvers = chosen_solvers(asked);
+  const pipeline::SimulationRequest wanted = simulation_request(asked);
+  const pipeline::Simulation simulation = pipeline::simulate(wanted);
+  const work::Kept kept;
+  found.scene = simulation.scene.name;
+  const run::Code code = simulation.code.for_run();
+  const Variation variation(simulation, wanted.overrides, code);
+  stress::Request request;
+  request.run = [&](const run::Scene& scene) { return pipeline::run_request(*simulation.derived, scene, code, true); };
+  request.solvers = found.solvers;
+  request.seconds_limit = asked.seconds;
+  request.steps_limit = asked.steps;
+  request.interrupt = asked.interrupt;
+  request.progress = asked.progress;
+  stress::Auditor auditor(simulation.derived->mechanics, simulation.program);
+  request.seen = [&](const stress::Case& test, const run::Scene& scene, const std::vector<stress::Sample>& samples) {
+    auditor.see(test.name, scene, code, samples);
+  };
+  for (const stress::Case& test : stress::cases(simulation.derived->mechanics, simulation.scene, asked.quick)) {
+    if (asked.interrupt != nullptr && *asked.interrupt) break;
+    std::string why;
+    try {
+      if (const std::optional<run::Scene> scene = variation.scene(test, why)) {
+        for (Row& row : stress::judge(test, *scene, request, why)) found.rows.push_back(std::move(row));
+      }
+    } catch (const Error& error) {  // a start or a value that is refused is told
+      if (error.stage() != "scene") throw;
+      why = "refused: " + error.message();
+    }
+    if (!why.empty()) found.left_out.emplace_back(test.name, why);
+  }
+  repeat_constraints(simulation.derived->model, found.rows, found.left_out);
+  found.audit = auditor.audit();
+  return found;
+}
+
+}  // namespace eomgen::analysis

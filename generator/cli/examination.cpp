@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/examination.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+using json = nlohmann::ordered_json;
+
+template <class T>
+json or_null(const std::optional<T>& value) {
+  return value ? json(*value) : json(nullptr);
+}
+
+json list(const std::vector<std::string>& names) {
+  json result = json::array();
+  for (const std::string& name : names) result.push_back(name);
+  return result;
+}
+
+json values(const std::vector<analysis::ExaminedValue>& quantities, const char* key, bool written) {
+  json result = json::array();
+  for (const analysis::ExaminedValue& q : quantities) {
+    result.push_back({{"name", q.name}, {"unit", q.unit}, {key, q.value}});
+    if (written) result.back()["written"] = q.written;
+  }
+  return result;
+}
+
+json constraints(const analysis::Examination& found) {
+  json result = json::array();
+  for (const analysis::ExaminedConstraint& c : found.constraints) {
+    result.push_back({{"name", c.name},
+                      {"kind", c.kind},
+                      {"integrable", c.integrable},
+                      {"integral", or_null(c.integral)},
+                      {"redundant", c.redundant},
+                      {"determined", or_null(c.determined)},
+                      {"use", c.use},
+                      {"reason", c.reason},
+                      {"integral_of", list(c.integral_of)}});
+  }
+  return result;
+}
+
+json joints(const analysis::Examination& found) {
+  json result = json::array();
+  for (const analysis::ExaminedJoint& j : found.joints) {
+    result.push_back({{"name", j.name},
+                      {"type", j.type},
+                      {"bodies", {j.bodies[0], j.bodies[1]}},
+                      {"axes", j.axes},
+                      {"reactions", list(j.reactions)},
+                      {"undetermined", list(j.undetermined)}});
+  }
+  return result;
+}
+
+json forces(const analysis::Examination& found) {
+  json result = json::array();
+  for (const analysis::ExaminedForce& f : found.forces) {
+    result.push_back({{"name", f.name},
+                      {"conservative", f.conservative},
+                      {"potential", f.potential ? json(f.potential->text) : json(nullptr)},
+                      {"domain", list(f.domain)},
+                      {"many_valued", f.many_valued},
+                      {"in_energy", f.in_energy},
+                      {"reason", f.reason}});
+  }
+  return result;
+}
+
+}  // namespace
+
+json to_json(const model::Model& model, const analysis::Examination& found) {
+  json result{{"format", 1}, {"model", model.id}, {"title", model.title}};
+  json coordinates = json::array(), contacts = json::array(), conserved = json::array(), singular = json::array(),
+       charts = json::array(), warnings = json::array(), left_out = json::array();
+  for (const auto& c : found.coordinates)
+    coordinates.push_back({{"name", c.name}, {"unit", c.unit}, {"eliminated", c.eliminated}});
+  for (const auto& c : found.contacts) {
+    contacts.push_back(
+        {{"name", c.name}, {"kind", c.kind}, {"law", c.law}, {"slip", list(c.slip)}, {"unilateral", c.unilateral}});
+  }
+  for (const auto& c : found.conserved) {
+    conserved.push_back(
+        {{"name", c.name}, {"title", c.title}, {"expression", c.expression.text}, {"certainty", c.certainty}});
+  }
+  for (const auto& s : found.singular) singular.push_back({{"set", s.set.text}, {"approach", s.approach}});
+  for (const auto& c : found.charts) {
+    charts.push_back({{"of", c.of},
+                      {"own", c.own},
+                      {"second", c.second},
+                      {"angles", list(c.angles)},
+                      {"exchanged", c.refusal.empty()},
+                      {"reason", c.refusal}});
+  }
+  for (const Warning& w : model.warnings) {
+    warnings.push_back(
+        {{"message", w.message}, {"line", w.where.line}, {"column", w.where.column}, {"remedy", w.remedy}});
+  }
+  for (const work::LeftOut& l : found.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
+  result["coordinates"] = coordinates;
+  result["dof"] = found.degrees_of_freedom;
+  result["parameters"] = values(found.parameters, "value", true);
+  result["inputs"] = values(found.inputs, "default", false);
+  result["constraints"] = constraints(found);
+  result["joints"] = joints(found);
+  result["forces"] = forces(found);
+  result["contacts"] = contacts;
+  result["conserved"] = conserved;
+  result["singular"] = singular;
+  result["charts"] = charts;
+  result["units"] = found.every_unit ? "checked" : "checked where they are given";
+  result["warnings"] = warnings;
+  result["left_out"] = left_out;
+  return result;
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sensitivity_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/output.hpp"
+
+namespace eomgen::cli {
+
+using Json = nlohmann::ordered_json;
+
+namespace {
+
+Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
+
+}  // namespace
+
+std::string text_of(const run::Sensitivities& found, const std::vector<std::string>& states) {
+  std::string out = fmt::format("\nsensitivities     of the state at t = {}, by {}: {}\n", found.t, found.solver,
+                                eom::name(found.outcome));
+  for (const run::Sensitivity& s : found.list) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      out += fmt::format("  d {} / d {:<16} {:>24}{}\n", states[i], s.of, unsigned_zero(s.value[i]),
+                         s.error.empty() ? "" : fmt::format("   +- {:.1e}", s.error[i]));
+    }
+  }
+  return found.estimate_note.empty() ? out : out + "  " + found.estimate_note + "\n";
+}
+
+nlohmann::ordered_json json_of(const run::Sensitivities& found, const std::vector<std::string>& states) {
+  Json values = Json::object(), errors = Json::object();
+  bool estimated = false;
+  for (const run::Sensitivity& s : found.list) {
+    for (std::size_t i = 0; i < states.size(); ++i) {
+      values[s.of][states[i]] = number(s.value[i]);
+      if (!s.error.empty()) errors[s.of][states[i]] = number(s.error[i]), estimated = true;
+    }
+  }
+  return {{"method", found.solver},
+          {"t", found.t},
+          {"outcome", eom::name(found.outcome)},
+          {"values", values},
+          {"error_estimate", estimated ? errors : Json(nullptr)},
+          {"rhs_evaluations", found.statistics.rhs_evaluations}};
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What surrounds every call of the library: one at a time, its Task heard and asked. Not installed.
+#pragma once
+
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <stop_token>
+#include <string>
+
+#include "eomgen/formulas.hpp"
+#include "eomgen/task.hpp"
+#include "pipeline/pipeline.hpp"
+#include "print/render.hpp"
+#include "run/scene.hpp"
+#include "work.hpp"
+
+namespace eomgen {
+
+/// CLN and GiNaC count references without atomics, and share constants: the whole process has one lock. Recursive, for
+/// functions of a Task that call again.
+std::recursive_mutex& one_at_a_time();
+
+class Call : public work::Listener {
+ public:
+  explicit Call(const Task& task) : Listener(&stopped_), task_(task), asked_(task.stop, Raise{&stopped_}) {}
+
+  const std::atomic<bool>* stopped() const { return &stopped_; }
+  std::function<void(double)> progress() const { return task_.progress; }
+  void begins(const char* stage) override {
+    if (task_.begins) task_.begins(stage);
+  }
+  void warns(const std::string& text) override {
+    if (task_.warns) task_.warns(text);
+  }
+
+ private:
+  struct Raise {
+    std::atomic<bool>* flag;
+    void operator()() const { flag->store(true); }
+  };
+  std::atomic<bool> stopped_{false};
+  const Task& task_;
+  std::stop_callback<Raise> asked_;
+};
+
+/// `work` gets the Call.
+template <class Work>
+auto called(const Task& task, Work&& work) {
+  const std::scoped_lock lock(one_at_a_time());
+  Call call(task);
+  try {
+    return work(call);
+  } catch (const work::Interrupted&) {
+    throw Interrupted();
+  }
+}
+
+pipeline::ApproachChoice choice_of(Approach approach);
+/// The shortest decimal of each, exactly: as the command line takes them.
+std::map<std::string, symbolic::Rational> exact(const std::map<std::string, double>& values);
+Formula formula_of(const print::Item& item);
+std::vector<LeftOut> left_out_of(const std::vector<work::LeftOut>& list);
+
+}  // namespace eomgen

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/targets.hpp"
+#include "eomgen/call.hpp"
+#include "eomgen/model.hpp"
+#include "pipeline/emission.hpp"
+#include "pipeline/verification.hpp"
+
+namespace eomgen {
+
+Certificate Model::verify(const VerifyOptions& options, const Task& task) const {
+  if (options.digits < 20 || options.digits > 300 || options.points < 1)
+    throw Error("library", {}, "a verification has 20 to 300 digits, and points", "leave VerifyOptions as they are");
+  return called(task, [&](Call&) {
+    const verify::Certificate found =
+        pipeline::verify_model(read_, {options.digits, options.points, options.seed, options.compile});
+    Certificate result;
+    result.pass = found.pass;
+    result.points = found.points;
+    result.digits = found.options.digits;
+    for (const verify::Comparison& c : found.comparisons)
+      result.comparisons.push_back({c.a, c.b, c.shares_code, c.max_relative_difference, c.tolerance, c.pass});
+    result.left_out = left_out_of(found.left_out);
+    result.summary = found.summary();
+    result.interrupted = found.interrupted;
+    return result;
+  });
+}
+
+Sources Model::emit(const EmitOptions& options, const Task& task) const {
+  return called(task, [&](Call&) {
+    pipeline::EmissionRequest request{options.target,
+                                      choice_of(options.approach),
+                                      pipeline::form_choice(options.form),
+                                      options.with,
+                                      options.outputs,
+                                      options.fix,
+                                      options.seed};
+    const pipeline::Emission emission = pipeline::emit_model(read_, request);
+    Sources result;
+    for (const emit::EmittedFile& file : emission.files) result.files.push_back({file.name, file.text});
+    result.route = emission.program.route;
+    result.approach = system::name(emission.program.approach);
+    result.form = system::name(emission.program.form);
+    result.flops = emission.program.functions.front().operations.flops();
+    result.certificate = emission.certificate.summary();
+    return result;
+  });
+}
+
+std::vector<std::string> targets() {
+  std::vector<std::string> names;
+  for (const emit::TargetEntry& entry : emit::targets()) names.emplace_back(entry.name);
+  return names;
+}
+
+}  // namespace eomgen

@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eomgen/measures.hpp"
+
+#include "analysis/benchmark.hpp"
+#include "analysis/stress_test.hpp"
+#include "eomgen/call.hpp"
+#include "eomgen/model.hpp"
+
+namespace eomgen {
+
+Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) const {
+  return called(task, [&](Call& call) {
+    analysis::BenchmarkRequest request;
+    request.model = read_;
+    request.scene = options.scene;
+    request.overrides.parameters = exact(options.parameters);
+    request.overrides.t_end = options.t_end;
+    request.solvers = options.solvers;
+    request.seconds = options.seconds;
+    request.libraries = options.libraries;
+    request.seed = options.seed;
+    request.progress = task.begins;
+    request.interrupt = call.stopped();
+    const analysis::Benchmark found = analysis::benchmark(request);
+    Benchmark result;
+    for (const bench::Row& row : found.rows)
+      result.rows.push_back(
+          {row.solver, row.rtol, row.step, row.error, row.seconds, row.steps, row.rhs_evaluations, row.outcome});
+    for (const auto& [solver, why] : found.left_out) result.left_out.push_back({solver, why});
+    result.reference_digits = found.reference.digits_at_end;
+    result.advice = bench::advice(found.rows);
+    result.conclusive = found.conclusive();
+    return result;
+  });
+}
+
+StressTest Model::stress_test(const StressOptions& options, const Task& task) const {
+  return called(task, [&](Call& call) {
+    analysis::StressRequest request;
+    request.model = read_;
+    request.scene = options.scene;
+    request.overrides.parameters = exact(options.parameters);
+    request.overrides.t_end = options.t_end;
+    request.solvers = options.solvers;
+    request.seconds = options.seconds;
+    request.steps = options.steps;
+    request.quick = options.quick;
+    request.seed = options.seed;
+    request.progress = task.begins;
+    request.interrupt = call.stopped();
+    const analysis::StressFindings found = analysis::stress_test(request);
+    StressTest result;
+    for (const stress::Row& row : found.rows)
+      result.rows.push_back(
+          {row.test, row.solver, stress::name(row.verdict), row.error, row.estimate, row.outcome, row.note});
+    for (const auto& [test, why] : found.left_out) result.left_out.push_back({test, why});
+    result.kept = found.count(stress::Verdict::kept);
+    result.told = found.count(stress::Verdict::told);
+    result.silent = found.count(stress::Verdict::silent);
+    return result;
+  });
+}
+
+}  // namespace eomgen

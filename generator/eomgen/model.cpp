@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eomgen/model.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "eomgen/call.hpp"
+#include "model/model.hpp"
+#include "symbolic/decimal.hpp"
+
+namespace eomgen {
+namespace {
+
+template <class T>
+std::vector<std::string> names_of(const std::vector<T>& list) {
+  std::vector<std::string> names;
+  for (const T& entry : list) names.push_back(entry.name);
+  return names;
+}
+
+}  // namespace
+
+std::recursive_mutex& one_at_a_time() {
+  static std::recursive_mutex mutex;
+  return mutex;
+}
+
+pipeline::ApproachChoice choice_of(Approach approach) {
+  switch (approach) {
+    case Approach::one: return pipeline::ApproachChoice::one;
+    case Approach::two: return pipeline::ApproachChoice::two;
+    case Approach::automatic: break;
+  }
+  return pipeline::ApproachChoice::automatic;
+}
+
+std::map<std::string, symbolic::Rational> exact(const std::map<std::string, double>& values) {
+  std::map<std::string, symbolic::Rational> result;
+  for (const auto& [name, value] : values) {
+    if (!std::isfinite(value))
+      throw Error("library", {}, fmt::format("the value of '{}' is not finite", name), "give a finite number");
+    result[name] = symbolic::parse_decimal(fmt::format("{}", value), name);
+  }
+  return result;
+}
+
+Formula formula_of(const print::Item& item) {
+  return {item.key, item.name, item.coordinate, item.role, item.text, item.latex, item.mathml};
+}
+
+std::vector<LeftOut> left_out_of(const std::vector<work::LeftOut>& list) {
+  std::vector<LeftOut> result;
+  for (const work::LeftOut& l : list) result.push_back({l.what, l.why});
+  return result;
+}
+
+Model Model::from_file(const std::string& path) {
+  const std::scoped_lock lock(one_at_a_time());
+  return Model(std::make_shared<const model::Model>(model::read_model(path)));
+}
+
+Model Model::from_text(const std::string& text, const std::string& name) {
+  const std::scoped_lock lock(one_at_a_time());
+  return Model(std::make_shared<const model::Model>(model::read_model_text(text, name + ".toml")));
+}
+
+Model Model::from(const Definition& definition, const std::string& name) { return from_text(definition.text(), name); }
+
+std::string Model::id() const { return read_->id; }
+std::string Model::title() const { return read_->title; }
+std::vector<std::string> Model::coordinates() const { return names_of(read_->coordinates); }
+std::vector<std::string> Model::parameters() const { return names_of(read_->parameters); }
+std::vector<std::string> Model::inputs() const { return names_of(read_->inputs); }
+std::vector<std::string> Model::scenes() const { return names_of(read_->scenes); }
+
+std::vector<std::string> Model::warnings() const {
+  std::vector<std::string> result;
+  for (const Warning& warning : read_->warnings) result.push_back(format_warning(warning));
+  return result;
+}
+
+}  // namespace eomgen

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eomgen/motion.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "analysis/inverse.hpp"
+#include "eomgen/call.hpp"
+#include "eomgen/model.hpp"
+#include "pipeline/simulate.hpp"
+
+namespace eomgen {
+namespace {
+
+pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model, const RunOptions& options) {
+  pipeline::SimulationRequest request;
+  request.model = std::move(model);
+  request.scene = options.scene;
+  request.overrides.parameters = exact(options.parameters);
+  request.overrides.t_end = options.t_end;
+  request.overrides.rtol = options.rtol;
+  request.overrides.atol = options.atol;
+  request.overrides.step = options.step;
+  request.overrides.max_step = options.max_step;
+  request.overrides.every = options.every;
+  request.overrides.solver = options.solver;
+  request.overrides.outputs = options.outputs;
+  request.overrides.at_start = true;
+  request.approach = choice_of(options.approach);
+  request.form = pipeline::form_choice(options.form);
+  request.estimate = options.error_estimate;
+  request.charts = options.charts;
+  request.max_steps = options.max_steps;
+  request.seed = options.seed;
+  return request;
+}
+
+/// Those of the code's rows that a motion shows: coordinates with their rates, then what the scene asks for.
+std::vector<std::string> shown(const model::Model& model, const run::Scene& scene) {
+  std::vector<std::string> columns;
+  for (const model::Coordinate& c : model.coordinates) {
+    columns.push_back(c.name);
+    columns.push_back(c.name + "_dot");
+  }
+  columns.insert(columns.end(), scene.outputs.begin(), scene.outputs.end());
+  return columns;
+}
+
+void take_result(const run::RunResult& from, Motion& to) {
+  to.outcome = eom::name(from.outcome);
+  to.detail = from.detail;
+  to.solver = from.solver;
+  to.reason = from.reason;
+  to.t = from.t;
+  to.final = from.final;
+  to.error_estimate = from.error_estimate;
+  for (const run::Invariant& i : from.invariants) to.invariants.push_back({i.name, i.initial, i.max_relative_drift});
+  to.power_balance = from.power_balance;
+  to.constraint_drift = from.constraint_drift;
+  to.steps = from.statistics.steps;
+  to.rhs_evaluations = from.statistics.rhs_evaluations;
+  for (const run::RunEvent& event : from.events) to.events.push_back({event.t, event.kind, event.name});
+}
+
+}  // namespace
+
+double Motion::at_end(const std::string& name) const {
+  for (const auto& [key, value] : final) {
+    if (key == name) return value;
+  }
+  throw std::out_of_range("there is no output '" + name + "' of this motion");
+}
+
+Motion Model::run(const RunOptions& options, const Task& task) const {
+  return called(task, [&](Call& call) {
+    Motion motion;
+    std::vector<std::size_t> index;
+    std::vector<double> values;
+    pipeline::SimulationRequest request = request_of(read_, options);
+    std::optional<work::Kept> kept;  // once it runs, what there is is given
+    request.ready = [&kept] { kept.emplace(); };
+    request.interrupt = call.stopped();
+    request.progress = call.progress();
+    request.begin = [&](const pipeline::Derived& derived, const run::Scene& scene,
+                        const std::vector<std::string>& names) {
+      motion.columns = shown(derived.model, scene);
+      for (const std::string& column : motion.columns)
+        index.push_back(static_cast<std::size_t>(std::find(names.begin(), names.end(), column) - names.begin()));
+      values.resize(index.size());
+    };
+    request.row = [&](double t, std::span<const double> y) {
+      for (std::size_t i = 0; i < index.size(); ++i) values[i] = y[index[i]];
+      if (options.row) return options.row(t, values);
+      motion.times.push_back(t);
+      motion.rows.push_back(values);
+    };
+    const pipeline::Simulation simulation = pipeline::simulate(request);
+    take_result(simulation.result, motion);
+    motion.certificate = simulation.certificate.summary();
+    return motion;
+  });
+}
+
+InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Task& task) const {
+  return called(task, [&](Call& call) {
+    InverseDynamics result;
+    analysis::InverseRequest request;
+    request.model = read_;
+    request.scene = options.scene;
+    request.overrides.parameters = exact(options.parameters);
+    request.overrides.t_end = options.t_end;
+    request.overrides.every = options.every;
+    request.overrides.rtol = options.rtol;
+    request.overrides.atol = options.atol;
+    request.overrides.at_start = true;
+    request.constraints = options.constraints;
+    request.seed = options.seed;
+    request.interrupt = call.stopped();
+    request.row = [&](double t, std::span<const double> values) {
+      result.times.push_back(t);
+      result.rows.emplace_back(values.begin(), values.end());
+    };
+    const analysis::InverseAnswer answer = analysis::inverse_dynamics(request);
+    result.outcome = eom::name(answer.outcome);
+    result.detail = answer.detail;
+    result.certificate = answer.certificate;
+    result.columns = answer.columns;
+    result.forces = answer.forces;
+    return result;
+  });
+}
+
+std::vector<std::string> solvers() {
+  std::vector<std::string> names{"auto"};
+  for (const eom::MethodInfo& method : eom::methods()) names.emplace_back(method.name);
+  return names;
+}
+
+}  // namespace eomgen

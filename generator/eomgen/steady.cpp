@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "eomgen/steady.hpp"
+
+#include "analysis/steady_search.hpp"
+#include "eomgen/call.hpp"
+#include "eomgen/model.hpp"
+
+namespace eomgen {
+namespace {
+
+std::vector<double> entries(const linear::Matrix<linear::Precise>& A) {
+  std::vector<double> result;
+  for (std::size_t i = 0; i < A.rows; ++i) {
+    for (std::size_t j = 0; j < A.cols; ++j) result.push_back(analysis::shown(A(i, j)));
+  }
+  return result;
+}
+
+std::vector<std::complex<double>> eigenvalues(const linear::Spectrum& spectrum) {
+  std::vector<std::complex<double>> result;
+  for (const linear::Eigenvalue& e : spectrum.values) result.emplace_back(e.re, e.im);
+  return result;
+}
+
+const char* name(linear::Stability stability) {
+  switch (stability) {
+    case linear::Stability::stable: return "stable";
+    case linear::Stability::unstable: return "unstable";
+    case linear::Stability::unknown: break;
+  }
+  return "unknown";
+}
+
+}  // namespace
+
+Linearisation Model::linearise(const LineariseOptions& options, const Task& task) const {
+  return called(task, [&](Call&) {
+    run::Overrides overrides;
+    overrides.parameters = exact(options.parameters);
+    const analysis::SteadyProblem problem =
+        analysis::steady_problem("linearize", read_, options.scene, overrides, options.at, options.seed);
+    Linearisation result;
+    try {
+      const work::Stage stage("linearising");
+      const linear::Linearisation l =
+          linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, options.seed);
+      result.kind = linear::name(l.kind);
+      for (const std::size_t i : l.symmetry.chart.independent) result.states.push_back(problem.flow->names()[i]);
+      result.A = entries(l.A);
+      result.B = entries(l.B);
+      result.eigenvalues = eigenvalues(l.spectrum);
+      result.structural_zeros = l.structural_zeros;
+    } catch (const std::domain_error& error) {
+      const analysis::Source source = analysis::without_slope(problem, problem.z);
+      throw Error("linearize", source.where, source.what + " no slope at this state: " + error.what(),
+                  "choose another state, or put a smooth law in its place");
+    }
+    result.inputs = inputs();
+    result.certificate = problem.certificate;
+    return result;
+  });
+}
+
+SteadyMotions Model::steady_motions(const SteadyOptions& options, const Task& task) const {
+  return called(task, [&](Call& call) {
+    analysis::SteadyRequest request;
+    request.model = read_;
+    request.scene = options.scene;
+    request.overrides.parameters = exact(options.parameters);
+    request.hold = exact(options.hold);
+    request.starts = options.starts;
+    request.seed = options.seed;
+    request.progress = call.progress();
+    const analysis::SteadyMotions found = analysis::steady_motions(request);
+    SteadyMotions result;
+    for (const analysis::SteadyMotion& from : found.points) {
+      SteadyMotion motion;
+      motion.kind = linear::name(from.l.kind);
+      const std::vector<std::string>& names = found.problem.flow->names();
+      for (std::size_t i = 0; i + 1 < from.l.z.size(); ++i) motion.state[names[i]] = analysis::shown(from.l.z[i]);
+      motion.stability = name(from.verdict.stability);
+      motion.reason = from.verdict.reason;
+      motion.eigenvalues = eigenvalues(from.l.spectrum);
+      motion.family = from.family;
+      result.motions.push_back(std::move(motion));
+    }
+    for (const analysis::HeldValue& h : found.held) result.held[h.name] = h.value;
+    result.interrupted = found.search.interrupted;
+    result.certificate = found.problem.certificate;
+    return result;
+  });
+}
+
+}  // namespace eomgen

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/beyond_range.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+#include "derive/lagrange.hpp"
+#include "error.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::pipeline {
+namespace {
+
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+constexpr double agree = 1e-8;      // of accelerations and energies
+constexpr double singular = 1e-10;  // smallest pivot of what is solved, relative
+
+/// The range was stated by the coordinate system, not by the user.
+bool of_system(const model::Model& model, std::uint32_t coordinate) {
+  const model::NodeId lower = model.coordinates[coordinate].lower;
+  if (lower == model::no_node || model.coordinates[coordinate].upper != model::no_node) return false;
+  const model::Span& stated = model.arena[lower].span;
+  for (const model::Place& place : model.places) {
+    if (!place.chart) continue;
+    for (const model::NodeId entry : place.chart->entries) {
+      if (entry == model::no_node) continue;
+      // Its range has the place of the entry, whose name begins behind the quotation mark.
+      const model::Node& node = model.arena[entry];
+      const bool itself = node.op == model::Op::coordinate && node.index == coordinate;
+      if (itself && node.span.line == stated.line && node.span.column >= stated.column &&
+          node.span.column <= stated.column + 1 && stated.line > 0)
+        return true;
+    }
+  }
+  return false;
+}
+
+Eigen::VectorXd numbers(const std::vector<double>& values, std::size_t from, std::size_t count) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data() + from, static_cast<Eigen::Index>(count));
+}
+
+/// Accelerations, kinetic and potential energy; none where they are not determined.
+std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run::Scene& scene, double t,
+                                      std::span<const double> x) {
+  const std::size_t n = s.free.size(), m = s.active.size();
+  std::vector<symbolic::Ref> roots;
+  for (const auto* list : {&s.M, &s.f, &s.A, &s.gamma}) roots.insert(roots.end(), list->begin(), list->end());
+  roots.insert(roots.end(), {s.kinetic, s.potential});
+  const std::vector<double> v = symbolic::evaluate(*s.dag, roots, [&](const Symbol& symbol) {
+    if (symbol.kind == SymbolKind::parameter) return scene.parameters[symbol.index];
+    if (symbol.kind == SymbolKind::time) return t;
+    if (symbol.kind == SymbolKind::input) return scene.inputs[symbol.index](t, t);
+    const auto place = std::find(s.free.begin(), s.free.end(), symbol.index);
+    if (symbol.kind != SymbolKind::coordinate || place == s.free.end() || symbol.order > 1) return std::nan("");
+    return x[symbol.order * n + static_cast<std::size_t>(place - s.free.begin())];
+  });
+  if (!std::all_of(v.begin(), v.end(), [](double value) { return std::isfinite(value); })) return std::nullopt;
+  const auto N = static_cast<Eigen::Index>(n), M = static_cast<Eigen::Index>(m);
+  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  Eigen::MatrixXd all = Eigen::MatrixXd::Zero(N + M, N + M);
+  all.topLeftCorner(N, N) = Eigen::Map<const RowMajor>(v.data(), N, N);
+  const Eigen::MatrixXd A = Eigen::Map<const RowMajor>(v.data() + n * n + n, M, N);
+  all.topRightCorner(N, M) = -A.transpose();
+  all.bottomLeftCorner(M, N) = A;
+  Eigen::VectorXd right(N + M);
+  right << numbers(v, n * n, n), -numbers(v, n * n + n + m * n, m);
+  Eigen::FullPivLU<Eigen::MatrixXd> lu(all);
+  lu.setThreshold(singular);
+  if (!lu.isInvertible()) return std::nullopt;
+  Eigen::VectorXd result(N + 2);
+  result << lu.solve(right).head(N), v[v.size() - 2], v.back();
+  return result;
+}
+
+}  // namespace
+
+bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
+                        std::uint32_t coordinate, double t, std::span<const double> x) {
+  if (!code.contacts.empty() || code.integrals > 0 || !of_system(derived.model, coordinate)) return false;
+  const auto place = std::find(code.free.begin(), code.free.end(), coordinate);
+  if (place == code.free.end()) return false;
+  model::Model free = derived.model;
+  free.coordinates[coordinate].lower = model::no_node;
+  try {
+    mechanics::Mechanics mechanics = mechanics::build_mechanics(free);
+    const system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
+    const std::size_t n = code.free.size();
+    if (system.free != code.free) return false;
+    std::vector<double> state(x.begin(), x.end()), dx(x.size()), y(code.output_names.size()), u;
+    for (const run::Signal& input : scene.inputs) u.push_back(input(t, t));
+    u.resize(std::max<std::size_t>(1, u.size()));
+    const auto output = [&](const char* name) {
+      return y[static_cast<std::size_t>(std::find(code.output_names.begin(), code.output_names.end(), name) -
+                                        code.output_names.begin())];
+    };
+    const double size = std::max(1.0, std::abs(scene.q[coordinate]));
+    for (const double part : {0.3, 0.0, -1e-3, -0.2, -0.7}) {
+      state[static_cast<std::size_t>(place - code.free.begin())] = scene.lower[coordinate] + part * size;
+      const std::optional<Eigen::VectorXd> expected = motion(system, scene, t, state);
+      if (!expected || code.rhs(t, state.data(), scene.parameters.data(), u.data(), 0, dx.data()) != 0 ||
+          code.outputs(t, state.data(), scene.parameters.data(), u.data(), 0, y.data()) != 0)
+        return false;
+      Eigen::VectorXd found(static_cast<Eigen::Index>(n) + 2);
+      found << numbers(dx, n, n), output("kinetic"), output("potential");
+      if (!((found - *expected).cwiseAbs().maxCoeff() <= agree * (1 + expected->cwiseAbs().maxCoeff()))) return false;
+    }
+    return true;
+  } catch (const Error&) {
+    return false;
+  }
+}
+
+}  // namespace eomgen::pipeline

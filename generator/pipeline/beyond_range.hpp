@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Whether the equations still hold where a coordinate leaves the range of its coordinate system: a radius that becomes
+// negative on a wire through the centre. In: the model, compiled code, a state. Out: yes where the code agrees on both
+// sides with equations that were derived without the range, and is regular at its end.
+#pragma once
+
+#include "pipeline/pipeline.hpp"
+#include "run/runner.hpp"
+
+namespace eomgen::pipeline {
+
+bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
+                        std::uint32_t coordinate, double t, std::span<const double> x);
+
+}  // namespace eomgen::pipeline

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/charts.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <eom/modes/chart_state.hpp>
+
+#include "derive/chart_change.hpp"
+#include "pipeline/self_test_states.hpp"
+#include "program/charts.hpp"
+
+namespace eomgen::pipeline {
+
+std::vector<model::SwitchedChart> charts_of(const mechanics::Mechanics& m) {
+  std::vector<model::SwitchedChart> charts = model::charts(*m.model);
+  std::size_t count = 0;
+  for (model::SwitchedChart& chart : charts) {
+    if (!chart.refusal.empty()) continue;
+    if (!m.integrals.empty()) {
+      chart.refusal =
+          fmt::format("what '{}' keeps is written in the coordinates of the start", m.integrals.front().label);
+    } else if (++count > eom::max_charts) {
+      chart.refusal = fmt::format("only {} charts can be exchanged, and others come first", eom::max_charts);
+    }
+  }
+  return charts;
+}
+
+std::vector<model::SwitchedChart> exchangeable(const std::vector<model::SwitchedChart>& charts) {
+  std::vector<model::SwitchedChart> result;
+  std::copy_if(charts.begin(), charts.end(), std::back_inserter(result),
+               [](const auto& chart) { return chart.refusal.empty(); });
+  return result;
+}
+
+void add_second_charts(Derived& own, program::Program& program, const std::vector<model::SwitchedChart>& charts,
+                       unsigned mask, const ChartRequest& request) {
+  if (program.charts.empty()) {
+    symbolic::Dag dag;
+    std::vector<system::ChartChange> changes;
+    for (const model::SwitchedChart& chart : charts) changes.push_back(derive::chart_change(dag, own.model, chart));
+    program::add_charts(program, dag, changes);
+  }
+  const auto derived =
+      derive_model(std::make_shared<const model::Model>(model::in_second_charts(own.model, charts, mask)),
+                   request.approach, request.form);
+  // The route that was the cheapest one in the own charts: a second search would take longer than it could save.
+  std::stable_partition(derived->candidates.begin(), derived->candidates.end(), [&](const system::EquationSystem& s) {
+    return s.route == program.route && s.approach == program.approach && s.form == program.form;
+  });
+  derived->candidates.resize(1);
+  std::vector<std::string> known, exchanged;
+  for (const system::Output& output : derived->candidates.front().outputs) known.push_back(output.name);
+  for (std::size_t j = 0; j < charts.size(); ++j) {
+    for (const std::uint32_t angle : charts[j].angles) {
+      if ((mask >> j & 1) != 0) exchanged.push_back(own.model.coordinates[angle].name);
+    }
+  }
+  const std::vector<std::uint32_t> places = program::shared_outputs(program.outputs, known, exchanged);
+  program::Request wanted = request.request;
+  wanted.outputs.clear();
+  for (const std::uint32_t i : places) wanted.outputs.push_back(program.outputs[i]);
+  program::Program second = make_program(*derived, wanted);
+  const verify::Certificate certificate =
+      certify(*derived, second, {50, emission_points, request.seed, nullptr, wanted.fix});
+  require_pass(certificate, derived->model);
+  for (double Timings::*part : {&Timings::derive, &Timings::optimise, &Timings::verify})
+    own.seconds.*part += derived->seconds.*part;
+  program::add_second(program, std::move(second), mask, places);
+}
+
+ChartLibrary::ChartLibrary(Derived& own, program::Program program, emit::EmissionContext context, ChartRequest request)
+    : own_(own),
+      program_(std::move(program)),
+      context_(std::move(context)),
+      request_(std::move(request)),
+      charts_(exchangeable(charts_of(own.mechanics))) {}
+
+const run::Code& ChartLibrary::in(unsigned mask) {
+  if (std::find(known_.begin(), known_.end(), mask) != known_.end()) return compiled_.back()->functions;
+  const auto start = std::chrono::steady_clock::now();
+  add_second_charts(own_, program_, charts_, mask, request_);
+  known_.push_back(mask);
+  context_.tests = test_vectors(program_, context_);
+  CompiledCode code = compile(program_, context_, true);
+  const run::Code functions = code.for_run();
+  compiled_.push_back(std::make_unique<Compiled>(Compiled{std::move(code), functions}));
+  seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  return compiled_.back()->functions;
+}
+
+}  // namespace eomgen::pipeline

@@ -1,0 +1,159 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/code.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "error.hpp"
+#include "program/kinks.hpp"
+#include "program/taylor.hpp"
+#include "work.hpp"
+
+namespace eomgen::pipeline {
+
+CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& program)
+    : compiled_(std::move(compiled)),
+      outputs_(program.outputs),
+      kinks_(program.kinks),
+      free_(program.free),
+      integrals_(program.integrals.size()),
+      prepared_(program.prepared_count()),
+      active_(program.active_constraints),
+      holonomic_(program.holonomic) {
+  if (program.taylor) taylor_order_ = static_cast<int>(program::taylor_order(*program.taylor));
+  for (const program::ContactInfo& contact : program.contacts) contacts_.push_back({contact, contact.name, 0});
+  for (const program::Function& function : program.functions) {
+    for (const auto& result : function.results) {
+      if (!program::is_code(result.first)) arrays_[function.name].push_back(result.second.size());
+    }
+  }
+  if (program.taylor) arrays_["taylor"] = {};
+  for (const program::Program& second : program.second) {
+    own_outputs_.push_back({second.in_charts, {}});
+    for (const program::Function& function : second.functions) {
+      if (function.name != "outputs") continue;
+      for (std::uint32_t i = 0; i < outputs_.size(); ++i) {
+        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end())
+          own_outputs_.back().outputs.push_back(i);
+      }
+    }
+  }
+}
+
+namespace {
+
+std::vector<double> rounded(const std::vector<verify::Real>& values) {
+  std::vector<double> result;
+  for (const verify::Real& value : values) result.push_back(cln::double_approx(value));
+  return result;
+}
+
+/// A compiled function by name, with room for its arrays; nothing where it reports a code.
+std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& m, const std::string& function,
+                                                       const verify::At& at, const std::vector<std::size_t>& sizes,
+                                                       std::size_t prepared) {
+  const double t = cln::double_approx(at.t);
+  const std::vector<double> x = rounded(at.x), p = rounded(at.p), u = rounded(at.u);
+  std::vector<std::vector<double>> y;
+  for (const std::size_t size : sizes) y.emplace_back(std::max<std::size_t>(1, size));
+  if (function == "taylor") y.emplace_back(x.size() * static_cast<std::size_t>(at.order + 1));
+  y.resize(std::max<std::size_t>(3, y.size()));
+  std::vector<double> w(prepared + 1);
+  double *const a = y[0].data(), *const b = y[1].data(), *const c = y[2].data();
+  int code = -1;
+  if (function == "rhs") code = m.rhs(t, x.data(), p.data(), u.data(), at.mode, a);
+  if (function == "prepare") code = m.prepare(p.data(), a);
+  if (function == "rhs_prepared") {
+    code = m.prepare(p.data(), w.data());
+    if (code == 0) code = m.rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), at.mode, a);
+  }
+  if (function == "jac") code = m.jac(t, x.data(), p.data(), u.data(), at.mode, a, b);
+  if (function == "jac_p") code = m.jac_p(t, x.data(), p.data(), u.data(), at.mode, a);
+  if (function == "mass") code = m.mass(t, x.data(), p.data(), a, b);
+  if (function == "momenta") code = m.momenta(t, x.data(), p.data(), u.data(), at.mode, a, b);
+  if (function == "constraints") code = m.constraints(t, x.data(), p.data(), a, b, c);
+  if (function == "reactions") code = m.reactions(t, x.data(), p.data(), u.data(), at.mode, a);
+  if (function == "outputs") code = m.outputs(t, x.data(), p.data(), u.data(), at.mode, a);
+  if (function == "events") code = m.events(t, x.data(), p.data(), u.data(), at.mode, a);
+  if (function == "taylor") code = m.taylor(t, x.data(), p.data(), u.data(), at.mode, at.order, a);
+  if (code != 0) return std::nullopt;
+  return y;
+}
+
+}  // namespace
+
+verify::CompiledForm CompiledCode::form() const {
+  const emit::LoadedModel* const model = &compiled_.model;
+  verify::CompiledForm form;
+  form.name = "emitted code";
+  form.call = [model, arrays = arrays_, prepared = prepared_](const std::string& function, const verify::At& at) {
+    return called(*model, function, at, arrays.at(function), prepared);
+  };
+  const std::size_t size = 2 * free_.size() + integrals_;
+  form.rhs = [model, size, prepared = prepared_](double t, const std::vector<double>& x, const std::vector<double>& p,
+                                                 const std::vector<double>& u,
+                                                 int mode) -> std::optional<std::vector<double>> {
+    std::vector<double> dx(size), w(prepared);
+    // What `run` integrates; the self test has compared it with `rhs`.
+    const int code = prepared == 0 ? model->rhs(t, x.data(), p.data(), u.data(), mode, dx.data())
+                     : model->prepare(p.data(), w.data()) != 0
+                         ? 1
+                         : model->rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), mode, dx.data());
+    if (code != 0) return std::nullopt;
+    return dx;
+  };
+  return form;
+}
+
+run::Code CompiledCode::for_run() const {
+  const emit::LoadedModel& model = compiled_.model;
+  run::Code code{model.rhs,  model.prepare,     model.rhs_prepared, prepared_, model.outputs, model.events, model.jac,
+                 model.mass, model.constraints, outputs_,           free_,     integrals_,    active_,      holonomic_};
+  code.taylor = model.taylor;
+  code.jac_p = model.jac_p;
+  code.momenta = model.momenta;
+  code.taylor_order = taylor_order_;
+  code.kinks = kinks_;
+  code.contacts = contacts_;
+  code.first_kink_bit = program::first_kink_bit;
+  code.chart = model.chart;
+  code.mass_in = model.mass_in;
+  code.constraints_in = model.constraints_in;
+  code.own_outputs = own_outputs_;
+  return code;
+}
+
+CompiledCode compile(const program::Program& program, const emit::EmissionContext& context, bool again) {
+  const std::string name = emit::mangled_id(context.id);
+  std::string source, header;
+  for (const emit::EmittedFile& file : emit::emit(program, context, "cpp")) {
+    if (file.name == name + ".c") source = file.text;
+    if (file.name == name + ".h") header = file.text;
+  }
+  if (source.empty() || header.empty()) throw std::logic_error("the cpp target emitted no C source");
+  const work::Kept heeded;  // by what waits for the compiler, which leaves nothing behind
+  emit::Compiled compiled = emit::compile_and_load(source, header, name, &work::stop_flag());
+  if (!compiled.note.empty() && !again) {
+    work::warn(format_warning({{},
+                               compiled.note + "; what is compiled now is kept in a private one, for this run alone",
+                               "chmod 700 a folder of your own, or name one in EOMGEN_CACHE_DIR"}));
+  }
+  return {std::move(compiled), program};
+}
+
+std::vector<double> default_inputs(Derived& derived) {
+  const run::Scene scene =
+      run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
+  std::vector<double> result;
+  for (const run::Signal& input : scene.inputs) result.push_back(input(scene.t0, scene.t0));
+  return result;
+}
+
+CompiledCode compile_for_check(Derived& derived, const program::Program& program) {
+  const run::Scene scene =
+      run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
+  verify::Certificate pending;
+  return compile(program, emission_context(derived, program, scene, pending));
+}
+
+}  // namespace eomgen::pipeline

@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/emission.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "error.hpp"
+#include "model/names.hpp"
+#include "pipeline/charts.hpp"
+#include "work.hpp"
+
+namespace eomgen::pipeline {
+
+const std::vector<std::string>& emitted_functions() {
+  static const std::vector<std::string> names{"jac",     "jac_p",  "mass",   "momenta", "constraints", "reactions",
+                                              "outputs", "events", "energy", "taylor",  "charts"};
+  return names;
+}
+
+namespace {
+
+bool has(const std::vector<std::string>& names, const char* name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+program::Request request_of(const EmissionRequest& options, Derived& derived, const run::Scene& scene) {
+  program::Request request;
+  for (const std::string& name : options.with) {
+    if (name == "energy") {
+      request.outputs.push_back("energy");
+    } else if (name == "outputs") {
+      request.outputs.insert(request.outputs.end(), scene.outputs.begin(), scene.outputs.end());
+      if (scene.outputs.empty() && options.outputs.empty()) {
+        work::warn(
+            "warning: the default scene asks for no outputs, so there is no function for them\n"
+            "  remedy: name them: --output energy,..\n");
+      }
+    } else if (name != "charts") {
+      request.with.push_back(name);
+    }
+  }
+  std::vector<model::Named> wanted;
+  for (const std::string& name : options.outputs) wanted.push_back({name, {}});
+  for (const std::string& name : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted)) {
+    request.outputs.push_back(name);
+  }
+  std::vector<std::string> unique;
+  for (const std::string& name : request.outputs) {
+    if (std::find(unique.begin(), unique.end(), name) == unique.end()) unique.push_back(name);
+  }
+  request.outputs = unique;
+  for (const std::string& name : options.fix) {
+    const auto& parameters = derived.model.parameters;
+    const auto found =
+        std::find_if(parameters.begin(), parameters.end(), [&](const auto& p) { return p.name == name; });
+    if (found == parameters.end()) {
+      std::vector<std::string> names;
+      for (const model::Parameter& p : parameters) names.push_back(p.name);
+      throw Error("emit", {}, fmt::format("there is no parameter {} to fix", model::quote(name)),
+                  model::choice_of(name, names));
+    }
+    const auto index = static_cast<std::uint32_t>(found - parameters.begin());
+    request.fix[index] = cln::rational(cln::cl_R(scene.parameters[index]));
+  }
+  return request;
+}
+
+void require_with(const std::vector<std::string>& with) {
+  for (const std::string& name : with) {
+    if (std::find(emitted_functions().begin(), emitted_functions().end(), name) != emitted_functions().end()) continue;
+    const bool batch = name.ends_with("_batch");
+    throw Error("emit", {}, fmt::format("there is no function {} to emit", model::quote(name)),
+                batch ? "--target batch writes batches of rhs and of all that --with and --output ask for"
+                      : model::choice_of(name, emitted_functions()));
+  }
+}
+
+void require_target(const std::string& target) {
+  std::vector<std::string> known;
+  for (const emit::TargetEntry& entry : emit::targets()) known.emplace_back(entry.name);
+  if (std::find(known.begin(), known.end(), target) != known.end()) return;
+  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
+}
+
+/// All second charts and what can be combined of them; warns of what cannot be exchanged.
+void add_all_charts(Derived& derived, program::Program& program, const ChartRequest& request) {
+  const std::vector<model::SwitchedChart> all = charts_of(derived.mechanics);
+  for (const model::SwitchedChart& chart : all) {
+    if (chart.refusal.empty()) continue;
+    work::warn(
+        fmt::format("warning: '{}' keeps its chart {}: {}\n  remedy: where that fails use other coordinates, such as "
+                    "euler_parameters or cartesian ones\n",
+                    chart.of, chart.own, chart.refusal));
+  }
+  const std::vector<model::SwitchedChart> charts = exchangeable(all);
+  if (charts.empty()) {
+    throw Error("emit", Where{derived.model.file, 0, 0, 1, ""}, "this model has no chart that can be exchanged",
+                "leave charts out of --with; eomgen check tells the charts");
+  }
+  for (unsigned mask = 1; mask < 1u << charts.size(); ++mask)
+    add_second_charts(derived, program, charts, mask, request);
+}
+
+}  // namespace
+
+Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {
+  require_target(request.target);
+  require_with(request.with);
+  const auto derived = derive_model(std::move(model), request.approach, request.form);
+  const run::Scene scene =
+      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
+  const program::Request wanted = request_of(request, *derived, scene);
+  Emission result;
+  result.program = make_program(*derived, wanted);
+  if (has(request.with, "charts")) {
+    if (has(request.with, "taylor")) {
+      throw Error("emit", {}, "the function taylor has the series of one chart only",
+                  "leave taylor or charts out of --with");
+    }
+    add_all_charts(*derived, result.program, {wanted, request.approach, request.form, request.seed});
+  }
+  result.certificate = certify(*derived, result.program, {50, emission_points, request.seed, nullptr, wanted.fix});
+  require_pass(result.certificate, derived->model);
+  const emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
+  result.files = emit::emit(result.program, context, request.target);
+  result.seconds = derived->seconds;
+  return result;
+}
+
+}  // namespace eomgen::pipeline

@@ -1,0 +1,324 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/pipeline.hpp"
+
+#include <cln/dfloat.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "derive/routes.hpp"
+#include "emit/self_test.hpp"
+#include "error.hpp"
+#include "pipeline/kept_certificates.hpp"
+#include "pipeline/self_test_states.hpp"
+#include "print/notation.hpp"
+#include "print/printer.hpp"
+#include "print/render.hpp"
+#include "program/abi_values.hpp"
+#include "program/constrained_solve.hpp"
+#include "program/fingerprint.hpp"
+#include "program/interpret.hpp"
+#include "program/kinks.hpp"
+#include "reading/reading.hpp"
+
+namespace eomgen::pipeline {
+namespace {
+
+class Stopwatch {
+ public:
+  double lap() {
+    const auto now = std::chrono::steady_clock::now();
+    return std::chrono::duration<double>(now - std::exchange(last_, now)).count();
+  }
+
+ private:
+  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::vector<system::Approach> approaches(const mechanics::Mechanics& m, ApproachChoice choice) {
+  if (choice == ApproachChoice::one) return {system::Approach::one};
+  // With nothing to eliminate the two are the same equations.
+  if (choice == ApproachChoice::two || m.fixed.empty()) return {system::Approach::two};
+  return {system::Approach::two, system::Approach::one};
+}
+
+// Nothing to integrate and no right-hand side to emit; what such a model can tell is its constraint forces.
+void require_freedom(const mechanics::Mechanics& m) {
+  if (m.freedom() > 0) return;
+  const model::Constraint& last = m.model->constraints.back();
+  throw Error(
+      "derive", m.model->where(last.span),
+      m.free.empty() ? "the constraints fix every coordinate: nothing is left to move"
+                     : "there are as many constraints as coordinates: nothing is left to move, unless constraints "
+                       "repeat one another",
+      "remove a constraint; eomgen inverse gives the forces of a motion that is prescribed, eomgen derive shows them");
+}
+
+// The candidates in the forms that are wanted.
+void take_forms(Derived& derived, FormChoice choice) {
+  if (choice == system::Form::multipliers) return;
+  std::vector<system::EquationSystem> others;
+  for (const system::EquationSystem& candidate : derived.candidates) {
+    if (candidate.active.empty() || candidate.quasi || candidate.solution) continue;
+    for (const system::Form form : {system::Form::nullspace, system::Form::chaplygin}) {
+      if (choice && *choice != form) continue;
+      if (!program::form_applies(candidate, form, !choice)) continue;
+      others.push_back(candidate);
+      others.back().form = form;
+    }
+  }
+  if (choice && others.empty()) {
+    const bool any = !derived.mechanics.active.empty();
+    throw Error("derive", Where{derived.model.file, 0, 0, 1, ""},
+                any ? fmt::format("the constraints of this model can be left, or hang together in blocks that are too "
+                                  "large for form '{}'",
+                                  system::name(*choice))
+                    : fmt::format("form '{}' is one of constraints that keep multipliers, and this model has none",
+                                  system::name(*choice)),
+                any ? "leave --form out, or choose multipliers" : "leave --form out");
+  }
+  if (choice) derived.candidates.clear();
+  for (system::EquationSystem& other : others) derived.candidates.push_back(std::move(other));
+}
+
+// The other forms, as they come out of the derivation: all must say the same.
+std::vector<program::Program> other_forms(const Derived& derived, const program::Program& program,
+                                          const std::map<std::uint32_t, symbolic::Rational>& fixed) {
+  std::vector<program::Program> result;
+  for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
+    if (form == program.form || derived.mechanics.active.empty()) continue;
+    std::vector<system::EquationSystem> one{derived.candidates.front()};
+    one[0].form = form;
+    one[0].quasi.reset();
+    one[0].solution.reset();
+    if (!program::form_applies(one[0], form, false)) continue;
+    program::Request request;
+    request.optimise = false;
+    request.fix = fixed;
+    result.push_back(program::build_program(one, request));
+  }
+  return result;
+}
+
+program::AbiArguments abi_arguments(const verify::At& at, const std::vector<verify::Real>& default_inputs) {
+  return {{at.t, at.x, at.p, at.u, {}, {}, at.mode}, default_inputs, at.order};
+}
+
+/// The same with its other functions.
+verify::ProgramForm with_functions(verify::ProgramForm form, const program::Program& program,
+                                   const std::vector<verify::Real>& default_inputs) {
+  form.functions = program::abi_function_names(program);
+  form.route = program.route;
+  form.approach = program.approach;
+  form.outputs = program.outputs;
+  form.default_inputs = default_inputs;
+  form.call = [&program, default_inputs](const std::string& function, const verify::At& at, int digits) {
+    return program::abi_values(program, function, abi_arguments(at, default_inputs), digits);
+  };
+  return form;
+}
+
+verify::ProgramForm program_form(const program::Program& program, int digits,
+                                 const std::vector<verify::Real>& default_inputs) {
+  const program::Function& rhs = program.functions.front();
+  verify::ProgramForm form{
+      "optimised program",
+      [&rhs, digits](const verify::Real& t, const std::vector<verify::Real>& x, const std::vector<verify::Real>& p,
+                     const std::vector<verify::Real>& u, int mode) {
+        const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, digits);
+        for (std::size_t i = 1; i < values.results.size(); ++i) {
+          for (const cln::cl_R& code : values.results[i]) {
+            if (program::is_code(rhs.results[i].first) && cln::minusp(code)) return std::vector<verify::Real>{};
+          }
+        }
+        return values.results.front();
+      }};
+  form.bounds = [&program, default_inputs](const std::string& function, const verify::At& at) {
+    return program::abi_bounds(program, function, abi_arguments(at, default_inputs));
+  };
+  return form;
+}
+
+}  // namespace
+
+ApproachChoice approach_choice(const std::string& text) {
+  if (text == "auto") return ApproachChoice::automatic;
+  if (text == "I") return ApproachChoice::one;
+  if (text == "II") return ApproachChoice::two;
+  throw Error("cli", {}, fmt::format("there is no approach '{}'", text), "choose auto, I or II");
+}
+
+FormChoice form_choice(const std::string& text) {
+  if (text == "auto") return std::nullopt;
+  for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
+    if (text == system::name(form)) return form;
+  }
+  const bool later = text == "routh";
+  throw Error("cli", {},
+              later ? fmt::format("form '{}' is not supported yet", text) : fmt::format("there is no form '{}'", text),
+              "choose auto, multipliers, nullspace or chaplygin");
+}
+
+std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
+                                      FormChoice form) {
+  const work::Stage stage("deriving the equations");
+  auto derived = std::make_unique<Derived>(std::move(model));
+  Stopwatch watch;
+  derived->mechanics = mechanics::build_mechanics(derived->shared);
+  require_freedom(derived->mechanics);
+  for (const system::Approach a : approaches(derived->mechanics, approach)) {
+    for (const derive::RouteEntry& route : derive::routes()) {
+      if (auto route_system = derive::derive_where_worth(route, derived->mechanics, a).system)
+        derived->candidates.push_back(std::move(*route_system));
+    }
+  }
+  derived->conserved = derive::conserved_quantities(derived->mechanics, derived->candidates);
+  take_forms(*derived, form);
+  derived->seconds.derive = watch.lap();
+  return derived;
+}
+
+program::Program make_program(Derived& derived, const program::Request& request) {
+  const work::Stage stage("optimising the code");
+  Stopwatch watch;
+  program::Request complete = request;
+  complete.parameters = derived.model.parameters.size();
+  program::Program program = program::build_program(derived.candidates, complete);
+  derived.seconds.optimise += watch.lap();
+  return program;
+}
+
+void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
+  constexpr std::size_t large = 16;  // coordinates
+  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+    // With nothing to eliminate the approaches are one: a large system is not looked at twice.
+    if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
+    const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
+    std::string name = fmt::format("reading form {}", system::name(approach));
+    // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
+    if (form.by_parts)
+      subjects.left_out.push_back({std::move(name), form.why_by_parts});
+    else
+      subjects.reading.push_back({std::move(name), reading::residuals_on_dag(form, mechanics)});
+  }
+}
+
+namespace {
+
+/// Of all that a certificate depends on. Empty: nothing is kept of it.
+std::string key_of(const Derived& derived, const program::Program& program, const Verification& options) {
+  const std::string identity = program_identity();
+  if (!options.keep || options.compiled != nullptr || identity.empty() || derived.model.content_hash.empty()) return "";
+  std::string key = fmt::format("{}\n{}\n{} {} {} {}\n", identity, derived.model.content_hash, options.digits,
+                                options.points, options.seed, options.reductions);
+  for (const auto& [parameter, value] : options.fixed)
+    key += fmt::format("{} = {:.17g}\n", parameter, cln::double_approx(value));
+  for (const double input : options.default_inputs) key += fmt::format("{:.17g}\n", input);
+  return key + program::fingerprint(program);
+}
+
+}  // namespace
+
+verify::Certificate certify(Derived& derived, const program::Program& program, const Verification& options) {
+  const work::Stage stage("holding the derivations against one another");
+  Stopwatch watch;
+  const std::string key = key_of(derived, program, options);
+  if (!key.empty()) {
+    if (std::optional<verify::Certificate> kept = kept_certificate(key)) {
+      kept->options = {options.digits, options.points, options.seed, options.fixed};
+      derived.seconds.verify += watch.lap();
+      derived.kept_certificate = true;
+      return std::move(*kept);
+    }
+  }
+  verify::Subjects subjects;
+  subjects.systems = verify::all_routes(derived.mechanics, &subjects.left_out);
+  add_reading_forms(derived.mechanics, subjects);
+  if (options.reductions) {
+    const reading::RouthForm routh =
+        reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
+    subjects.reading.push_back(
+        {"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
+  }
+  std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
+  for (std::size_t i = 0; i < options.default_inputs.size(); ++i)
+    inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
+  const int digits = options.digits + verify::digits_of_range(derived.mechanics);
+  subjects.programs.push_back(with_functions(program_form(program, digits, inputs), program, inputs));
+  const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
+  for (const program::Program& form : forms) {
+    subjects.programs.push_back(program_form(form, digits, inputs));
+    subjects.programs.back().name = fmt::format("form {}", system::name(form.form));
+  }
+  if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);
+  const verify::Certificate certificate =
+      verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed});
+  derived.seconds.verify += watch.lap();
+  if (certificate.interrupted && !options.partial) throw work::Interrupted{};
+  if (!key.empty()) keep_certificate(key, certificate);
+  return certificate;
+}
+
+void require_pass(const verify::Certificate& certificate, const model::Model& model) {
+  if (certificate.pass) return;
+  std::string failures, agreeing;
+  for (const verify::Comparison& c : certificate.comparisons) {
+    if (!c.pass)
+      failures +=
+          fmt::format("{}{} against {}: {:.3g}", failures.empty() ? "" : "; ", c.a, c.b, c.max_relative_difference);
+  }
+  for (const std::string& name : certificate.agreeing()) agreeing += (agreeing.empty() ? "" : ", ") + name;
+  throw Error("verify", Where{model.file, 0, 0, 1, ""},
+              fmt::format("the derivations of this model disagree ({}), so nothing is emitted; {}", failures,
+                          agreeing.empty() ? "none agrees with d'Alembert's principle"
+                                           : "with d'Alembert's principle agree " + agreeing),
+              "this is a defect of eomgen: please report it with the model; eomgen verify shows all comparisons",
+              Fault::check);
+}
+
+emit::EmissionContext emission_context(Derived& derived, const program::Program& program, const run::Scene& scene,
+                                       const verify::Certificate& certificate) {
+  const model::Model& model = derived.model;
+  emit::EmissionContext context;
+  context.id = model.id;
+  context.title = model.title;
+  context.content_hash = model.content_hash;
+  // Without the measured differences, whose last digits depend on the word size of the machine: equal bytes everywhere.
+  context.verdict = fmt::format("{}: {} points at {} digits, {} comparisons", certificate.verdict(), certificate.points,
+                                certificate.options.digits, certificate.comparisons.size());
+  for (const model::Coordinate& c : model.coordinates) context.coordinates.push_back({c.name, c.unit.text, "", 0});
+  for (std::size_t i = 0; i < model.parameters.size(); ++i) {
+    const model::Parameter& p = model.parameters[i];
+    context.parameters.push_back({p.name, p.unit.text, p.note, scene.parameters[i]});
+    const symbolic::Ref formula = derived.mechanics.parameter_value[i];
+    if (derived.mechanics.dag->symbols({formula}).empty()) continue;
+    if (const auto written = reading::as_written(model, p.value)) {
+      context.parameters.back().expression =
+          print::print(*written, print::Notation(derived.mechanics), print::Format::language);
+    }
+  }
+  for (std::size_t i = 0; i < model.inputs.size(); ++i) {
+    const model::Input& input = model.inputs[i];
+    context.inputs.push_back({input.name, input.unit.text, "", scene.inputs[i](scene.t0, scene.t0)});
+  }
+  for (const model::Event& event : model.events) {
+    context.events.push_back({event.name, model::name(event.direction), event.stop ? "stop" : "record"});
+  }
+  for (const print::Item& item : print::render_singular(derived.mechanics)) {
+    if (item.left_out.empty()) context.singular.push_back(item.text);
+  }
+  context.start_time = scene.t0;
+  for (const std::uint32_t i : program.free) context.start.push_back(scene.q[i]);
+  for (const std::uint32_t i : program.free) context.start.push_back(scene.qdot[i]);
+  context.start.insert(context.start.end(), program.integrals.size(), 0.0);
+  for (const model::Integral& integral : model.integrals) {
+    context.integrals.push_back({integral.name, integral.unit.text, "", 0});
+  }
+  if (model.start_time) context.start_parameter = model.parameters[*model.start_time].name;
+  context.tests = test_vectors(program, context);
+  return context;
+}
+
+}  // namespace eomgen::pipeline

@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/self_test_states.hpp"
+
+#include <cmath>
+#include <eom/modes/chart_state.hpp>
+#include <optional>
+
+#include "emit/self_test.hpp"
+#include "program/kinks.hpp"
+
+namespace eomgen::pipeline {
+namespace {
+
+/// The k-th state for the self test: the start, then states beside it with other parameters and inputs, no two of which
+/// are equal, so that a vanishing term cannot hide, nor one that is taken for another. Nearer to the start where there
+/// is no value.
+std::optional<emit::TestVector> test_vector(const program::Program& program, const emit::EmissionContext& context,
+                                            int k, int mode, std::size_t index) {
+  for (const double share : {1.0, 0.125, 0x1p-6, 0x1p-10}) {
+    emit::TestVector at;
+    at.t = context.start_time + 0.125 * k * share;
+    at.mode = mode;
+    const double step = k * share;
+    for (std::size_t i = 0; i < context.start.size(); ++i) {
+      // Dyadic offsets: exact in binary64, different for every component.
+      at.x.push_back(context.start[i] + step * (static_cast<double>((5 * i + 3) % 16) - 7.5) / 64);
+    }
+    const std::size_t count = context.parameters.size();
+    for (std::size_t i = 0; i < count; ++i) {
+      const double value = context.parameters[i].value;
+      const std::size_t rank = k % 2 == 1 ? i + 1 : count - i;
+      const double more = step * static_cast<double>(rank) / (8 * static_cast<double>(count) + 8);
+      at.p.push_back(value == 0 ? more : value * (1 + more));
+    }
+    for (std::size_t i = 0; i < context.inputs.size(); ++i)
+      at.u.push_back(context.inputs[i].value + step * (0.25 + 0.0625 * static_cast<double>(i)));
+    if (auto vector = emit::test_vector(program, context, std::move(at), index)) return vector;
+    if (k == 0) break;
+  }
+  return std::nullopt;
+}
+
+/// A state of second charts at which rounding says nothing about the code.
+bool far_from_failing(const program::Program& program, int in_charts, const std::vector<double>& x) {
+  constexpr double far = 0.3;
+  bool result = true;
+  for (std::size_t j = 0; j < program.charts.size(); ++j) {
+    const program::ChartInfo& chart = program.charts[j];
+    const double angle = x[chart.guarded];
+    if ((eom::charts_of(in_charts) >> j & 1) != 0)
+      result = result && std::abs(chart.second_at_sine ? std::sin(angle) : std::cos(angle)) > far;
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<emit::TestVector> test_vectors(const program::Program& program, const emit::EmissionContext& context) {
+  constexpr std::size_t most_modes = 12;
+  std::vector<emit::TestVector> result;
+  const auto add = [&](int k, int mode) {
+    if (auto vector = test_vector(program, context, k, mode, result.size())) result.push_back(std::move(*vector));
+  };
+  for (const int k : {0, 1, 2}) add(k, 0);
+  const std::vector<eom::ContactShape> shapes(program.contacts.begin(), program.contacts.end());
+  for (const int mode : eom::contact_modes(shapes, most_modes)) {
+    if (mode != 0) add(1, mode);
+  }
+  int above = 0, below = 0;  // every kink held on one side
+  for (std::size_t k = 0; k < program.kinks.size(); ++k) {
+    above |= 1 << (program::first_kink_bit + 2 * k);
+    below |= 2 << (program::first_kink_bit + 2 * k);
+  }
+  if (above != 0) add(1, above), add(2, below);
+  for (const program::Program& other : program.second) {
+    std::size_t count = 0;
+    for (int k = 1; k < 9 && count < 2; ++k) {
+      std::optional<emit::TestVector> vector = test_vector(program, context, k, other.in_charts, result.size());
+      if (!vector || !far_from_failing(program, other.in_charts, vector->x)) continue;
+      result.push_back(std::move(*vector));
+      ++count;
+    }
+  }
+  return result;
+}
+
+}  // namespace eomgen::pipeline

@@ -1,0 +1,286 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/simulate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "error.hpp"
+#include "pipeline/beyond_range.hpp"
+#include "program/kinks.hpp"
+
+namespace eomgen::pipeline {
+namespace {
+
+std::vector<run::ContactOutputs> contact_outputs(const Derived& derived) {
+  std::vector<run::ContactOutputs> result;
+  for (const system::Contact& contact : derived.candidates.front().contacts) {
+    run::ContactOutputs outputs;
+    for (std::size_t a = 0; a < contact.slip.size(); ++a) {
+      const std::string name = contact.name + (contact.slip.size() > 1 ? "." + std::to_string(a + 1) : "");
+      outputs.slip.push_back("slip." + name);
+      outputs.phi.push_back(system::phi_output(name));
+      outputs.slopes.emplace_back();
+      for (const std::uint32_t q : derived.mechanics.free) {
+        outputs.slopes.back().push_back(system::slip_slope_output(name, derived.model.coordinates[q].name));
+      }
+    }
+    if (contact.unilateral) {
+      outputs.constraint = *contact.unilateral;
+      outputs.restitution = system::restitution_output(contact.name);
+    }
+    result.push_back(std::move(outputs));
+  }
+  return result;
+}
+
+/// All that the compiled code gives: coordinates, energies, what is watched, reactions, what is asked for.
+std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& scene, bool watch_power) {
+  std::vector<std::string> names;
+  const auto add = [&](const std::string& name) {
+    if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  };
+  for (const model::Coordinate& c : derived.model.coordinates) {
+    add(c.name);
+    add(c.name + "_dot");
+  }
+  for (const char* name : {"energy", "kinetic", "potential"}) add(name);
+  if (watch_power) add("power");
+  for (const derive::Conserved& c : derived.conserved) {
+    add(c.name);
+    if (c.magnitude) add(derive::magnitude_output(c));
+  }
+  for (const mechanics::Integral& i : derived.mechanics.integrals) {
+    for (const std::uint32_t q : derived.mechanics.free)
+      add(derive::differential_output(i, derived.model.coordinates[q].name));
+    add(derive::differential_output(i, "t"));
+  }
+  for (const system::Output& output : derived.candidates.front().outputs) {
+    if (output.name.starts_with("reaction.") || output.name.starts_with(system::watched_prefix)) add(output.name);
+  }
+  for (const run::ContactOutputs& contact : contact_outputs(derived)) {
+    for (const auto* list : {&contact.slip, &contact.phi}) std::for_each(list->begin(), list->end(), add);
+    for (const std::vector<std::string>& slopes : contact.slopes) std::for_each(slopes.begin(), slopes.end(), add);
+    if (!contact.restitution.empty()) add(contact.restitution);
+  }
+  for (const std::string& name : scene.outputs) add(name);
+  if (scene.t1 == scene.t0) {
+    for (const model::Coordinate& c : derived.model.coordinates) add(c.name + "_ddot");
+  }
+  return names;
+}
+
+bool energy_is_conserved(const Derived& derived) {
+  return std::any_of(derived.conserved.begin(), derived.conserved.end(),
+                     [](const derive::Conserved& c) { return c.name == "energy"; });
+}
+
+}  // namespace
+
+double row_interval(const run::Scene& scene) {
+  return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
+}
+
+std::vector<std::string> state_names(const Derived& derived) {
+  std::vector<std::string> names;
+  for (const char* suffix : {"", "_dot"}) {
+    for (const std::uint32_t i : derived.mechanics.free) names.push_back(derived.model.coordinates[i].name + suffix);
+  }
+  for (const system::IntegralState& integral : derived.candidates.front().integrals) {
+    names.push_back(derived.model.integrals[integral.integral].name);
+  }
+  return names;
+}
+
+/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
+/// contacts.
+static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
+  const system::EquationSystem& system = derived.candidates.front();
+  std::vector<std::optional<symbolic::Ref>> functions;
+  for (const system::Event& event : system.events) functions.emplace_back(event.value);
+  functions.insert(functions.end(), code.kink_values.begin(), code.kink_values.end());
+  functions.resize(system.events.size() + code.kinks.size());
+  for (const system::Contact& contact : system.contacts) {
+    for (std::size_t value = 0; value < eom::contact_values; ++value) {
+      functions.emplace_back();
+      if (value == 3 && contact.unilateral) functions.back() = system.psi[*contact.unilateral];
+    }
+  }
+  if (functions.empty()) return {};
+  return run::EventRanges(system, functions, scene.parameters);
+}
+
+run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
+  run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
+                      {},   {}};
+  for (const derive::Conserved& c : derived.conserved) {
+    run.conserved.push_back(c.name);
+    run.magnitudes.push_back(c.magnitude ? derive::magnitude_output(c) : "");
+  }
+  for (const mechanics::Integral& i : derived.mechanics.integrals) {
+    run::IntegralOutputs names{"integral." + i.label, {}};
+    for (const std::uint32_t q : derived.mechanics.free) {
+      names.slopes.push_back(derive::differential_output(i, derived.model.coordinates[q].name));
+    }
+    names.slopes.push_back(derive::differential_output(i, "t"));
+    run.integrals.push_back(std::move(names));
+  }
+  run.contacts = contact_outputs(derived);
+  run.ranges = ranges_of(derived, scene, code);
+  run.narrow = run::NarrowForces(derived.candidates.front(), scene.parameters);
+  run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
+    return holds_beyond_range(derived, scene, code, coordinate, t, x);
+  };
+  for (const std::uint32_t k : derived.candidates.front().active)
+    run.constraint_names.push_back(derived.mechanics.constraints[k].label);
+  for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
+    const model::Event& event = derived.model.events[i];
+    run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});
+    if (event.direction == model::Event::Direction::up) run.events.back().direction = eom::Direction::up;
+    if (event.direction == model::Event::Direction::down) run.events.back().direction = eom::Direction::down;
+  }
+  return run;
+}
+
+namespace {
+
+/// Surfaces of the kinks of a program as expressions.
+std::vector<symbolic::Ref> kink_values(const Derived& derived, const program::Program& program) {
+  std::vector<symbolic::Ref> values;
+  for (const system::EquationSystem& candidate : derived.candidates) {
+    if (program.kinks.empty() || candidate.route != program.route || candidate.approach != program.approach ||
+        candidate.form != program.form)
+      continue;
+    system::EquationSystem held = candidate;
+    for (const program::Kink& kink : program::hold_kinks(held)) values.push_back(kink.value);
+    if (values.size() == program.kinks.size()) return values;
+    values.clear();
+  }
+  return values;
+}
+
+/// Lets the run exchange what the library can.
+void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& library) {
+  if (!library) return;
+  for (const model::SwitchedChart& chart : library->charts()) {
+    run::ExchangedChart exchanged{chart.of, {}, chart.angles, chart.guarded, chart.at_sine, true};
+    exchanged.second_at_sine = chart.kind == model::SwitchedChart::Kind::position || !chart.at_sine;
+    for (const std::uint32_t angle : chart.angles) {
+      const auto place = std::find(run.code.free.begin(), run.code.free.end(), angle);
+      exchanged.angles.push_back(static_cast<std::size_t>(place - run.code.free.begin()));
+    }
+    run.charts.push_back(std::move(exchanged));
+  }
+  run.in_charts = [library](unsigned charts) -> const run::Code& { return library->in(charts); };
+}
+
+}  // namespace
+
+namespace {
+
+/// Empty where the system has what variational integrators need.
+std::string not_variational(const system::EquationSystem& system) {
+  const bool on_velocities =
+      std::find(system.holonomic.begin(), system.holonomic.end(), false) != system.holonomic.end();
+  return run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system),
+                              !system.integrals.empty());
+}
+
+/// Told before anything is compiled.
+void require_fit(const system::EquationSystem& system, const std::string& solver) {
+  const eom::MethodInfo& method = run::method_named(solver);
+  std::string why;
+  if (method.variational) why = not_variational(system);
+  if (method.constrained) why = run::not_constrained(!system.contacts.empty(), !system.active.empty());
+  if (why.empty()) return;
+  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why),
+              run::instead_of(solver));
+}
+
+}  // namespace
+
+Simulation simulate(const SimulationRequest& request) {
+  std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
+  mechanics::Mechanics& mechanics = derived->mechanics;
+  const std::vector<std::string> prepared = request.prepare ? request.prepare(*derived) : std::vector<std::string>{};
+  const system::EquationSystem& system = derived->candidates.front();
+  const bool possible = request.charts && !exchangeable(charts_of(mechanics)).empty();
+  run::Overrides overrides = request.overrides, none;
+  overrides.exchanges_charts = none.exchanges_charts = possible;
+  run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
+  const std::string solver =
+      run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
+  const bool variational = run::method_named(solver).variational;
+  const bool exchanges = possible && !scene.jumps && !run::method_named(solver).series && !variational;
+  require_fit(system, solver);
+
+  const bool watch_power = !energy_is_conserved(*derived);
+  program::Request wanted;
+  wanted.outputs = code_outputs(*derived, scene, watch_power);
+  for (const std::string& name : prepared) {
+    if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end())
+      wanted.outputs.push_back(name);
+  }
+  if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
+  if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system))
+    wanted.with.push_back("events");
+  if (run::method_named(solver).implicit || request.every_solver) wanted.with.push_back("jac");
+  if (run::method_named(solver).series || request.every_solver) wanted.with.push_back("taylor");
+  const bool momenta = variational || (request.every_solver && not_variational(system).empty());
+  if (momenta) wanted.with.push_back("momenta");
+  if (momenta && system.active.empty() && system.contacts.empty()) wanted.with.push_back("mass");
+  for (const std::string& name : request.with) {
+    if (std::find(wanted.with.begin(), wanted.with.end(), name) == wanted.with.end()) wanted.with.push_back(name);
+  }
+  program::Program program = make_program(*derived, wanted);
+  verify::Certificate certificate = certify(*derived, program, {50, emission_points, request.seed, nullptr});
+  require_pass(certificate, derived->model);
+  // The sources carry the default scene, so that every scene runs the same library.
+  const run::Scene defaults = run::resolve_scene(mechanics, system, derived->model.scene("default"), none);
+  if (request.ready) request.ready();
+  emit::EmissionContext context = emission_context(*derived, program, defaults, certificate);
+  CompiledCode code = compile(program, context);
+  std::shared_ptr<ChartLibrary> charts;
+  if (exchanges) {
+    charts = std::make_shared<ChartLibrary>(*derived, program, std::move(context),
+                                            ChartRequest{wanted, request.approach, request.form, request.seed});
+  }
+
+  run::Code functions = code.for_run();
+  functions.kink_values = kink_values(*derived, program);
+  run::RunRequest run = run_request(*derived, scene, functions, request.estimate);
+  allow_charts(run, charts);
+  if (request.begin) {
+    run.every = request.rows ? std::max((scene.t1 - scene.t0) / *request.rows, std::numeric_limits<double>::min())
+                             : row_interval(scene);
+    request.begin(*derived, scene, functions.output_names);
+  }
+  run.row = request.row;
+  run.progress = request.progress;
+  run.interrupt = request.interrupt;
+  run.max_steps = request.max_steps;
+  run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
+  if (possible && !exchanges)
+    result.reason += variational
+                         ? "; the model's own coordinates are kept where they fail, since an exchange is not symplectic"
+                         : "; its series is that of the model's own coordinates, which are kept where they fail";
+  if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
+  return {std::move(derived), std::move(scene),  std::move(program), std::move(certificate),
+          std::move(code),    std::move(result), std::move(charts)};
+}
+
+run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate) {
+  Derived& derived = *simulation.derived;
+  run::Overrides allowed = overrides;
+  allowed.exchanges_charts = simulation.charts != nullptr;
+  const run::Scene scene = run::resolve_scene(derived.mechanics, derived.candidates.front(),
+                                              derived.model.scene(simulation.scene.name), allowed);
+  run::Code code = simulation.code.for_run();
+  code.kink_values = kink_values(derived, simulation.program);
+  run::RunRequest run = run_request(derived, scene, code, estimate);
+  allow_charts(run, simulation.charts);
+  return run::integrate_scene(run);
+}
+
+}  // namespace eomgen::pipeline

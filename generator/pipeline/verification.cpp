@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/verification.hpp"
+
+#include "error.hpp"
+#include "pipeline/code.hpp"
+
+namespace eomgen::pipeline {
+namespace {
+
+/// Every function that `emit` may be asked for, but for Taylor series where the program is too large for them.
+program::Program with_every_function(Derived& derived) {
+  program::Request request;
+  request.with = {"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
+  for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
+  try {
+    return make_program(derived, request);
+  } catch (const Error&) {
+    request.with.pop_back();
+    return make_program(derived, request);
+  }
+}
+
+/// Where the constraints fix the whole motion there is nothing to integrate and no code: the routes and the reading
+/// forms are held against the judge, their constraint forces above all.
+std::optional<verify::Certificate> certify_prescribed(const std::shared_ptr<const model::Model>& model,
+                                                      const VerificationRequest& request) {
+  std::size_t equations = 0;
+  for (const model::Constraint& constraint : model->constraints) equations += constraint.psi.size();
+  if (equations < model->coordinates.size()) return std::nullopt;
+  mechanics::Mechanics mechanics = mechanics::build_mechanics(model);
+  if (mechanics.freedom() > 0) return std::nullopt;
+  verify::Subjects subjects;
+  subjects.systems = verify::all_routes(mechanics, &subjects.left_out);
+  add_reading_forms(mechanics, subjects);
+  return verify::certify(mechanics, subjects, {request.digits, request.points, request.seed, {}});
+}
+
+}  // namespace
+
+verify::Certificate verify_model(std::shared_ptr<const model::Model> model, const VerificationRequest& request) {
+  if (const auto prescribed = certify_prescribed(model, request)) return *prescribed;
+  const std::unique_ptr<Derived> derived = derive_model(std::move(model), ApproachChoice::automatic);
+  const program::Program program = with_every_function(*derived);
+  Verification verification{request.digits, request.points, request.seed, nullptr};
+  verification.reductions = true;
+  verification.partial = true;
+  verification.keep = false;
+  std::optional<CompiledCode> code;
+  verify::CompiledForm compiled;
+  if (request.compile) {
+    code.emplace(compile_for_check(*derived, program));
+    compiled = code->form();
+    verification.compiled = &compiled;
+    verification.default_inputs = default_inputs(*derived);
+  }
+  return certify(*derived, program, verification);
+}
+
+}  // namespace eomgen::pipeline
