@@ -55,6 +55,9 @@ function(eom_generate)
   _eom_options(options)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/${ARG_TARGET}_eom")
   set(files "${folder}/${name}.c" "${folder}/${name}.h" "${folder}/${name}.hpp")
+  if("run" IN_LIST ARG_WITH)
+    list(APPEND files "${folder}/${name}_run.hpp")
+  endif()
   add_custom_command(OUTPUT ${files}
     COMMAND eomgen::cli emit "${model}" -o "${folder}" --target cpp ${options}
     DEPENDS "${model}" "$<TARGET_FILE:eomgen::cli>"

@@ -3,8 +3,14 @@
 // so that emission needs neither the reader nor the derivation.
 #pragma once
 
+#include <cstddef>
+#include <memory>
 #include <string>
 #include <vector>
+
+namespace eom::hybrid {
+struct Problem;
+}
 
 namespace eomgen::emit {
 
@@ -36,6 +42,13 @@ struct EventText {
   std::string name, direction, action;
 };
 
+/// What a program needs to run the model as `run` does: the default scene, whose code is described, and the places
+/// among the outputs of the columns of its table.
+struct RunText {
+  std::shared_ptr<const eom::hybrid::Problem> problem;
+  std::vector<std::size_t> columns;
+};
+
 struct EmissionContext {
   std::string id;  // of the model; becomes NAME
   std::string title;
@@ -51,6 +64,7 @@ struct EmissionContext {
   double start_time = 0;
   std::vector<double> start;  // x at the start of the default scene
   std::vector<TestVector> tests;
+  std::shared_ptr<const RunText> run = {};  // where it was asked for
 };
 
 /// NAME of the C ABI: the model's id as an identifier that no target reserves.

@@ -11,33 +11,39 @@
 
 namespace eomgen::pipeline {
 
+run::Code described_code(const program::Program& program) {
+  run::Code code;
+  code.prepared = program.prepared_count();
+  code.output_names = program.outputs;
+  code.free = program.free;
+  code.integrals = program.integrals.size();
+  code.active_constraints = program.active_constraints;
+  code.holonomic = program.holonomic;
+  code.kinks = program.kinks;
+  code.first_kink_bit = program::first_kink_bit;
+  for (const program::ContactInfo& contact : program.contacts) code.contacts.push_back({contact, contact.name, 0});
+  if (program.taylor) code.taylor_order = static_cast<int>(program::taylor_order(*program.taylor));
+  for (const program::Program& second : program.second) {
+    code.own_outputs.push_back({second.in_charts, {}});
+    for (const program::Function& function : second.functions) {
+      if (function.name != "outputs") continue;
+      for (std::uint32_t i = 0; i < program.outputs.size(); ++i) {
+        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end())
+          code.own_outputs.back().outputs.push_back(i);
+      }
+    }
+  }
+  return code;
+}
+
 CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& program)
-    : compiled_(std::move(compiled)),
-      outputs_(program.outputs),
-      kinks_(program.kinks),
-      free_(program.free),
-      integrals_(program.integrals.size()),
-      prepared_(program.prepared_count()),
-      active_(program.active_constraints),
-      holonomic_(program.holonomic) {
-  if (program.taylor) taylor_order_ = static_cast<int>(program::taylor_order(*program.taylor));
-  for (const program::ContactInfo& contact : program.contacts) contacts_.push_back({contact, contact.name, 0});
+    : compiled_(std::move(compiled)), described_(described_code(program)) {
   for (const program::Function& function : program.functions) {
     for (const auto& result : function.results) {
       if (!program::is_code(result.first)) arrays_[function.name].push_back(result.second.size());
     }
   }
   if (program.taylor) arrays_["taylor"] = {};
-  for (const program::Program& second : program.second) {
-    own_outputs_.push_back({second.in_charts, {}});
-    for (const program::Function& function : second.functions) {
-      if (function.name != "outputs") continue;
-      for (std::uint32_t i = 0; i < outputs_.size(); ++i) {
-        if (std::find(function.places.begin(), function.places.end(), i) == function.places.end())
-          own_outputs_.back().outputs.push_back(i);
-      }
-    }
-  }
 }
 
 namespace {
@@ -86,13 +92,14 @@ verify::CompiledForm CompiledCode::form() const {
   const emit::LoadedModel* const model = &compiled_.model;
   verify::CompiledForm form;
   form.name = "emitted code";
-  form.call = [model, arrays = arrays_, prepared = prepared_](const std::string& function, const verify::At& at) {
+  form.call = [model, arrays = arrays_, prepared = described_.prepared](const std::string& function,
+                                                                        const verify::At& at) {
     return called(*model, function, at, arrays.at(function), prepared);
   };
-  const std::size_t size = 2 * free_.size() + integrals_;
-  form.rhs = [model, size, prepared = prepared_](double t, const std::vector<double>& x, const std::vector<double>& p,
-                                                 const std::vector<double>& u,
-                                                 int mode) -> std::optional<std::vector<double>> {
+  const std::size_t size = 2 * described_.free.size() + described_.integrals;
+  form.rhs = [model, size, prepared = described_.prepared](double t, const std::vector<double>& x,
+                                                           const std::vector<double>& p, const std::vector<double>& u,
+                                                           int mode) -> std::optional<std::vector<double>> {
     std::vector<double> dx(size), w(prepared);
     // What `run` integrates; the self test has compared it with `rhs`.
     const int code = prepared == 0 ? model->rhs(t, x.data(), p.data(), u.data(), mode, dx.data())
@@ -107,19 +114,21 @@ verify::CompiledForm CompiledCode::form() const {
 
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
-  run::Code code{model.rhs,  model.prepare,     model.rhs_prepared, prepared_, model.outputs, model.events, model.jac,
-                 model.mass, model.constraints, outputs_,           free_,     integrals_,    active_,      holonomic_};
-  code.taylor = model.taylor;
+  run::Code code = described_;
+  code.rhs = model.rhs;
+  code.prepare = model.prepare;
+  code.rhs_prepared = model.rhs_prepared;
+  code.outputs = model.outputs;
+  code.events = model.events;
+  code.jac = model.jac;
   code.jac_p = model.jac_p;
+  code.mass = model.mass;
+  code.constraints = model.constraints;
+  code.taylor = model.taylor;
   code.momenta = model.momenta;
-  code.taylor_order = taylor_order_;
-  code.kinks = kinks_;
-  code.contacts = contacts_;
-  code.first_kink_bit = program::first_kink_bit;
   code.chart = model.chart;
   code.mass_in = model.mass_in;
   code.constraints_in = model.constraints_in;
-  code.own_outputs = own_outputs_;
   return code;
 }
 

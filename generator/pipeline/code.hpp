@@ -12,6 +12,9 @@
 
 namespace eomgen::pipeline {
 
+/// What a program says of its functions, which are null.
+run::Code described_code(const program::Program& program);
+
 class CompiledCode {
  public:
   CompiledCode(emit::Compiled compiled, const program::Program& program);
@@ -22,15 +25,7 @@ class CompiledCode {
 
  private:
   emit::Compiled compiled_;
-  std::vector<std::string> outputs_, kinks_;
-  std::vector<std::uint32_t> free_;
-  std::size_t integrals_;
-  std::size_t prepared_ = 0;
-  int taylor_order_ = 0;
-  std::size_t active_;
-  std::vector<bool> holonomic_;
-  std::vector<eom::Contact> contacts_;
-  std::vector<run::OwnOutputs> own_outputs_;
+  run::Code described_;
   std::map<std::string, std::vector<std::size_t>> arrays_;  // sizes of what each function writes
 };
 

@@ -8,24 +8,27 @@
 #include "error.hpp"
 #include "model/names.hpp"
 #include "pipeline/charts.hpp"
+#include "pipeline/run_text.hpp"
+#include "pipeline/simulate.hpp"
 #include "work.hpp"
 
 namespace eomgen::pipeline {
 
 const std::vector<std::string>& emitted_functions() {
   static const std::vector<std::string> names{"jac",     "jac_p",  "mass",   "momenta", "constraints", "reactions",
-                                              "outputs", "events", "energy", "taylor",  "charts"};
+                                              "outputs", "events", "energy", "taylor",  "charts",      "run"};
   return names;
 }
 
 namespace {
 
-bool has(const std::vector<std::string>& names, const char* name) {
+bool has(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
 program::Request request_of(const EmissionRequest& options, Derived& derived, const run::Scene& scene) {
   program::Request request;
+  if (has(options.with, "run")) request = run_functions(derived, scene, run::choose_solver(scene.solver, scene).first);
   for (const std::string& name : options.with) {
     if (name == "energy") {
       request.outputs.push_back("energy");
@@ -36,7 +39,7 @@ program::Request request_of(const EmissionRequest& options, Derived& derived, co
             "warning: the default scene asks for no outputs, so there is no function for them\n"
             "  remedy: name them: --output energy,..\n");
       }
-    } else if (name != "charts") {
+    } else if (name != "charts" && name != "run" && !has(request.with, name)) {
       request.with.push_back(name);
     }
   }
@@ -122,7 +125,8 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   }
   result.certificate = certify(*derived, result.program, {50, emission_points, request.seed, nullptr, wanted.fix});
   require_pass(result.certificate, derived->model);
-  const emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
+  emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
+  if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
   result.files = emit::emit(result.program, context, request.target);
   result.seconds = derived->seconds;
   return result;

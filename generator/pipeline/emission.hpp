@@ -17,7 +17,8 @@ struct EmissionRequest {
   std::uint64_t seed = 1;
 };
 
-/// What `with` may hold: functions beside rhs; "energy"; "outputs", those of the default scene; "charts", second ones.
+/// What `with` may hold: functions beside rhs; "energy"; "outputs", those of the default scene; "charts", second ones;
+/// "run", all that a run calls.
 const std::vector<std::string>& emitted_functions();
 
 struct Emission {

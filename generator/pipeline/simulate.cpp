@@ -200,6 +200,23 @@ void require_fit(const system::EquationSystem& system, const std::string& solver
 
 }  // namespace
 
+program::Request run_functions(const Derived& derived, const run::Scene& scene, const std::string& solver,
+                               bool every_solver) {
+  const system::EquationSystem& system = derived.candidates.front();
+  program::Request wanted;
+  wanted.outputs = code_outputs(derived, scene, !energy_is_conserved(derived));
+  const bool variational = run::method_named(solver).variational;
+  if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
+  if (!derived.model.events.empty() || !system.contacts.empty() || program::has_kinks(system))
+    wanted.with.push_back("events");
+  if (run::method_named(solver).implicit || every_solver) wanted.with.push_back("jac");
+  if (run::method_named(solver).series || every_solver) wanted.with.push_back("taylor");
+  const bool momenta = variational || (every_solver && not_variational(system).empty());
+  if (momenta) wanted.with.push_back("momenta");
+  if (momenta && system.active.empty() && system.contacts.empty()) wanted.with.push_back("mass");
+  return wanted;
+}
+
 Simulation simulate(const SimulationRequest& request) {
   std::unique_ptr<Derived> derived = derive_model(request.model, request.approach, request.form);
   mechanics::Mechanics& mechanics = derived->mechanics;
@@ -215,21 +232,11 @@ Simulation simulate(const SimulationRequest& request) {
   const bool exchanges = possible && !scene.jumps && !run::method_named(solver).series && !variational;
   require_fit(system, solver);
 
-  const bool watch_power = !energy_is_conserved(*derived);
-  program::Request wanted;
-  wanted.outputs = code_outputs(*derived, scene, watch_power);
+  program::Request wanted = run_functions(*derived, scene, solver, request.every_solver);
   for (const std::string& name : prepared) {
     if (std::find(wanted.outputs.begin(), wanted.outputs.end(), name) == wanted.outputs.end())
       wanted.outputs.push_back(name);
   }
-  if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
-  if (!derived->model.events.empty() || !system.contacts.empty() || program::has_kinks(system))
-    wanted.with.push_back("events");
-  if (run::method_named(solver).implicit || request.every_solver) wanted.with.push_back("jac");
-  if (run::method_named(solver).series || request.every_solver) wanted.with.push_back("taylor");
-  const bool momenta = variational || (request.every_solver && not_variational(system).empty());
-  if (momenta) wanted.with.push_back("momenta");
-  if (momenta && system.active.empty() && system.contacts.empty()) wanted.with.push_back("mass");
   for (const std::string& name : request.with) {
     if (std::find(wanted.with.begin(), wanted.with.end(), name) == wanted.with.end()) wanted.with.push_back(name);
   }

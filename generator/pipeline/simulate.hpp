@@ -57,6 +57,11 @@ double row_interval(const run::Scene& scene);
 
 Simulation simulate(const SimulationRequest& request);
 
+/// The functions and outputs that a run of the scene by this solver calls. every_solver: by any that can integrate the
+/// model.
+program::Request run_functions(const Derived& derived, const run::Scene& scene, const std::string& solver,
+                               bool every_solver = false);
+
 /// Of the state: free coordinates, their rates, integrals over time.
 std::vector<std::string> state_names(const Derived& derived);
 

@@ -24,16 +24,19 @@ if grep -rIlF -e "$source" -e "$build" -e "$scratch/first" -- "$prefix"; then re
 
 echo "-- a stranger's program is built with it and links neither GiNaC nor CLN"
 cp -R "$source/tests/install/consumer" "$scratch/source"
+cp "$source/examples/hybrid/rough_sphere.cpp" "$scratch/source/"
 "$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/configure.log" 2>&1 ||
   { cat "$scratch/configure.log"; refuse "find_package(eomgen)"; }
 grep -q "^eomgen_DIR:PATH=$prefix/" "$scratch/consumer/CMakeCache.txt" || refuse "another eomgen was found than the one installed here"
 "$cmake" --build "$scratch/consumer"
-for program in oscillator pendulum; do
-  "$scratch/consumer/$program" || refuse "$program"
+for program in oscillator pendulum rough_sphere; do
+  "$scratch/consumer/$program" $([[ $program != rough_sphere ]] || echo "$scratch/rough_sphere.csv") || refuse "$program"
   linked=$(ldd "$scratch/consumer/$program")
   if grep -Ei 'ginac|libcln|libgmp' <<<"$linked"; then refuse "$program links computer algebra"; fi
 done
+"$prefix/bin/eomgen" run P5_rough_sphere --out "$scratch/run.csv" >"$scratch/run.txt" || refuse "eomgen run P5_rough_sphere"
+cmp "$scratch/rough_sphere.csv" "$scratch/run.csv" || refuse "emitted code and the runtime give another table than eomgen run"
 grep -q 'int__rhs(' "$scratch/consumer/reserved_equations_eom/int_.h" || refuse "a model called int.toml is not int_"
 if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these installed headers include computer algebra"; fi
 
@@ -63,7 +66,7 @@ touch "$scratch/source/pendulum.toml"
 grep -q 'p\[1\] = 2.0' "$generated" || refuse "the generated code does not have the changed parameter"
 "$scratch/consumer/pendulum" || refuse "the program of the changed model"
 touch "$prefix/bin/eomgen"
-(($(rebuilds | wc -l) == 3)) || refuse "a newer eomgen did not generate all code"
+(($(rebuilds | wc -l) == 4)) || refuse "a newer eomgen did not generate all code"
 
 echo "-- the licence of what is installed lies beside it"
 [[ -n $(find "$prefix" -path '*doc*' -name 'LICENSE*') ]] || refuse "no licence is installed"

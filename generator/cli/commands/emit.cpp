@@ -138,7 +138,7 @@ Execute declare_emit(CLI::App& app) {
       ->capture_default_str();
   add_list(app, "--with", options->with,
            "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, "
-           "taylor; charts: second ones");
+           "taylor; charts: second ones; run: all that a run calls");
   add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form,

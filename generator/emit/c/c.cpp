@@ -7,6 +7,7 @@
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
 #include "emit/parts.hpp"
+#include "emit/run/run_header.hpp"
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
 #include "emit/taylor.hpp"
@@ -131,8 +132,10 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
       {"defaults", defaults_body(program, context, dialect)},
       {"comparison", selftest_comparison(context, test, dialect)},
       {"selftest", selftest_body(program, context, test, dialect)}};
-  return {{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
-          {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, declared)}};
+  std::vector<EmittedFile> files{{fmt::format("{}.c", name), rendered(skeleton::c_model_c, values, functions)},
+                                 {fmt::format("{}.h", name), rendered(skeleton::c_model_h, values, declared)}};
+  for (EmittedFile& file : emit_run_header(program, context)) files.push_back(std::move(file));
+  return files;
 }
 
 }  // namespace eomgen::emit

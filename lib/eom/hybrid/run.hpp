@@ -45,6 +45,7 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
 /// Throws std::invalid_argument for a solver that is not there, or that the code has not what it needs for (a series,
 /// momenta, constraints), or options that make no sense. Where t1 is t0 nothing is integrated.
 inline RunResult run(const Problem& problem) {
+  require_functions(problem);
   const Options options = options_of(problem);
   Integration integration(problem);
   Parts& parts = integration.parts();

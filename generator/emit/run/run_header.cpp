@@ -1,0 +1,186 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "emit/run/run_header.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/hybrid/problem.hpp>
+#include <optional>
+#include <type_traits>
+
+#include "emit/metadata.hpp"
+#include "emit/text.hpp"
+#include "skeletons/cpp_run_hpp.hpp"
+
+namespace eomgen::emit {
+namespace {
+
+using eom::hybrid::Problem;
+
+std::string number(double value) {
+  if (std::isinf(value)) return value > 0 ? "infinity" : "-infinity";
+  return decimal(value);
+}
+std::string text(bool value) { return value ? "true" : "false"; }
+template <class Number>
+std::string text(Number value) requires std::is_integral_v<Number> {
+  return fmt::format("{}", value);
+}
+std::string text(double value) { return number(value); }
+std::string text(const std::string& value) { return string_literal(value, "      "); }
+std::string text(const std::optional<std::size_t>& value) { return value ? text(*value) : "std::nullopt"; }
+template <class Entry>
+std::string text(const std::vector<Entry>& list);
+std::string text(const eom::hybrid::Break& b) { return fmt::format("{{{}, {}}}", number(b.before), number(b.after)); }
+std::string text(const eom::StepBound& b) { return fmt::format("{{{}, {}}}", number(b.t), number(b.step)); }
+std::string text(const eom::hybrid::Range& r) { return fmt::format("{{{}, {}}}", number(r.lower), number(r.upper)); }
+std::string text(const eom::hybrid::OwnOutputs& own) {
+  return fmt::format("{{{}, {}}}", own.in_charts, text(own.outputs));
+}
+std::string text(const eom::Contact& c) {
+  return fmt::format("{{{{{}, {}, {}, {}, {}}}, {}, 0.0}}", c.dimensions, c.surface, c.unilateral, c.sticks, c.rolls,
+                     text(c.name));
+}
+std::string text(const eom::hybrid::WatchedEvent& event) {
+  const char* direction = event.direction == eom::Direction::any  ? "any"
+                          : event.direction == eom::Direction::up ? "up"
+                                                                  : "down";
+  return fmt::format("{{{}, eom::Direction::{}, {}}}", text(event.name), direction, event.stop);
+}
+std::string text(const eom::hybrid::Invariant& i) {
+  return fmt::format("{{{}, {}, {}, {}}}", text(i.name), i.output, text(i.magnitude), i.energy);
+}
+std::string text(const eom::hybrid::IntegralOutputs& i) { return fmt::format("{{{}, {}}}", i.psi, text(i.slopes)); }
+std::string text(const eom::hybrid::ContactOutputs& c) {
+  return fmt::format("{{{}, {}, {}, {}, {}}}", text(c.slip), text(c.slopes), text(c.phi), c.constraint,
+                     text(c.restitution));
+}
+std::string text(const eom::hybrid::ExchangedChart& c) {
+  return fmt::format("{{{}, {}, {}, {}, {}, {}}}", text(c.of), text(c.angles), text(c.coordinates), c.guarded,
+                     c.at_sine, c.second_at_sine);
+}
+template <class Entry>
+std::string text(const std::vector<Entry>& list) {
+  std::string result;
+  for (const auto& entry : list) result += (result.empty() ? "" : ", ") + text(static_cast<const Entry&>(entry));
+  return "{" + result + "}";
+}
+
+/// A statement for what is not empty.
+class Statements {
+ public:
+  explicit Statements(std::string of) : of_(std::move(of)) {}
+  template <class Value>
+  void set(const char* member, const Value& value) {
+    line(fmt::format("{}.{} = {};", of_, member, text(value)));
+  }
+  template <class Entry>
+  void list(const char* member, const std::vector<Entry>& entries) {
+    if (entries.empty()) return;
+    if constexpr (std::is_arithmetic_v<Entry>) {
+      line(wrapped(fmt::format("{}.{} = {};", of_, member, text(entries)), "      "));
+    } else {  // names may have blanks, at which a line must not be broken
+      std::string all;
+      for (const Entry& entry : entries) all += (all.empty() ? "" : ",\n      ") + text(entry);
+      line(fmt::format("{}.{} = {{{}}};", of_, member, all));
+    }
+  }
+  void line(const std::string& line) { lines_ += "  " + line + "\n"; }
+  std::string done() {
+    if (!lines_.empty()) lines_.pop_back();
+    return std::move(lines_);
+  }
+
+ private:
+  std::string of_, lines_;
+};
+
+std::string code_text(const program::Program& program, const eom::hybrid::Code& code, const std::string& name) {
+  Statements s("code");
+  const auto bind = [&](const std::string& function) { s.line(fmt::format("code.{0} = {1}_{0};", function, name)); };
+  for (const program::Function& f : program.functions) {
+    if (f.name != "reactions") bind(f.name);
+  }
+  if (program.taylor) bind("taylor");
+  if (!program.charts.empty()) {
+    bind("chart");
+    for (const program::Function& f : program.functions) {
+      if (f.name == "mass" || f.name == "constraints") bind(f.name + "_in");
+    }
+  }
+  if (code.prepared > 0) s.set("prepared", code.prepared);
+  s.list("output_names", code.output_names);
+  s.list("free", code.free);
+  if (code.integrals > 0) s.set("integrals", code.integrals);
+  if (code.active_constraints > 0) s.set("active_constraints", code.active_constraints);
+  s.list("holonomic", code.holonomic);
+  s.list("kinks", code.kinks);
+  s.list("contacts", code.contacts);
+  if (!code.kinks.empty()) s.set("first_kink_bit", code.first_kink_bit);
+  if (program.taylor) s.set("taylor_order", code.taylor_order);
+  s.list("own_outputs", code.own_outputs);
+  return s.done();
+}
+
+std::string problem_text(const Problem& p) {
+  Statements s("problem");
+  s.set("t0", p.t0);
+  s.set("t1", p.t1);
+  std::string inputs;
+  for (std::size_t i = 0; i < p.inputs.size(); ++i) {
+    const eom::hybrid::Signal& signal = p.inputs[i];
+    inputs +=
+        (i == 0 ? "" : ", ") +
+        (signal.times.empty() ? fmt::format("{{[](double) {{ return {}; }}, {{}}, {{}}}}", text(signal(p.t0, p.t0)))
+                              : fmt::format("{{{{}}, {}, {}}}", text(signal.times), text(signal.values)));
+  }
+  if (!inputs.empty()) s.line(fmt::format("problem.inputs = {{{}}};", inputs));
+  s.set("solver", p.solver);
+  s.set("rtol", p.rtol);
+  s.set("atol", p.atol);
+  if (p.step > 0) s.set("step", p.step);
+  s.set("kinetic", p.kinetic);
+  s.set("potential", p.potential);
+  s.set("energy", p.energy);
+  if (p.power) s.set("power", *p.power);
+  s.list("redundant", p.redundant);
+  s.list("invariants", p.invariants);
+  s.list("integrals", p.integrals);
+  s.list("contacts", p.contacts);
+  s.list("apart", p.apart);
+  s.list("events", p.events);
+  s.list("breaks", p.breaks);
+  s.list("bounds", p.bounds);
+  s.list("charts", p.charts);
+  if (!p.charts.empty()) s.line("problem.in_charts = [&code](unsigned) -> const eom::hybrid::Code& { return code; };");
+  s.list("ranges", p.ranges);
+  s.list("state_names", p.state_names);
+  s.list("constraint_names", p.constraint_names);
+  s.set("every", p.every);
+  return s.done();
+}
+
+}  // namespace
+
+std::vector<EmittedFile> emit_run_header(const program::Program& program, const EmissionContext& context) {
+  if (!context.run) return {};
+  const Problem& problem = *context.run->problem;
+  const std::string name = mangled_id(context.id);
+  const bool infinite = std::any_of(problem.ranges.begin(), problem.ranges.end(), [](const eom::hybrid::Range& r) {
+    return std::isinf(r.lower) || std::isinf(r.upper);
+  });
+  return {{name + "_run.hpp",
+           rendered(skeleton::cpp_run_hpp,
+                    {{"name", name},
+                     {"banner", banner(program, context, "// ", "// ", "")},
+                     {"code", code_text(program, *problem.code, name)},
+                     {"infinity",
+                      infinite ? "  constexpr double infinity = std::numeric_limits<double>::infinity();\n" : ""},
+                     {"parameters", fmt::format("{}", problem.parameters.size())},
+                     {"problem", problem_text(problem)},
+                     {"columns", wrapped(fmt::format("  return {};", text(context.run->columns)), "      ")}},
+                    {})}};
+}
+
+}  // namespace eomgen::emit

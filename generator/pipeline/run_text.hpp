@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What emitted code hands over so that a program without the generator runs the model as `run` does.
+#pragma once
+
+#include <memory>
+
+#include "emit/context.hpp"
+#include "pipeline/pipeline.hpp"
+
+namespace eomgen::pipeline {
+
+/// The default scene in numbers, and what `program` says of its functions, for NAME_run.hpp. Throws Error{stage "emit"}
+/// where the run needs expressions that emitted code does not have.
+std::shared_ptr<const emit::RunText> run_text(const Derived& derived, const run::Scene& scene,
+                                              const program::Program& program);
+
+}  // namespace eomgen::pipeline
