@@ -62,7 +62,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   void interpolate(double t, double* x) const {
     const double s = (t - t0_) / h_;
     implicit::RadauTableau::Row weight;
-    weights(*tableau_, s, weight);
+    implicit::stage_weights<3>(*tableau_, s, weight);
     for (std::size_t i = 0; i < n_; ++i) {
       const double along = i < m_ ? tableau_->gamma * estimate_[i] : h_ * f0_[i] + defect(i),
                    across = i < m_ ? across_[i] : 0;

@@ -2,8 +2,7 @@
 // Steps of Radau IIA with error control, for stiff systems: what radau5, radau and ggl share. Source: Hairer, Wanner,
 // Solving Ordinary Differential Equations II, section IV.8: stage increments by simplified Newton iterations,
 // transformed so that one real and (s - 1)/2 complex matrices are factored; an error estimate of order s, filtered by
-// the real matrix; step sizes predicted from two steps (Gustafsson); df/dx and the factors are kept as long as the
-// iteration converges fast.
+// the real matrix; step sizes predicted from two steps (Gustafsson); df/dx and its factors kept while Newton converges.
 //
 // The estimate is of lower order than the method. So that the step's own error stays in proportion to the tolerance r,
 // it is compared with r^((s+1)/(2s))/10. With fixed steps there is no tolerance: the iteration goes on to rounding. A
@@ -20,6 +19,7 @@
 #include <vector>
 
 #include "eom/implicit/base.hpp"
+#include "eom/implicit/collocation_parts.hpp"
 #include "eom/implicit/newton.hpp"
 #include "eom/implicit/radau_tableau.hpp"
 
@@ -27,7 +27,7 @@ namespace eom::implicit {
 
 /// most: stages; where that is 3, loops over them are written out.
 template <class Method, std::size_t most>
-class Collocation : public Base {
+class Collocation : public Base, public CollocationHooks {
  public:
   static constexpr bool adaptive = true, error_uses_end = false;
 
@@ -117,17 +117,6 @@ class Collocation : public Base {
     return stages_;
   }
 
-  // Hooks of what has algebraic equations, or chooses its stages.
-  int linearise() { return 0; }  // at the step's start, with df/dx; returns a code
-  template <class Matrix>
-  void border(Matrix&) const {}  // rows and columns beyond the motion
-  int add_algebraic(double, const double*, const double*, double*) {
-    return 0;
-  }  // t, x, u, derivatives in which g stands too; a code
-  template <class Size>
-  void border_units(double*, const Size&) const {}  // right-hand sides for Units
-  int settle() { return 0; }                        // after the iteration: of the last stage; returns a code
-  void choose_stages(double) {}                     // after an accepted step; growth of the next
  protected:
   static constexpr double safety = 0.9, most_growth = 8, most_shrinking = 5;
   static constexpr double keep_jacobian = 1e-3;  // of Newton's contraction
@@ -153,13 +142,6 @@ class Collocation : public Base {
     use(stages);
   }
 
-  template <class Act>
-  static void each_stage(const RadauTableau& tableau, Act act) {
-    if constexpr (most == 3)
-      act(0), act(1), act(2);
-    else
-      for (std::size_t k = 0; k < tableau.stages; ++k) act(k);
-  }
   Method& method() { return static_cast<Method&>(*this); }
 
   double exponent() const { return 1 / static_cast<double>(stages() + 1); }
@@ -228,18 +210,10 @@ class Collocation : public Base {
     return false;
   }
 
-  /// What the values at the nodes weigh at s, with 0 at 0: Lagrange's polynomials.
-  static void weights(const RadauTableau& tableau, double s, RadauTableau::Row& weight) {
-    each_stage(tableau, [&](std::size_t k) {
-      weight[k] = s * tableau.node[k];
-      each_stage(tableau, [&](std::size_t j) { weight[k] *= j == k ? 1 : s - tableau.c[j]; });
-    });
-  }
-
   /// The collocation polynomial of the step made; moved: towards x1, by after_step and by rounding.
   double polynomial(const RadauTableau::Row& weight, double s, std::size_t i) const {
     double sum = 0;
-    each_stage(*made_with_, [&](std::size_t k) { sum += weight[k] * z_[k * length_ + i]; });
+    each_stage<most>(*made_with_, [&](std::size_t k) { sum += weight[k] * z_[k * length_ + i]; });
     const double moved = x1_[i] - (x0_[i] + z_[(made_with_->stages - 1) * length_ + i]);
     return sum + s * moved;
   }
@@ -249,11 +223,11 @@ class Collocation : public Base {
     RadauTableau::Row weight;
     std::fill_n(z_, stages() * length_, 0.0);
     for (std::size_t k = 0; k < stages() && of_before_ != nullptr; ++k) {
-      weights(*of_before_, 1 + tableau_->c[k] * h_ / h_of_before_, weight);
+      stage_weights<most>(*of_before_, 1 + tableau_->c[k] * h_ / h_of_before_, weight);
       const double* const end = z_before_ + (of_before_->stages - 1) * length_;
       for (std::size_t i = 0; i < m_; ++i) {
         double sum = -end[i];
-        each_stage(*of_before_, [&](std::size_t j) { sum += weight[j] * z_before_[j * length_ + i]; });
+        each_stage<most>(*of_before_, [&](std::size_t j) { sum += weight[j] * z_before_[j * length_ + i]; });
         z_[k * length_ + i] = sum;
       }
     }
@@ -263,10 +237,10 @@ class Collocation : public Base {
   void transform(const std::array<RadauTableau::Row, RadauTableau::most>& by, const double* from, double* to) const {
     std::array<double, most> value;
     each_unknown([&](std::size_t i, std::size_t) {
-      each_stage(*tableau_, [&](std::size_t k) { value[k] = from[k * length_ + i]; });
-      each_stage(*tableau_, [&](std::size_t k) {
+      each_stage<most>(*tableau_, [&](std::size_t k) { value[k] = from[k * length_ + i]; });
+      each_stage<most>(*tableau_, [&](std::size_t k) {
         double sum = 0;
-        each_stage(*tableau_, [&](std::size_t j) { sum += by[k][j] * value[j]; });
+        each_stage<most>(*tableau_, [&](std::size_t j) { sum += by[k][j] * value[j]; });
         to[k * length_ + i] = sum;
       });
     });
@@ -281,9 +255,8 @@ class Collocation : public Base {
       if (const int code = evaluate(t, scratch_, f); code != 0) return code;
       if (const int code = method().add_algebraic(t, scratch_, z + n_, f); code != 0) return code;
     }
-    return std::all_of(f_, f_ + stages() * length_, [](double value) { return std::isfinite(value); })
-               ? 0
-               : code_not_finite;
+    const bool finite = std::all_of(f_, f_ + stages() * length_, [](double value) { return std::isfinite(value); });
+    return finite ? 0 : code_not_finite;
   }
 
   /// One simplified Newton iteration from stage derivatives in f_; returns the size of the correction.
@@ -391,7 +364,7 @@ class Collocation : public Base {
   /// Minus h times the slope of the collocation polynomial at the start.
   double defect(std::size_t i) const {
     double sum = 0;
-    each_stage(*tableau_, [&](std::size_t k) { sum += tableau_->slope[k] * z_[k * length_ + i]; });
+    each_stage<most>(*tableau_, [&](std::size_t k) { sum += tableau_->slope[k] * z_[k * length_ + i]; });
     return sum;
   }
 
@@ -407,8 +380,8 @@ class Collocation : public Base {
   Units units_;
   std::vector<double> work_, estimate_, right_;
   std::vector<Complex> pair_;
-  const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr,
-                     *of_before_ = nullptr;  // of the step that comes, the last, the one before
+  // Of the step that comes, the last, the one before.
+  const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr, *of_before_ = nullptr;
   std::size_t stages_ = 3;
   double *z_, *w_, *f_, *z_before_;  // stage increments, transformed, stage derivatives; of the step before
   double tolerance_ = 0, asked_rtol_ = 0, asked_atol_ = 0, rtol_ = 0, atol_ = 0, newton_tolerance_ = 0;

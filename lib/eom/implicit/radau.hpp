@@ -56,7 +56,7 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
   void interpolate(double t, double* x) const {
     const double s = (t - t0_) / h_;
     RadauTableau::Row weight;
-    weights(*made_with_, s, weight);
+    stage_weights<RadauTableau::most>(*made_with_, s, weight);
     for (std::size_t i = 0; i < n_; ++i) x[i] = x0_[i] + polynomial(weight, s, i);
   }
 

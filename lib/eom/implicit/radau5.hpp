@@ -26,7 +26,7 @@ class Radau5 : public Collocation<Radau5, 3> {
   void interpolate(double t, double* x) const {
     const double s = (t - t0_) / h_;
     RadauTableau::Row weight;
-    weights(*tableau_, s, weight);
+    stage_weights<3>(*tableau_, s, weight);
     for (std::size_t i = 0; i < n_; ++i) {
       const double towards_slope = i < m_ ? tableau_->gamma * estimate_[i] : h_ * f0_[i] + defect(i);
       x[i] = x0_[i] + (polynomial(weight, s, i) + bump(s) * towards_slope);
