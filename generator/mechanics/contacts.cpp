@@ -250,8 +250,9 @@ const model::Friction& law_of(const Mechanics& m, const Contact& contact) {
 
 namespace {
 
-/// Values of expressions of parameters alone; none of others.
-std::vector<cln::cl_R> known_values(const Mechanics& m, const std::vector<Ref>& expressions) {
+/// Values of expressions of parameters alone; none of others. Throws Error at `span` where one has no value.
+std::vector<cln::cl_R> known_values(const Mechanics& m, const std::vector<Ref>& expressions, const std::string& what,
+                                    const model::Span& span) {
   constexpr int digits = 30;
   // A parameter may use others, declared before or after it, without cycles.
   const std::function<cln::cl_R(const symbolic::Symbol&)> value = [&](const symbolic::Symbol& symbol) {
@@ -260,12 +261,19 @@ std::vector<cln::cl_R> known_values(const Mechanics& m, const std::vector<Ref>& 
   for (const symbolic::Symbol& s : m.dag->symbols(expressions)) {
     if (s.kind != SymbolKind::parameter) return {};
   }
-  return symbolic::evaluate(*m.dag, expressions, value, digits);
+  try {
+    return symbolic::evaluate(*m.dag, expressions, value, digits);
+  } catch (const std::domain_error& error) {
+    throw Error("mechanics", m.model->where(span), what + " has no value: " + error.what(),
+                "check the numbers that it is computed from");
+  }
 }
 
 void check_law(const Mechanics& m, const Contact& contact) {
   const Ref mu_d = contact.dynamic_coefficient;
-  const std::vector<cln::cl_R> mu = known_values(m, {contact.width ? mu_d : contact.static_coefficient, mu_d});
+  const std::vector<cln::cl_R> mu =
+      known_values(m, {contact.width ? mu_d : contact.static_coefficient, mu_d},
+                   "a coefficient of friction of '" + contact.name + "'", law_of(m, contact).span);
   const bool negative = !mu.empty() && (cln::minusp(mu[0]) || cln::minusp(mu[1]));
   if (!mu.empty() && (negative || mu[0] < mu[1])) {
     throw Error("mechanics", m.model->where(law_of(m, contact).span),
@@ -275,7 +283,8 @@ void check_law(const Mechanics& m, const Contact& contact) {
                          : "what sticks at a force must not be dragged loose by less: give static >= dynamic");
   }
   if (!contact.width) return;
-  const std::vector<cln::cl_R> width = known_values(m, {*contact.width});
+  const std::vector<cln::cl_R> width =
+      known_values(m, {*contact.width}, "the width of the friction of '" + contact.name + "'", law_of(m, contact).span);
   if (width.empty() || cln::plusp(width[0])) return;
   throw Error("mechanics", m.model->where(law_of(m, contact).span),
               "the width of the friction of '" + contact.name + "' is not positive",
@@ -283,11 +292,14 @@ void check_law(const Mechanics& m, const Contact& contact) {
 }
 
 void check_restitution(const Mechanics& m, const Contact& contact) {
-  const std::vector<cln::cl_R> e = known_values(m, {contact.restitution});
-  if (e.empty() || (!cln::minusp(e[0]) && e[0] <= 1)) return;
   const auto named = [&](const model::Constraint& constraint) { return constraint.name == contact.name; };
-  const auto& constraint = *std::find_if(m.model->constraints.begin(), m.model->constraints.end(), named);
-  throw Error("mechanics", m.model->where(m.model->arena[constraint.restitution].span),
+  const auto found = std::find_if(m.model->constraints.begin(), m.model->constraints.end(), named);
+  if (found == m.model->constraints.end() || found->restitution == model::no_node) return;
+  const model::Span& span = m.model->arena[found->restitution].span;
+  const std::vector<cln::cl_R> e =
+      known_values(m, {contact.restitution}, "the coefficient of restitution of '" + contact.name + "'", span);
+  if (e.empty() || (!cln::minusp(e[0]) && e[0] <= 1)) return;
+  throw Error("mechanics", m.model->where(span),
               "the coefficient of restitution of '" + contact.name + "' is not between 0 and 1",
               "0 stays after an impact, 1 bounces without loss");
 }

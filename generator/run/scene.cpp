@@ -8,142 +8,23 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <set>
 
 #include "derive/conserved.hpp"
 #include "derive/imposition.hpp"
-#include "model/names.hpp"
 #include "run/jumps.hpp"
+#include "run/parameters.hpp"
 #include "run/start.hpp"
 #include "symbolic/evaluate.hpp"
-#include "symbolic/sample.hpp"
 
 namespace eomgen::run {
 namespace {
 
 using mechanics::Mechanics;
-using symbolic::Rational;
 using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
 constexpr int digits = 40;
-
-// The equations were simplified on the strength of it.
-void require_sign(const model::Parameter& p, const cln::cl_R& value, const model::Model& model) {
-  if (!p.positive || cln::plusp(value)) return;
-  throw Error(
-      "scene", model.where(p.span),
-      fmt::format("parameter '{}' is declared positive, and its value is {}", p.name, cln::double_approx(value)),
-      "give it a positive value, or leave `positive` out of the model");
-}
-
-std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
-  std::vector<Ref> formula = m.parameter_value;
-  for (const auto& [index, value] : scene.parameters) formula[index] = mechanics::lower_scalar(m, value);
-  for (const auto& [name, value] : overrides.parameters) {
-    const auto found = std::find_if(m.model->parameters.begin(), m.model->parameters.end(),
-                                    [&wanted = name](const model::Parameter& p) { return p.name == wanted; });
-    if (found == m.model->parameters.end()) {
-      std::vector<std::string> names;
-      for (const model::Parameter& p : m.model->parameters) names.push_back(p.name);
-      std::string hint = model::did_you_mean(name, names);
-      for (const model::Input& input : m.model->inputs) {
-        if (input.name == name) hint = fmt::format("it is an input: a scene gives it, as inputs = {{ {} = 2 }}", name);
-      }
-      throw Error("scene", {}, fmt::format("there is no parameter {} to set", model::quote(name)),
-                  hint.empty() ? fmt::format("the parameters are {}", fmt::join(names, ", ")) : hint);
-    }
-    const auto index = static_cast<std::size_t>(found - m.model->parameters.begin());
-    if (index == m.model->start_time) {
-      throw Error("scene", {},
-                  fmt::format("'{}' is the start of the run, from which integrals count: it cannot be set", name),
-                  "state it in the scene: t = [t0, t1]");
-    }
-    if (found->start_of) {
-      throw Error("scene", {}, fmt::format("'{}' is the start value of a coordinate: it cannot be set", name),
-                  "state the start in the scene: initial = { .. }");
-    }
-    formula[index] = m.dag->constant(value);
-  }
-  return formula;
-}
-
-std::vector<cln::cl_R> parameter_values(Mechanics& m, const std::vector<Ref>& formula, int wanted_digits) {
-  const std::size_t n = formula.size();
-  std::vector<cln::cl_R> values(n, 0);
-  std::vector<bool> known(n, false);
-  // Parameters may use one another without cycles, in any order of the file: n rounds settle the longest chain.
-  for (std::size_t round = 0; round < n; ++round) {
-    for (std::size_t i = 0; i < n; ++i) {
-      if (known[i]) continue;
-      bool ready = true;
-      for (const Symbol& s : m.dag->symbols({formula[i]}))
-        ready = ready && s.kind == SymbolKind::parameter && known[s.index];
-      if (!ready) continue;
-      const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
-      try {
-        values[i] = symbolic::evaluate(*m.dag, {formula[i]}, lookup, wanted_digits)[0];
-      } catch (const std::exception& error) {
-        const model::Parameter& p = m.model->parameters[i];
-        throw Error("scene", m.model->where(p.span),
-                    fmt::format("parameter '{}' has no value: {}", p.name, error.what()),
-                    "check the numbers that it is computed from");
-      }
-      known[i] = true;
-      require_sign(m.model->parameters[i], values[i], *m.model);
-    }
-  }
-  return values;
-}
-
-// Masses, which the reader saw at the default values only.
-void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
-  struct Heavy {
-    std::uint32_t place;
-    model::NodeId mass;
-    model::Span span;
-  };
-  std::vector<Heavy> all;
-  for (const model::Particle& particle : m.model->particles)
-    all.push_back({particle.place, particle.mass, particle.span});
-  for (const model::Body& body : m.model->bodies) all.push_back({body.place, body.mass, body.span});
-  for (const Heavy& particle : all) {
-    const Ref mass = mechanics::lower_scalar(m, particle.mass);
-    const std::vector<Symbol> symbols = m.dag->symbols({mass});
-    const bool of_parameters =
-        std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::parameter; });
-    if (!of_parameters) continue;
-    const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
-    const cln::cl_R value = symbolic::evaluate(*m.dag, {mass}, lookup, digits)[0];
-    if (cln::plusp(value)) continue;
-    throw Error(
-        "scene", m.model->where(particle.span),
-        fmt::format("the mass of '{}' is {} here", m.model->places[particle.place].name, cln::double_approx(value)),
-        "a mass is greater than 0");
-  }
-}
-
-// Coefficients of friction, which the reader saw at the default values only.
-void require_coefficients(const Mechanics& m, const std::vector<cln::cl_R>& values, const model::Scene& scene) {
-  for (const mechanics::Contact& contact : m.contacts) {
-    if (contact.dimensions() == 0) continue;
-    const std::vector<Ref> both{contact.width ? contact.dynamic_coefficient : contact.static_coefficient,
-                                contact.dynamic_coefficient};
-    const std::vector<Symbol> symbols = m.dag->symbols(both);
-    if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind != SymbolKind::parameter; }))
-      continue;
-    const auto lookup = [&](const Symbol& s) -> cln::cl_R { return values[s.index]; };
-    const std::vector<cln::cl_R> mu = symbolic::evaluate(*m.dag, both, lookup, digits);
-    const bool negative = cln::minusp(mu[0]) || cln::minusp(mu[1]);
-    if (!negative && mu[0] >= mu[1]) continue;
-    throw Error("scene", m.model->where(scene.span),
-                negative ? fmt::format("a coefficient of friction of '{}' is negative here", contact.name)
-                         : fmt::format("the static coefficient of friction of '{}' is less than the dynamic one here",
-                                       contact.name),
-                negative ? "friction opposes slip: give coefficients of 0 or more" : "give static >= dynamic");
-  }
-}
 
 // Expressions of a scene are evaluated once, at its start.
 class SceneEvaluator {
@@ -308,22 +189,11 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
 
 }  // namespace
 
-std::vector<cln::cl_R> exact_parameters(Mechanics& m, const model::Scene& scene, const Overrides& overrides,
-                                        int wanted_digits, std::optional<std::uint64_t> moved) {
-  std::vector<Ref> formula = parameter_formulas(m, scene, overrides);
-  for (std::uint32_t i = 0; moved && i < formula.size(); ++i) {
-    if (!m.dag->is_constant(formula[i])) continue;
-    const Rational factor = 1 + (symbolic::sample({SymbolKind::parameter, i, 0}, *moved) - Rational(7) / 10) / 10;
-    formula[i] = m.dag->constant(m.dag->value(formula[i]) * factor);
-  }
-  return parameter_values(m, formula, wanted_digits);
-}
-
 Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides) try {
   Scene result;
   result.name = scene.name;
-  const std::vector<cln::cl_R> parameters = parameter_values(m, parameter_formulas(m, scene, overrides), digits);
+  const std::vector<cln::cl_R> parameters = exact_parameters(m, scene, overrides, digits);
   require_masses(m, parameters);
   require_coefficients(m, parameters, scene);
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
@@ -415,79 +285,6 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   throw Error("scene", m.model->where(scene.span),
               fmt::format("a number of scene '{}' is beyond what floating point holds: {}", scene.name, error.what()),
               "choose parameters from which its start can be computed");
-}
-
-namespace {
-
-// A component of a joint's reaction, or all of them, or the force of a constraint, that the motion does not determine.
-void refuse_undetermined(const Mechanics& m, const model::Named& want) {
-  for (const mechanics::Constraint& c : m.constraints) {
-    const std::string label = "reaction." + c.label;
-    const bool joint = std::any_of(m.model->joints.begin(), m.model->joints.end(),
-                                   [&](const model::Joint& j) { return j.name == c.name; });
-    if (c.determined || joint || (want.name != label && want.name != "reaction." + c.name)) continue;
-    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
-                fmt::format("the motion does not determine '{}'", label),
-                "other constraints hold the same, or nothing moves against it (`check` lists such constraints): ask "
-                "for the force of another, or give the bodies coordinates that it binds");
-  }
-  for (std::size_t i = 0; i < m.joints.size(); ++i) {
-    const std::string name = "reaction." + m.model->joints[i].name;
-    if (want.name != name && !want.name.starts_with(name + ".")) continue;
-    std::string known;
-    for (std::size_t j = 0; j < m.joints[i].determined.size(); ++j) {
-      if (m.joints[i].determined[j]) known += fmt::format("{}{}.{}", known.empty() ? "" : ", ", name, j + 1);
-    }
-    if (want.name.size() != name.size() + 2 || want.name.back() < '1' || want.name.back() > '6') return;
-    throw Error("scene", want.span.line > 0 ? m.model->where(want.span) : Where{},
-                fmt::format("the motion does not determine '{}'", want.name),
-                fmt::format("it is left open by equations of the joint that hold identically or repeat others (`check` "
-                            "lists them): give the bodies coordinates "
-                            "that this equation binds, or a joint that leaves the motion free{}",
-                            known.empty() ? "" : "; determined are " + known));
-  }
-}
-
-}  // namespace
-
-std::vector<std::string> expand_outputs(const Mechanics& m, const system::EquationSystem& system,
-                                        const std::vector<model::Named>& wanted) {
-  std::set<std::string> coordinates;
-  for (const model::Coordinate& c : m.model->coordinates) {
-    coordinates.insert(c.name);
-    coordinates.insert(c.name + "_dot");
-  }
-  std::vector<std::string> result;
-  std::set<std::string> seen;
-  const auto take = [&](const std::string& name) {
-    if (!coordinates.contains(name) && seen.insert(name).second) result.push_back(name);
-  };
-  for (const model::Named& want : wanted) {
-    bool found = coordinates.contains(want.name);
-    for (const system::Output& output : system.outputs) {
-      const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      const bool table =
-          !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix) &&
-          !output.name.starts_with(system::contact_prefix) && !output.name.starts_with(system::watched_prefix);
-      const bool of_all = want.name == "all" && table;
-      if (!of_all && output.name != want.name && !part) continue;
-      take(output.name);
-      found = true;
-    }
-    if (!found) {
-      refuse_undetermined(m, want);
-      std::string names;
-      for (const system::Output& output : system.outputs) {
-        const bool hidden = output.name.starts_with(derive::magnitude_prefix) ||
-                            output.name.starts_with(system::contact_prefix) ||
-                            output.name.starts_with(system::watched_prefix);
-        if (!coordinates.contains(output.name) && !hidden) names += (names.empty() ? "" : ", ") + output.name;
-      }
-      const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};
-      throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");
-    }
-  }
-  return result;
 }
 
 }  // namespace eomgen::run

@@ -2,10 +2,12 @@
 #include "verify/dalembert.hpp"
 
 #include <cln/real.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
+#include "error.hpp"
 #include "verify/plain_forces.hpp"
 #include "verify/standing.hpp"
 #include "verify/uses.hpp"
@@ -189,7 +191,12 @@ Real Judge::value(model::NodeId expression, const State& state) const {
 Real Judge::constant(model::NodeId expression, const std::vector<Real>& parameters) const {
   Environment environment;
   for (const Real& value : parameters) environment.parameters.emplace_back(value);
-  return Interpreter(model_, std::move(environment), precision_).scalar(expression).real();
+  try {
+    return Interpreter(model_, std::move(environment), precision_).scalar(expression).real();
+  } catch (const std::domain_error& error) {
+    throw Error("verify", place_of(model_, model_.arena[expression]),
+                fmt::format("this has no value: {}", error.what()), "check the numbers that it is computed from");
+  }
 }
 
 Judge::~Judge() = default;

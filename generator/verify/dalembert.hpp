@@ -94,7 +94,7 @@ class Judge {
   /// Value of an expression of the model, such as a start of a scene.
   Real value(model::NodeId expression, const State& state) const;
 
-  /// Of an expression of parameters alone.
+  /// Of an expression of parameters alone. Throws Error with its place where it has no value, as log(0).
   Real constant(model::NodeId expression, const std::vector<Real>& parameters) const;
   /// Every integral of the model at the state's time and parameters, by quadrature of its integrand.
   std::vector<Real> integrals(const State& state) const;

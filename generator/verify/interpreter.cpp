@@ -212,9 +212,13 @@ Jet Interpreter::extension(const model::Force& spring) {
 }
 
 void Interpreter::refuse(const Node& node, const char* what) const {
-  Where where{model_.file, node.span.line, node.span.column, node.span.length, ""};
-  if (node.span.line >= 1 && node.span.line <= model_.lines.size()) where.text = model_.lines[node.span.line - 1];
-  throw Error("verify", where, what, "use values, velocities and accelerations only");
+  throw Error("verify", place_of(model_, node), what, "use values, velocities and accelerations only");
+}
+
+Where place_of(const model::Model& model, const model::Node& node) {
+  Where where{model.file, node.span.line, node.span.column, node.span.length, ""};
+  if (node.span.line >= 1 && node.span.line <= model.lines.size()) where.text = model.lines[node.span.line - 1];
+  return where;
 }
 
 }  // namespace eomgen::verify

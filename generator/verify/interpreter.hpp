@@ -101,4 +101,7 @@ class Interpreter {
   std::map<Leaf, std::unique_ptr<Interpreter>> by_leaf_;
 };
 
+/// Where the file writes it; the judge reads the model with nothing of the reader's.
+Where place_of(const model::Model& model, const model::Node& node);
+
 }  // namespace eomgen::verify

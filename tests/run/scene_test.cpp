@@ -183,3 +183,17 @@ TEST_CASE("scene: a parameter that is declared positive stays positive") {
   overrides.parameters["L"] = -2;
   CHECK(refusal(text, overrides) == "parameter 'L' is declared positive, and its value is -2");
 }
+
+TEST_CASE("scene: masses and coefficients of friction that have no value at its parameters are told") {
+  run::Overrides negative;
+  negative.parameters["k"] = -1;
+  std::string text = rod;
+  text.replace(text.find("m = 1\n"), 6, "m = 1\nk = 1\n");
+  std::string heavy = text;
+  heavy.replace(heavy.find("mass = \"m\""), 10, "mass = \"sqrt(k)\"");
+  CHECK(refusal(heavy, negative) == "the mass of 'P' has no value here: sqrt of a negative number");
+  std::string rough = text;
+  rough.replace(rough.find("L^2\"\n"), 5, "L^2\"\nfriction = { static = \"log(k) + 1\", dynamic = \"log(k) + 1\" }\n");
+  CHECK(refusal(rough, negative) ==
+        "a coefficient of friction of 'rod' has no value here: log of a number that is not positive");
+}

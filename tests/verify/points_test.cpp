@@ -80,6 +80,30 @@ TEST_CASE("points: what has no value is rejected, counted, and given up in the e
   }
 }
 
+TEST_CASE("points: numbers of a scene, an input or a parameter that have no value are told with their place") {
+  const auto told = [](const auto& spoil) {
+    model::Model m = cart_pendulum();
+    spoil(m, call(Fn::log, number(m, 0)).id);
+    try {
+      Points(Judge(m, 60), 5, many);
+    } catch (const Error& error) {
+      CHECK(error.fault() == Fault::input);
+      return error.message();
+    }
+    return std::string();
+  };
+  const std::string expected = "this has no value: log of a number that is not positive";
+  CHECK(told([](model::Model& m, model::NodeId bad) { m.scenes.front().t0 = bad; }) == expected);
+  CHECK(told([](model::Model& m, model::NodeId bad) {
+          m.scenes.front().t0 = number(m, 0).id;
+          m.scenes.front().t1 = bad;
+        }) == expected);
+  CHECK(told([](model::Model& m, model::NodeId bad) { m.scenes.front().parameters = {{0, bad}}; }) == expected);
+  CHECK(told([](model::Model& m, model::NodeId bad) { m.inputs.front().fallback = bad; }) == expected);
+  CHECK(told([](model::Model& m, model::NodeId bad) { m.parameters.front().value = bad; }) == expected);
+  CHECK(told([](model::Model& m, model::NodeId bad) { m.coordinates.front().lower = bad; }) == expected);
+}
+
 TEST_CASE("points: kinks are kept away from, constraints that contradict one another have no states") {
   model::Model m = chain(1);
   const Formula th = leaf(m, Op::coordinate, 0);
