@@ -7,8 +7,8 @@
 
 #include "analysis/named_functions.hpp"
 #include "analysis/steady_search.hpp"
-#include "derive/conservative.hpp"
-#include "derive/lagrange.hpp"
+#include "conservation/conservative.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "mechanics/dependent.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/article.hpp"
@@ -24,18 +24,18 @@ constexpr std::size_t most_coordinates = 3, starts = 40;
 
 std::vector<print::ForceFinding> forces_of(Mechanics& m) {
   std::vector<print::ForceFinding> result;
-  for (const derive::ForceClass& f : derive::classify_forces(m)) {
-    result.push_back({derive::name(f.conservative), f.potential, f.many_valued, f.reason});
+  for (const conservation::ForceClass& f : conservation::classify_forces(m)) {
+    result.push_back({conservation::name(f.conservative), f.potential, f.many_valued, f.reason});
   }
   return result;
 }
 
 std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const ReadingForm& two,
-                                                  const std::vector<derive::Conserved>& conserved) {
+                                                  const std::vector<conservation::Conserved>& conserved) {
   std::vector<print::ConservedFinding> result;
-  for (const derive::Conserved& c : conserved) {
+  for (const conservation::Conserved& c : conserved) {
     result.push_back({c.name, c.title, c.expression, in_named_functions(m, two, c), c.cyclic,
-                      c.certainty == derive::Certainty::proven});
+                      c.certainty == conservation::Certainty::proven});
   }
   return result;
 }
@@ -121,9 +121,9 @@ std::string article(std::shared_ptr<const model::Model> model, std::uint64_t see
   print::Findings findings;
   findings.forces = forces_of(m);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
-  const std::vector<derive::Conserved> conserved = derive::conserved_quantities(m, system);
+  const std::vector<conservation::Conserved> conserved = conservation::conserved_quantities(m, system);
   findings.conserved = conserved_of(m, two, conserved);
-  const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(conserved);
+  const std::vector<std::uint32_t> cyclic = conservation::cyclic_coordinates(conserved);
   if (!cyclic.empty()) findings.routh = reading::routh_form(m, cyclic);
   judge(m, one, two, seed, findings);
   look_for_steady_motions(m, two, seed, findings);

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "analysis/named_functions.hpp"
-#include "derive/lagrange.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "error.hpp"
 #include "mechanics/dependent.hpp"
 #include "model/names.hpp"
@@ -77,7 +77,7 @@ void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::strin
   if (!wanted) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
-  for (const derive::Conserved& c : derive::conserved_quantities(mechanics, system)) {
+  for (const conservation::Conserved& c : conservation::conserved_quantities(mechanics, system)) {
     const auto named = in_named_functions(mechanics, form, c);
     print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
                              : print::render_expression(mechanics, "conserved", c.name, c.expression);
@@ -91,7 +91,8 @@ void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& 
                std::vector<std::string>& notes) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
-  const std::vector<std::uint32_t> cyclic = derive::cyclic_coordinates(derive::conserved_quantities(mechanics, system));
+  const std::vector<std::uint32_t> cyclic =
+      conservation::cyclic_coordinates(conservation::conserved_quantities(mechanics, system));
   const reading::RouthForm form = reading::routh_form(mechanics, cyclic);
   if (cyclic.empty()) notes.emplace_back("no coordinate is cyclic: there is nothing to reduce");
   if (form.by_parts)

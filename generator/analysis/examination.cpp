@@ -5,9 +5,9 @@
 
 #include <algorithm>
 
-#include "derive/conservative.hpp"
-#include "derive/conserved.hpp"
-#include "derive/lagrange.hpp"
+#include "conservation/conservative.hpp"
+#include "conservation/conserved.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "pipeline/charts.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/decimal.hpp"
@@ -72,12 +72,12 @@ void add_joints(const mechanics::Mechanics& m, Examination& found) {
 }
 
 void add_forces(mechanics::Mechanics& m, Examination& found) {
-  for (const derive::ForceClass& force : derive::classify_forces(m)) {
+  for (const conservation::ForceClass& force : conservation::classify_forces(m)) {
     ExaminedForce one;
     one.name = force.name;
-    one.conservative = derive::name(force.conservative);
+    one.conservative = conservation::name(force.conservative);
     if (force.potential) one.potential = item_of(m, *force.potential);
-    for (const derive::DomainCondition& c : force.domain)
+    for (const conservation::DomainCondition& c : force.domain)
       one.domain.push_back(shown(m, c.expression) + " " + c.relation);
     one.many_valued = force.many_valued;
     one.in_energy = force.in_energy;
@@ -149,8 +149,8 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   add_charts(m, found);
   add_forces(m, found);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
-  for (const derive::Conserved& c : derive::conserved_quantities(m, system))
-    found.conserved.push_back({c.name, c.title, item_of(m, c.expression), derive::name(c.certainty)});
+  for (const conservation::Conserved& c : conservation::conserved_quantities(m, system))
+    found.conserved.push_back({c.name, c.title, item_of(m, c.expression), conservation::name(c.certainty)});
   add_singular(m, found);
 }
 

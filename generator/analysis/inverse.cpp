@@ -8,9 +8,9 @@
 #include <eom/ode.hpp>
 #include <utility>
 
-#include "derive/conserved.hpp"
-#include "derive/lagrange.hpp"
-#include "derive/prescribed_forces.hpp"
+#include "analysis/prescribed_forces.hpp"
+#include "conservation/conserved.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "model/names.hpp"
 #include "run/jumps.hpp"
 #include "symbolic/evaluate.hpp"
@@ -23,7 +23,7 @@ using pipeline::Derived;
 /// What the forces are asked of: constraints by label; those that read q = f(t) if none are named.
 std::vector<std::string> chosen_constraints(const mechanics::Mechanics& m, const std::vector<std::string>& names) {
   if (names.empty()) {
-    std::vector<std::string> labels = derive::prescribing_constraints(m);
+    std::vector<std::string> labels = analysis::prescribing_constraints(m);
     if (!labels.empty()) return labels;
     throw Error("inverse", Where{m.model->file, 0, 0, 1, ""}, "no constraint of this model prescribes a motion",
                 "add one that reads coordinate = function of time, such as [[constraint]] name = \"drive\", holonomic "
@@ -62,7 +62,7 @@ std::vector<std::string> columns_of(const model::Model& model, const std::vector
 
 std::vector<std::string> force_columns(mechanics::Mechanics& m, system::EquationSystem& system,
                                        const std::vector<std::string>& labels) {
-  std::vector<std::string> names = derive::add_prescribed_forces(m, system, labels);
+  std::vector<std::string> names = analysis::add_prescribed_forces(m, system, labels);
   for (const std::string& label : labels) names.push_back("reaction." + label);
   return names;
 }
@@ -91,7 +91,7 @@ class Prescribed {
       const auto output =
           std::find_if(system_.outputs.begin(), system_.outputs.end(), [&](const auto& o) { return o.name == name; });
       // What is 0 is shown as 0, not as the rounding of terms that cancel.
-      const bool nothing = derive::vanishing(*m_.dag, {output->value}) != derive::Certainty::no;
+      const bool nothing = conservation::vanishing(*m_.dag, {output->value}) != conservation::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);
     }
     integrals_.assign(system_.integrals.size(), 0.0);

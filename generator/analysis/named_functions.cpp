@@ -6,7 +6,7 @@
 namespace eomgen::analysis {
 
 std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& m, const reading::ReadingForm& form,
-                                               const derive::Conserved& conserved) {
+                                               const conservation::Conserved& conserved) {
   if (form.by_parts) return std::nullopt;
   if (conserved.name == "energy" && mechanics::impose_dependent(m).fixed.empty()) return form.kinetic + form.potential;
   for (const reading::Equation& equation : form.equations) {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "derive/conserved.hpp"
+#include "conservation/conserved.hpp"
 #include "reading/reading.hpp"
 
 namespace eomgen::analysis {
@@ -11,6 +11,6 @@ namespace eomgen::analysis {
 /// A conserved quantity from the reading form of Approach II, where functions of time keep their names; nothing if it
 /// has no such form.
 std::optional<reading::Sum> in_named_functions(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
-                                               const derive::Conserved& conserved);
+                                               const conservation::Conserved& conserved);
 
 }  // namespace eomgen::analysis

@@ -20,10 +20,10 @@ using symbolic::SymbolKind;
 
 const char* const command = "equilibria";
 
-bool is_energy(const derive::Conserved& c) {
+bool is_energy(const conservation::Conserved& c) {
   return c.name == "energy" || c.name == "jacobi" || c.name == "energy.applied";
 }
-bool is_leaf(const derive::Conserved& c) { return c.name.starts_with("integral."); }
+bool is_leaf(const conservation::Conserved& c) { return c.name.starts_with("integral."); }
 
 /// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
 bool is_kept(const SteadyProblem& p, const Quantity& quantity) {
@@ -66,7 +66,7 @@ std::vector<Quantity> candidates(const SteadyProblem& p, bool energies) {
     result = {{"energy", s.energy}, {"jacobi", jacobi}};
   else
     result = momenta;
-  for (const derive::Conserved& c : p.derived->conserved) {
+  for (const conservation::Conserved& c : p.derived->conserved) {
     if (is_leaf(c) || is_energy(c) != energies) continue;
     const auto named = [&c](const Quantity& q) { return q.name == c.name; };
     if (std::none_of(result.begin(), result.end(), named)) result.push_back({c.name, c.expression});

@@ -10,7 +10,7 @@
 #include "analysis/article.hpp"
 #include "analysis/equations.hpp"
 #include "analysis/examination.hpp"
-#include "derive/lagrange.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "eomgen/call.hpp"
 #include "eomgen/model.hpp"
 #include "symbolic/op_names.hpp"

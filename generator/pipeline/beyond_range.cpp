@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "derive/lagrange.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "error.hpp"
 #include "symbolic/evaluate.hpp"
 

@@ -174,7 +174,7 @@ std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model,
         derived->candidates.push_back(std::move(*route_system));
     }
   }
-  derived->conserved = derive::conserved_quantities(derived->mechanics, derived->candidates);
+  derived->conserved = conservation::conserved_quantities(derived->mechanics, derived->candidates);
   take_forms(*derived, form);
   derived->seconds.derive = watch.lap();
   return derived;
@@ -238,7 +238,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   add_reading_forms(derived.mechanics, subjects);
   if (options.reductions) {
     const reading::RouthForm routh =
-        reading::routh_form(derived.mechanics, derive::cyclic_coordinates(derived.conserved));
+        reading::routh_form(derived.mechanics, conservation::cyclic_coordinates(derived.conserved));
     subjects.reading.push_back(
         {"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
   }

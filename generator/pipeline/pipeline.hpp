@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/conserved.hpp"
+#include "conservation/conserved.hpp"
 #include "emit/context.hpp"
 #include "emit/targets.hpp"
 #include "mechanics/mechanics.hpp"
@@ -40,7 +40,7 @@ struct Derived {
   const model::Model& model;
   mechanics::Mechanics mechanics;
   std::vector<system::EquationSystem> candidates;  // routes that apply, in the approaches asked for
-  std::vector<derive::Conserved> conserved;
+  std::vector<conservation::Conserved> conserved;
   Timings seconds;
   bool kept_certificate = false;  // of an earlier command, for the same model and program
 };

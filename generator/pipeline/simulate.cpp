@@ -47,14 +47,14 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
   }
   for (const char* name : {"energy", "kinetic", "potential"}) add(name);
   if (watch_power) add("power");
-  for (const derive::Conserved& c : derived.conserved) {
+  for (const conservation::Conserved& c : derived.conserved) {
     add(c.name);
-    if (c.magnitude) add(derive::magnitude_output(c));
+    if (c.magnitude) add(conservation::magnitude_output(c));
   }
   for (const mechanics::Integral& i : derived.mechanics.integrals) {
     for (const std::uint32_t q : derived.mechanics.free)
-      add(derive::differential_output(i, derived.model.coordinates[q].name));
-    add(derive::differential_output(i, "t"));
+      add(conservation::differential_output(i, derived.model.coordinates[q].name));
+    add(conservation::differential_output(i, "t"));
   }
   for (const system::Output& output : derived.candidates.front().outputs) {
     if (output.name.starts_with("reaction.") || output.name.starts_with(system::watched_prefix)) add(output.name);
@@ -73,7 +73,7 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
 
 bool energy_is_conserved(const Derived& derived) {
   return std::any_of(derived.conserved.begin(), derived.conserved.end(),
-                     [](const derive::Conserved& c) { return c.name == "energy"; });
+                     [](const conservation::Conserved& c) { return c.name == "energy"; });
 }
 
 }  // namespace
@@ -114,16 +114,16 @@ static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scen
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
                       {},   {}};
-  for (const derive::Conserved& c : derived.conserved) {
+  for (const conservation::Conserved& c : derived.conserved) {
     run.conserved.push_back(c.name);
-    run.magnitudes.push_back(c.magnitude ? derive::magnitude_output(c) : "");
+    run.magnitudes.push_back(c.magnitude ? conservation::magnitude_output(c) : "");
   }
   for (const mechanics::Integral& i : derived.mechanics.integrals) {
     run::IntegralOutputs names{"integral." + i.label, {}};
     for (const std::uint32_t q : derived.mechanics.free) {
-      names.slopes.push_back(derive::differential_output(i, derived.model.coordinates[q].name));
+      names.slopes.push_back(conservation::differential_output(i, derived.model.coordinates[q].name));
     }
-    names.slopes.push_back(derive::differential_output(i, "t"));
+    names.slopes.push_back(conservation::differential_output(i, "t"));
     run.integrals.push_back(std::move(names));
   }
   run.contacts = contact_outputs(derived);

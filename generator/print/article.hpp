@@ -23,7 +23,7 @@ struct ForceFinding {
 };
 
 struct ConservedFinding {
-  std::string name, title;  // as derive::Conserved has them
+  std::string name, title;  // as conservation::Conserved has them
   symbolic::Ref expression;
   std::optional<reading::Sum> named;  // the same, where functions of time keep their names
   std::optional<std::uint32_t> cyclic;

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <set>
 
-#include "derive/conserved.hpp"
+#include "conservation/conserved.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::run {
@@ -59,9 +59,10 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
     bool found = coordinates.contains(want.name);
     for (const system::Output& output : system.outputs) {
       const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      const bool table =
-          !output.name.starts_with(derive::differential_prefix) && !output.name.starts_with(derive::magnitude_prefix) &&
-          !output.name.starts_with(system::contact_prefix) && !output.name.starts_with(system::watched_prefix);
+      const bool table = !output.name.starts_with(conservation::differential_prefix) &&
+                         !output.name.starts_with(conservation::magnitude_prefix) &&
+                         !output.name.starts_with(system::contact_prefix) &&
+                         !output.name.starts_with(system::watched_prefix);
       const bool of_all = want.name == "all" && table;
       if (!of_all && output.name != want.name && !part) continue;
       take(output.name);
@@ -71,7 +72,7 @@ std::vector<std::string> expand_outputs(const Mechanics& m, const system::Equati
       refuse_undetermined(m, want);
       std::string names;
       for (const system::Output& output : system.outputs) {
-        const bool hidden = output.name.starts_with(derive::magnitude_prefix) ||
+        const bool hidden = output.name.starts_with(conservation::magnitude_prefix) ||
                             output.name.starts_with(system::contact_prefix) ||
                             output.name.starts_with(system::watched_prefix);
         if (!coordinates.contains(output.name) && !hidden) names += (names.empty() ? "" : ", ") + output.name;

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <limits>
 
-#include "derive/conserved.hpp"
 #include "derive/imposition.hpp"
 #include "run/jumps.hpp"
 #include "run/parameters.hpp"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "derive/lagrange.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "eom/modes/contacts.hpp"
 #include "model/model.hpp"
 #include "program/build.hpp"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "derive/prescribed_forces.hpp"
+#include "analysis/prescribed_forces.hpp"
 #include "derive/routes.hpp"
 #include "reading_of.hpp"
 #include "support/simulation.hpp"
@@ -30,7 +30,7 @@ struct Numbers {
 TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at all times") {
   const model::Model model = model::read_model(test::model_path("P10_rocket"));
   mechanics::Mechanics m = mechanics::build_mechanics(model);
-  CHECK(derive::prescribing_constraints(m) == std::vector<std::string>{"radial", "meridian", "cone"});
+  CHECK(analysis::prescribing_constraints(m) == std::vector<std::string>{"radial", "meridian", "cone"});
   const Numbers n;
   const double e[] = {std::sin(n.phi0) * std::cos(n.theta0), std::sin(n.phi0) * std::sin(n.theta0), std::cos(n.phi0)};
   for (const derive::RouteEntry& route : derive::routes()) {
@@ -38,7 +38,7 @@ TEST_CASE("P10: the thrust is radial and equals d(m Rdot)/dt + alpha m/R^2 at al
     if (!derived) continue;
     INFO(route.name);
     system::EquationSystem& s = *derived;
-    const std::vector<std::string> names = derive::add_prescribed_forces(m, s, derive::prescribing_constraints(m));
+    const std::vector<std::string> names = analysis::add_prescribed_forces(m, s, analysis::prescribing_constraints(m));
     // No force turns the rocket: those of theta and phi vanish identically and are left out.
     CHECK(names == std::vector<std::string>{"force.R", "P.force1", "P.force2", "P.force3", "prescribed.power"});
     std::vector<symbolic::Ref> values;

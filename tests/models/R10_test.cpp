@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "derive/conservative.hpp"
+#include "conservation/conservative.hpp"
 #include "models/reading_of.hpp"
 #include "support/simulation.hpp"
 
@@ -55,11 +55,11 @@ TEST_CASE("R10: T is (7.111), U (7.112), and the moment along E3 has the compone
 
 TEST_CASE("R10: the moment along E3 is not conservative, spring and weight are") {
   Read r10("R10_lagrange_top");
-  const std::vector<derive::ForceClass> found = derive::classify_forces(r10.s.mechanics);
+  const std::vector<conservation::ForceClass> found = conservation::classify_forces(r10.s.mechanics);
   REQUIRE(found.size() == 3);
-  CHECK(found[0].conservative == derive::Verdict::yes);
-  CHECK(found[1].conservative == derive::Verdict::yes);
-  CHECK(found[2].conservative == derive::Verdict::no);
+  CHECK(found[0].conservative == conservation::Verdict::yes);
+  CHECK(found[1].conservative == conservation::Verdict::yes);
+  CHECK(found[2].conservative == conservation::Verdict::no);
 }
 
 TEST_CASE("R10: let go without precession it nods between two tilts, roots of the cubic of its energy, in cusps") {

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "derive/conservative.hpp"
+#include "conservation/conservative.hpp"
 #include "models/reading_of.hpp"
 #include "support/simulation.hpp"
 
@@ -12,9 +12,9 @@ using namespace eomgen::test;
 
 TEST_CASE("R11: a constant moment is not conservative, and is where the body turns about its direction only") {
   Read r11("R11_constant_moment"), axis("R11_constant_moment_fixed_axis");
-  CHECK(derive::classify_forces(r11.s.mechanics).at(0).conservative == derive::Verdict::no);
-  const derive::ForceClass fixed = derive::classify_forces(axis.s.mechanics).at(0);
-  CHECK(fixed.conservative == derive::Verdict::yes);
+  CHECK(conservation::classify_forces(r11.s.mechanics).at(0).conservative == conservation::Verdict::no);
+  const conservation::ForceClass fixed = conservation::classify_forces(axis.s.mechanics).at(0);
+  CHECK(fixed.conservative == conservation::Verdict::yes);
   REQUIRE(fixed.potential.has_value());
   CHECK(same(reading::read(axis.s.mechanics, *fixed.potential), -(axis("M0") * axis("n"))));
 }

@@ -7,8 +7,8 @@
 #include <cmath>
 #include <eom/ode.hpp>
 
-#include "derive/conserved.hpp"
-#include "derive/lagrange.hpp"
+#include "conservation/conserved.hpp"
+#include "derive/routes/lagrange.hpp"
 #include "models/reading_of.hpp"
 #include "support/simulation.hpp"
 #include "support/sum_values.hpp"
@@ -21,7 +21,7 @@ namespace {
 
 reading::RouthForm reduced(mechanics::Mechanics& m) {
   system::EquationSystem s = derive::lagrange(m, system::Approach::two);
-  return reading::routh_form(m, derive::cyclic_coordinates(derive::conserved_quantities(m, s)));
+  return reading::routh_form(m, conservation::cyclic_coordinates(conservation::conserved_quantities(m, s)));
 }
 
 verify::Certificate certificate(mechanics::Mechanics& m, const std::vector<symbolic::Ref>& residuals) {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "derive/lagrange.hpp"
+#include "derive/routes/lagrange.hpp"
 
 using namespace eomgen;
 

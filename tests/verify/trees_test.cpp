@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "derive/quasi_coordinates.hpp"
+#include "derive/trees/quasi_coordinates.hpp"
 #include "model/model.hpp"
 #include "verify/certificate.hpp"
 

@@ -82,7 +82,7 @@ void add_formula(Html& html, const std::string& mathml, std::size_t& room) {
   html.formula(mathml);
 }
 
-void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<derive::Conserved>& conserved) {
+void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved) {
   const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
   const system::Approach approach = one ? system::Approach::one : system::Approach::two;
   const reading::ReadingForm form = reading::derive_reading(m, approach);
@@ -110,7 +110,7 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
   }
   if (conserved.empty()) return;
   html.heading(3, "Conserved");
-  for (const derive::Conserved& c : conserved) {
+  for (const conservation::Conserved& c : conserved) {
     html.paragraph(c.title, "quiet");
     add_formula(html, print::render_expression(m, "", "", c.expression).mathml, room);
   }

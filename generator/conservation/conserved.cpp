@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "conservation/conserved.hpp"
+
+#include <algorithm>
+
+#include "conservation/conservative.hpp"
+#include "conservation/jumps.hpp"
+#include "conservation/momenta.hpp"
+#include "derive/equations.hpp"
+#include "mechanics/vanishes.hpp"
+#include "symbolic/polynomial.hpp"
+
+namespace eomgen::conservation {
+
+using derive::generalized_forces;
+using mechanics::impose;
+using mechanics::Mechanics;
+using mechanics::write_out;
+using symbolic::Dag;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+namespace {
+
+// Of a proof, where values have said yes already: products of two terms, a tenth of a second; and terms of one
+// expression.
+constexpr std::size_t proof_effort = 300'000, proof_terms = 400;
+
+}  // namespace
+
+std::string differential_output(const mechanics::Integral& integral, const std::string& variable) {
+  return std::string(differential_prefix) + integral.label + "." + variable;
+}
+
+const char* name(Certainty certainty) {
+  switch (certainty) {
+    case Certainty::no: return "no";
+    case Certainty::numerical: return "numerical";
+    case Certainty::proven: break;
+  }
+  return "proven";
+}
+
+Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
+  if (!mechanics::vanishes(dag, expressions)) return Certainty::no;
+  symbolic::Effort effort{proof_effort};
+  symbolic::Expander expander(dag, proof_terms, &effort);
+  const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(expander.tidy(r)); };
+  return std::all_of(expressions.begin(), expressions.end(), is_empty) ? Certainty::proven : Certainty::numerical;
+}
+
+std::string magnitude_output(const Conserved& conserved) { return magnitude_prefix + conserved.name; }
+
+namespace {
+
+/// Forces that are not in U and yet have a potential.
+struct Applied {
+  Ref potential;
+  std::vector<Ref> Q;  // of the other forces
+};
+
+Applied applied_potentials(Mechanics& m) {
+  Applied result{m.dag->zero(), generalized_forces(m)};
+  const std::vector<ForceClass> forces = classify_forces(m);
+  for (std::size_t k = 0; k < forces.size(); ++k) {
+    if (forces[k].in_energy || forces[k].conservative != Verdict::yes || !forces[k].potential) continue;
+    result.potential = m.dag->add(result.potential, m.dag->sub(*forces[k].potential, m.potential_by_force[k]));
+    for (std::size_t i = 0; i < result.Q.size(); ++i) result.Q[i] = m.dag->sub(result.Q[i], m.force_components[k][i]);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
+  Dag& dag = *m.dag;
+  std::vector<Conserved> result;
+  const bool hit =
+      std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
+  symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
+  std::vector<Ref> power{s.power};
+  for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
+  if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no)
+    result.push_back({"energy", "total energy T + U", s.energy, c});
+  // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
+  const Ref L = dag.sub(s.kinetic, s.potential);
+  symbolic::Substitution imposed = impose(m), written = write_out(m);
+  const bool energy_conserved = !result.empty();
+  const std::vector<Ref> Q = generalized_forces(m);
+  const Applied applied = energy_conserved ? Applied{dag.zero(), Q} : applied_potentials(m);
+  const Ref V = written(imposed(applied.potential));
+  const std::vector<Ref> surfaces = jump_surfaces(dag, {L, V});
+  Ref jacobi = dag.sub(V, L);
+  Ref input_power = dag.zero();
+  for (std::size_t row = 0; row < s.free.size(); ++row) {
+    const std::uint32_t i = s.free[row];
+    const Ref p = symbolic::partial(dag, {SymbolKind::coordinate, i, 1})(L);
+    const Ref force = written(imposed(Q[i]));
+    const Ref rate = s.dag->symbol({SymbolKind::coordinate, i, 1});
+    jacobi = dag.add(jacobi, dag.mul(rate, p));
+    input_power = dag.add(input_power, dag.mul(written(imposed(applied.Q[i])), rate));
+    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, i, 0});
+    std::vector<Ref> must_vanish{by(L), force};
+    for (const Ref surface : surfaces) must_vanish.push_back(by(surface));
+    for (std::size_t k = 0; k < s.active.size(); ++k) must_vanish.push_back(s.A[k * s.free.size() + row]);
+    const Certainty certainty = vanishing(dag, must_vanish);
+    if (certainty == Certainty::no) continue;
+    const std::string& name = m.model->coordinates[i].name;
+    result.push_back({"momentum." + name, "generalised momentum of " + name, p, certainty, i});
+    s.outputs.push_back({result.back().name, p});
+  }
+  std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
+  must_vanish.push_back(by_time(dag.sub(L, V)));
+  for (const Ref surface : surfaces) must_vanish.push_back(by_time(surface));
+  must_vanish.push_back(input_power);
+  if (const Certainty c = energy_conserved || hit ? Certainty::no : vanishing(dag, must_vanish); c != Certainty::no) {
+    const bool plain = dag.is_zero(V);
+    result.push_back({plain ? "jacobi" : "energy.applied",
+                      plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces",
+                      jacobi, c});
+    s.outputs.push_back({result.back().name, jacobi});
+  }
+  for (const mechanics::Integral& integral : m.integrals) {
+    const std::string name = "integral." + integral.label;
+    result.push_back({name, "what the constraint keeps, as it is at the start", integral.psi});
+    s.outputs.push_back({name, integral.psi});
+    // Its differential, for the projection: by the free coordinates and t.
+    for (const std::uint32_t i : s.free) {
+      const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(integral.psi);
+      s.outputs.push_back({differential_output(integral, m.model->coordinates[i].name), slope});
+    }
+    s.outputs.push_back({differential_output(integral, "t"), written(by_time(integral.psi))});
+  }
+  for (Conserved& momentum : conserved_momenta(m, s, result)) {
+    s.outputs.push_back({momentum.name, momentum.expression});
+    s.outputs.push_back({magnitude_output(momentum), *momentum.magnitude});
+    result.push_back(std::move(momentum));
+  }
+  return result;
+}
+
+std::vector<Conserved> conserved_quantities(Mechanics& m, std::vector<system::EquationSystem>& systems) {
+  if (systems.empty()) return {};
+  const std::vector<system::Output>& outputs = systems.front().outputs;
+  const auto own = static_cast<std::ptrdiff_t>(outputs.size());
+  std::vector<Conserved> result = conserved_quantities(m, systems.front());
+  for (std::size_t i = 1; i < systems.size(); ++i) {
+    systems[i].outputs.insert(systems[i].outputs.end(), outputs.begin() + own, outputs.end());
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved) {
+  std::vector<std::uint32_t> result;
+  for (const Conserved& c : conserved) {
+    if (c.cyclic) result.push_back(*c.cyclic);
+  }
+  return result;
+}
+
+}  // namespace eomgen::conservation

@@ -1,0 +1,272 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// sum d(m v)/dt . d = sum (Q_i - dU/dq_i) xi_i + sum lambda_k A_ki xi_i for displacements d = dr/dq_i xi_i of all
+// masses: with d = E_k or E_k x r the left-hand side is dG_k/dt or dH_k/dt. Of bodies, dH/dt . (dw/dqdot_i xi_i) is
+// added: the body turns about E_k, or not at all.
+#include "conservation/momenta.hpp"
+
+#include <cmath>
+
+#include "conservation/jumps.hpp"
+#include "derive/equations.hpp"
+#include "mechanics/vanishes.hpp"
+#include "symbolic/evaluate.hpp"
+#include "symbolic/factorisation.hpp"
+#include "symbolic/polynomial.hpp"
+#include "symbolic/sample.hpp"
+
+namespace eomgen::conservation {
+namespace {
+
+using derive::generalized_forces;
+using mechanics::impose;
+using mechanics::Mechanics;
+using mechanics::Vec3;
+using mechanics::write_out;
+using symbolic::Dag;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+constexpr double screening = 1e-5;  // what passes is decided in many digits
+// Of writing J^T J out, which finds zeros where coordinates are orthogonal: products of two terms, and terms of one
+// entry.
+constexpr std::size_t gram_effort = 300'000, gram_terms = 400;
+
+/// The least-squares solution y of J y = d, if it is one: J is rows x n, row-major.
+bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std::size_t n, std::vector<double>& y) {
+  std::vector<double> N(n * n);
+  y.assign(n, 0.0);
+  double size = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t r = 0; r < d.size(); ++r) {
+      y[i] += J[r * n + i] * d[r];
+      for (std::size_t k = 0; k < n; ++k) N[i * n + k] += J[r * n + i] * J[r * n + k];
+    }
+    size = std::max(size, N[i * n + i]);
+  }
+  for (std::size_t p = 0; p < n; ++p) {  // symmetric and positive definite: no pivoting
+    if (!(N[p * n + p] > 1e-10 * size)) return false;
+    for (std::size_t i = p + 1; i < n; ++i) {
+      const double factor = N[i * n + p] / N[p * n + p];
+      for (std::size_t k = p; k < n; ++k) N[i * n + k] -= factor * N[p * n + k];
+      y[i] -= factor * y[p];
+    }
+  }
+  for (std::size_t p = n; p-- > 0;) {
+    for (std::size_t k = p + 1; k < n; ++k) y[p] -= N[p * n + k] * y[k];
+    y[p] /= N[p * n + p];
+  }
+  double residual = 0, length = 0;
+  for (std::size_t r = 0; r < d.size(); ++r) {
+    double rest = d[r];
+    for (std::size_t i = 0; i < n; ++i) rest -= J[r * n + i] * y[i];
+    residual = std::max(residual, std::abs(rest));
+    length = std::max(length, std::abs(d[r]));
+  }
+  return residual <= screening * length;
+}
+
+/// force . y is nothing beside what it could be.
+bool does_no_work(const double* force, const std::vector<double>& y) {
+  double sum = 0, forces = 0, longest = 0;
+  for (std::size_t i = 0; i < y.size(); ++i) {
+    sum += force[i] * y[i];
+    forces += std::abs(force[i]);
+    longest = std::max(longest, std::abs(y[i]));
+  }
+  return std::abs(sum) <= screening * forces * longest;  // a y_i that should be 0 is rounding of the longest
+}
+
+class Search {
+ public:
+  Search(Mechanics& m, const system::EquationSystem& s) : s_(s), dag_(*m.dag), n_(s.free.size()) {
+    symbolic::Substitution imposed = impose(m), written = write_out(m);
+    const auto all = [&](const Vec3& v) {
+      return Vec3{written(imposed(v[0])), written(imposed(v[1])), written(imposed(v[2]))};
+    };
+    for (const mechanics::PointMass& mass : m.masses) {
+      mass_.push_back(written(mass.mass));
+      r_.push_back(all(mass.position));
+      v_.push_back(all(mass.velocity));
+    }
+    for (const Vec3& r : r_) {
+      for (const Ref x : r) {
+        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(x));
+      }
+    }
+    for (const mechanics::Spin& spin : m.spins) {
+      w_.push_back(all(spin.w));
+      for (const Ref w : w_.back()) {
+        for (const std::uint32_t i : s.free) J_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 1})(w));
+      }
+      H_.push_back(times(dag_, spin, w_.back()));
+      axes_.push_back({all(spin.axes[0]), all(spin.axes[1]), all(spin.axes[2])});
+    }
+    // Displacements that the constraints allow: where coordinates are dependent (Euler parameters) they decide among
+    // those that move everything alike.
+    J_.insert(J_.end(), s.A.begin(), s.A.end());
+    const std::vector<Ref> Q = generalized_forces(m);
+    for (const std::uint32_t i : s.free) {
+      const Ref slope = symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(s.potential);
+      force_.push_back(dag_.sub(written(imposed(Q[i])), slope));
+    }
+    for (const Ref surface : jump_surfaces(dag_, {s.kinetic, s.potential})) {
+      for (const std::uint32_t i : s.free)
+        across_.push_back(symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(surface));
+    }
+  }
+
+  /// `repeats`: whether this expression is of no interest, which is far easier to see than that it is conserved.
+  template <class Repeats>
+  std::optional<Conserved> component(bool angular, std::size_t k, const Repeats& repeats) {
+    const std::vector<Ref> d = displacement(angular, k);
+    if (mechanics::vanishes(dag_, d) || !may_be_conserved(d)) return std::nullopt;
+    Conserved result;
+    const std::string along = "E" + std::to_string(k + 1);
+    result.name = (angular ? "angular_momentum." : "linear_momentum.") + along;
+    result.title = (angular ? "angular momentum about the origin along " : "linear momentum along ") + along;
+    Ref expression = dag_.zero();
+    for (std::size_t p = 0; p < r_.size(); ++p) {
+      const Vec3 of{d[3 * p], d[3 * p + 1], d[3 * p + 2]};
+      expression = dag_.add(expression, dag_.mul(mass_[p], dot(dag_, of, v_[p])));
+    }
+    for (std::size_t b = 0; b < H_.size(); ++b) {
+      const std::size_t row = 3 * (r_.size() + b);
+      expression = dag_.add(expression, dot(dag_, Vec3{d[row], d[row + 1], d[row + 2]}, H_[b]));
+    }
+    if (repeats(expression)) return std::nullopt;
+    const Certainty certainty = vanishing(dag_, conditions(d));
+    if (certainty == Certainty::no) return std::nullopt;
+    result.certainty = certainty;
+    Ref magnitude = dag_.zero();
+    for (std::size_t p = 0; p < r_.size(); ++p) {
+      Ref squares = dot(dag_, v_[p], v_[p]);
+      if (angular) squares = dag_.mul(squares, dot(dag_, r_[p], r_[p]));
+      magnitude = dag_.add(magnitude, dag_.mul(mass_[p], dag_.call(symbolic::Op::sqrt, squares)));
+    }
+    for (std::size_t b = 0; b < H_.size() && angular; ++b)
+      magnitude = dag_.add(magnitude, dag_.call(symbolic::Op::sqrt, dot(dag_, H_[b], H_[b])));
+    result.expression = expression;
+    result.magnitude = magnitude;
+    return result;
+  }
+
+ private:
+  std::vector<Ref> displacement(bool angular, std::size_t k) const {
+    std::vector<Ref> d = moved(angular, k);
+    for (const std::array<Vec3, 3>& axes : axes_) {
+      for (const Vec3& e : axes) d.push_back(angular ? e[k] : dag_.zero());
+    }
+    d.resize(d.size() + s_.active.size(), dag_.zero());
+    return d;
+  }
+
+  std::vector<Ref> moved(bool angular, std::size_t k) const {
+    std::vector<Ref> d;
+    for (const Vec3& r : r_) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (!angular)
+          d.push_back(c == k ? dag_.one() : dag_.zero());
+        else if (c == k)
+          d.push_back(dag_.zero());
+        else
+          d.push_back(c == (k + 1) % 3 ? dag_.neg(r[(k + 2) % 3]) : r[(k + 1) % 3]);  // E_k x r
+      }
+    }
+    return d;
+  }
+
+  /// By values at one point: the displacement is one of the coordinates', and the forces do no work on it.
+  bool may_be_conserved(const std::vector<Ref>& d) const {
+    std::vector<Ref> both = J_;
+    both.insert(both.end(), d.begin(), d.end());
+    both.insert(both.end(), force_.begin(), force_.end());
+    for (std::uint64_t point = 1; point <= 4; ++point) {
+      std::vector<double> value =
+          symbolic::evaluate(dag_, both, [=](const Symbol& s) { return symbolic::sample_double(s, point); });
+      if (!std::all_of(value.begin(), value.end(), [](double x) { return std::isfinite(x); })) continue;
+      const auto end = value.begin() + static_cast<std::ptrdiff_t>(J_.size());
+      const auto force = end + static_cast<std::ptrdiff_t>(d.size());
+      std::vector<double> xi;
+      return is_in_range({value.begin(), end}, {end, force}, n_, xi) && does_no_work(&*force, xi);
+    }
+    return false;
+  }
+
+  // What has to vanish: J xi - d, the work on xi, that of the constraint forces, and of the impulses where energies
+  // jump.
+  std::vector<Ref> conditions(const std::vector<Ref>& d) {
+    std::vector<Ref> y(n_, dag_.zero());
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t r = 0; r < d.size(); ++r) y[i] = dag_.add(y[i], dag_.mul(J_[r * n_ + i], d[r]));
+    }
+    if (!factors_) factors_.emplace(factorised());
+    const std::vector<Ref> xi = factors_->backward(factors_->forward(y));
+    std::vector<Ref> result;
+    for (std::size_t r = 0; r < d.size(); ++r) result.push_back(dag_.sub(along(xi, J_, r), d[r]));
+    result.push_back(along(xi, force_, 0));
+    for (std::size_t k = 0; k * n_ < across_.size(); ++k) result.push_back(along(xi, across_, k));
+    return result;
+  }
+
+  /// J^T J.
+  symbolic::Factorisation factorised() {
+    symbolic::Effort effort{gram_effort};
+    symbolic::Expander expand(dag_, gram_terms, &effort);
+    std::vector<Ref> N(n_ * n_, dag_.zero());
+    const std::size_t rows = J_.size() / n_;
+    for (std::size_t i = 0; i < n_; ++i) {
+      for (std::size_t k = 0; k <= i; ++k) {
+        Ref sum = dag_.zero();
+        for (std::size_t r = 0; r < rows; ++r) sum = dag_.add(sum, dag_.mul(J_[r * n_ + i], J_[r * n_ + k]));
+        N[i * n_ + k] = N[k * n_ + i] = expand.tidy(sum);  // orthogonal coordinates leave a diagonal
+      }
+    }
+    return {dag_, std::move(N), n_, symbolic::Ties::ascending};
+  }
+
+  Ref along(const std::vector<Ref>& xi, const std::vector<Ref>& matrix, std::size_t row) const {
+    Ref sum = dag_.zero();
+    for (std::size_t i = 0; i < n_; ++i) sum = dag_.add(sum, dag_.mul(matrix[row * n_ + i], xi[i]));
+    return sum;
+  }
+
+  const system::EquationSystem& s_;
+  Dag& dag_;
+  std::size_t n_;
+  std::vector<Ref> mass_, J_, force_;
+  std::vector<Ref> across_;  // slopes of the surfaces at which energies jump, row by row
+  std::vector<Vec3> r_, v_, w_, H_;
+  std::vector<std::array<Vec3, 3>> axes_;  // of the spins
+  std::optional<symbolic::Factorisation> factors_;
+};
+
+bool repeats(const Dag& dag, const std::vector<Conserved>& known, Ref expression, Dag& work) {
+  return std::any_of(known.begin(), known.end(), [&](const Conserved& c) {
+    return mechanics::vanishes(dag, {work.sub(c.expression, expression)}) ||
+           mechanics::vanishes(dag, {work.add(c.expression, expression)});
+  });
+}
+
+}  // namespace
+
+std::vector<Conserved> conserved_momenta(Mechanics& m, const system::EquationSystem& s,
+                                         const std::vector<Conserved>& known) {
+  std::vector<Conserved> all = known, found;
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given) || s.free.empty() || s.free.size() > most_coordinates)
+    return found;
+  Search search(m, s);
+  for (const bool angular : {false, true}) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::optional<Conserved> c = search.component(angular, k, [&](Ref expression) {
+        return mechanics::vanishes(*m.dag, {expression}) || repeats(*m.dag, all, expression, *m.dag);
+      });
+      if (!c) continue;
+      found.push_back(*c);
+      all.push_back(*c);
+    }
+  }
+  return found;
+}
+
+}  // namespace eomgen::conservation

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The articulated route: particles on links that carry forces only along directions in which they do not let the
+// particle move. The accelerations relative to the parent vanish along these directions,
+//   N_k . (a_k - a_parent - c_k) = 0,   a_k = g + (F_k + N_k T_k + W_k - sum_children (N_c T_c + W_c)) / m_k,
+// which gives the tensions T by a factorisation without fill; then theta_ddot_k = J_k . (a_k - a_parent - c_k) / J_k .
+// J_k. The cost grows with the number of links, not with its cube. W_k = J_k f_k / J_k . J_k is what the forces on
+// theta_k come to. Trees of bodies: derive/trees/body_elimination.hpp.
+#include "derive/routes.hpp"
+#include "derive/trees/body_elimination.hpp"
+#include "derive/trees/body_equations.hpp"
+#include "derive/trees/tensions.hpp"
+#include "derive/trees/tree_equations.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+/// Trees (derive/trees/branches.hpp) with one particle of constant mass at the end of every link, no multipliers, and
+/// links whose directions of force are known: as many coordinates as dimensions, or one fewer.
+std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Approach approach) {
+  if (!m.spins.empty()) {
+    std::optional<system::EquationSystem> s = equations_of_bodies(m, approach, "articulated", body_accelerations);
+    if (s && !s->solution) s.reset();
+    return s;
+  }
+  if (!m.active.empty() || !m.contacts.empty()) return std::nullopt;
+  Dag& dag = *m.dag;
+  const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
+  if (!motion) return std::nullopt;
+  const auto rods = rods_of(dag, motion->tree);
+  if (!rods) return std::nullopt;
+  std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "articulated", approach);
+  if (!s) return std::nullopt;
+  system::Solution solution = accelerations(dag, motion->tree, *rods);
+  symbolic::Substitution back = motion->tree.coordinates.back(dag);
+  for (Ref& r : solution.qddot) r = back(r);
+  for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};
+  const QuasiCoordinates& theta = motion->tree.coordinates;  // q = S^-1 theta, for the second rates too
+  if (!theta.identity()) solution.qddot = symbolic::applied(dag, theta.S_inverse, solution.qddot);
+  s->solution = std::move(solution);
+  return s;
+}
+
+}  // namespace
+
+RouteEntry route::articulated() {
+  return {.name = "articulated",
+          .title = "a tree of particles or bodies: link after link, no mass matrix",
+          .applies = "applies to trees of particles or of bodies without multipliers and friction",
+          .derive = by_articulated,
+          .over_trees = true};
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The expanded route: Lagrange's equations of energies that are expanded first, sin^2 + cos^2 = 1 used; best for small
+// systems.
+#include "derive/euler_lagrange.hpp"
+#include "derive/routes.hpp"
+#include "symbolic/polynomial.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+// Beyond this an expansion has never been the cheapest, and larger systems must not wait for it.
+constexpr std::size_t term_budget = 300;
+constexpr std::size_t coordinate_budget = 8;
+
+FullEquations reduced(symbolic::Expander& expander, FullEquations equations) {
+  for (Ref& r : equations.M) r = expander.tidy(r);
+  for (Ref& r : equations.f) r = expander.tidy(r);
+  return equations;
+}
+
+/// Applies where the kinetic energy fits into the term budget of the expansion.
+std::optional<system::EquationSystem> by_expanded(Mechanics& m, system::Approach approach) {
+  if (m.q.size() > coordinate_budget) return std::nullopt;
+  symbolic::Expander expander(*m.dag, term_budget);
+  const std::optional<Ref> kinetic = expander(m.kinetic);
+  if (!kinetic) return std::nullopt;
+  std::vector<Ref> Q = generalized_forces(m);
+  for (Ref& q : Q) q = expander.tidy(q);
+  const Ref T = *kinetic, U = expander.tidy(m.potential);
+  const FullEquations full = reduced(expander, euler_lagrange(m, T, U, Q, all_coordinates(m)));
+  if (approach == system::Approach::one) return assemble(m, full, nullptr, "expanded", approach);
+  symbolic::Substitution imposed = impose(m);
+  // An expansion ends over a common denominator; expanded again, that would be multiplied out into what it does not
+  // concern.
+  const auto constrained = [&](Ref whole, Ref reduced_whole) {
+    return imposed(whole) == whole ? reduced_whole : expander.tidy(imposed(reduced_whole));
+  };
+  const Ref T_constrained = constrained(m.kinetic, T), U_constrained = constrained(m.potential, U);
+  const FullEquations motion = reduced(expander, euler_lagrange(m, T_constrained, U_constrained, Q, m.free));
+  return assemble(m, full, &motion, "expanded", approach);
+}
+
+}  // namespace
+
+RouteEntry route::expanded() {
+  return {.name = "expanded",
+          .title = "T and U expanded first, sin^2 + cos^2 = 1 used",
+          .applies = "applies to small models whose kinetic energy stays short when it is multiplied out",
+          .derive = by_expanded};
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The jacobian route: no energy is formed. With J_i = dr/dq_i (the covariant basis, eq. (3.20)) and the acceleration
+// a = sum J_i qddot_i + a0, the equations are the components sum m a . J_i of the balance of momentum (2.68).
+#include "derive/equations.hpp"
+#include "derive/routes.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::SymbolKind;
+
+/// Euler's equations along the axes of the spin, (dH/dt + carrier x H) . dw/dqdot_i, eqs. (8.41), (9.39).
+void add_spin(Mechanics& m, const mechanics::Spin& given, symbolic::Substitution* imposed,
+              const std::vector<std::uint32_t>& which, symbolic::Derivation& bias, FullEquations& result) {
+  Dag& dag = *m.dag;
+  mechanics::Spin spin = given;
+  for (Vec3* v : {&spin.w, &spin.carrier}) {
+    for (Ref& r : *v) r = imposed == nullptr ? r : (*imposed)(r);
+  }
+  const std::size_t n = which.size();
+  std::vector<Vec3> W, JW;  // dw/dqdot_i and J times it
+  for (const std::uint32_t i : which) {
+    symbolic::Derivation by = symbolic::partial(dag, {SymbolKind::coordinate, i, 1});
+    W.push_back({by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
+    JW.push_back(times(dag, spin, W.back()));
+  }
+  const Vec3 H = momentum(dag, spin);
+  const Vec3 rate = symbolic::add(dag, times(dag, spin, {bias(spin.w[0]), bias(spin.w[1]), bias(spin.w[2])}),
+                                  symbolic::cross(dag, spin.carrier, H));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t k = i; k < n; ++k) {
+      result.M[i * n + k] = dag.add(result.M[i * n + k], dot(dag, W[i], JW[k]));
+      result.M[k * n + i] = result.M[i * n + k];
+    }
+    result.f[i] = dag.sub(result.f[i], dot(dag, W[i], rate));
+  }
+}
+
+FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std::vector<Ref>& Q,
+                        const std::vector<std::uint32_t>& which) {
+  Dag& dag = *m.dag;
+  const auto apply = [&](Ref r) { return imposed == nullptr ? r : (*imposed)(r); };
+  const std::size_t n = which.size();
+  symbolic::Derivation bias = symbolic::total_time(dag, m.q.size(), m.model->functions.size(), true);
+  FullEquations result{std::vector<Ref>(n * n, dag.zero()), {}};
+  const Ref U = apply(m.potential);
+  std::vector<symbolic::Derivation> by;
+  for (const std::uint32_t i : which) {
+    by.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0}));
+    result.f.push_back(dag.sub(Q[i], by.back()(U)));
+  }
+  for (const mechanics::PointMass& mass : m.masses) {
+    const Vec3 r{apply(mass.position[0]), apply(mass.position[1]), apply(mass.position[2])};
+    const Vec3 v{bias(r[0]), bias(r[1]), bias(r[2])};
+    const Vec3 a0{bias(v[0]), bias(v[1]), bias(v[2])};
+    const Ref mass_rate = bias(mass.mass);
+    std::vector<Vec3> J;
+    for (std::size_t i = 0; i < n; ++i) J.push_back({by[i](r[0]), by[i](r[1]), by[i](r[2])});
+    for (std::size_t i = 0; i < n; ++i) {
+      for (std::size_t k = i; k < n; ++k) {
+        Ref& entry = result.M[i * n + k];
+        entry = dag.add(entry, dag.mul(mass.mass, dot(dag, J[i], J[k])));
+        result.M[k * n + i] = entry;
+      }
+      const Ref inertial = dag.add(dag.mul(mass.mass, dot(dag, J[i], a0)), dag.mul(mass_rate, dot(dag, J[i], v)));
+      result.f[i] = dag.sub(result.f[i], inertial);
+    }
+  }
+  for (const mechanics::Spin& spin : m.spins) add_spin(m, spin, imposed, which, bias, result);
+  return result;
+}
+
+/// M = sum m J^T J, f = Q - dU/dq - sum J^T (m Jdot qdot + mdot v). Applies where there are masses at known positions
+/// and nothing but them (no [energy] kinetic).
+std::optional<system::EquationSystem> by_jacobian(Mechanics& m, system::Approach approach) {
+  if (m.masses.empty() || !m.dag->is_zero(m.kinetic_given)) return std::nullopt;
+  const std::vector<Ref> Q = generalized_forces(m);
+  const FullEquations full = equations(m, nullptr, Q, all_coordinates(m));
+  if (approach == system::Approach::one) return assemble(m, full, nullptr, "jacobian", approach);
+  symbolic::Substitution imposed = impose(m);
+  const FullEquations motion = equations(m, &imposed, Q, m.free);
+  return assemble(m, full, &motion, "jacobian", approach);
+}
+
+}  // namespace
+
+RouteEntry route::jacobian() {
+  return {.name = "jacobian",
+          .title = "velocity Jacobians, M = sum m J^T J",
+          .applies = "applies to models of particles and bodies without energies of their own",
+          .derive = by_jacobian,
+          .worth_on_trees = 16};
+}
+
+}  // namespace eomgen::derive

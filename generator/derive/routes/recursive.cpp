@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The recursive route: composite masses and forces collected from the tips of the branches to the ground.
+#include <algorithm>
+
+#include "derive/routes.hpp"
+#include "derive/trees/body_equations.hpp"
+#include "derive/trees/body_recursion.hpp"
+#include "derive/trees/tree_equations.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+/// The mass matrix of the whole, factorised; without the rows that no freedom has.
+system::Solution factorised(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
+  const BodyEquations equations = body_equations(dag, tree, motion);
+  const std::size_t n = equations.f.size();
+  std::vector<std::size_t> used;
+  for (const BodyLink& link : tree.links) {
+    for (const Freedom& freedom : link.freedoms) used.push_back(freedom.index);
+  }
+  std::sort(used.begin(), used.end());
+  std::vector<Ref> M, f;
+  for (const std::size_t i : used) {
+    for (const std::size_t k : used) M.push_back(equations.M[i * n + k]);
+    f.push_back(equations.f[i]);
+  }
+  const symbolic::Factorisation factors(dag, std::move(M), used.size(), symbolic::Ties::descending);
+  const std::vector<Ref> u = factors.backward(factors.forward(f));
+  system::Solution result{std::vector<Ref>(n, dag.zero()), {}, factors.pivots()};
+  for (std::size_t i = 0; i < used.size(); ++i) result.qddot[used[i]] = u[i];
+  return result;
+}
+
+/// Particles that form a tree (derive/trees/branches.hpp), derived with the constraints imposed; by Approach I only
+/// where there is nothing to impose.
+std::optional<system::EquationSystem> by_recursive(Mechanics& m, system::Approach approach) {
+  if (!m.spins.empty()) return equations_of_bodies(m, approach, "recursive", factorised);
+  const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
+  if (!motion) return std::nullopt;
+  std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "recursive", approach);
+  if (s && !motion->tree.coordinates.identity()) s->quasi = motion->quasi;
+  return s;
+}
+
+}  // namespace
+
+RouteEntry route::recursive() {
+  return {.name = "recursive",
+          .title = "a tree of particles or bodies: composite masses, forces from the tips inwards",
+          .applies = "applies to trees of particles or of bodies",
+          .derive = by_recursive,
+          .worth_on_trees = 32,
+          .over_trees = true};
+}
+
+}  // namespace eomgen::derive

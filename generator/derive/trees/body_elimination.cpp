@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/trees/body_elimination.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::cross;
+
+/// N = I alpha + H a + n, F = H^T alpha + M a + f: moment about the origin and force that a link and all beyond it
+/// need.
+struct Articulated {
+  Mat3 I, H, M;
+  Vec3 n, f;
+};
+
+/// What is left of one second rate when it is eliminated: u = (r - N.alpha - F.a)/D.
+struct Eliminated {
+  Vec3 turning, shifting;
+  Ref r, D;
+  Vec3 N, F;
+  std::size_t index;
+};
+
+class Elimination {
+ public:
+  Elimination(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
+      : dag_(dag), tree_(tree), motion_(motion) {}
+
+  system::Solution operator()() {
+    const std::size_t count = tree_.links.size();
+    for (std::size_t l = 0; l < count; ++l) bodies_.push_back(rigid(l));
+    eliminated_.resize(count);
+    for (std::size_t l = count; l-- > 0;) {
+      eliminate(l);
+      if (tree_.links[l].parent >= 0) pass(l);
+    }
+    result_.qddot.assign(tree_.Q.size(), dag_.zero());
+    for (std::size_t l = 0; l < count; ++l) accelerate(l);
+    return std::move(result_);
+  }
+
+ private:
+  static std::size_t place(int link) { return static_cast<std::size_t>(link); }
+
+  Articulated rigid(std::size_t l) {
+    const BodyLink& link = tree_.links[l];
+    Articulated body{link.inertia, cross_matrix(dag_, link.moment), zero_matrix(dag_), {}, {}};
+    for (std::size_t k = 0; k < 3; ++k) body.M[k][k] = link.mass;
+    body.n = gyroscopic(dag_, link.inertia, motion_[l].w);
+    body.f = times(dag_, motion_[l].W, link.moment);
+    return body;
+  }
+
+  static std::size_t unit(const Dag& dag, const Vec3& v) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (dag.is_one(v[k]) && dag.is_zero(v[(k + 1) % 3]) && dag.is_zero(v[(k + 2) % 3])) return k;
+    }
+    return 3;
+  }
+
+  /// a - x y^T/D
+  void reduce(Mat3& a, const Vec3& x, const Vec3& y, Ref D, bool symmetric) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Ref l = dag_.div(x[i], D);
+      for (std::size_t k = symmetric ? i : 0; k < 3; ++k) {
+        a[i][k] = dag_.sub(a[i][k], dag_.mul(l, y[k]));
+        if (symmetric) a[k][i] = a[i][k];
+      }
+    }
+  }
+
+  void eliminate(std::size_t l) {
+    const BodyLink& link = tree_.links[l];
+    Articulated& body = bodies_[l];
+    Vec3 moment{};
+    if (link.absolute) moment = joint_moment(dag_, link, tree_.Q);
+    for (std::size_t j = 0; j < link.freedoms.size(); ++j) {
+      const Freedom& freedom = link.freedoms[j];
+      const Ref Q = link.absolute ? moment[j] : tree_.Q[freedom.index];
+      const Vec3 &s = freedom.turning, &v = freedom.shifting;
+      Eliminated e{
+          s, v, {}, {}, symbolic::add(dag_, times(dag_, body.I, s), times(dag_, body.H, v)), {}, freedom.index};
+      e.F = symbolic::add(dag_, times(dag_, transposed(body.H), s), times(dag_, body.M, v));
+      e.D = dag_.add(dot(dag_, s, e.N), dot(dag_, v, e.F));
+      e.r = dag_.sub(Q, dag_.add(dot(dag_, s, body.n), dot(dag_, v, body.f)));
+      result_.pivots.push_back({e.D, dag_.zero()});
+      reduce(body.I, e.N, e.N, e.D, true);
+      reduce(body.H, e.N, e.F, e.D, false);
+      reduce(body.M, e.F, e.F, e.D, true);
+      const Ref rate = dag_.div(e.r, e.D);
+      body.n = symbolic::add(dag_, body.n, symbolic::scale(dag_, rate, e.N));
+      body.f = symbolic::add(dag_, body.f, symbolic::scale(dag_, rate, e.F));
+      clear(body, s, v, Q);
+      eliminated_[l].push_back(e);
+    }
+  }
+
+  /// Along a freedom that is one of the axes nothing is left: exact zeros in place of differences, and the applied
+  /// force.
+  void clear(Articulated& body, const Vec3& s, const Vec3& v, Ref Q) {
+    if (const std::size_t k = unit(dag_, s); k < 3 && is_zero(dag_, v)) {
+      for (std::size_t i = 0; i < 3; ++i) body.I[i][k] = body.I[k][i] = body.H[k][i] = dag_.zero();
+      body.n[k] = Q;
+    }
+    if (const std::size_t k = unit(dag_, v); k < 3 && is_zero(dag_, s)) {
+      for (std::size_t i = 0; i < 3; ++i) body.M[i][k] = body.M[k][i] = body.H[i][k] = dag_.zero();
+      body.f[k] = Q;
+    }
+  }
+
+  void pass(std::size_t l) {
+    const BodyLink& link = tree_.links[l];
+    Articulated body = bodies_[l];
+    Articulated& to = bodies_[place(link.parent)];
+    if (!link.carried()) {  // turning of the parent moves the origin alone
+      body.I = body.H = zero_matrix(dag_);
+      if (!link.relative) body.n = symbolic::zero_vector(dag_);
+    } else {
+      body.n = symbolic::add(dag_, body.n, times(dag_, body.I, motion_[l].bias));
+      body.f = symbolic::add(dag_, body.f, times(dag_, transposed(body.H), motion_[l].bias));
+    }
+    body.I = link.turn.to_parent(dag_, body.I, true);
+    body.H = link.turn.to_parent(dag_, body.H, false);
+    body.M = link.turn.to_parent(dag_, body.M, true);
+    body.n = symbolic::add(dag_, link.turn.to_parent(dag_, body.n), times(dag_, body.H, motion_[l].lift));
+    body.f = symbolic::add(dag_, link.turn.to_parent(dag_, body.f), times(dag_, body.M, motion_[l].lift));
+    const Mat3 X = cross_matrix(dag_, link.offset), XM = product(dag_, X, body.M), HX = product(dag_, body.H, X);
+    const Mat3 XMX = product(dag_, XM, X);
+    to.M = add(dag_, to.M, body.M);
+    to.H = add(dag_, to.H, add(dag_, body.H, XM));
+    for (std::size_t i = 0; i < 3; ++i) {
+      for (std::size_t k = i; k < 3; ++k) {
+        const Ref less = dag_.add(XMX[i][k], dag_.add(HX[i][k], HX[k][i]));
+        to.I[i][k] = to.I[k][i] = dag_.add(to.I[i][k], dag_.sub(body.I[i][k], less));
+      }
+    }
+    to.f = symbolic::add(dag_, to.f, body.f);
+    to.n = symbolic::add(dag_, to.n, symbolic::add(dag_, body.n, cross(dag_, link.offset, body.f)));
+  }
+
+  void accelerate(std::size_t l) {
+    const BodyLink& link = tree_.links[l];
+    Vec3 alpha = symbolic::zero_vector(dag_), a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity);
+    if (link.parent >= 0) {
+      const auto& [inner_alpha, inner_a] = acceleration_[place(link.parent)];
+      a = symbolic::add(dag_, inner_a, cross(dag_, inner_alpha, link.offset));
+      if (link.carried()) alpha = link.turn.to_own(dag_, inner_alpha);
+    }
+    a = link.turn.to_own(dag_, symbolic::add(dag_, a, motion_[l].lift));
+    if (link.carried()) alpha = symbolic::add(dag_, alpha, motion_[l].bias);
+    for (auto e = eliminated_[l].rbegin(); e != eliminated_[l].rend(); ++e) {
+      const Ref u = dag_.div(dag_.sub(e->r, dag_.add(dot(dag_, e->N, alpha), dot(dag_, e->F, a))), e->D);
+      result_.qddot[e->index] = u;
+      alpha = symbolic::add(dag_, alpha, symbolic::scale(dag_, u, e->turning));
+      a = symbolic::add(dag_, a, symbolic::scale(dag_, u, e->shifting));
+    }
+    acceleration_.emplace_back(alpha, a);
+  }
+
+  Dag& dag_;
+  const BodyTree& tree_;
+  const std::vector<LinkMotion>& motion_;
+  system::Solution result_;
+  std::vector<Articulated> bodies_;
+  std::vector<std::vector<Eliminated>> eliminated_;
+  std::vector<std::pair<Vec3, Vec3>> acceleration_;
+};
+
+}  // namespace
+
+system::Solution body_accelerations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
+  return Elimination(dag, tree, motion)();
+}
+
+}  // namespace eomgen::derive

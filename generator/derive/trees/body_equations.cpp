@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/trees/body_equations.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "derive/trees/body_recursion.hpp"
+#include "mechanics/vanishes.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+FullEquations in_coordinates(Dag& dag, const BodyTree& tree) {
+  BodyEquations equations = body_equations(dag, tree, motion_of(dag, tree));
+  return {std::move(equations.M), std::move(equations.f)};
+}
+
+/// The constraints that keep multipliers are the lengths of Euler parameters that angular velocities stand for.
+bool only_lengths(const Mechanics& m, const BodyTree& tree) {
+  std::set<std::string> lengths;
+  for (const BodyLink& link : tree.links) {
+    if (link.absolute && !link.parameters.empty()) lengths.insert(m.model->frames[link.frame].name + "_unit");
+  }
+  return m.active.size() == lengths.size() && std::all_of(m.active.begin(), m.active.end(), [&](std::uint32_t k) {
+           return lengths.contains(m.constraints[k].name);
+         });
+}
+
+/// Kinetic energy does not know the length of Euler parameters, and neither does what acts on the body: the multiplier
+/// of the length is 0, but for forces that are given along the parameters as such. Against these it holds along e: e.Q
+/// + lambda e.A = 0.
+std::vector<Ref> multipliers_of_lengths(const Mechanics& m, const BodyTree& tree, const system::EquationSystem& s) {
+  Dag& dag = *m.dag;
+  std::vector<Ref> lambda(m.active.size(), dag.zero());
+  for (const BodyLink& link : tree.links) {
+    if (!link.absolute || link.parameters.empty()) continue;
+    const auto own = [&](std::uint32_t k) {
+      return m.constraints[k].name == m.model->frames[link.frame].name + "_unit";
+    };
+    const std::size_t k =
+        static_cast<std::size_t>(std::find_if(m.active.begin(), m.active.end(), own) - m.active.begin());
+    Ref force = dag.zero(), slope = dag.zero();
+    for (std::size_t j = 0; j < link.angles.size(); ++j) {
+      force = dag.add(force, dag.mul(link.parameters[j], tree.Q[link.angles[j].index]));
+      slope = dag.add(slope, dag.mul(link.parameters[j], s.A[k * s.free.size() + link.angles[j].index]));
+    }
+    if (mechanics::is_somewhere_nonzero(dag, force)) lambda[k] = dag.neg(dag.div(force, slope));
+  }
+  return lambda;
+}
+
+}  // namespace
+
+std::optional<system::EquationSystem> equations_of_bodies(Mechanics& m, system::Approach approach, const char* route,
+                                                          BodySolve solve) {
+  if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
+  Dag& dag = *m.dag;
+  std::optional<BodyTree> tree = body_tree(m, m.free, true);
+  if (!tree) return std::nullopt;
+  const FullEquations motion = in_coordinates(dag, *tree);
+  std::optional<system::EquationSystem> s;
+  if (m.fixed.empty()) {
+    s = assemble(m, motion, nullptr, route, approach);
+  } else {
+    const std::optional<BodyTree> all = body_tree(m, all_coordinates(m), false);
+    if (!all) return std::nullopt;
+    s = assemble(m, in_coordinates(dag, *all), &motion, route, approach);
+  }
+  use_angular_velocities(dag, *tree);
+  if (!m.contacts.empty() || !only_lengths(m, *tree)) return s;
+  const std::vector<LinkMotion> rates = motion_of(dag, *tree);
+  system::Solution solution = solve(dag, *tree, rates);
+  solution.qddot = second_rates(dag, *tree, rates, solution.qddot, solution.pivots);
+  solution.lambda = multipliers_of_lengths(m, *tree, *s);
+  s->solution = std::move(solution);
+  return s;
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/trees/body_recursion.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+using symbolic::cross;
+
+/// Mass, its first moment and the inertia about the origin of the link.
+struct Composite {
+  Ref mass;
+  Vec3 moment;
+  Mat3 inertia;
+};
+
+/// Momentum of a composite: of translation, and about the origin.
+struct Momentum {
+  Vec3 linear, angular;
+};
+
+class Recursion {
+ public:
+  Recursion(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion)
+      : dag_(dag), tree_(tree), motion_(motion) {}
+
+  BodyEquations operator()() {
+    const std::size_t n = tree_.Q.size();
+    result_ = {std::vector<Ref>(n * n, dag_.zero()), tree_.Q};
+    forces();
+    composites();
+    for (std::size_t l = 0; l < tree_.links.size(); ++l) {
+      for (const Freedom& freedom : tree_.links[l].freedoms) column(l, freedom);
+    }
+    return std::move(result_);
+  }
+
+ private:
+  static std::size_t place(int link) { return static_cast<std::size_t>(link); }
+
+  /// What the second rates at zero leave: forces and moments that each link needs, from the tips inwards.
+  void forces() {
+    const std::size_t count = tree_.links.size();
+    const Vec3 none = symbolic::zero_vector(dag_);
+    std::vector<Vec3> alpha(count, none), F(count), N(count);
+    for (std::size_t l = 0; l < count; ++l) {
+      const BodyLink& link = tree_.links[l];
+      Vec3 a = symbolic::scale(dag_, dag_.integer(-1), tree_.gravity);
+      if (link.parent >= 0)
+        a = symbolic::add(dag_, acceleration_[place(link.parent)], cross(dag_, alpha[place(link.parent)], link.offset));
+      a = link.turn.to_own(dag_, symbolic::add(dag_, a, motion_[l].lift));
+      acceleration_.push_back(a);
+      if (link.carried()) alpha[l] = motion_[l].bias;
+      if (link.carried() && link.parent >= 0)
+        alpha[l] = symbolic::add(dag_, link.turn.to_own(dag_, alpha[place(link.parent)]), alpha[l]);
+      const Vec3 turning =
+          symbolic::add(dag_, cross(dag_, alpha[l], link.moment), times(dag_, motion_[l].W, link.moment));
+      F[l] = symbolic::add(dag_, symbolic::scale(dag_, link.mass, a), turning);
+      N[l] = symbolic::add(dag_, cross(dag_, link.moment, a), gyroscopic(dag_, link.inertia, motion_[l].w));
+      N[l] = symbolic::add(dag_, N[l], times(dag_, link.inertia, alpha[l]));
+    }
+    for (std::size_t l = count; l-- > 0;) {
+      const BodyLink& link = tree_.links[l];
+      Vec3 passed = link.carried() ? N[l] : none;
+      if (link.absolute) {
+        passed = joint_moment(dag_, link, tree_.Q);
+        for (std::size_t k = 0; k < 3; ++k) result_.f[link.freedoms[k].index] = passed[k];
+      }
+      for (const Freedom& f : link.freedoms) {
+        const Ref needed = dag_.add(dot(dag_, f.turning, N[l]), dot(dag_, f.shifting, F[l]));
+        result_.f[f.index] = dag_.sub(result_.f[f.index], needed);
+      }
+      if (link.parent < 0) continue;
+      Vec3 &Fp = F[place(link.parent)], &Np = N[place(link.parent)];
+      const Vec3 force = link.turn.to_parent(dag_, F[l]);
+      Fp = symbolic::add(dag_, Fp, force);
+      Np = symbolic::add(dag_, Np, cross(dag_, link.offset, force));
+      if (link.relative) Np = symbolic::add(dag_, Np, link.turn.to_parent(dag_, passed));
+    }
+  }
+
+  void composites() {
+    for (const BodyLink& link : tree_.links) composite_.push_back({link.mass, link.moment, link.inertia});
+    for (std::size_t l = tree_.links.size(); l-- > 0;) {
+      const BodyLink& link = tree_.links[l];
+      if (link.parent < 0) continue;
+      const Composite& own = composite_[l];
+      Composite& to = composite_[place(link.parent)];
+      const Vec3 md = symbolic::scale(dag_, own.mass, link.offset);
+      const Vec3 h = link.carried() ? link.turn.to_parent(dag_, own.moment) : symbolic::zero_vector(dag_);
+      to.mass = dag_.add(to.mass, own.mass);
+      to.moment = symbolic::add(dag_, to.moment, symbolic::add(dag_, md, h));
+      if (link.carried()) to.inertia = add(dag_, to.inertia, link.turn.to_parent(dag_, own.inertia, true));
+      // m (d.d 1 - d d^T) + 2 d.h 1 - d h^T - h d^T
+      const Ref trace = dag_.add(dot(dag_, md, link.offset), dag_.mul(dag_.integer(2), dot(dag_, link.offset, h)));
+      for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = 0; k < 3; ++k) {
+          Ref outer = dag_.mul(md[i], link.offset[k]);
+          outer = dag_.add(outer, dag_.add(dag_.mul(link.offset[i], h[k]), dag_.mul(h[i], link.offset[k])));
+          to.inertia[i][k] = dag_.add(to.inertia[i][k], i == k ? dag_.sub(trace, outer) : dag_.neg(outer));
+        }
+      }
+    }
+  }
+
+  /// The column of M: the momentum of all that a coordinate moves, seen by it and by those further in.
+  void column(std::size_t l, const Freedom& freedom) {
+    const Composite& c = composite_[l];
+    Momentum p;
+    p.linear =
+        symbolic::add(dag_, cross(dag_, freedom.turning, c.moment), symbolic::scale(dag_, c.mass, freedom.shifting));
+    p.angular = symbolic::add(dag_, times(dag_, c.inertia, freedom.turning), cross(dag_, c.moment, freedom.shifting));
+    const std::size_t n = tree_.Q.size();
+    for (int inner = static_cast<int>(l); inner >= 0; inner = tree_.links[place(inner)].parent) {
+      const BodyLink& link = tree_.links[place(inner)];
+      for (const Freedom& other : link.freedoms) {
+        const Ref entry = dag_.add(dot(dag_, other.turning, p.angular), dot(dag_, other.shifting, p.linear));
+        result_.M[freedom.index * n + other.index] = result_.M[other.index * n + freedom.index] = entry;
+      }
+      p.linear = link.turn.to_parent(dag_, p.linear);
+      p.angular = link.carried() ? link.turn.to_parent(dag_, p.angular) : symbolic::zero_vector(dag_);
+      p.angular = symbolic::add(dag_, p.angular, cross(dag_, link.offset, p.linear));
+    }
+  }
+
+  Dag& dag_;
+  const BodyTree& tree_;
+  const std::vector<LinkMotion>& motion_;
+  BodyEquations result_;
+  std::vector<Vec3> acceleration_;
+  std::vector<Composite> composite_;
+};
+
+}  // namespace
+
+BodyEquations body_equations(Dag& dag, const BodyTree& tree, const std::vector<LinkMotion>& motion) {
+  return Recursion(dag, tree, motion)();
+}
+
+}  // namespace eomgen::derive

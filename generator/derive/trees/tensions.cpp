@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/trees/tensions.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "derive/equations.hpp"
+#include "symbolic/polynomial.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+constexpr std::size_t small = 40;  // terms: what lies within one link is a handful
+
+/// Short expressions multiplied out, with sin^2 + cos^2 = 1; others as they are.
+class Tidy {
+ public:
+  explicit Tidy(Dag& dag) : dag_(dag), expand_(dag, small) {}
+  Ref operator()(Ref r) { return expand_.tidy(r); }
+  Ref dot(const Vec3& a, const Vec3& b) { return (*this)(symbolic::dot(dag_, a, b)); }
+
+ private:
+  Dag& dag_;
+  symbolic::Expander expand_;
+};
+
+/// Summands of a sum with their factors, so that those of the parent cancel exactly.
+void gather(const Dag& dag, Ref root, const symbolic::Rational& factor, std::map<Ref, symbolic::Rational>& sum) {
+  std::vector<std::pair<Ref, symbolic::Rational>> open{{root, factor}};
+  while (!open.empty()) {
+    const auto [r, c] = open.back();
+    open.pop_back();
+    const symbolic::Node& node = dag[r];
+    switch (node.op) {
+      case symbolic::Op::add:
+      case symbolic::Op::sub:
+        open.emplace_back(node.args[0], c);
+        open.emplace_back(node.args[1], node.op == symbolic::Op::add ? c : -c);
+        break;
+      case symbolic::Op::neg: open.emplace_back(node.args[0], -c); break;
+      default: sum[r] = sum[r] + c;
+    }
+  }
+}
+
+Ref difference(Dag& dag, Ref a, Ref b) {
+  std::map<Ref, symbolic::Rational> sum;
+  gather(dag, a, 1, sum);
+  gather(dag, b, -1, sum);
+  Ref result = dag.zero();
+  for (const auto& [r, c] : sum) result = dag.add(result, dag.mul(dag.constant(c), r));
+  return result;
+}
+
+/// plus or minus v / |v| where |v| is a plain expression, else v.
+Vec3 unit_if_plain(Dag& dag, Tidy& tidy, const Vec3& v) {
+  Ref length = dag.call(symbolic::Op::sqrt, tidy.dot(v, v));
+  if (dag[length].op == symbolic::Op::abs) length = dag[length].args[0];
+  if (dag[length].op == symbolic::Op::sqrt) return v;
+  Vec3 unit;
+  for (std::size_t i = 0; i < 3; ++i) unit[i] = tidy(dag.div(v[i], length));
+  return unit;
+}
+
+/// The axis that nothing moves along, if there is one: the tree is planar then.
+std::optional<std::size_t> still_axis(const Dag& dag, const Branches& tree) {
+  for (std::size_t axis = 3; axis-- > 0;) {
+    if (std::all_of(tree.J.begin(), tree.J.end(), [&](const Vec3& J) { return dag.is_zero(J[axis]); })) return axis;
+  }
+  return std::nullopt;
+}
+
+Vec3 unit(Dag& dag, std::size_t axis) {
+  Vec3 e = symbolic::zero_vector(dag);
+  e[axis] = dag.one();
+  return e;
+}
+
+/// Directions normal to all J of a rod and to one another, none along the axis `still`: the rod itself where it is one,
+/// else cross products. Nothing where the J leave a plane that has no plain basis.
+std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const Rod& rod, const Vec3& along,
+                                         std::optional<std::size_t> still) {
+  const std::size_t left = (still ? 2 : 3) - rod.J.size();
+  if (left == 0) return std::vector<Vec3>{};
+  const bool is_rod = !is_zero(dag, along) && std::all_of(rod.J.begin(), rod.J.end(), [&](const Vec3& J) {
+    return dag.is_zero(tidy.dot(along, J));
+  });
+  if (left == 1 && is_rod) return std::vector<Vec3>{unit_if_plain(dag, tidy, along)};
+  if (left == 1) {
+    const Vec3 second = still ? unit(dag, *still) : rod.J[1];
+    return std::vector<Vec3>{unit_if_plain(dag, tidy, cross(dag, rod.J[0], second))};
+  }
+  for (std::size_t axis = 3; axis-- > 0 && left == 2;) {  // J in a plane: its normal, and what is left in the plane
+    if (!dag.is_zero(rod.J[0][axis])) continue;
+    const Vec3 e = unit(dag, axis);
+    return std::vector<Vec3>{e, unit_if_plain(dag, tidy, cross(dag, rod.J[0], e))};
+  }
+  return std::nullopt;
+}
+
+/// The linear system of the tensions, and what it leaves.
+class Tensions {
+ public:
+  Tensions(Dag& dag, const Branches& tree, const Rods& rods) : dag_(dag), tidy_(dag), tree_(tree), rods_(rods) {
+    for (std::size_t k = 0; k < rods_.rods.size(); ++k) {
+      free_.push_back(free_force(rods_.rods[k]));
+      for (const Vec3& N : rods_.rods[k].N) carrying_.push_back({k, N});
+    }
+  }
+
+  system::Solution solve() {
+    system::Solution result{std::vector<Ref>(tree_.J.size()), {}, {}};
+    const std::size_t n = carrying_.size();
+    std::vector<Ref> S(n * n), b;
+    for (std::size_t i = 0; i < n; ++i) {
+      const auto& [k, N] = carrying_[i];
+      for (std::size_t j = 0; j <= i; ++j) {
+        S[i * n + j] = S[j * n + i] = response(k, N, carrying_[j].first, carrying_[j].second);
+      }
+      b.push_back(dag_.neg(relative(k, N)));
+    }
+    symbolic::Factorisation factors(dag_, std::move(S), n, symbolic::Ties::descending);
+    tension_ = factors.backward(factors.forward(b));
+    result.pivots = factors.pivots();
+    for (std::size_t k = 0; k < rods_.rods.size(); ++k) second_rates(k, result);
+    return result;
+  }
+
+ private:
+  /// W_k / m_first: the force along the J that does on theta_k what f_k does.
+  Vec3 free_force(const Rod& rod) {
+    const Vec3 none = symbolic::zero_vector(dag_);
+    std::vector<Ref> f;
+    for (const std::size_t a : rod.joints) f.push_back(dag_.div(tree_.f[a], rods_.first_mass));
+    if (std::all_of(f.begin(), f.end(), [this](Ref r) { return dag_.is_zero(r); })) return none;
+    const std::vector<Ref> x = along_joints(rod, f, nullptr);
+    Vec3 W = none;
+    for (std::size_t a = 0; a < x.size(); ++a) {
+      for (std::size_t i = 0; i < 3; ++i) W[i] = dag_.add(W[i], dag_.mul(rod.J[a][i], x[a]));
+    }
+    return W;
+  }
+
+  /// x with J_a . sum_b J_b x_b = r_a.
+  std::vector<Ref> along_joints(const Rod& rod, const std::vector<Ref>& r, std::vector<symbolic::Pivot>* pivots) {
+    const std::size_t n = rod.J.size();
+    std::vector<Ref> gram(n * n);
+    for (std::size_t a = 0; a < n; ++a) {
+      for (std::size_t b = 0; b <= a; ++b) gram[a * n + b] = gram[b * n + a] = tidy_.dot(rod.J[a], rod.J[b]);
+    }
+    symbolic::Factorisation factors(dag_, std::move(gram), n, symbolic::Ties::ascending);
+    if (pivots != nullptr) pivots->insert(pivots->end(), factors.pivots().begin(), factors.pivots().end());
+    return factors.backward(factors.forward(r));
+  }
+
+  /// How tension or free force of rod `source`, along `force`, moves particle k relative to its parent, along
+  /// `direction`.
+  Ref response(std::size_t k, const Vec3& direction, std::size_t source, const Vec3& force) {
+    // force acts on the particle of `source` and, reversed, on its parent.
+    const auto weight_at = [&](int particle) {
+      Ref w = dag_.zero();
+      if (particle == static_cast<int>(source)) w = dag_.add(w, rods_.rods[source].weight);
+      if (particle >= 0 && particle == rods_.rods[source].parent) {
+        w = dag_.sub(w, rods_.rods[static_cast<std::size_t>(particle)].weight);
+      }
+      return w;
+    };
+    const Ref w = dag_.sub(weight_at(static_cast<int>(k)), weight_at(rods_.rods[k].parent));
+    if (dag_.is_zero(w)) return w;
+    // Within one rod sines and cosines meet their squares, and normals are normal.
+    const Ref along = k == source ? tidy_.dot(direction, force) : dot(dag_, direction, force);
+    return dag_.mul(w, along);
+  }
+
+  /// a_k - a_parent - c_k along `direction` without tensions.
+  Ref relative(std::size_t k, const Vec3& direction) {
+    const Rod& rod = rods_.rods[k];
+    Ref sum = dag_.neg(tidy_.dot(direction, rod.c));
+    if (rod.parent < 0) sum = dag_.add(sum, dot(dag_, direction, tree_.gravity));
+    for (std::size_t s = 0; s < rods_.rods.size(); ++s) sum = dag_.add(sum, response(k, direction, s, free_[s]));
+    return sum;
+  }
+
+  void second_rates(std::size_t k, system::Solution& result) {
+    const Rod& rod = rods_.rods[k];
+    std::vector<Ref> r;
+    for (const Vec3& J : rod.J) {
+      Ref sum = relative(k, J);
+      for (std::size_t i = 0; i < carrying_.size(); ++i) {
+        const auto& [source, N] = carrying_[i];
+        if (source != k) sum = dag_.add(sum, dag_.mul(response(k, J, source, N), tension_[i]));
+      }
+      r.push_back(sum);
+    }
+    const std::vector<Ref> x = along_joints(rod, r, &result.pivots);
+    for (std::size_t a = 0; a < x.size(); ++a) result.qddot[rod.joints[a]] = x[a];
+  }
+
+  Dag& dag_;
+  Tidy tidy_;
+  const Branches& tree_;
+  const Rods& rods_;
+  std::vector<Vec3> free_;                              // W of each rod
+  std::vector<std::pair<std::size_t, Vec3>> carrying_;  // rod, direction
+  std::vector<Ref> tension_;                            // T / m_first, of each of these
+};
+
+}  // namespace
+
+std::optional<Rods> rods_of(Dag& dag, const Branches& tree) {
+  Tidy tidy(dag);
+  const std::optional<std::size_t> still = still_axis(dag, tree);
+  const std::size_t dimensions = still ? 2 : 3;
+  symbolic::Derivation bias = tree.coordinates.bias(dag);
+  Rods result;
+  for (const Link& link : tree.links) {
+    if (link.particles.size() != 1 || link.joints.size() > dimensions) return {};
+    const Carried& particle = tree.particles[link.particles[0]];
+    if (dag.is_zero(particle.mass) || !dag.is_zero(bias(particle.mass))) return {};
+    Rod rod{link.parent, {}, link.joints, {}, {}, {}};
+    if (result.rods.empty()) result.first_mass = particle.mass;
+    rod.weight = dag.div(result.first_mass, particle.mass);
+    for (const std::size_t a : link.joints) rod.J.push_back(tree.J[a]);
+    Vec3 along = particle.position;
+    if (link.parent >= 0) {
+      const Link& parent = tree.links[static_cast<std::size_t>(link.parent)];
+      const Vec3& from = tree.particles[parent.particles[0]].position;
+      for (std::size_t i = 0; i < 3; ++i) along[i] = difference(dag, along[i], from[i]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) rod.c[i] = bias(bias(along[i]));
+    const std::optional<std::vector<Vec3>> N = normals(dag, tidy, rod, along, still);
+    if (!N) return {};
+    rod.N = *N;
+    result.rods.push_back(std::move(rod));
+  }
+  return result;
+}
+
+system::Solution accelerations(Dag& dag, const Branches& tree, const Rods& rods) {
+  return Tensions(dag, tree, rods).solve();
+}
+
+}  // namespace eomgen::derive

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A tree of particles as links that carry forces: which directions they carry, and the accelerations that follow.
+#pragma once
+
+#include <optional>
+
+#include "derive/trees/branches.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::derive {
+
+/// One link with its particle. Vectors are in theta and its rate.
+struct Rod {
+  int parent = -1;
+  Ref weight;                       // m_first / m_k: dimensionless inverse mass
+  std::vector<std::size_t> joints;  // indices of theta
+  std::vector<Vec3> J;
+  std::vector<Vec3> N;  // the directions that carry force: normal to all J, and to one another
+  Vec3 c;               // acceleration relative to the parent at zero second rates
+};
+
+struct Rods {
+  std::vector<Rod> rods;  // parents first
+  Ref first_mass;
+};
+
+/// Nothing where a link has no particle or several, a mass that varies or is zero, or leaves directions that are not
+/// known.
+std::optional<Rods> rods_of(Dag& dag, const Branches& tree);
+
+/// Second rates of theta, as expressions in theta and its rate.
+system::Solution accelerations(Dag& dag, const Branches& tree, const Rods& rods);
+
+}  // namespace eomgen::derive

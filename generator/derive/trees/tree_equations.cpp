@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "derive/trees/tree_equations.hpp"
+
+namespace eomgen::derive {
+namespace {
+
+/// Per link: what the particles beyond it exert by their inertia and weight, d(m v)/dt - m g without second rates.
+std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
+  const Vec3 none = symbolic::zero_vector(dag);
+  std::vector<Vec3> force(b.links.size(), none);
+  symbolic::Derivation bias = b.coordinates.bias(dag);
+  for (std::size_t l = b.links.size(); l-- > 0;) {
+    for (const std::size_t k : b.links[l].particles) {
+      const Carried& particle = b.particles[k];
+      const Ref mass_rate = bias(particle.mass);
+      for (std::size_t i = 0; i < 3; ++i) {
+        const Ref felt = dag.mul(particle.mass, dag.sub(particle.bias[i], b.gravity[i]));
+        force[l][i] = dag.add(force[l][i], dag.add(felt, dag.mul(mass_rate, particle.velocity[i])));
+      }
+    }
+    if (b.links[l].parent < 0) continue;
+    Vec3& inner = force[static_cast<std::size_t>(b.links[l].parent)];
+    for (std::size_t i = 0; i < 3; ++i) inner[i] = dag.add(inner[i], force[l][i]);
+  }
+  return force;
+}
+
+system::QuasiEquations in_theta(Dag& dag, const Branches& b) {
+  const std::size_t n = b.J.size();
+  system::QuasiEquations result{b.coordinates.S_inverse, std::vector<Ref>(n * n, dag.zero()), {}};
+  const std::vector<Vec3> force = inertia_beyond(dag, b);
+  for (std::size_t a = 0; a < n; ++a) {
+    for (std::size_t c = 0; c <= a; ++c) {
+      const std::size_t outer = b.beyond(b.of[a], b.of[c]) ? b.of[a] : b.of[c];
+      if (!b.beyond(outer, b.of[a]) || !b.beyond(outer, b.of[c])) continue;
+      const Ref entry = dag.mul(b.links[outer].mass_beyond, dot(dag, b.J[a], b.J[c]));
+      result.M[a * n + c] = result.M[c * n + a] = entry;
+    }
+    result.f.push_back(dag.sub(b.f[a], dot(dag, b.J[a], force[b.of[a]])));
+  }
+  symbolic::Substitution back = b.coordinates.back(dag);
+  for (Ref& r : result.M) r = back(r);
+  for (Ref& r : result.f) r = back(r);
+  return result;
+}
+
+FullEquations in_model(Dag& dag, const QuasiCoordinates& coordinates, const system::QuasiEquations& e) {
+  if (coordinates.identity()) return {e.M, e.f};
+  const std::size_t n = e.f.size();
+  const std::vector<Rational>& S = coordinates.S;
+  std::vector<Ref> half(n * n);  // M_theta S
+  for (std::size_t a = 0; a < n; ++a) {
+    const auto row = e.M.begin() + static_cast<std::ptrdiff_t>(a * n);
+    const std::vector<Ref> product = symbolic::transposed_applied(dag, S, {row, row + static_cast<std::ptrdiff_t>(n)});
+    std::copy(product.begin(), product.end(), half.begin() + static_cast<std::ptrdiff_t>(a * n));
+  }
+  FullEquations result{std::vector<Ref>(n * n), symbolic::transposed_applied(dag, S, e.f)};
+  for (std::size_t j = 0; j < n; ++j) {
+    std::vector<Ref> column(n);
+    for (std::size_t a = 0; a < n; ++a) column[a] = half[a * n + j];
+    const std::vector<Ref> product = symbolic::transposed_applied(dag, S, column);
+    for (std::size_t i = 0; i <= j; ++i) result.M[i * n + j] = result.M[j * n + i] = product[i];
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<TreeEquations> tree_equations(Mechanics& m, const std::vector<std::uint32_t>& of, bool imposed) {
+  std::optional<Branches> tree = branches(m, of, imposed);
+  if (!tree) return std::nullopt;
+  TreeEquations result{std::move(*tree), {}, {}};
+  result.quasi = in_theta(*m.dag, result.tree);
+  result.of_model = in_model(*m.dag, result.tree.coordinates, result.quasi);
+  return result;
+}
+
+std::optional<TreeEquations> motion_of_tree(Mechanics& m, system::Approach approach) {
+  if (approach == system::Approach::one && !m.fixed.empty()) return std::nullopt;
+  return tree_equations(m, m.free, true);
+}
+
+std::optional<system::EquationSystem> assemble_tree(Mechanics& m, const TreeEquations& motion, const char* route,
+                                                    system::Approach approach) {
+  if (m.fixed.empty()) return assemble(m, motion.of_model, nullptr, route, approach);
+  const std::optional<TreeEquations> full = tree_equations(m, all_coordinates(m), false);
+  if (!full) return std::nullopt;
+  return assemble(m, full->of_model, &motion.of_model, route, approach);
+}
+
+}  // namespace eomgen::derive

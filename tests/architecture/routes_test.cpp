@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The routes of generator/derive/routes/registry.inc: none includes another, and what several are made of is what
+// docs/architecture.md says.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <iterator>
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "architecture/stages.hpp"
+#include "support/folders.hpp"
+
+using namespace architecture;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Names = std::set<std::string>;
+
+const fs::path derive = fs::path(eomgen::test::source_folder()) / "generator" / "derive";
+
+std::vector<std::string> matches(const std::string& text, const std::regex& pattern) {
+  std::vector<std::string> found;
+  for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at) found.push_back((*at)[1]);
+  return found;
+}
+
+Names registered() {
+  static const std::regex line(R"(\nROUTE\((\w+)\))");
+  const std::vector<std::string> names = matches(read_text(derive / "routes" / "registry.inc"), line);
+  return {names.begin(), names.end()};
+}
+
+/// "trees/branches" of "derive/trees/branches.hpp"; empty of files of other folders.
+std::string stem_in_derive(const std::string& path) {
+  static const std::string folder = "derive/";
+  if (!path.starts_with(folder)) return "";
+  return fs::path(path.substr(folder.size())).replace_extension().generic_string();
+}
+
+/// What a file of generator/derive is made of, over headers and the sources beside them. The registry is left out: it
+/// names all routes.
+void reach(const std::string& stem, Names& reached) {
+  for (const char* ending : {".hpp", ".cpp"}) {
+    const fs::path file = derive / (stem + ending);
+    if (!fs::exists(file)) continue;
+    for (const Include& include : parse_includes(read_text(file))) {
+      const std::string next = include.quoted ? stem_in_derive(include.path) : "";
+      if (!next.empty() && next != "routes" && reached.insert(next).second) reach(next, reached);
+    }
+  }
+}
+
+/// Files by the routes that are made of them, of those that several routes are made of.
+std::map<Names, Names> shared_files() {
+  std::map<std::string, Names> users;
+  for (const std::string& route : registered()) {
+    Names reached;
+    reach("routes/" + route, reached);
+    for (const std::string& stem : reached) {
+      if (stem != "routes/" + route) users[stem].insert(route);
+    }
+  }
+  std::map<Names, Names> shared;
+  for (const auto& [stem, routes] : users) {
+    if (routes.size() > 1) shared[routes].insert(stem);
+  }
+  return shared;
+}
+
+/// The table of docs/architecture.md, "What routes share".
+std::map<Names, Names> documented_files() {
+  const std::string text = read_text(derive.parent_path().parent_path() / "docs" / "architecture.md");
+  const std::size_t begin = text.find("\n## What routes share\n");
+  REQUIRE(begin != std::string::npos);
+  const std::string section = text.substr(begin, text.find("\n## ", begin + 1) - begin);
+  static const std::regex row(R"(\n\| *([^|]+\|[^|]+)\|)"), word("`([^`]+)`");
+  std::map<Names, Names> rows;
+  for (const std::string& line : matches(section, row)) {
+    const std::size_t bar = line.find('|');
+    const std::vector<std::string> routes = matches(line.substr(0, bar), word), files = matches(line.substr(bar), word);
+    if (!files.empty()) rows[{routes.begin(), routes.end()}] = {files.begin(), files.end()};
+  }
+  return rows;
+}
+
+std::string text_of(const Names& names) {
+  std::string text;
+  for (const std::string& name : names) text += name + " ";
+  return text;
+}
+
+std::string text_of(const std::map<Names, Names>& rows) {
+  std::string text;
+  for (const auto& [routes, files] : rows) text += text_of(routes) + ": " + text_of(files) + "\n";
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("every route of the registry has its file, and every file of a route is in the registry") {
+  const Names routes = registered();
+  REQUIRE(routes.size() >= 6);
+  Names files;
+  for (const fs::path& file : files_below(derive / "routes", {".cpp"})) files.insert(file.stem().string());
+  CHECK(text_of(routes) == text_of(files));
+}
+
+TEST_CASE("the routes to the equations never include each other, so that their agreeing proves something") {
+  const Names routes = registered();
+  for (const std::string& route : routes) {
+    REQUIRE(fs::exists(derive / "routes" / (route + ".cpp")));
+    Names reached;
+    reach("routes/" + route, reached);
+    CHECK(reached.contains("equations"));  // the include lines are read at all
+    for (const std::string& other : routes) {
+      INFO(route << " and " << other);
+      CHECK((other == route || !reached.contains("routes/" + other)));
+    }
+  }
+}
+
+TEST_CASE("what routes share is what docs/architecture.md says") {
+  CHECK(text_of(documented_files()) == text_of(shared_files()));
+}

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "conservation/conserved.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+
+#include "derive/routes/lagrange.hpp"
+
+using namespace eomgen;
+
+namespace {
+
+std::vector<std::string> names(const std::string& text) {
+  const model::Model model = model::read_model_text(text, "conserved");
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  system::EquationSystem s = derive::lagrange(m, system::Approach::two);
+  std::vector<std::string> result;
+  for (const conservation::Conserved& c : conservation::conserved_quantities(m, s)) result.push_back(c.name);
+  return result;
+}
+
+const std::string spherical_pendulum = R"toml(format = 1
+[parameters]
+m = 1
+g = 9.81
+L0 = 1
+[functions]
+L = "L0 LENGTH"
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "rod"
+holonomic = "R - L"
+)toml";
+
+std::string with(std::string text, const std::string& what, const std::string& by) {
+  return text.replace(text.find(what), what.size(), by);
+}
+
+}  // namespace
+
+TEST_CASE("conserved: a spherical pendulum of constant length keeps its energy and h_z") {
+  CHECK(names(with(spherical_pendulum, " LENGTH", "")) == std::vector<std::string>{"energy", "momentum.theta"});
+}
+
+TEST_CASE("conserved: of varying length it keeps h_z only") {
+  CHECK(names(with(spherical_pendulum, " LENGTH", " + sin(t)/5")) == std::vector<std::string>{"momentum.theta"});
+}
+
+TEST_CASE("conserved: a bead on a hoop that turns at a constant rate keeps the Jacobi integral, not the energy") {
+  const std::vector<std::string> found = names(R"toml(format = 1
+[parameters]
+m = 1
+g = 9.81
+L = 1
+W = 3
+[[particle]]
+name = "P"
+mass = "m"
+position = { spherical = ["R", "phi", "theta"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "hoop"
+holonomic = "R - L"
+[[constraint]]
+name = "turn"
+holonomic = "theta - W*t"
+)toml");
+  CHECK(found == std::vector<std::string>{"jacobi"});
+}
+
+TEST_CASE("conserved: a damper leaves nothing") {
+  const std::vector<std::string> found = names(R"toml(format = 1
+[parameters]
+m = 1
+c = 1
+[[particle]]
+name = "P"
+mass = "m"
+position = "x*E1"
+[[force]]
+on = "P"
+force = "-c*x_dot*E1"
+[coordinates]
+x = {}
+)toml");
+  CHECK(found.empty());
+}
+
+TEST_CASE("conserved: what jumps in time or in place is not kept, though its derivatives vanish on either side") {
+  const auto with_potential = [](const std::string& potential) {
+    return names(
+        "format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + y_dot^2)/2\"\npotential = \"" +
+        potential + "\"\n");
+  };
+  CHECK(with_potential("y*sign(t - 2)") == std::vector<std::string>{"momentum.x"});
+  CHECK(with_potential("y*if(x > 1, 1, 2)") == std::vector<std::string>{"energy"});
+  CHECK(with_potential("if(x - y > 1, 1, 2)") == std::vector<std::string>{"energy"});
+  CHECK(with_potential("y*if(y > 1, 1, 2)") == std::vector<std::string>{"energy", "momentum.x"});
+  CHECK(with_potential("abs(y)") == std::vector<std::string>{"energy", "momentum.x"});
+}
+
+TEST_CASE("conserved: momenta of the whole are kept across a jump that only the distance decides") {
+  const auto pair = [](const std::string& condition) {
+    return names(
+        "format = 1\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { cartesian = [\"x\", \"y\"] "
+        "}\n[[particle]]\nname = \"Q\"\nmass = 2\n"
+        "position = { cartesian = [\"u\", \"v\"] }\n[energy]\npotential = \"if(" +
+        condition + ", 1, 3)\"\n");
+  };
+  const auto has = [](const std::vector<std::string>& found, const std::string& name) {
+    return std::find(found.begin(), found.end(), name) != found.end();
+  };
+  const std::vector<std::string> between = pair("norm(P - Q) < 1"), fixed = pair("x < 1");
+  for (const char* name : {"linear_momentum.E1", "linear_momentum.E2", "angular_momentum.E3"}) {
+    CHECK_MESSAGE(has(between, name), name);
+  }
+  CHECK_FALSE(has(fixed, "linear_momentum.E1"));
+  CHECK(has(fixed, "linear_momentum.E2"));
+  CHECK_FALSE(has(fixed, "angular_momentum.E3"));
+}
+
+TEST_CASE("conserved: a bump that is narrow, far away or faint is no constant") {
+  for (const char* potential : {"exp(-((x - 30)/0.01)^2)", "1e-40*x"}) {
+    CAPTURE(potential);
+    const std::vector<std::string> found =
+        names(std::string("format = 1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = \"(x_dot^2 + "
+                          "y_dot^2)/2\"\npotential = \"") +
+              potential + "\"\n");
+    CHECK(found == std::vector<std::string>{"energy", "momentum.y"});
+  }
+}
