@@ -245,7 +245,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
   for (std::size_t i = 0; i < options.default_inputs.size(); ++i)
     inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
-  const int digits = options.digits + verify::digits_of_range(derived.mechanics);
+  const int range = verify::digits_of_range(derived.mechanics), digits = options.digits + range;
   subjects.programs.push_back(with_functions(program_form(program, digits, inputs), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);
   for (const program::Program& form : forms) {
@@ -253,8 +253,8 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
     subjects.programs.back().name = fmt::format("form {}", system::name(form.form));
   }
   if (options.compiled != nullptr) subjects.compiled.push_back(*options.compiled);
-  const verify::Certificate certificate =
-      verify::certify(derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed});
+  const verify::Certificate certificate = verify::certify(
+      derived.mechanics, subjects, {options.digits, options.points, options.seed, options.fixed, range});
   derived.seconds.verify += watch.lap();
   if (certificate.interrupted && !options.partial) throw work::Interrupted{};
   if (!key.empty()) keep_certificate(key, certificate);

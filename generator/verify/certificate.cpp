@@ -18,8 +18,6 @@ namespace {
 
 // Rejections that are allowed before the search for states is given up: some, and some per point.
 constexpr std::size_t rejections_at_least = 200, rejections_per_point = 20;
-// Beyond the digits asked for, so that rounding in the comparisons themselves stays below them.
-constexpr int guard_digits = 10;
 // Fewer say nothing; differences are kept as binary64, which end at 1e-308.
 constexpr int least_digits = 10, most_digits = 300;
 
@@ -53,15 +51,10 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
 }  // namespace
 
 int digits_of_range(const mechanics::Mechanics& mechanics) {
-  constexpr double decimals = 0.30103;   // of a binary digit
-  constexpr int usual = 30, most = 700;  // of binary64 and their squares
-  double largest = 0;
-  for (const symbolic::Ref value : mechanics.parameter_value) {
-    if (!mechanics.dag->is_constant(value) || mechanics.dag->is_zero(value)) continue;
-    const auto exponent =
-        cln::float_exponent(cln::cl_float(cln::abs(mechanics.dag->value(value)), cln::float_format(20)));
-    largest = std::max(largest, decimals * std::abs(static_cast<double>(exponent)));
-  }
+  constexpr int usual = 30, most = 1500;  // of binary64 and their squares
+  constexpr int coarse = 30;
+  const Judge judge(*mechanics.model, coarse);
+  const double largest = Points(judge, 0, 0).decades();
   return largest < usual ? 0 : std::min(most, static_cast<int>(2 * largest));
 }
 
@@ -123,7 +116,8 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
   if (options.digits < least_digits || options.digits > most_digits)
     throw Error("verify", Where{}, fmt::format("{} digits cannot be compared", options.digits),
                 fmt::format("ask for {} to {}", least_digits, most_digits));
-  Judge judge(*mechanics.model, options.digits + guard_digits + digits_of_range(mechanics));
+  const int range = options.range ? *options.range : digits_of_range(mechanics);
+  Judge judge(*mechanics.model, options.digits + guard_digits + range);
   for (std::uint32_t k = 0; k < mechanics.constraints.size(); ++k) {
     if (!mechanics.holds(k)) judge.imply(k);
   }

@@ -19,11 +19,15 @@
 
 namespace eomgen::verify {
 
+/// Beyond the digits asked for, so that rounding in the comparisons themselves stays below them.
+inline constexpr int guard_digits = 10;
+
 struct Options {
   int digits = 50;  // 10 to 300: beyond, a binary64 cannot hold a difference
   std::size_t points = 20;
   std::uint64_t seed = 1;
   std::map<std::uint32_t, cln::cl_RA> fixed = {};  // parameters that a program has as numbers
+  std::optional<int> range = {};                   // digits_of_range where it is known
 };
 
 /// Expressions that vanish for the true motion, in t, q, qdot, qddot of all coordinates, functions of time, parameters,
@@ -108,8 +112,8 @@ struct Certificate {
 std::vector<system::EquationSystem> all_routes(mechanics::Mechanics& mechanics,
                                                std::vector<work::LeftOut>* left_out = nullptr);
 
-/// Digits beyond those of a comparison that parameters far from 1 take: beside a mass of 1e300 kg everything else would
-/// be lost. 0 for usual ones.
+/// Digits beyond those of a comparison that parameters, starts, rates and times far from 1 take: beside a mass of 1e300
+/// kg everything else would be lost. 0 for usual ones.
 int digits_of_range(const mechanics::Mechanics& mechanics);
 
 /// Throws Error{Fault::check} if no states can be found at which to compare. An interruption leaves the points that

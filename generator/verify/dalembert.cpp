@@ -2,12 +2,10 @@
 #include "verify/dalembert.hpp"
 
 #include <cln/real.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-#include "error.hpp"
 #include "verify/plain_forces.hpp"
 #include "verify/standing.hpp"
 #include "verify/uses.hpp"
@@ -194,8 +192,7 @@ Real Judge::constant(model::NodeId expression, const std::vector<Real>& paramete
   try {
     return Interpreter(model_, std::move(environment), precision_).scalar(expression).real();
   } catch (const std::domain_error& error) {
-    throw Error("verify", place_of(model_, model_.arena[expression]),
-                fmt::format("this has no value: {}", error.what()), "check the numbers that it is computed from");
+    throw NoValue(error.what(), place_of(model_, model_.arena[expression]));
   }
 }
 

@@ -66,6 +66,12 @@ struct EnergyValues {
   Real rate_scale = 0;
 };
 
+/// A number of the model that does not exist, as log(0), and where the file has it.
+struct NoValue : Singular {
+  NoValue(const char* what, Where place) : Singular(what), where(std::move(place)) {}
+  Where where;
+};
+
 class Standing;
 
 class Judge {
@@ -94,7 +100,7 @@ class Judge {
   /// Value of an expression of the model, such as a start of a scene.
   Real value(model::NodeId expression, const State& state) const;
 
-  /// Of an expression of parameters alone. Throws Error with its place where it has no value, as log(0).
+  /// Of an expression of parameters alone. Throws NoValue where it has none, as log(0).
   Real constant(model::NodeId expression, const std::vector<Real>& parameters) const;
   /// Every integral of the model at the state's time and parameters, by quadrature of its integrand.
   std::vector<Real> integrals(const State& state) const;

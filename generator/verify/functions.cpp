@@ -151,7 +151,7 @@ class Functions {
   };
   template <class Shift>
   std::optional<Slope> slope(const std::string& function, const Shift& shift) const {
-    const int digits = tally_.digits(), more = 3 * digits + 10;
+    const int digits = step_digits(), more = 3 * digits + 10;
     const Precision precision(more);
     const Real h = precision.round(ten_to(-digits));
     const At here = with_digits(at_, precision);
@@ -293,7 +293,7 @@ class Functions {
   /// their part.
   void momenta(const Arrays& values) {
     const std::size_t n = s_.free.size();
-    const int digits = tally_.digits(), more = 3 * digits + 10;
+    const int digits = step_digits(), more = 3 * digits + 10;
     const Precision precision(more);
     const Real h = precision.round(ten_to(-digits));
     const auto lagrangian = [&](const Real& step) {
@@ -305,7 +305,7 @@ class Functions {
       const std::vector<Real> energies = symbolic::evaluate(*s_.dag, {s_.kinetic, s_.potential}, lookup, more);
       return Real(energies[0] - energies[1]);
     };
-    Real sum = 0, size = (cln::abs(v_.kinetic) + cln::abs(v_.potential)) * ten_to(-digits);
+    Real sum = 0, size = (cln::abs(v_.kinetic) + cln::abs(v_.potential)) * ten_to(-tally_.digits());
     for (std::size_t i = 0; i < n; ++i) {
       sum = sum + values[0][i] * component(i);
       size = size + sizes_[0][i] * cln::abs(component(i));
@@ -353,7 +353,7 @@ class Functions {
   /// compared.
   void taylor() {
     constexpr int order = 4, beyond = 20;
-    const int exponent = tally_.digits() + beyond, more = order * exponent + 60;
+    const int exponent = step_digits() + beyond, more = order * exponent + 60;
     const Precision precision(more);
     const Real h = precision.round(ten_to(-exponent));
     At at = with_digits(at_, precision);
@@ -383,6 +383,8 @@ class Functions {
     note("taylor", "dx along the series", largest);
   }
 
+  /// Steps of differences are small beside 1/range: beside rates of 1e300 a time of 1e-50 is long.
+  int step_digits() const { return judge_.digits() - guard_digits; }
   std::string name() const { return s_.route + " " + system::name(s_.approach); }
 
   const ProgramForm& program_;

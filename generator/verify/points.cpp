@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "error.hpp"
 #include "verify/linear_solve.hpp"
 
 namespace eomgen::verify {
@@ -40,7 +41,12 @@ bool is_angle(const model::Unit& unit) { return unit.text == "rad" || unit.text 
 Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map<std::uint32_t, cln::cl_RA> fixed,
                std::vector<std::size_t> leavable)
     : judge_(judge), engine_(seed), cap_(cap), fixed_(std::move(fixed)), leavable_(std::move(leavable)), choosings_(1) {
-  read_scene();
+  try {
+    read_scene();
+  } catch (const NoValue& none) {
+    throw Error("verify", none.where, std::string("this has no value: ") + none.what(),
+                "check the numbers that it is computed from");
+  }
 }
 
 double Points::uniform() { return (static_cast<double>(engine_() >> 12) + 0.5) * 0x1p-52; }
@@ -151,6 +157,22 @@ void Points::read_scales() {
         c.center = below ? c.lower + c.scale : c.upper - c.scale;
     }
   }
+}
+
+double Points::decades() const {
+  constexpr double decimals = 0.30103;  // of a binary digit
+  double largest = 0;
+  const auto look_at = [&](const Real& value) {
+    if (cln::zerop(value)) return;
+    const auto exponent = cln::float_exponent(cln::cl_float(cln::abs(value), cln::float_format(20)));
+    largest = std::max(largest, decimals * std::fabs(static_cast<double>(exponent)));
+  };
+  for (const Real& value : defaults_) look_at(value);
+  for (const double value : {t0_, t1_}) look_at(Real(value));
+  for (const Choice& c : choices_)
+    for (const double value : {c.center, c.scale, c.rate_center, c.rate_scale}) look_at(Real(value));
+  for (const double value : input_defaults_) look_at(Real(value));
+  return largest;
 }
 
 // ---- one state

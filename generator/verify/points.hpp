@@ -30,6 +30,8 @@ class Points {
   /// The state that next() gave is unfit after all.
   void reject(const std::string& why);
   const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
+  /// The largest distance of a parameter, a start, a rate or a time from 1, in powers of ten.
+  double decades() const;
 
  private:
   struct Choice {
