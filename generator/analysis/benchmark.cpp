@@ -8,7 +8,6 @@
 
 #include "bench/libraries.hpp"
 #include "error.hpp"
-#include "model/names.hpp"
 #include "run/integration.hpp"
 
 namespace eomgen::analysis {
@@ -85,25 +84,13 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
 
 std::vector<std::string> solvers_for(const BenchmarkRequest& options, const run::Scene& scene, const run::Code& code,
                                      std::vector<std::pair<std::string, std::string>>& left_out) {
-  std::vector<std::string> known{eom::Automatic::name}, chosen;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if (!method.constrained || !options.solvers.empty() || run::unfit(method.name, code).empty())
-      known.emplace_back(method.name);
-  }
-  for (const std::string& name : options.solvers) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error("bench", {}, fmt::format("there is no solver '{}'", name), model::choice_of(name, known));
-  }
-  for (const std::string& name : known) {
-    if (!options.solvers.empty() &&
-        std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end())
-      continue;
-    std::string why = run::unfit(name, scene);
-    if (why.empty()) why = run::unfit(name, code);
-    if (why.empty())
+  std::vector<std::string> chosen;
+  for (const std::string& name : run::solvers_among("bench", options.solvers)) {
+    const eom::Eligibility found = run::eligible(name, scene, code);
+    if (found)
       chosen.push_back(name);
-    else
-      left_out.emplace_back(name, why);
+    else if (found.reason == eom::Eligibility::Reason::refused || !options.solvers.empty())
+      left_out.emplace_back(name, run::reason_of(found));  // not what is for other models from the outset
   }
   return chosen;
 }

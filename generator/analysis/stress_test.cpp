@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "error.hpp"
-#include "model/names.hpp"
 #include "run/integration.hpp"
 #include "stress/start.hpp"
 
@@ -115,22 +114,6 @@ void repeat_constraints(const model::Model& given, std::vector<Row>& rows, LeftO
   }
 }
 
-std::vector<std::string> chosen_solvers(const StressRequest& options) {
-  std::vector<std::string> known{eom::Automatic::name};
-  for (const eom::MethodInfo& method : eom::methods()) {
-    known.emplace_back(method.name);
-  }
-  for (const std::string& name : options.solvers) {
-    if (std::find(known.begin(), known.end(), name) == known.end())
-      throw Error("stress", {}, fmt::format("there is no solver '{}'", name), model::choice_of(name, known));
-  }
-  if (options.solvers.empty()) return known;
-  std::erase_if(known, [&](const std::string& name) {
-    return std::find(options.solvers.begin(), options.solvers.end(), name) == options.solvers.end();
-  });
-  return known;
-}
-
 pipeline::SimulationRequest simulation_request(const StressRequest& asked) {
   pipeline::SimulationRequest request;
   request.model = asked.model;
@@ -154,7 +137,7 @@ std::size_t StressFindings::count(Verdict verdict) const {
 
 StressFindings stress_test(const StressRequest& asked) {
   StressFindings found;
-  found.solvers = chosen_solvers(asked);
+  found.solvers = run::solvers_among("stress", asked.solvers);
   const pipeline::SimulationRequest wanted = simulation_request(asked);
   const pipeline::Simulation simulation = pipeline::simulate(wanted);
   const work::Kept kept;

@@ -21,7 +21,7 @@ std::string stiffness(const std::vector<Row>& rows) {
     for (const eom::MethodInfo& method : eom::methods()) {
       if (row.solver != method.name || !method.adaptive || row.outcome != "done" || !(row.error_along <= 0.01))
         continue;
-      const Row*& least = fewest[method.implicit ? 1 : 0];
+      const Row*& least = fewest[run::uses_jacobian(method) ? 1 : 0];
       if (least == nullptr || row.steps < least->steps) least = &row;
     }
   }

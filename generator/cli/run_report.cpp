@@ -160,7 +160,7 @@ nlohmann::ordered_json RunReport::json() const {
       {"approach", system::name(program.approach)},
       {"operations", to_json(program.functions.front().operations)},
       {"certificate", certificate.summary()}};
-  if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit) {
+  if (result.statistics.jacobians > 0 || run::uses_jacobian(run::method_named(result.solver))) {
     const eom::Statistics& cost = result.statistics;
     document["implicit"] = {{"jacobians", cost.jacobians},
                             {"difference_evaluations", cost.difference_evaluations},
@@ -217,7 +217,7 @@ std::string RunReport::text() const {
     out += line("kink", fmt::format("of {}: crossed {} times", k.of, k.count));
   out += line("steps", fmt::format("{} accepted, {} rejected, {} evaluations", result.statistics.steps,
                                    result.statistics.rejected, result.statistics.rhs_evaluations));
-  if (result.statistics.jacobians > 0 || run::method_named(result.solver).implicit)
+  if (result.statistics.jacobians > 0 || run::uses_jacobian(run::method_named(result.solver)))
     out += line("implicit steps", implicit_cost(result.statistics));
   out += "\n" + final_values(simulation) + "\n" + watched(simulation);
   if (const auto open = undetermined(simulation); !open.empty())

@@ -130,10 +130,6 @@ InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Tas
   });
 }
 
-std::vector<std::string> solvers() {
-  std::vector<std::string> names{"auto"};
-  for (const eom::MethodInfo& method : eom::methods()) names.emplace_back(method.name);
-  return names;
-}
+std::vector<std::string> solvers() { return run::solver_names(); }
 
 }  // namespace eomgen

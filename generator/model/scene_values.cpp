@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <eom/registry.hpp>
 
 #include "model/read_friction.hpp"
 #include "model/read_scenes.hpp"
@@ -11,9 +12,6 @@
 namespace eomgen::model {
 namespace {
 
-constexpr std::array<std::string_view, 14> solvers{"auto",   "rk4",          "dopri5",       "tsit5",       "dop853",
-                                                   "radau5", "radau",        "rodas",        "midpoint",    "ggl",
-                                                   "taylor", "variational2", "variational4", "variational6"};
 constexpr std::array<std::string_view, 5> built_in_outputs{"energy", "kinetic", "potential", "power", "all"};
 
 std::vector<std::string> split_at_dots(const std::string& text) {
@@ -108,8 +106,9 @@ InputTable ScenesReader::read_input_table(const Value& table, const Symbol& inpu
 
 void ScenesReader::read_solver(Scene& scene, const Value& value) {
   as(Value::Kind::text, value, "'solver'", "write solver = \"dop853\"");
-  if (std::find(solvers.begin(), solvers.end(), value.text) == solvers.end()) {
-    const std::vector<std::string> names(solvers.begin(), solvers.end());
+  if (eom::find_method(value.text) == nullptr) {
+    std::vector<std::string> names{eom::Automatic::name};
+    for (const eom::MethodInfo& method : eom::methods()) names.emplace_back(method.name);
     const std::string hint = did_you_mean(value.text, names);
     source_.fail(value.span, fmt::format("there is no solver {}", quote(value.text)),
                  hint.empty() ? fmt::format("the solvers are {}", fmt::join(names, ", ")) : hint);

@@ -179,23 +179,14 @@ void allow_charts(run::RunRequest& run, const std::shared_ptr<ChartLibrary>& lib
 
 namespace {
 
-/// Empty where the system has what variational integrators need.
-std::string not_variational(const system::EquationSystem& system) {
-  const bool on_velocities =
-      std::find(system.holonomic.begin(), system.holonomic.end(), false) != system.holonomic.end();
-  return run::not_variational(!system.contacts.empty(), on_velocities, program::has_kinks(system),
-                              !system.integrals.empty());
-}
-
-/// Told before anything is compiled.
-void require_fit(const system::EquationSystem& system, const std::string& solver) {
-  const eom::MethodInfo& method = run::method_named(solver);
-  std::string why;
-  if (method.variational) why = not_variational(system);
-  if (method.constrained) why = run::not_constrained(!system.contacts.empty(), !system.active.empty());
-  if (why.empty()) return;
-  throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", solver, why),
-              run::instead_of(solver));
+/// What code is to have for a solver, or, where every one is wanted, for all that can integrate the system.
+eom::Features wanted_features(const std::string& solver, bool every, eom::Features system) {
+  const auto wants = [](const eom::Needs& needs) { return needs.required | needs.used; };
+  eom::Features wanted = wants(run::method_named(solver).needs);
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (every && eom::eligible(method, system)) wanted = wanted | wants(method.needs);
+  }
+  return wanted;
 }
 
 }  // namespace
@@ -203,15 +194,17 @@ void require_fit(const system::EquationSystem& system, const std::string& solver
 program::Request run_functions(const Derived& derived, const run::Scene& scene, const std::string& solver,
                                bool every_solver) {
   const system::EquationSystem& system = derived.candidates.front();
+  const eom::Features features = run::features_of(system, program::has_kinks(system));
+  run::require_eligible(solver, features | run::features_of(scene));
   program::Request wanted;
   wanted.outputs = code_outputs(derived, scene, !energy_is_conserved(derived));
-  const bool variational = run::method_named(solver).variational;
   if (!system.active.empty() || !system.contacts.empty()) wanted.with = {"mass", "constraints"};
   if (!derived.model.events.empty() || !system.contacts.empty() || program::has_kinks(system))
     wanted.with.push_back("events");
-  if (run::method_named(solver).implicit || every_solver) wanted.with.push_back("jac");
-  if (run::method_named(solver).series || every_solver) wanted.with.push_back("taylor");
-  const bool momenta = variational || (every_solver && not_variational(system).empty());
+  const eom::Features of_code = wanted_features(solver, every_solver, features);
+  if (of_code.has(eom::Feature::jacobian)) wanted.with.push_back("jac");
+  if (of_code.has(eom::Feature::series)) wanted.with.push_back("taylor");
+  const bool momenta = of_code.has(eom::Feature::momenta);
   if (momenta) wanted.with.push_back("momenta");
   if (momenta && system.active.empty() && system.contacts.empty()) wanted.with.push_back("mass");
   return wanted;
@@ -228,9 +221,8 @@ Simulation simulate(const SimulationRequest& request) {
   run::Scene scene = run::resolve_scene(mechanics, system, derived->model.scene(request.scene), overrides);
   const std::string solver =
       run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
-  const bool variational = run::method_named(solver).variational;
-  const bool exchanges = possible && !scene.jumps && !run::method_named(solver).series && !variational;
-  require_fit(system, solver);
+  const eom::Refusal* const keeps_charts = run::method_named(solver).needs.refusal(eom::Feature::charts);
+  const bool exchanges = possible && !scene.jumps && keeps_charts == nullptr;
 
   program::Request wanted = run_functions(*derived, scene, solver, request.every_solver);
   for (const std::string& name : prepared) {
@@ -269,9 +261,8 @@ Simulation simulate(const SimulationRequest& request) {
   run.max_steps = request.max_steps;
   run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
   if (possible && !exchanges)
-    result.reason += variational
-                         ? "; the model's own coordinates are kept where they fail, since an exchange is not symplectic"
-                         : "; its series is that of the model's own coordinates, which are kept where they fail";
+    result.reason += fmt::format("; the model's own coordinates are kept where they fail, since {}",
+                                 keeps_charts != nullptr ? keeps_charts->why : "something may jump at a given time");
   if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
   return {std::move(derived), std::move(scene),  std::move(program), std::move(certificate),
           std::move(code),    std::move(result), std::move(charts)};

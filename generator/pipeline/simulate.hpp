@@ -58,7 +58,7 @@ double row_interval(const run::Scene& scene);
 Simulation simulate(const SimulationRequest& request);
 
 /// The functions and outputs that a run of the scene by this solver calls. every_solver: by any that can integrate the
-/// model.
+/// model. Throws Error{stage "run"} where the solver cannot.
 program::Request run_functions(const Derived& derived, const run::Scene& scene, const std::string& solver,
                                bool every_solver = false);
 

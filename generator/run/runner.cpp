@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <eom/hybrid/segments.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "model/names.hpp"
@@ -13,38 +12,14 @@
 #include "run/integration.hpp"
 
 namespace eomgen::run {
-const eom::MethodInfo& method_named(const std::string& name) {
-  static constexpr eom::MethodInfo automatic{eom::Automatic::name, eom::Automatic::order, 4, true};
-  if (name == automatic.name) return automatic;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if (name == method.name) return method;
-  }
-  throw std::logic_error("no method is called " + name);
-}
-
 std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
-  if (asked != "auto") {
-    for (const eom::MethodInfo& method : eom::methods()) {
-      if (asked != method.name) continue;
-      if (!method.adaptive && scene.step <= 0) {
-        throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
-                    "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
-      }
-      if (const std::string why = unfit(asked, scene); !why.empty()) {
-        throw Error("run", {}, fmt::format("solver '{}' cannot integrate this scene: {}", asked, why),
-                    "take dop853 or auto");
-      }
-      return {asked, "as asked for"};
+  if (asked != eom::Automatic::name) {
+    solvers_among("run", {asked});
+    if (!method_named(asked).adaptive && scene.step <= 0) {
+      throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
+                  "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
     }
-    std::string names;
-    std::vector<std::string> known{"auto"};
-    for (const eom::MethodInfo& method : eom::methods()) {
-      names += fmt::format("{}, ", method.name);
-      known.emplace_back(method.name);
-    }
-    const std::string hint = model::did_you_mean(asked, known);
-    throw Error("run", {}, fmt::format("there is no solver {}", model::quote(asked)),
-                (hint.empty() ? "" : hint + " ") + "choose from: " + names + "auto");
+    return {asked, "as asked for"};
   }
   if (scene.step > 0) return {"rk4", "a fixed step is given"};
   return {eom::Automatic::name, scene.rtol > 1e-6
@@ -109,23 +84,16 @@ static void tell_error(const RunRequest& request, const eom::hybrid::RunResult& 
 RunResult integrate_scene(const RunRequest& request) {
   RunResult result;
   std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
-  if (method_named(result.solver).implicit)
+  require_eligible(result.solver, features_of(request.scene) | features_of(request.code));
+  const eom::Needs& needs = method_named(result.solver).needs;
+  if (uses_jacobian(method_named(result.solver)))
     result.reason += request.code.jac != nullptr ? ", df/dx from the equations"
                                                  : ", df/dx by differences, since it was not compiled";
-  if (method_named(result.solver).series) {
-    if (request.code.taylor == nullptr)
-      throw Error("run", {}, "the code was compiled without its Taylor series",
-                  "choose the solver taylor when the code is made");
-    result.reason += ", series from the equations";
-  }
-  if (const std::string why = unfit(result.solver, request.code); !why.empty()) {
-    throw Error("run", {}, fmt::format("solver '{}' cannot integrate this model: {}", result.solver, why),
-                instead_of(result.solver));
-  }
-  if (method_named(result.solver).constrained)
+  if (needs.required.has(eom::Feature::series)) result.reason += ", series from the equations";
+  if (needs.required.has(eom::Feature::constraints))
     result.reason +=
         "; constraints on positions and velocities are equations of each step, so that nothing is projected";
-  if (method_named(result.solver).variational) {
+  if (needs.required.has(eom::Feature::momenta)) {
     result.reason += ", momenta from the equations";
     if (request.watch_power)
       result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";

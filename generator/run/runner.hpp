@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "run/eligibility.hpp"
 #include "run/event_ranges.hpp"
 #include "run/narrow_forces.hpp"
 #include "run/scene.hpp"
@@ -117,24 +118,6 @@ struct RunRequest {
 
 /// Integrates the scene. Throws Error{stage "run"} for a solver that is not there or needs a step.
 RunResult integrate_scene(const RunRequest& request);
-
-/// The method of this name; throws std::logic_error where there is none.
-const eom::MethodInfo& method_named(const std::string& name);
-
-/// Why a solver cannot integrate the scene, or "" where it can.
-std::string unfit(const std::string& solver, const Scene& scene);
-
-/// The same for the model, whose code has to have what the solver calls.
-std::string unfit(const std::string& solver, const Code& code);
-/// What to take in its place.
-std::string instead_of(const std::string& solver);
-
-/// Why variational integrators are not for a model with such parts, or "".
-std::string not_variational(bool contacts, bool on_velocities, bool kinks, bool integrals);
-/// The same of compiled code, which has to have the momenta.
-std::string not_variational(const Code& code);
-/// Why ggl is not for a model with such parts, or "".
-std::string not_constrained(bool contacts, bool constraints);
 
 /// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the
 /// way.

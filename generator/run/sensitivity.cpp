@@ -114,8 +114,9 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
 
 /// The method that ran, or, where it needs a series, momenta or constraints, one of as high an order that does not.
 std::string fitting(const std::string& solver) {
-  if (method_named(solver).constrained) return "radau5";
-  return method_named(solver).series || method_named(solver).variational ? "dop853" : solver;
+  const eom::MethodInfo& method = method_named(solver);
+  if (method.needs.required.none()) return solver;
+  return uses_jacobian(method) ? "radau5" : "dop853";
 }
 
 void require_smooth(const RunRequest& request) {

@@ -158,7 +158,7 @@ std::vector<Row> judge(const Case& test, const run::Scene& given, const Request&
   const run::RunRequest run = request.run(scene);
   for (const std::string& solver : request.solvers) {
     if (interrupted()) break;
-    if (!fits(solver, scene, run.code) || (test.of_limit && run::method_named(solver).adaptive)) continue;
+    if (!run::eligible(solver, scene, run.code) || (test.of_limit && run::method_named(solver).adaptive)) continue;
     if (request.progress) request.progress(test.name + ", " + solver);
     rows.push_back(judgement.row(solver));
     if (scene.t1 != given.t1 && rows.back().note.empty()) rows.back().note = fmt::format("until t = {:g}", scene.t1);

@@ -31,11 +31,6 @@ constexpr const char* by_the_clock = "not judged: a tight run takes longer than 
 
 }  // namespace
 
-bool fits(const std::string& solver, const run::Scene& scene, const run::Code& code) {
-  return run::unfit(solver, scene).empty() && (!run::method_named(solver).series || code.taylor != nullptr) &&
-         run::unfit(solver, code).empty();
-}
-
 double distance(const State& a, const State& b, const State& scale) {
   double largest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i) {
@@ -61,7 +56,7 @@ std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
   State second;
   std::vector<double> reached;
   for (const TightSolver& solver : tight_solvers) {
-    if (!fits(solver.name, scene_, run_.code) || !second.empty()) continue;
+    if (!run::eligible(solver.name, scene_, run_.code) || !second.empty()) continue;
     State scale;
     Tight run = tight(solver.name, solver.rtol, nullptr, &scale);
     if (run.late) {  // another machine might have come to the end: nothing is concluded

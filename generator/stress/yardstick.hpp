@@ -80,9 +80,6 @@ class Yardstick {
   bool late_ = false;
 };
 
-/// Whether a solver can integrate the scene with this code.
-bool fits(const std::string& solver, const run::Scene& scene, const run::Code& code);
-
 /// Largest |a - b| / scale; infinite where one of them is no number.
 double distance(const State& a, const State& b, const State& scale);
 

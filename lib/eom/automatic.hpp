@@ -29,8 +29,8 @@ namespace eom {
 
 class Automatic {
   enum class Active { dopri5, dop853, radau5 };
-  using Dopri5 = explicit_rk::Method<explicit_rk::Dopri5, implicit::Problem>;
-  using Dop853 = explicit_rk::Method<explicit_rk::Dop853, implicit::Problem>;
+  using Dopri5 = explicit_rk::Method<explicit_rk::Dopri5, System>;
+  using Dop853 = explicit_rk::Method<explicit_rk::Dop853, System>;
 
   template <class Do>
   decltype(auto) with(Do&& act) {
@@ -45,9 +45,10 @@ class Automatic {
   static constexpr const char* name = "auto";
   static constexpr bool adaptive = true;
   static constexpr int order = 5;  // at least
+  static constexpr int dense_order = 4;
 
-  Automatic(implicit::Problem& problem, std::span<const double> x, const Options& options)
-      : problem_(problem),
+  Automatic(System& system, std::span<const double> x, const Options& options)
+      : system_(system),
         options_(options),
         choice_(options.choice != nullptr ? *options.choice : own_),
         direction_(x.size()) {
@@ -145,9 +146,9 @@ class Automatic {
 
   void make(std::span<const double> x) {
     switch (active_) {
-      case Active::dopri5: dopri5_.emplace(problem_, x, options_); return;
-      case Active::dop853: dop853_.emplace(problem_, x, options_); return;
-      case Active::radau5: radau5_.emplace(problem_, x, options_); return;
+      case Active::dopri5: dopri5_.emplace(system_, x, options_); return;
+      case Active::dop853: dop853_.emplace(system_, x, options_); return;
+      case Active::radau5: radau5_.emplace(system_, x, options_); return;
     }
   }
 
@@ -254,7 +255,7 @@ class Automatic {
     start_direction();
   }
 
-  implicit::Problem& problem_;
+  System& system_;
   const Options& options_;
   Choice own_;
   Choice& choice_;

@@ -73,9 +73,7 @@ inline constexpr double still_converging = 0.5;
 inline constexpr double rounding_suspected = 1e-10;
 
 inline int order_of(std::string_view method) {
-  if (method == Automatic::name) return Automatic::order;
-  for (const MethodInfo& info : methods())
-    if (method == info.name) return info.order;
+  if (const MethodInfo* info = find_method(method)) return info->order;
   throw_unknown(method);
 }
 

@@ -4,45 +4,25 @@
 // variational/.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
-#include "eom/automatic.hpp"
-#include "eom/constrained/registry.hpp"
+#include "eom/by_reference.hpp"
 #include "eom/drive.hpp"
 #include "eom/explicit_rk/method.hpp"
-#include "eom/explicit_rk/registry.hpp"
-#include "eom/implicit/registry.hpp"
+#include "eom/registry.hpp"
 #include "eom/run_types.hpp"
-#include "eom/taylor/registry.hpp"
-#include "eom/variational/registry.hpp"
+#include "eom/system.hpp"
 #include "eom/with_jacobian.hpp"
+#include "eom/with_taylor.hpp"
 
 namespace eom {
-
-/// Every method that integrate() knows, in the registry's order; beside them there is `auto` (automatic.hpp), which
-/// chooses.
-inline std::span<const MethodInfo> methods() {
-  static constexpr auto table =
-      []<class... T, class... I, class... C, class... S, class... V>(
-          std::tuple<T...>*, std::tuple<I...>*, std::tuple<C...>*, std::tuple<S...>*, std::tuple<V...>*) {
-        return std::array<MethodInfo, sizeof...(T) + sizeof...(I) + sizeof...(C) + sizeof...(S) + sizeof...(V)>{
-            {{T::name, T::order, T::dense_order, !T::error.empty()}...,
-             {I::name, I::order, I::dense_order, I::adaptive, true}...,
-             {C::name, C::order, C::dense_order, C::adaptive, true, false, false, true}...,
-             {S::name, S::order, S::dense_order, S::adaptive, false, true}...,
-             {V::name, V::order, V::dense_order, V::adaptive, false, false, true}...}};
-      }(static_cast<explicit_rk::Registry*>(nullptr), static_cast<implicit::Registry*>(nullptr),
-        static_cast<constrained::Registry*>(nullptr), static_cast<taylor::Registry*>(nullptr),
-        static_cast<variational::Registry*>(nullptr));
-  return table;
-}
 
 namespace detail {
 
@@ -67,117 +47,66 @@ inline void check_problem(double t0, std::span<const double> x0, double t1, cons
   throw std::invalid_argument("eom::integrate: no method is called '" + std::string(method) + "'; there are " + known);
 }
 
-/// The explicit methods are compiled for each right-hand side, which may then be inlined into the stages.
-template <class T, class F, class Observer, class AfterStep>
-Result run_explicit(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options,
-                    Observer& observer, AfterStep& after_step) {
-  return Run<explicit_rk::Method<T, F>, Observer, AfterStep>(rhs, t0, x0, t1, options, observer, after_step).run();
+/// whose: what has the features, as it is called in a sentence; header: where they are described.
+[[noreturn]] inline void throw_ineligible(const char* caller, const MethodInfo& method, const Eligibility& found,
+                                          const char* whose, const char* header) {
+  const bool missing = found.reason == Eligibility::Reason::missing;
+  std::string text = std::string(caller) + ": " + method.name + (missing ? " needs a " : " takes no ") + whose +
+                     " with " + name(found.feature) + (missing ? std::string(" (") + header + ")" : found.why);
+  if (*method.needs.instead != '\0') text += std::string("; take ") + method.needs.instead;
+  throw std::invalid_argument(text);
 }
 
-/// The others once for all; problem: what they know of the right-hand side.
-template <class T, class Problem, class Observer, class AfterStep>
-Result run_once(Problem problem, double t0, std::span<const double> x0, double t1, const Options& options,
-                Observer& observer, AfterStep& after_step) {
-  implicit::ObserverOf see = implicit::observer_of(observer);
-  if constexpr (std::is_same_v<std::remove_cv_t<AfterStep>, NoProjection>) {
-    return Run<T, implicit::ObserverOf, AfterStep>(problem, t0, x0, t1, options, see, after_step).run();
-  } else {
-    implicit::AfterStepOf move = implicit::after_step_of(after_step);
-    return Run<T, implicit::ObserverOf, implicit::AfterStepOf>(problem, t0, x0, t1, options, see, move).run();
-  }
+inline void require_eligible(const MethodInfo& method, const System& system, std::size_t states) {
+  const Eligibility found = eligible(method, system, states);
+  if (!found) throw_ineligible("eom::integrate", method, found, "right-hand side", "eom/system.hpp");
 }
 
+/// Explicit methods are compiled for each right-hand side, which may then be inlined into the stages; the others once
+/// for all.
 template <class T, class F, class Observer, class AfterStep>
-Result run_series(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
+Result run_method(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
                   AfterStep& after_step) {
-  const taylor::Problem problem = taylor::problem_of(rhs);
-  if (problem.highest_order < 2 || problem.states == 0 || problem.states > x0.size())
-    throw std::invalid_argument("eom::integrate: " + std::string(T::name) +
-                                " needs a right-hand side with a Taylor series (eom/taylor/problem.hpp)");
-  if (options.series_order < 0 || options.series_order == 1 || options.series_order > problem.highest_order)
-    throw std::invalid_argument(
-        "eom::integrate: series_order has to be 0, or from 2 to the highest order of the series");
-  return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
-}
-
-template <class T, class F, class Observer, class AfterStep>
-Result run_variational(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options,
-                       Observer& observer, AfterStep& after_step) {
-  const variational::Problem problem = variational::problem_of(rhs);
-  if (problem.coordinates == 0 || 2 * problem.coordinates + options.quadratures != x0.size())
-    throw std::invalid_argument("eom::integrate: " + std::string(T::name) +
-                                " needs a right-hand side with momenta (eom/variational/problem.hpp), of a state of "
-                                "coordinates, velocities and quadratures");
-  return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
-}
-
-template <class T, class F, class Observer, class AfterStep>
-Result run_constrained(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options,
-                       Observer& observer, AfterStep& after_step) {
-  const constrained::Problem problem = constrained::problem_of(rhs);
-  if (problem.constraints == 0 || 2 * problem.coordinates + options.quadratures > x0.size())
-    throw std::invalid_argument("eom::integrate: " + std::string(T::name) +
-                                " needs a right-hand side with constraints (eom/constrained/problem.hpp), of a state "
-                                "that begins with coordinates and "
-                                "velocities; without constraints radau5 is that method");
-  constrained::Rows rows(problem);
-  constexpr double allowed = 1e-6;  // of the coordinates or rates
-  if (rows.evaluate(t0, x0.data()) == 0 && (rows.select(), !rows.met(x0.data(), allowed)))
-    throw std::invalid_argument(
-        "eom::integrate: the start of " + std::string(T::name) +
-        " does not meet the constraints; eom::Projection (eom/constraints/projection.hpp) moves it there");
-  return run_once<T>(problem, t0, x0, t1, options, observer, after_step);
+  if constexpr (explicit_rk::Tableau<T>) {
+    return Run<explicit_rk::Method<T, F>, Observer, AfterStep>(rhs, t0, x0, t1, options, observer, after_step).run();
+  } else {
+    System system = system_of(rhs);
+    require_eligible(info_of<T>, system, x0.size() - options.quadratures);
+    if constexpr (requires { T::check(system, t0, x0, options); }) T::check(system, t0, x0, options);
+    ObserverOf see = observer_of(observer);
+    if constexpr (std::is_same_v<std::remove_cv_t<AfterStep>, NoProjection>) {
+      return Run<T, ObserverOf, AfterStep>(system, t0, x0, t1, options, see, after_step).run();
+    } else {
+      AfterStepOf move = after_step_of(after_step);
+      return Run<T, ObserverOf, AfterStepOf>(system, t0, x0, t1, options, see, move).run();
+    }
+  }
 }
 
 }  // namespace detail
 
 /// Integrates from (t0, x0) to t1, which may lie before t0.
-/// rhs(t, x, dx) -> int; observer(StepView) -> bool, false stops; after_step(t, x) -> int may move the state at the end
-/// of a step (a projection) before the step counts as accepted. A nonzero code from rhs or after_step is retried with
-/// shorter steps before it ends the run. An rhs with a member jacobian (with_jacobian.hpp) gives it to implicit
-/// methods, one with a member taylor (taylor/problem.hpp) its series to `taylor`, one with momenta
-/// (variational/problem.hpp) these to variational ones, one with constraints (constrained/problem.hpp) these to `ggl`.
-/// Throws std::invalid_argument for an unknown method or senseless options.
+/// rhs(t, x, dx) -> int, with what else it has as members (system.hpp); observer(StepView) -> bool, false stops;
+/// after_step(t, x) -> int may move the state at the end of a step (a projection) before the step counts as accepted. A
+/// nonzero code from rhs or after_step is retried with shorter steps before it ends the run.
+/// Throws std::invalid_argument for an unknown method, one that is not eligible for the right-hand side, and senseless
+/// options.
 template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                  const Options& options = {}, Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
-  const auto asked = [&](const char* name, bool adaptive) {
-    if (method != name) return false;
-    if (!adaptive && options.fixed_step <= 0)
+  Result result;
+  const auto run = [&]<class T>(T*) {
+    if (method != T::name) return false;
+    if (!detail::is_adaptive<T>() && options.fixed_step <= 0)
       throw std::invalid_argument("eom::integrate: " + std::string(method) + " needs Options::fixed_step");
+    result = detail::run_method<T>(rhs, t0, x0, t1, options, observer, after_step);
     return true;
   };
-  Result result;
-  if (method == Automatic::name)
-    return detail::run_once<Automatic>(implicit::problem_of(rhs), t0, x0, t1, options, observer, after_step);
-  const bool known_explicit = [&]<class... T>(std::tuple<T...>*) {
-    return ((asked(T::name, !T::error.empty()) &&
-             (result = detail::run_explicit<T>(rhs, t0, x0, t1, options, observer, after_step), true)) ||
-            ...);
-  }(static_cast<explicit_rk::Registry*>(nullptr));
-  const bool known = known_explicit || [&]<class... T>(std::tuple<T...>*) {
-    return (
-        (asked(T::name, T::adaptive) &&
-         (result = detail::run_once<T>(implicit::problem_of(rhs), t0, x0, t1, options, observer, after_step), true)) ||
-        ...);
-  }(static_cast<implicit::Registry*>(nullptr));
-  const bool known_constrained = known || [&]<class... T>(std::tuple<T...>*) {
-    return ((asked(T::name, T::adaptive) &&
-             (result = detail::run_constrained<T>(rhs, t0, x0, t1, options, observer, after_step), true)) ||
-            ...);
-  }(static_cast<constrained::Registry*>(nullptr));
-  const bool known_series = known_constrained || [&]<class... T>(std::tuple<T...>*) {
-    return ((asked(T::name, T::adaptive) &&
-             (result = detail::run_series<T>(rhs, t0, x0, t1, options, observer, after_step), true)) ||
-            ...);
-  }(static_cast<taylor::Registry*>(nullptr));
-  const bool known_variational = known_series || [&]<class... T>(std::tuple<T...>*) {
-    return ((asked(T::name, T::adaptive) &&
-             (result = detail::run_variational<T>(rhs, t0, x0, t1, options, observer, after_step), true)) ||
-            ...);
-  }(static_cast<variational::Registry*>(nullptr));
-  if (!known_variational) detail::throw_unknown(method);
+  const bool known = run(static_cast<Automatic*>(nullptr)) || [&]<class... T>(std::tuple<T...>*) {
+    return (run(static_cast<T*>(nullptr)) || ...);
+  }(static_cast<Registry*>(nullptr));
+  if (!known) detail::throw_unknown(method);
   return result;
 }
 

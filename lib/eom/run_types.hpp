@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "eom/features.hpp"
 #include "eom/outcome.hpp"
 
 namespace eom {
@@ -108,11 +109,9 @@ struct MethodInfo {
   const char* name;
   int order;
   int dense_order;
-  bool adaptive;             // false: needs Options::fixed_step
-  bool implicit = false;     // uses df/dx: for stiff systems
-  bool series = false;       // needs a right-hand side with a Taylor series (taylor/problem.hpp)
-  bool variational = false;  // needs one with momenta (variational/problem.hpp)
-  bool constrained = false;  // needs one with constraints (constrained/problem.hpp), and keeps them itself
+  bool adaptive;          // false: needs Options::fixed_step
+  Needs needs = {};       // of a system (features.hpp)
+  bool ensemble = false;  // integrate_ensemble takes it too
 };
 
 /// The observer that looks at nothing.

@@ -236,8 +236,9 @@ TEST_CASE("hybrid: a solver that does not exist, and one that needs what the cod
   for (const char* solver : {"taylor", "variational4", "ggl"}) {
     problem.solver = solver;
     problem.step = 0.1;
-    CHECK_THROWS_AS(run(problem), std::invalid_argument);
+    CHECK_THROWS_WITH_AS(run(problem), doctest::Contains(solver), std::invalid_argument);
   }
+  CHECK_THROWS_WITH_AS(run(problem), doctest::Contains("a model with constraints"), std::invalid_argument);
   Code no_contacts = ball::code();
   no_contacts.events = nullptr;
   CHECK_THROWS_WITH_AS(run(ball::problem(no_contacts, 0.5)), doctest::Contains("no function events"),

@@ -83,12 +83,12 @@ TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tent
     CHECK(count(600) == of_short_run);
   };
   for (const eom::MethodInfo& method : eom::methods()) {
-    if (method.constrained)
+    if (method.needs.required.has(eom::Feature::constraints))
       check(method, Circle{});
     else
       check(method, Kepler{});
   }
-  check({eom::Automatic::name, eom::Automatic::order, 4, true}, Kepler{});
+  check(*eom::find_method(eom::Automatic::name), Kepler{});
 }
 
 TEST_CASE("ensembles: a hundred members over 100 periods allocate as often as one over a tenth of a period") {

@@ -25,6 +25,32 @@ TEST_CASE("docs/runtime.md: its example is examples/runtime/pendulum.cpp") {
   CHECK(text_of("docs/runtime.md").find("```cpp\n" + code + "```\n") != std::string::npos);
 }
 
+TEST_CASE("docs/runtime.md: the table of what methods need says what they say") {
+  const std::string text = text_of("docs/runtime.md");
+  const std::string section = text.substr(text.find("| method | requires |"));
+  for (const eom::MethodInfo& method : eom::methods()) {
+    CAPTURE(std::string(method.name));
+    const std::size_t at = section.find("`" + std::string(method.name) + "`");
+    REQUIRE(at != std::string::npos);
+    std::istringstream row(section.substr(at, section.find('\n', at) - at));
+    std::string methods, required, used, refused, expected[3];
+    for (std::string* cell : {&methods, &required, &used, &refused}) std::getline(row, *cell, '|');
+    const auto add = [](std::string& cell, eom::Feature feature) {
+      cell += (cell.empty() ? " " : ", ") + std::string(eom::name(feature));
+    };
+    for (const eom::Feature feature : eom::all_features) {
+      if (method.needs.required.has(feature)) add(expected[0], feature);
+      if (method.needs.used.has(feature)) add(expected[1], feature);
+    }
+    for (const eom::Refusal& refusal : method.needs.refuses)
+      if (refusal.feature != eom::Feature::charts) add(expected[2], refusal.feature);
+    for (std::string& cell : expected) cell += " ";
+    CHECK(required == expected[0]);
+    CHECK(used == expected[1]);
+    CHECK(refused == expected[2]);
+  }
+}
+
 TEST_CASE("docs/runtime.md: every method and every outcome is in its tables") {
   const std::string text = text_of("docs/runtime.md");
   for (const eom::MethodInfo& method : eom::methods()) {

@@ -18,7 +18,7 @@ using eom::Result;
 std::vector<eom::MethodInfo> adaptive_implicit() {
   std::vector<eom::MethodInfo> found;
   for (const eom::MethodInfo& method : problems::methods())
-    if (method.implicit && method.adaptive) found.push_back(method);
+    if (method.needs.used.has(eom::Feature::jacobian) && method.adaptive) found.push_back(method);
   return found;
 }
 

@@ -17,7 +17,7 @@ namespace problems {
 inline std::vector<eom::MethodInfo> methods() {
   std::vector<eom::MethodInfo> result;
   for (const eom::MethodInfo& method : eom::methods())
-    if (!method.series && !method.variational && !method.constrained) result.push_back(method);
+    if (method.needs.required.none()) result.push_back(method);
   return result;
 }
 

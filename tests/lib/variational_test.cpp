@@ -98,7 +98,7 @@ const State swinging{0.5, -0.3, 0, 0},
 std::vector<eom::MethodInfo> variational() {
   std::vector<eom::MethodInfo> found;
   for (const eom::MethodInfo& method : eom::methods())
-    if (method.variational) found.push_back(method);
+    if (method.needs.required.has(eom::Feature::momenta)) found.push_back(method);
   return found;
 }
 

@@ -52,7 +52,9 @@ TEST_CASE(
                                              [](auto& request) { request.every_solver = true; });
     CHECK(std::abs(finished.final("x_dot") - c.impulse) < c.allowed);
     for (const eom::MethodInfo& method : eom::methods()) {
-      if (method.constrained || (method.variational && !c.smooth)) continue;
+      if (method.needs.required.has(eom::Feature::constraints) ||
+          (method.needs.required.has(eom::Feature::momenta) && !c.smooth))
+        continue;
       CAPTURE(std::string(method.name));
       run::Overrides overrides;
       overrides.solver = method.name;
@@ -137,7 +139,7 @@ TEST_CASE(
                      "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",
                  [](auto& request) { request.every_solver = true; });
     for (const eom::MethodInfo& method : eom::methods()) {
-      if (method.constrained || method.variational || !method.adaptive) continue;
+      if (method.needs.keeps_constraints || !method.adaptive) continue;
       CAPTURE(std::string(method.name));
       run::Overrides overrides;
       overrides.solver = method.name;

@@ -13,6 +13,7 @@
 #include "forces/kind.hpp"
 #include "joints/joint.hpp"
 #include "rotations/rotation.hpp"
+#include "run/eligibility.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -36,14 +37,15 @@ json registries() {
   for (const derive::RouteEntry& route : derive::routes())
     routes.push_back({{"name", route.name}, {"title", route.title}});
   for (const eom::MethodInfo& method : eom::methods()) {
+    const auto requires_feature = [&](eom::Feature feature) { return method.needs.required.has(feature); };
     solvers.push_back({{"name", method.name},
                        {"order", method.order},
                        {"dense_order", method.dense_order},
                        {"adaptive", method.adaptive},
-                       {"implicit", method.implicit},
-                       {"series", method.series},
-                       {"variational", method.variational},
-                       {"constrained", method.constrained}});
+                       {"implicit", run::uses_jacobian(method)},
+                       {"series", requires_feature(eom::Feature::series)},
+                       {"variational", requires_feature(eom::Feature::momenta)},
+                       {"constrained", requires_feature(eom::Feature::constraints)}});
   }
   for (const emit::TargetEntry& target : emit::targets())
     targets.push_back({{"name", target.name}, {"title", target.title}});

@@ -205,12 +205,20 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
   return overrides.step ? "rk4" : "dop853";
 }
 
+/// The solvers that integrate many runs at once.
+static std::vector<std::string> side_by_side() {
+  std::vector<std::string> names;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    if (method.ensemble) names.push_back(fmt::format("{}{}", method.name, method.adaptive ? "" : " with --step"));
+  }
+  return names;
+}
+
 void require_plain(const pipeline::Simulation& first) {
   const run::Code code = first.code.for_run();
   const eom::MethodInfo& method = run::method_named(first.scene.solver);
   std::string why;
-  if (method.name == std::string(eom::Automatic::name) || method.implicit || method.series || method.variational ||
-      method.constrained) {
+  if (!method.ensemble) {
     why = fmt::format("solver '{}' is no explicit Runge-Kutta method", first.scene.solver);
   } else if (!code.contacts.empty()) {
     why = "the model has contacts with friction, or that can be left";
@@ -235,7 +243,7 @@ void require_plain(const pipeline::Simulation& first) {
   }
   if (why.empty()) return;
   throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why,
-              "leave --ensemble out; with it take --solver dop853, tsit5 or dopri5, or rk4 with --step");
+              fmt::format("leave --ensemble out; with it take --solver {}", fmt::join(side_by_side(), ", ")));
 }
 
 Ensemble::Ensemble(const pipeline::Simulation& first) : first_(first), batch_(compile_batch(first)) {}

@@ -35,6 +35,9 @@
 
 namespace eom::constrained {
 
+inline constexpr Refusal refusals[] = {
+    {Feature::modes, ": which constraints hold changes on the way, and it keeps one set of them"}};
+
 /// The quartic that is 0 at 0, at the three stages, and has slope 1 at 0.
 inline constexpr double bump_across(double s) { return s * (1 - s) * (1 + s * (-8 + 10 * s)); }
 
@@ -45,12 +48,28 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
   static constexpr const char* name = "ggl";
   static constexpr int order = 5;
   static constexpr int dense_order = 4;
+  static constexpr Needs needs{.required = {Feature::constraints},
+                               .used = {Feature::jacobian},
+                               .refuses = refusals,
+                               .instead = "radau5, which projects where there is something to keep",
+                               .keeps_constraints = true};
 
-  Ggl(Problem& problem, std::span<const double> x, const Options& options)
-      : Core(problem.rhs, x, options, 3, problem.on_positions + problem.constraints),
-        of_(problem),
-        c_(problem.coordinates),
-        rows_(problem),
+  /// Throws std::invalid_argument where the state cannot be that of the system, or does not meet its constraints.
+  static void check(const System& system, double t0, std::span<const double> x0, const Options& options) {
+    if (2 * system.coordinates + options.quadratures > x0.size())
+      throw std::invalid_argument("eom::integrate: ggl needs a state that begins with coordinates and velocities");
+    Rows rows(system);
+    if (rows.evaluate(t0, x0.data()) == 0 && (rows.select(), !rows.met(x0.data(), allowed_at_start)))
+      throw std::invalid_argument(
+          "eom::integrate: the start of ggl does not meet the constraints; eom::Projection "
+          "(eom/constraints/projection.hpp) moves it there");
+  }
+
+  Ggl(System& system, std::span<const double> x, const Options& options)
+      : Core(system, x, options, 3, system.position_constraints + system.constraints),
+        of_(system),
+        c_(system.coordinates),
+        rows_(system),
         mass_(c_),
         C_(extra_ * m_),
         D_(extra_ * c_),
@@ -130,6 +149,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
 
  private:
   static constexpr int most_rounds = 40;
+  static constexpr double allowed_at_start = 1e-6;    // of the coordinates or rates
   static constexpr double resting = 0.9;              // of a residual: it shrinks no more
   static constexpr double at_rounding = 4 * epsilon;  // of the terms of a constraint
   static constexpr double allowed =
@@ -141,7 +161,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
 
   /// D by columns (M + A^T S A)^-1 A^T S, S the mean of the masses.
   int directions() {
-    if (const int code = of_.mass(of_.rhs.self, t0_, x0_, M_.data()); code != 0) return code;
+    if (const int code = of_.mass(of_.self, t0_, x0_, M_.data()); code != 0) return code;
     double mean = 0;
     for (std::size_t i = 0; i < c_; ++i) mean += std::abs(M_[i + c_ * i]) / static_cast<double>(c_);
     if (mean == 0) mean = 1;
@@ -200,7 +220,7 @@ class Ggl : public implicit::Collocation<Ggl, 3> {
     real_.solve(across_.data());
   }
 
-  Problem& of_;
+  System& of_;
   std::size_t c_;
   Rows rows_;
   Lu<double> mass_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The equations g = (psi of the constraints on positions, A v + b of all) that a method keeps, each in units of the
-// length of its row of A. In: a problem, states. Out: values, their rounding, an independent set of them.
+// length of its row of A. In: a system, states. Out: values, their rounding, an independent set of them.
 #pragma once
 
 #include <algorithm>
@@ -8,17 +8,17 @@
 #include <cstddef>
 #include <vector>
 
-#include "eom/constrained/problem.hpp"
+#include "eom/system.hpp"
 
 namespace eom::constrained {
 
 class Rows {
  public:
-  explicit Rows(const Problem& problem)
-      : of_(problem),
-        c_(problem.coordinates),
-        k_(problem.constraints),
-        positions_(problem.on_positions),
+  explicit Rows(const System& system)
+      : of_(system),
+        c_(system.coordinates),
+        k_(system.constraints),
+        positions_(system.position_constraints),
         psi_(k_),
         A_(k_ * c_),
         b_(k_),
@@ -37,7 +37,7 @@ class Rows {
 
   /// psi, A and b at a state; a code.
   int evaluate(double t, const double* x) {
-    const int code = of_.constrain(of_.rhs.self, t, x, psi_.data(), A_.data(), b_.data());
+    const int code = of_.constrain(of_.self, t, x, psi_.data(), A_.data(), b_.data());
     const auto finite = [](double value) { return std::isfinite(value); };
     if (code != 0) return code;
     return std::all_of(A_.begin(), A_.end(), finite) && std::all_of(b_.begin(), b_.end(), finite) &&
@@ -113,7 +113,7 @@ class Rows {
     return true;
   }
 
-  const Problem& of_;
+  const System& of_;
   std::size_t c_, k_, positions_;
   std::vector<double> psi_, A_, b_, length_, rest_;
   std::vector<bool> chosen_;

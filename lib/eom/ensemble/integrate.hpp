@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "eom/ensemble/block.hpp"
-#include "eom/explicit_rk/registry.hpp"
+#include "eom/registry.hpp"
 
 namespace eom {
 namespace ensemble {
@@ -64,16 +64,20 @@ void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members,
       !(options.max_step > 0) || !(options.initial_step >= 0) || !(options.fixed_step >= 0))
     throw std::invalid_argument(
         "eom::integrate_ensemble: tolerances and steps must not be negative, nor both tolerances 0");
-  const bool known = [&]<class... T>(std::tuple<T...>*) {
-    return ([&] {
+  const auto run = [&]<class T>(T*) {
+    if constexpr (explicit_rk::Tableau<T>) {
       if (method != T::name) return false;
       if (T::error.empty() && !fixed)
         throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
                                     " needs EnsembleOptions::fixed_step");
       ensemble::by_threads<T>(rhs, members, states, parameters, options, start, done);
       return true;
-    }() || ...);
-  }(static_cast<explicit_rk::Registry*>(nullptr));
+    }
+    return false;
+  };
+  const bool known = [&]<class... T>(std::tuple<T...>*) {
+    return (run(static_cast<T*>(nullptr)) || ...);
+  }(static_cast<Registry*>(nullptr));
   if (!known)
     throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
                                 " is no explicit Runge-Kutta method");

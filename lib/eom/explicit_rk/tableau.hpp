@@ -29,6 +29,13 @@ struct StepControl {
   double grow;    // and at most this multiple
 };
 
+/// Whether T is one.
+template <class T>
+concept Tableau = requires {
+  T::a.size(), T::c.size(), T::error.size(), T::dense.size();
+  T::stages, T::dense_stages, T::control;
+};
+
 template <class T>
 inline constexpr std::size_t columns = T::stages + 1 + T::dense_stages;
 

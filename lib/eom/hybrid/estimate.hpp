@@ -41,7 +41,7 @@ class EndEstimate {
     const auto start = std::chrono::steady_clock::now();
     ErrorEstimate estimate = repeat();
     if (adequacy_ != nullptr) see_rounding(estimate);
-    if (method_.variational) see_rounding_of_rates(estimate);
+    if (method_.needs.required.has(Feature::momenta)) see_rounding_of_rates(estimate);
     const std::size_t states = 2 * problem_.n() + problem_.code->integrals;
     error_.states.assign(estimate.x.begin(), estimate.x.begin() + static_cast<std::ptrdiff_t>(states));
     for (const double e : error_.states) error_.max = std::max(error_.max, e);
@@ -62,7 +62,7 @@ class EndEstimate {
       doubt(Doubt::not_converging,
             "steps of this size are too long for the method's order to show: shorter ones change the end by as much "
             "again; the estimate is not to be trusted");
-    if (method_.variational) see_frozen();
+    if (method_.needs.required.has(Feature::momenta)) see_frozen();
     error_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 

@@ -72,12 +72,12 @@ class Integration {
 inline Integration::Integration(const Problem& problem)
     : problem_(problem),
       parts_(problem),
-      keeps_constraints_(method_named(problem.solver).variational || method_named(problem.solver).constrained),
+      keeps_constraints_(method_named(problem.solver).needs.keeps_constraints),
       slow_slip_(parts_) {
   if (!parts_.contacts && parts_.rows.size() > 0 && !keeps_constraints_) passage_ = std::make_unique<Passage>(parts_);
   sampling_ = {[this](double t) { return parts_.model.inputs(t); },
                [this](double t, const double* x, double* dx) { return parts_.rhs(t, x, dx); }, problem.rtol,
-               problem.atol, method_named(problem.solver).series};
+               problem.atol, requires_feature(problem.solver, Feature::series)};
 }
 
 inline Result Integration::run(const Options& options, const Observer& observer, const OnEvent& event) {
@@ -127,7 +127,7 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
     if (event) event({told.t, told.kind, told.name}, total.x);
   }
   // It has to begin on the constraints, to rounding.
-  if (method_named(problem_.solver).constrained && parts_.projection(total.t, total.x.data()) != 0) {
+  if (requires_feature(problem_.solver, Feature::constraints) && parts_.projection(total.t, total.x.data()) != 0) {
     total.outcome = Outcome::inconsistent_start;
     total.detail = "the start cannot be moved onto the constraints";
     return false;

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// What is known of the solver of a run, by its name, and whether the code has what it calls.
+// What is known of the solver of a run, by its name, and whether it can integrate what the code has.
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "eom/hybrid/problem.hpp"
 #include "eom/ode.hpp"
@@ -13,18 +15,32 @@ namespace eom::hybrid {
 
 /// The method of this name, or auto; throws std::invalid_argument where there is none.
 inline const MethodInfo& method_named(std::string_view name) {
-  static constexpr MethodInfo automatic{Automatic::name, Automatic::order, 4, true};
-  if (name == automatic.name) return automatic;
-  for (const MethodInfo& method : methods()) {
-    if (name == method.name) return method;
-  }
+  if (const MethodInfo* method = find_method(name)) return *method;
   eom::detail::throw_unknown(name);
+}
+
+/// Whether it cannot run without that feature.
+inline bool requires_feature(std::string_view name, Feature feature) {
+  return method_named(name).needs.required.has(feature);
+}
+
+/// What a method may ask for, or cannot follow, of compiled code.
+inline Features features_of(const Code& code) {
+  const std::vector<bool>& holonomic = code.holonomic;
+  return Features{}
+      .set(Feature::jacobian, code.jac != nullptr)
+      .set(Feature::series, code.taylor != nullptr)
+      .set(Feature::momenta, code.momenta != nullptr && code.mass != nullptr)
+      .set(Feature::constraints, code.active_constraints > 0 && code.constraints != nullptr && code.mass != nullptr)
+      .set(Feature::velocity_constraints, std::find(holonomic.begin(), holonomic.end(), false) != holonomic.end())
+      .set(Feature::modes, !code.contacts.empty())
+      .set(Feature::kinks, !code.kinks.empty())
+      .set(Feature::other_states, code.integrals > 0);
 }
 
 /// Throws std::invalid_argument where the code has not what the run calls, or the solver is not for it.
 inline void require_functions(const Problem& problem) {
   const Code& code = *problem.code;
-  const MethodInfo& method = method_named(problem.solver);
   const auto demand = [&](bool holds, const char* what) {
     if (!holds) throw std::invalid_argument("eom::hybrid: solver " + problem.solver + ": " + what);
   };
@@ -37,10 +53,9 @@ inline void require_functions(const Problem& problem) {
   demand(code.contacts.size() == problem.contacts.size() && code.contacts.size() <= problem.apart.size(),
          "each contact of the code needs its outputs, and whether it is apart at the start");
   demand(problem.start.size() >= 2 * code.free.size(), "the start has too few values");
-  demand(!method.series || code.taylor != nullptr, "the code has no function taylor");
-  demand(!method.variational || (code.momenta != nullptr && code.mass != nullptr && code.contacts.empty()),
-         "the code has no functions momenta and mass, or contacts");
-  demand(!method.constrained || (constrained && code.contacts.empty()), "the code has no constraints, or contacts");
+  const MethodInfo& method = method_named(problem.solver);
+  const Eligibility found = eligible(method, features_of(code));
+  if (!found) eom::detail::throw_ineligible("eom::hybrid::run", method, found, "model", "eom/hybrid/code.hpp");
 }
 
 }  // namespace eom::hybrid

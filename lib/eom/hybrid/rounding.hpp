@@ -78,7 +78,7 @@ inline Result from_rounded_start(const Problem& problem, const Options& options)
   moved.beyond_range = {};
   const std::vector<double> x = Integration(problem).parts().start;
   Eigen::VectorXd rates = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n));
-  if (method_named(problem.solver).variational) {
+  if (requires_feature(problem.solver, Feature::momenta)) {
     const Momenta momenta(problem, problem.t0, x);
     for (std::size_t i = 0; i < n; ++i) {
       const auto k = static_cast<Eigen::Index>(i);

@@ -12,19 +12,19 @@
 #include <vector>
 
 #include "eom/implicit/jacobian.hpp"
-#include "eom/implicit/problem.hpp"
 #include "eom/linalg/lu.hpp"
+#include "eom/system.hpp"
 
 namespace eom::implicit {
 
 class Base {
  public:
-  Base(Problem& problem, std::span<const double> x, const Options& options, Jacobian::Differences differences)
-      : problem_(problem),
+  Base(System& system, std::span<const double> x, const Options& options, Jacobian::Differences differences)
+      : system_(system),
         n_(x.size()),
         m_(x.size() - options.quadratures),
         fixed_(options.fixed_step > 0),
-        jacobian_(problem, n_, m_, options.rtol > 0 ? options.atol / options.rtol : 0, differences),
+        jacobian_(system, n_, m_, options.rtol > 0 ? options.atol / options.rtol : 0, differences),
         ends_(7 * n_) {
     double* next = ends_.data();
     for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_})
@@ -44,7 +44,7 @@ class Base {
 
   int evaluate(double t, const double* x, double* dx) {
     ++counts_.rhs_evaluations;
-    return problem_.f(problem_.self, t, x, dx);
+    return system_.f(system_.self, t, x, dx);
   }
   int evaluate_start(double t) { return evaluate(t, x0_, f0_); }
   /// Instead of evaluate_start, where the derivative at x0 is known.
@@ -92,7 +92,7 @@ class Base {
     return std::sqrt(sum / static_cast<double>(m_));
   }
 
-  Problem& problem_;
+  System& system_;
   std::size_t n_, m_;
   bool fixed_;
   Jacobian jacobian_;

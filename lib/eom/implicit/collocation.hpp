@@ -4,10 +4,10 @@
 // transformed so that one real and (s - 1)/2 complex matrices are factored; an error estimate of order s, filtered by
 // the real matrix; step sizes predicted from two steps (Gustafsson); df/dx and its factors kept while Newton converges.
 //
-// The estimate is of lower order than the method. So that the step's own error stays in proportion to the tolerance r,
-// it is compared with r^((s+1)/(2s))/10. With fixed steps there is no tolerance: the iteration goes on to rounding. A
-// Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) has hidden the hooks
-// below; u and g stand behind the state in each stage, and behind its motion in matrices.
+// The estimate is of lower order than the method; stage_tolerances.hpp says what it is compared with, so that the
+// step's own error stays in proportion to the tolerance. With fixed steps there is none: the iteration goes on to
+// rounding. A Method has name, order, dense_order, interpolate. One with algebraic equations 0 = g(x, u) has hidden the
+// hooks below; u and g stand behind the state in each stage, and behind its motion in matrices.
 #pragma once
 
 #include <algorithm>
@@ -22,6 +22,7 @@
 #include "eom/implicit/collocation_parts.hpp"
 #include "eom/implicit/newton.hpp"
 #include "eom/implicit/radau_tableau.hpp"
+#include "eom/implicit/stage_tolerances.hpp"
 
 namespace eom::implicit {
 
@@ -54,7 +55,9 @@ class Collocation : public Base, public CollocationHooks {
   }
 
   double error_norm(double, double) {
-    const auto scale = [&](std::size_t i) { return atol_ + rtol_ * std::max(std::abs(x0_[i]), std::abs(x1_[i])); };
+    const auto scale = [&](std::size_t i) {
+      return tolerances_.atol + tolerances_.rtol * std::max(std::abs(x0_[i]), std::abs(x1_[i]));
+    };
     double error = norm([&](std::size_t i) { return estimate_[i]; }, scale);
     if (error >= 1 && (rejected_ || !accepted_)) {  // once more through the filter: less is asked of a stiff start
       for (std::size_t i = 0; i < n_; ++i) scratch_[i] = x0_[i] + (i < m_ ? estimate_[i] : 0);
@@ -124,21 +127,21 @@ class Collocation : public Base, public CollocationHooks {
   // has died away.
   static constexpr double first_step = 1, same_step = 1e-9;
 
-  Collocation(Problem& problem, std::span<const double> x, const Options& options, std::size_t stages,
+  Collocation(System& system, std::span<const double> x, const Options& options, std::size_t stages,
               std::size_t algebraic = 0)
-      : Base(problem, x, options, Jacobian::Differences::one_sided),
+      : Base(system, x, options, Jacobian::Differences::one_sided),
         extra_(algebraic),
         length_(n_ + algebraic),
         real_(m_ + algebraic),
         complex_(most / 2, Lu<Complex>(m_ + algebraic)),
         units_(m_, m_ + algebraic),
+        tolerances_(options, x.first(m_)),
         work_(4 * most * length_),
         estimate_(length_),
         right_(length_),
         pair_(m_ + algebraic) {
     double* next = work_.data();
     for (double** block : {&z_, &w_, &f_, &z_before_}) *block = std::exchange(next, next + most * length_);
-    set_tolerances(options, x);
     use(stages);
   }
 
@@ -154,25 +157,10 @@ class Collocation : public Base, public CollocationHooks {
     for (std::size_t j = 0; j < extra_; ++j) act(n_ + j, m_ + j);
   }
 
-  void set_tolerances(const Options& options, std::span<const double> x) {
-    double largest = 0;
-    for (std::size_t i = 0; i < m_; ++i) largest = std::max(largest, std::abs(x[i]));
-    const double of_atol = options.atol > 0 ? options.atol / std::max(largest, 1e-300) : 0;
-    tolerance_ = std::clamp(std::max(options.rtol, of_atol), 10 * epsilon, 1e-3);
-    asked_rtol_ = options.rtol;
-    asked_atol_ = options.atol;
-  }
-
-  /// The tableau with s stages, and the tolerances that go with its estimate.
   void use(std::size_t s) {
     stages_ = s;
     tableau_ = &RadauTableau::of(s);
-    const double power = static_cast<double>(s + 1) / static_cast<double>(2 * s);
-    const double loosened = 0.1 * std::pow(tolerance_, power - 1);
-    rtol_ = loosened * asked_rtol_;
-    atol_ = loosened * asked_atol_;
-    const double compared = loosened * tolerance_;
-    newton_tolerance_ = std::max(10 * epsilon / compared, std::min(0.03, std::pow(compared, 1 / power - 1)));
+    tolerances_.use(s);
     factored_ = false;
     stages_changed_ = true;
   }
@@ -293,7 +281,7 @@ class Collocation : public Base, public CollocationHooks {
   double newton_scale(std::size_t i, double correction) const {
     const double size = std::max(std::abs(x0_[i]), std::abs(x0_[i] + z_[(stages() - 1) * length_ + i]));
     if (fixed_) return units_(i, size, correction);
-    const double scale = atol_ + rtol_ * size;
+    const double scale = tolerances_.atol + tolerances_.rtol * size;
     return scale > 0 ? scale : std::max(std::abs(h_ * f0_[i]), 1e-300);
   }
 
@@ -326,11 +314,11 @@ class Collocation : public Base, public CollocationHooks {
         if (contraction_ >= 0.99) return fail(0.5);
         remaining_ = contraction_ / (1 - contraction_);
         const int left = most_here - 1 - newton_;
-        const double expected = remaining_ * size * std::pow(contraction_, left) / newton_tolerance_;
+        const double expected = remaining_ * size * std::pow(contraction_, left) / tolerances_.newton;
         if (expected >= 1) return fail(0.8 * std::pow(std::min(expected, 20.0), -1.0 / (4 + left)));
       }
       before = std::max(size, epsilon * epsilon);
-      if (remaining_ * size <= newton_tolerance_) return true;
+      if (remaining_ * size <= tolerances_.newton) return true;
     }
     return fail(0.5);
   }
@@ -378,13 +366,13 @@ class Collocation : public Base, public CollocationHooks {
   Lu<double> real_;
   std::vector<Lu<Complex>> complex_;
   Units units_;
+  StageTolerances tolerances_;
   std::vector<double> work_, estimate_, right_;
   std::vector<Complex> pair_;
   // Of the step that comes, the last, the one before.
   const RadauTableau *tableau_ = nullptr, *made_with_ = nullptr, *of_before_ = nullptr;
   std::size_t stages_ = 3;
   double *z_, *w_, *f_, *z_before_;  // stage increments, transformed, stage derivatives; of the step before
-  double tolerance_ = 0, asked_rtol_ = 0, asked_atol_ = 0, rtol_ = 0, atol_ = 0, newton_tolerance_ = 0;
   double h_factored_ = 0, h_of_before_ = 0;
   double contraction_ = 0, remaining_ = 1;
   double h_before_ = 0, error_before_ = 1;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// df/dx and df/dt: from the right-hand side's own function, or by differences. In: a problem, a state and its
+// df/dx and df/dt: from the right-hand side's own function, or by differences. In: a system, a state and its
 // derivative. Out: matrix and vector, what they cost. The last components of x, quadratures, stay out: nothing depends
 // on them.
 #pragma once
@@ -10,7 +10,8 @@
 #include <limits>
 #include <vector>
 
-#include "eom/implicit/problem.hpp"
+#include "eom/system.hpp"
+#include "eom/with_jacobian.hpp"
 
 namespace eom::implicit {
 
@@ -19,8 +20,8 @@ class Jacobian {
   enum class Differences { one_sided, central };  // central: for methods whose order needs the derivatives
 
   /// n components, the first m of which count; smallest: a size below which a component is not told from 0.
-  Jacobian(const Problem& problem, std::size_t n, std::size_t m, double smallest, Differences differences)
-      : problem_(problem),
+  Jacobian(const System& system, std::size_t n, std::size_t m, double smallest, Differences differences)
+      : system_(system),
         n_(n),
         m_(m),
         smallest_(smallest),
@@ -62,8 +63,8 @@ class Jacobian {
   int evaluate(double t, const double* x, const double* f, double h, Statistics& counts) {
     ++counts.jacobians;
     bool given = false;
-    if (problem_.jacobian != nullptr) {
-      const int code = problem_.jacobian(problem_.self, t, x, dfdx_.data(), dfdt_.data());
+    if (system_.jacobian != nullptr) {
+      const int code = system_.jacobian(system_.self, t, x, dfdx_.data(), dfdt_.data());
       const bool complete = code == 0 || (code == no_time_derivative_here && differences_ == Differences::one_sided);
       if (complete) return all_finite() ? 0 : code_not_finite;
       if (code != no_jacobian_here && code != no_time_derivative_here) return code;
@@ -130,7 +131,7 @@ class Jacobian {
 
   int evaluate(double t, double* dx, Statistics& counts) {
     ++counts.rhs_evaluations;
-    return problem_.f(problem_.self, t, x_.data(), dx);
+    return system_.f(system_.self, t, x_.data(), dx);
   }
 
   int divide(const double* a, const double* b, double by, double* result) const {
@@ -142,7 +143,7 @@ class Jacobian {
     return std::all_of(dfdx_.begin(), dfdx_.end(), [](double value) { return std::isfinite(value); });
   }
 
-  Problem problem_;
+  System system_;
   std::size_t n_, m_;
   double smallest_;
   Differences differences_;

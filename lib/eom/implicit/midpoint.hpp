@@ -24,9 +24,10 @@ class Midpoint : public Base {
   static constexpr int dense_order = 2;
   static constexpr bool adaptive = false;
   static constexpr bool error_uses_end = false;
+  static constexpr Needs needs{.used = {Feature::jacobian}};
 
-  Midpoint(Problem& problem, std::span<const double> x, const Options& options)
-      : Base(problem, x, options, Jacobian::Differences::one_sided), lu_(m_), units_(m_, m_), work_(3 * n_) {
+  Midpoint(System& system, std::span<const double> x, const Options& options)
+      : Base(system, x, options, Jacobian::Differences::one_sided), lu_(m_), units_(m_, m_), work_(3 * n_) {
     z_ = work_.data();
     f_ = z_ + n_;
     right_ = f_ + n_;

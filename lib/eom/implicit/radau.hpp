@@ -20,9 +20,10 @@ class Radau : public Collocation<Radau, RadauTableau::most> {
   static constexpr const char* name = "radau";
   static constexpr int order = 5;        // at least
   static constexpr int dense_order = 3;  // at least
+  static constexpr Needs needs{.used = {Feature::jacobian}};
 
-  Radau(Problem& problem, std::span<const double> x, const Options& options)
-      : Collocation(problem, x, options,
+  Radau(System& system, std::span<const double> x, const Options& options)
+      : Collocation(system, x, options,
                     options.series_order == 13  ? 7
                     : options.series_order == 9 ? 5
                                                 : 3),

@@ -19,8 +19,9 @@ class Radau5 : public Collocation<Radau5, 3> {
   static constexpr const char* name = "radau5";
   static constexpr int order = 5;
   static constexpr int dense_order = 4;
+  static constexpr Needs needs{.used = {Feature::jacobian}};
 
-  Radau5(Problem& problem, std::span<const double> x, const Options& options) : Collocation(problem, x, options, 3) {}
+  Radau5(System& system, std::span<const double> x, const Options& options) : Collocation(system, x, options, 3) {}
 
   using Collocation::interpolate;
   void interpolate(double t, double* x) const {

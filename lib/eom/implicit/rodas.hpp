@@ -27,9 +27,10 @@ class Rodas : public Base {
   static constexpr int dense_order = T::dense_order;
   static constexpr bool adaptive = true;
   static constexpr bool error_uses_end = false;
+  static constexpr Needs needs{.used = {Feature::jacobian}};
 
-  Rodas(Problem& problem, std::span<const double> x, const Options& options)
-      : Base(problem, x, options, Jacobian::Differences::central),
+  Rodas(System& system, std::span<const double> x, const Options& options)
+      : Base(system, x, options, Jacobian::Differences::central),
         controller_({0.9, 0, 0.2, 6}, order),
         lu_(m_),
         work_((T::stages + 1 + 3 + 4) * n_) {

@@ -204,6 +204,7 @@ class Machine {
     { return rhs.taylor(t, x, mode, order, c); }
     int taylor_order() const { return rhs.taylor_order(); }
     std::size_t taylor_states() const { return rhs.taylor_states(); }
+    Features features() const { return {Feature::modes}; }
   };
 
   Result run_smooth(std::string_view method, const InMode& f, double t0, std::span<const double> x0, double t1,

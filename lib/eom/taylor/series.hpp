@@ -14,14 +14,19 @@
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "eom/run_types.hpp"
-#include "eom/taylor/problem.hpp"
+#include "eom/system.hpp"
 #include "eom/taylor/quadrature.hpp"
 
 namespace eom::taylor {
+
+inline constexpr Refusal refusals[] = {
+    {Feature::moving_inputs, ", and its series knows inputs that stand still or jump"},
+    {Feature::charts, "its series is that of the model's own coordinates"}};
 
 class Series {
  public:
@@ -30,16 +35,26 @@ class Series {
   static constexpr int dense_order = 20;
   static constexpr bool adaptive = true;
   static constexpr bool error_uses_end = false;
+  static constexpr Needs needs{.required = {Feature::series}, .refuses = refusals};
 
-  Series(Problem& problem, std::span<const double> x, const Options& options)
-      : problem_(problem),
+  /// Throws std::invalid_argument where the state or the order asked for cannot be those of the series.
+  static void check(const System& system, double, std::span<const double> x0, const Options& options) {
+    if (system.taylor_states > x0.size())
+      throw std::invalid_argument("eom::integrate: the series has more components than the state");
+    if (options.series_order < 0 || options.series_order == 1 || options.series_order > system.taylor_order)
+      throw std::invalid_argument(
+          "eom::integrate: series_order has to be 0, or from 2 to the highest order of the series");
+  }
+
+  Series(System& system, std::span<const double> x, const Options& options)
+      : system_(system),
         n_(x.size()),
-        s_(problem.states),
+        s_(system.taylor_states),
         error_(std::min(s_, n_ - options.quadratures)),
         rtol_(options.rtol),
         atol_(options.atol),
         fixed_(options.fixed_step > 0),
-        highest_(problem.highest_order),
+        highest_(system.taylor_order),
         order_(options.series_order > 0 ? std::min(options.series_order, highest_) : first_order(x)),
         order_is_given_(options.series_order > 0),
         work_(9 * n_ + 2 * s_ * (static_cast<std::size_t>(highest_) + 1)) {
@@ -62,7 +77,7 @@ class Series {
 
   int evaluate(double t, const double* x, double* dx) {
     ++counts_.rhs_evaluations;
-    return problem_.f(problem_.self, t, x, dx);
+    return system_.f(system_.self, t, x, dx);
   }
   int evaluate_start(double t) {
     if (fixed_) return evaluate(t, x0_, f0_);
@@ -162,7 +177,7 @@ class Series {
   int expand(double t, const double* x, double* f, At& at, int terms) {
     ++counts_.rhs_evaluations;
     at.order = 0;
-    if (const int code = problem_.series(problem_.self, t, x, terms, at.c); code != 0) return code;
+    if (const int code = system_.taylor(system_.self, t, x, terms, at.c); code != 0) return code;
     at.order = terms;
     std::copy_n(at.c + s_, s_, f);
     if (s_ == n_) return 0;
@@ -280,7 +295,7 @@ class Series {
   }
   double* x1_node() { return f1_; }  // free until the end is evaluated
 
-  Problem& problem_;
+  System& system_;
   std::size_t n_, s_, error_;
   double rtol_, atol_;
   bool fixed_;

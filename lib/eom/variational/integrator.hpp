@@ -14,15 +14,25 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <stdexcept>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "eom/implicit/base.hpp"
 #include "eom/implicit/hermite.hpp"
+#include "eom/system.hpp"
 #include "eom/variational/composition.hpp"
-#include "eom/variational/problem.hpp"
 
 namespace eom::variational {
+
+inline constexpr Refusal refusals[] = {
+    {Feature::modes, ", and no discrete Lagrangian has these"},
+    {Feature::velocity_constraints,
+     ", which follows from no Lagrangian; variational integrators take constraints on positions"},
+    {Feature::kinks, ", where the discrete Lagrangian has no derivative"},
+    {Feature::other_states, ", which has no momentum"},
+    {Feature::charts, "an exchange is not symplectic"}};
 
 /// A vector whose sums carry along what rounding leaves out.
 class Summed {
@@ -50,12 +60,23 @@ class Integrator : public implicit::Base {
   static constexpr int dense_order = std::min(order, 3);
   static constexpr bool adaptive = false;
   static constexpr bool error_uses_end = false;
+  static constexpr Needs needs{.required = {Feature::momenta},
+                               .refuses = refusals,
+                               .instead = "midpoint, which is symplectic as well",
+                               .keeps_constraints = true};
 
-  Integrator(Problem& problem, std::span<const double> x, const Options& options)
-      : Base(problem.rhs, x, options, implicit::Jacobian::Differences::one_sided),
-        of_(problem),
-        c_(problem.coordinates),
-        k_(problem.constraints),
+  /// Throws std::invalid_argument where the state cannot be that of the system.
+  static void check(const System& system, double, std::span<const double> x0, const Options& options) {
+    if (2 * system.coordinates + options.quadratures != x0.size())
+      throw std::invalid_argument("eom::integrate: " + std::string(name) +
+                                  " needs a state of coordinates, velocities and quadratures");
+  }
+
+  Integrator(System& system, std::span<const double> x, const Options& options)
+      : Base(system, x, options, implicit::Jacobian::Differences::one_sided),
+        of_(system),
+        c_(system.coordinates),
+        k_(system.constraints),
         lu_(c_ + k_),
         end_(c_ + k_),
         work_(5 * n_ + 12 * c_ + 3 * k_ + 2 * c_ * k_ + 2 * c_ * c_) {
@@ -120,7 +141,7 @@ class Integrator : public implicit::Base {
 
   int momenta(double t, const double* x, double* p, double* rate) {
     ++counts_.rhs_evaluations;
-    const int code = of_.momenta(of_.rhs.self, t, x, p, rate);
+    const int code = of_.momenta(of_.self, t, x, p, rate);
     if (code != 0) return code;
     const auto finite = [](double value) { return std::isfinite(value); };
     return std::all_of(p, p + c_, finite) && std::all_of(rate, rate + c_, finite) ? 0 : code_not_finite;
@@ -133,7 +154,7 @@ class Integrator : public implicit::Base {
   }
 
   int constrain(double t, const double* x, double* A) {
-    return k_ == 0 ? 0 : of_.constrain(of_.rhs.self, t, x, psi_, A, b_);
+    return k_ == 0 ? 0 : of_.constrain(of_.self, t, x, psi_, A, b_);
   }
 
   /// The state in the middle, where q goes by d in the time h; momentum_ and rate_ there.
@@ -270,7 +291,7 @@ class Integrator : public implicit::Base {
   /// p(q, qdot) = p + A^T l, A qdot + b = 0: linear in qdot, but solved twice for the sake of rounding.
   int velocities(double t, double h, Summed& q, Summed& p) {
     for (std::size_t i = 0; i < c_; ++i) q.set(c_ + i, d_[i] / h);
-    if (const int code = of_.mass(of_.rhs.self, t, q.data(), M_); code != 0) return code;
+    if (const int code = of_.mass(of_.self, t, q.data(), M_); code != 0) return code;
     if (const int code = constrain(t, q.data(), A1_); code != 0) return code;
     border(end_, M_, A1_, A1_);
     if (!end_.factor()) return code_no_convergence;
@@ -291,7 +312,7 @@ class Integrator : public implicit::Base {
     return 0;
   }
 
-  Problem& of_;
+  System& of_;
   std::size_t c_, k_;  // coordinates, constraints
   Lu<double> lu_, end_;
   std::vector<double> work_, l_;

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: MIT
-// A right-hand side with or without derivatives, by reference: the implicit methods are compiled once, not for each
-// callable; a call through a pointer is nothing beside a Newton iteration.
+// Callables by address, so that what calls them is compiled once and not for each type. In: references, which have to
+// stay. Out: what a caller keeps of them.
 #pragma once
 
 #include <type_traits>
 
 #include "eom/run_types.hpp"
-#include "eom/with_jacobian.hpp"
 
-namespace eom::implicit {
-
-struct Problem {
-  void* self;
-  int (*f)(void* self, double t, const double* x, double* dx);
-  int (*jacobian)(void* self, double t, const double* x, double* dfdx, double* dfdt) = nullptr;
-  int operator()(double t, const double* x, double* dx) const { return f(self, t, x, dx); }
-};
+namespace eom::detail {
 
 /// The address of a callable, of a function too, and back.
 template <class F>
@@ -31,18 +23,6 @@ F& at_address(void* self) {
     return *reinterpret_cast<F*>(self);
   else
     return *static_cast<F*>(self);
-}
-
-template <class F>
-Problem problem_of(F& rhs) {
-  Problem problem{address_of(rhs), [](void* self, double t, const double* x, double* dx) -> int {
-                    return at_address<F>(self)(t, x, dx);
-                  }};
-  if constexpr (requires(double t, const double* x, double* result) { rhs.jacobian(t, x, result, result); })
-    problem.jacobian = [](void* self, double t, const double* x, double* dfdx, double* dfdt) -> int {
-      return at_address<F>(self).jacobian(t, x, dfdx, dfdt);
-    };
-  return problem;
 }
 
 struct ObserverOf {
@@ -67,4 +47,4 @@ AfterStepOf after_step_of(AfterStep& after_step) {
           [](void* self, double t, double* x) -> int { return at_address<AfterStep>(self)(t, x); }};
 }
 
-}  // namespace eom::implicit
+}  // namespace eom::detail

@@ -1,0 +1,115 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The runtime's registry is the only list of solvers: `list`, --solver of every command, the reader of scenes, the JSON
+// schemas and the pages say what it says.
+#include <doctest/doctest.h>
+
+#include <eom/registry.hpp>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+#include "program.hpp"
+#include "support/folders.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+/// `auto`, then the registry's, as every message tells them.
+std::vector<std::string> names() {
+  std::vector<std::string> result{eom::Automatic::name};
+  for (const eom::MethodInfo& method : eom::methods()) result.emplace_back(method.name);
+  return result;
+}
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string text;
+  for (const std::string& word : words) text += (text.empty() ? "" : ", ") + word;
+  return text;
+}
+
+std::string text_of(const std::string& path) {
+  std::ifstream file(source_folder() + "/" + path);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+std::string scene(const std::string& solver) {
+  return pendulum_text("[scene.default]\nt = [0, 0.1]\ninitial = { x = 0.6, y = -0.8 }\nstep = 0.01\nsolver = \"" +
+                       solver + "\"\n");
+}
+
+}  // namespace
+
+TEST_CASE("solvers: list tells the registry, in its order, with what each method needs") {
+  const Json solvers = document(Folder(), {"list"})["solvers"];
+  REQUIRE(solvers.size() == eom::methods().size());
+  for (std::size_t k = 0; k < solvers.size(); ++k) {
+    const eom::MethodInfo& method = eom::methods()[k];
+    const Json& told = solvers[k];
+    CAPTURE(std::string(method.name));
+    CHECK(told["name"] == method.name);
+    CHECK(told["order"] == method.order);
+    CHECK(told["dense_order"] == method.dense_order);
+    CHECK(told["adaptive"] == method.adaptive);
+    CHECK(told["implicit"] == method.needs.used.has(eom::Feature::jacobian));
+    CHECK(told["series"] == method.needs.required.has(eom::Feature::series));
+    CHECK(told["variational"] == method.needs.required.has(eom::Feature::momenta));
+    CHECK(told["constrained"] == method.needs.required.has(eom::Feature::constraints));
+  }
+}
+
+TEST_CASE("solvers: --solver of every command refuses what is not in the registry, and tells all that is") {
+  const Folder folder;
+  for (const Words& words :
+       {Words{"run", "P2_planar_pendulum"}, Words{"bench", "P2_planar_pendulum"}, Words{"stress", "P2_planar_pendulum"},
+        Words{"report", "P2_planar_pendulum", "-o", "a.html"},
+        Words{"sweep", "P2_planar_pendulum", "--grid", "m=1,2", "--out", "a.csv"}}) {
+    CAPTURE(words[0]);
+    Words asked = words;
+    asked.insert(asked.end(), {"--solver", "no_such_method"});
+    const ChildResult result = expect(2, folder, asked);
+    CHECK(contains(result.err, "there is no solver 'no_such_method'"));
+    CHECK(contains(result.err, "remedy: choose from: " + joined(names()) + "\n"));
+  }
+}
+
+TEST_CASE("solvers: a scene may name every method of the registry, and no other") {
+  const Folder folder;
+  for (const std::string& name : names()) {
+    CAPTURE(name);
+    folder.write("model.toml", scene(name));
+    expect(0, folder, {"check", "model.toml"});
+  }
+  folder.write("model.toml", scene("no_such_method"));
+  const ChildResult result = expect(2, folder, {"check", "model.toml"});
+  CHECK(contains(result.err, "there is no solver 'no_such_method'"));
+  CHECK(contains(result.err, "remedy: the solvers are " + joined(names()) + "\n"));
+}
+
+TEST_CASE("solvers: every method of the registry integrates the pendulum on a rod, with its scene and with --solver") {
+  const Folder folder;
+  for (const eom::MethodInfo& method : eom::methods()) {
+    CAPTURE(std::string(method.name));
+    folder.write("model.toml", scene(method.name));
+    CHECK(document(folder, {"run", "model.toml", "--no-error-estimate"})["solver"] == method.name);
+  }
+}
+
+TEST_CASE("solvers: the schema of runs and the pages name the registry's methods") {
+  const Json schema = Json::parse(text_of("docs/schema/run.schema.json"));
+  std::set<std::string> told;
+  for (const Json& name : schema["properties"]["solver"]["enum"]) CHECK(told.insert(name).second);
+  const std::string format = text_of("docs/model-format.md"), runtime = text_of("docs/runtime.md");
+  const std::size_t row = format.find("| `solver`,");
+  REQUIRE(row != std::string::npos);
+  const std::string of_scenes = format.substr(row, format.find('\n', row) - row);
+  CHECK(told.size() == eom::methods().size());
+  for (const eom::MethodInfo& method : eom::methods()) {
+    CAPTURE(std::string(method.name));
+    CHECK(told.contains(method.name));
+    CHECK(contains(of_scenes, "`" + std::string(method.name) + "`"));
+    CHECK(contains(runtime, "\n| `" + std::string(method.name) + "` |"));
+  }
+}
