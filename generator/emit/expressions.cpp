@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include "symbolic/functions.hpp"
+
 namespace eomgen::emit {
 
 using program::Function;
@@ -17,26 +19,6 @@ namespace {
 std::string in_parentheses(const Expression& e) { return fmt::format("({})", e.text); }
 std::string at_least(const Expression& e, Expression::Binding binding) {
   return e.binding >= binding && e.text[0] != '-' ? e.text : in_parentheses(e);
-}
-
-const char* function_name(Op op) {
-  switch (op) {
-    case Op::pow: return "pow";
-    case Op::sqrt: return "sqrt";
-    case Op::sin: return "sin";
-    case Op::cos: return "cos";
-    case Op::tan: return "tan";
-    case Op::asin: return "asin";
-    case Op::acos: return "acos";
-    case Op::atan: return "atan";
-    case Op::sinh: return "sinh";
-    case Op::cosh: return "cosh";
-    case Op::tanh: return "tanh";
-    case Op::exp: return "exp";
-    case Op::log: return "log";
-    case Op::atan2: return "atan2";
-    default: return nullptr;
-  }
 }
 
 Expression conditional(const std::string& a, const std::string& b, const std::string& x, const std::string& y) {
@@ -103,7 +85,7 @@ std::optional<Expression> Expressions::of_lanes(const Instruction& instruction) 
     case Op::div: return std::nullopt;
     default: break;
   }
-  const std::string name = function_name(instruction.op);
+  const std::string name = symbolic::function_of(instruction.op).code;
   called_.insert(name);
   std::string arguments;
   for (std::size_t i = 0; i < o.size(); ++i) arguments += (i == 0 ? "" : ", ") + value(i);
@@ -128,7 +110,7 @@ Expression Expressions::of(const Instruction& instruction) {
       const std::string zero = dialect_.constant(0), one = dialect_.constant(1);
       return {fmt::format("({0} > {1} ? {2} : {0} < {1} ? -{2} : {1})", name(0), zero, one), Expression::atom};
     }
-    default: return call(function_name(instruction.op), o);
+    default: return call(symbolic::function_of(instruction.op).code, o);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "print/printer.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -19,26 +20,7 @@ std::string integer(const cln::cl_I& value) {
   return text.str();
 }
 
-std::string function_name(Op op) {
-  switch (op) {
-    case Op::sin: return "\\sin";
-    case Op::cos: return "\\cos";
-    case Op::tan: return "\\tan";
-    case Op::asin: return "\\arcsin";
-    case Op::acos: return "\\arccos";
-    case Op::atan: return "\\arctan";
-    case Op::sinh: return "\\sinh";
-    case Op::cosh: return "\\cosh";
-    case Op::tanh: return "\\tanh";
-    case Op::exp: return "\\exp";
-    case Op::log: return "\\ln";
-    case Op::sign: return "\\operatorname{sgn}";
-    case Op::atan2: return "\\operatorname{atan2}";
-    case Op::min: return "\\min";
-    case Op::max: return "\\max";
-    default: return "";
-  }
-}
+std::string function_name(Op op) { return symbolic::function_of(op).latex; }
 
 // How many characters a piece shows, about: braces and blanks not at all, sin three, dots over letters nothing.
 std::size_t visible(const std::string& latex) {

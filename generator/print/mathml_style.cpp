@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "print/printer.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -96,26 +97,7 @@ std::string script(std::string_view word) {
   return in_alphabet(word, 0x1d49c, 0x1d4b6, "BEFHILMRego", elsewhere);
 }
 
-std::string function_name(Op function) {
-  switch (function) {
-    case Op::sin: return "sin";
-    case Op::cos: return "cos";
-    case Op::tan: return "tan";
-    case Op::asin: return "arcsin";
-    case Op::acos: return "arccos";
-    case Op::atan: return "arctan";
-    case Op::sinh: return "sinh";
-    case Op::cosh: return "cosh";
-    case Op::tanh: return "tanh";
-    case Op::exp: return "exp";
-    case Op::log: return "ln";
-    case Op::sign: return "sgn";
-    case Op::atan2: return "atan2";
-    case Op::min: return "min";
-    case Op::max: return "max";
-    default: return "";
-  }
-}
+std::string function_name(Op op) { return symbolic::function_of(op).mathml; }
 
 class MathmlStyle final : public Style {
  public:

@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "print/shorten.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -127,17 +128,8 @@ class Walk {
     const Formula& base = f.args[0];
     const std::string exponent = (*this)(f.args[1]).text;
     const bool whole = f.args[1].form == Form::number && reading::is_integer(f.args[1].number);
-    if (base.form == Form::call && whole) {
-      switch (base.op) {
-        case Op::sin:
-        case Op::cos:
-        case Op::tan:
-        case Op::sinh:
-        case Op::cosh:
-        case Op::tanh: return style_.call_power(base.op, pieces(base.args), exponent);
-        default: break;
-      }
-    }
+    if (base.form == Form::call && whole && symbolic::function_of(base.op).raised)
+      return style_.call_power(base.op, pieces(base.args), exponent);
     Piece piece = (*this)(base);
     if (piece.binding < Piece::atom) piece = {style_.bracket(piece.text), Piece::atom};
     return style_.power(piece, exponent);

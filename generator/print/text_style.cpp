@@ -5,34 +5,14 @@
 #include <sstream>
 
 #include "print/printer.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::print {
 namespace {
 
 using reading::Op;
 
-const char* function_name(Op op) {
-  switch (op) {
-    case Op::sqrt: return "sqrt";
-    case Op::sin: return "sin";
-    case Op::cos: return "cos";
-    case Op::tan: return "tan";
-    case Op::asin: return "asin";
-    case Op::acos: return "acos";
-    case Op::atan: return "atan";
-    case Op::sinh: return "sinh";
-    case Op::cosh: return "cosh";
-    case Op::tanh: return "tanh";
-    case Op::exp: return "exp";
-    case Op::log: return "log";
-    case Op::abs: return "abs";
-    case Op::sign: return "sign";
-    case Op::atan2: return "atan2";
-    case Op::min: return "min";
-    case Op::max: return "max";
-    default: return "if";
-  }
-}
+std::string function_name(Op op) { return symbolic::function_of(op).name; }
 
 class TextStyle final : public Style {
  public:

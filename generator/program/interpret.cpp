@@ -1,51 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/interpret.hpp"
 
-#include <functional>
 #include <map>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <type_traits>
 
-#include "symbolic/dag.hpp"
-#include "symbolic/evaluate.hpp"
+#include "symbolic/arithmetic.hpp"
+#include "work.hpp"
 
 namespace eomgen::program {
 namespace {
 
 using symbolic::Op;
-using symbolic::Ref;
 
-/// Functions other than + - * / are left to the evaluation of the Dag, one node at a time: one definition of each.
-template <class Real>
-Real call(Op op, const std::vector<Real>& arguments, int digits) {
-  symbolic::Dag dag;
-  std::vector<Ref> refs;
-  for (std::uint32_t i = 0; i < arguments.size(); ++i) refs.push_back(dag.symbol({symbolic::SymbolKind::extra, i, 0}));
-  Ref root;
-  switch (op) {
-    case Op::pow: root = dag.pow(refs[0], refs[1]); break;
-    case Op::atan2:
-    case Op::min:
-    case Op::max: root = dag.call(op, refs[0], refs[1]); break;
-    case Op::select: root = dag.select(refs[0], refs[1], refs[2], refs[3]); break;
-    case Op::div: root = dag.div(refs[0], refs[1]); break;
-    default: root = dag.call(op, refs[0]); break;
-  }
-  const std::function<Real(const symbolic::Symbol&)> lookup = [&](const symbolic::Symbol& s) {
-    return arguments[s.index];
-  };
-  if constexpr (std::is_same_v<Real, double>) {
-    return symbolic::evaluate(dag, {root}, lookup)[0];
-  } else {
-    return symbolic::evaluate(dag, {root}, lookup, digits)[0];
-  }
-}
-
-template <class Real>
-Values<Real> run(const Function& function, const Arguments<Real>& arguments, int digits,
-                 const std::function<Real(const symbolic::Rational&)>& number, const Real& pi) {
+template <class Real, class Arithmetic>
+Values<Real> run(const Function& function, const Arguments<Real>& arguments, const Arithmetic& number) {
+  work::check();
+  const Real pi = number.pi();
   std::vector<Real> value;
   value.reserve(function.code.size());
   std::vector<std::string> reasons;            // why values are missing; the branch that is not taken may be
@@ -57,7 +29,7 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
   const auto read = [&](const Operand& operand) -> Real {
     const Real size = [&]() -> Real {
       switch (operand.slot) {
-        case Slot::constant: return number(function.constants[operand.index]);
+        case Slot::constant: return number.constant(function.constants[operand.index]);
         case Slot::pi: return pi;
         case Slot::time: return arguments.t;
         case Slot::state: return arguments.x.at(operand.index);
@@ -101,7 +73,9 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
       value.push_back(result);
     } else {
       try {
-        value.push_back(call(instruction.op, operands, digits));
+        for (Real& operand : operands) operand = number.round(operand);  // of the mode: exact numbers until now
+        const auto operand = [&](std::size_t i) -> const Real& { return operands[i]; };
+        value.push_back(symbolic::value_of(instruction.op, 0, operand, number));
       } catch (const std::domain_error& outside) {
         missing.emplace(value.size(), reasons.size());
         reasons.emplace_back(outside.what());
@@ -122,26 +96,19 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, int
 }  // namespace
 
 Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>& arguments, int digits) {
-  const cln::float_format_t format = cln::float_format(static_cast<std::uintptr_t>(digits));
-  const auto rounded = [format](const cln::cl_R& x) -> cln::cl_R { return cln::cl_float(x, format); };
-  Arguments<cln::cl_R> floats{rounded(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode};
+  const symbolic::Precise number{cln::float_format(static_cast<std::uintptr_t>(digits))};
+  Arguments<cln::cl_R> floats{number.round(arguments.t), {}, {}, {}, {}, arguments.side, arguments.mode};
   for (const auto& [from, to] : {std::pair{&arguments.x, &floats.x},
                                  {&arguments.p, &floats.p},
                                  {&arguments.u, &floats.u},
                                  {&arguments.w, &floats.w}}) {
-    for (const cln::cl_R& x : *from) to->push_back(rounded(x));
+    for (const cln::cl_R& x : *from) to->push_back(number.round(x));
   }
-  const std::function<cln::cl_R(const symbolic::Rational&)> number = [&](const symbolic::Rational& x) {
-    return rounded(x);
-  };
-  return run<cln::cl_R>(function, floats, digits, number, cln::pi(format));
+  return run(function, floats, number);
 }
 
 Values<double> interpret(const Function& function, const Arguments<double>& arguments) {
-  const std::function<double(const symbolic::Rational&)> number = [](const symbolic::Rational& x) {
-    return cln::double_approx(x);
-  };
-  return run<double>(function, arguments, 0, number, 3.14159265358979323846);
+  return run(function, arguments, symbolic::Binary64{});
 }
 
 }  // namespace eomgen::program

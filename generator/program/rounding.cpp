@@ -7,6 +7,9 @@
 #include <cmath>
 #include <limits>
 
+#include "symbolic/arithmetic.hpp"
+#include "symbolic/functions.hpp"
+
 namespace eomgen::program {
 namespace {
 
@@ -62,6 +65,14 @@ Bounded inverse_sine(Op op, const Bounded& a) {
   return rounded(op == Op::asin ? std::asin(a.value) : std::acos(a.value), off, library);
 }
 
+/// `numbers` of symbolic::slope_of.
+struct Numbers {
+  static double one() { return 1; }
+  static double two() { return 2; }
+  static double square(double x) { return x * x; }
+  static double call(Op op, double x) { return symbolic::Binary64::call(op, x); }
+};
+
 Bounded of_one(Op op, const Bounded& a) {
   const double x = a.value;
   // The slope at x, and one half of what the curvature adds.
@@ -70,20 +81,16 @@ Bounded of_one(Op op, const Bounded& a) {
   };
   switch (op) {
     case Op::sqrt: return root(a);
-    case Op::sin: return smooth(std::sin(x), std::cos(x));
-    case Op::cos: return smooth(std::cos(x), std::sin(x));
-    case Op::tan: return smooth(std::tan(x), 1 + std::tan(x) * std::tan(x));
     case Op::asin:
     case Op::acos: return inverse_sine(op, a);
-    case Op::atan: return smooth(std::atan(x), 1 / (1 + x * x));
-    case Op::sinh: return smooth(std::sinh(x), std::cosh(x));
-    case Op::cosh: return smooth(std::cosh(x), std::sinh(x));
-    case Op::tanh: return smooth(std::tanh(x), 1 - std::tanh(x) * std::tanh(x));
-    case Op::exp: return smooth(std::exp(x), std::exp(x));
     case Op::log: return x - a.off > 0 ? smooth(std::log(x), 1 / (x - a.off)) : Bounded{std::log(x), infinite};
     case Op::abs: return {std::fabs(x), a.off};
     case Op::sign: return {x > 0 ? 1.0 : x < 0 ? -1.0 : x, std::fabs(x) < a.off ? infinite : 0};
-    default: return {std::nan(""), infinite};
+    default: {
+      const double value = Numbers::call(op, x);
+      const auto [size, divides, falls] = symbolic::slope_of(symbolic::function_of(op), x, value, Numbers{});
+      return smooth(value, divides ? 1 / size : size);
+    }
   }
 }
 

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "reading/sum.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::reading {
 namespace {
@@ -161,18 +162,10 @@ Sum call(Op function, std::vector<Sum> args) {
   }
   const auto negated = [&]() -> Sum { return call(function, {-args[0]}); };
   if (args.size() == 1 && leads_negative(args[0])) {
-    switch (function) {
-      case Op::sin:
-      case Op::tan:
-      case Op::asin:
-      case Op::atan:
-      case Op::sinh:
-      case Op::tanh:
-      case Op::sign: return -negated();
-      case Op::cos:
-      case Op::cosh:
-      case Op::abs: return negated();
-      default: break;
+    switch (symbolic::function_of(function).parity) {
+      case symbolic::Parity::odd: return -negated();
+      case symbolic::Parity::even: return negated();
+      case symbolic::Parity::none: break;
     }
   }
   if (function == Op::abs && args[0].size() > 1 && never_negative(args[0])) return args[0];

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "symbolic/arithmetic.hpp"
+
 namespace eomgen::run {
 
 using symbolic::Dag;
@@ -70,31 +72,12 @@ void RangeCode::values(std::span<const double> variables, std::span<double> out)
       case Op::constant:
       case Op::pi: result = constants_[static_cast<std::size_t>(step.payload)]; break;
       case Op::symbol: result = variables[static_cast<std::size_t>(step.payload)]; break;
-      case Op::add: result = arg(0) + arg(1); break;
-      case Op::sub: result = arg(0) - arg(1); break;
-      case Op::mul: result = arg(0) * arg(1); break;
-      case Op::div: result = arg(0) / arg(1); break;
-      case Op::neg: result = -arg(0); break;
-      case Op::power: result = std::pow(arg(0), step.payload); break;
-      case Op::pow: result = std::pow(arg(0), arg(1)); break;
-      case Op::sqrt: result = std::sqrt(arg(0)); break;
-      case Op::sin: result = std::sin(arg(0)); break;
-      case Op::cos: result = std::cos(arg(0)); break;
-      case Op::tan: result = std::tan(arg(0)); break;
-      case Op::asin: result = std::asin(arg(0)); break;
-      case Op::acos: result = std::acos(arg(0)); break;
-      case Op::atan: result = std::atan(arg(0)); break;
-      case Op::sinh: result = std::sinh(arg(0)); break;
-      case Op::cosh: result = std::cosh(arg(0)); break;
-      case Op::tanh: result = std::tanh(arg(0)); break;
-      case Op::exp: result = std::exp(arg(0)); break;
-      case Op::log: result = std::log(arg(0)); break;
-      case Op::atan2: result = std::atan2(arg(0), arg(1)); break;
       case Op::abs: result = side(step, arg(0)) < 0 ? -arg(0) : arg(0); break;
       case Op::sign: result = side(step, arg(0)); break;
       case Op::min: result = side(step, arg(0) - arg(1)) > 0 ? arg(1) : arg(0); break;
       case Op::max: result = side(step, arg(0) - arg(1)) < 0 ? arg(1) : arg(0); break;
       case Op::select: result = side(step, arg(0) - arg(1)) < 0 ? arg(2) : arg(3); break;
+      default: result = symbolic::value_of(step.op, step.payload, arg, symbolic::Binary64{});
     }
   }
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = work_[roots_[i]];

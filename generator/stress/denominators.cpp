@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "symbolic/functions.hpp"
+
 namespace eomgen::stress {
 namespace {
 
@@ -15,29 +17,6 @@ using program::Slot;
 using symbolic::Op;
 
 constexpr std::size_t longest = 160;  // letters; what is longer is told by its size
-
-std::string function_name(Op op) {
-  switch (op) {
-    case Op::sqrt: return "sqrt";
-    case Op::sin: return "sin";
-    case Op::cos: return "cos";
-    case Op::tan: return "tan";
-    case Op::asin: return "asin";
-    case Op::acos: return "acos";
-    case Op::atan: return "atan";
-    case Op::sinh: return "sinh";
-    case Op::cosh: return "cosh";
-    case Op::tanh: return "tanh";
-    case Op::exp: return "exp";
-    case Op::log: return "log";
-    case Op::abs: return "abs";
-    case Op::sign: return "sign";
-    case Op::atan2: return "atan2";
-    case Op::min: return "min";
-    case Op::max: return "max";
-    default: return "if";
-  }
-}
 
 class Text {
  public:
@@ -123,7 +102,7 @@ class Text {
       default: break;
     }
     for (const Operand& o : i.operands) text += (text.empty() ? "" : ", ") + of(o);
-    return function_name(i.op) + "(" + text + ")";
+    return symbolic::function_of(i.op).name + ("(" + text + ")");
   }
 
   const Function& function_;

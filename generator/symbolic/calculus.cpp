@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "symbolic/functions.hpp"
+
 namespace eomgen::symbolic {
 
 Ref Derivation::operator()(Ref expression) {
@@ -75,8 +77,7 @@ Ref Derivation::of_node(Ref r) {
   const auto s = [this](Ref ref) { return Scalar{&dag_, ref}; };
   const Scalar self = s(r), x = s(node.args[0]), y = s(node.args[1]), dx = s(d[0]), dy = s(d[1]);
   const Scalar one = s(dag_.one());
-  const auto call = [this, &x](Op op) { return Scalar{&dag_, dag_.call(op, x.ref)}; };
-  const auto square = [this](Scalar a) { return Scalar{&dag_, dag_.power(a.ref, 2)}; };
+  const ScalarNumbers numbers{dag_};
   switch (node.op) {
     case Op::add: return (dx + dy).ref;
     case Op::sub: return (dx - dy).ref;
@@ -87,32 +88,23 @@ Ref Derivation::of_node(Ref r) {
     case Op::pow: {
       // d(x^y) = x^(y-1) y dx + x^y log(x) dy
       Scalar result = s(dag_.pow(x.ref, (y - one).ref)) * y * dx;
-      if (!dag_.is_zero(dy.ref)) result = result + self * call(Op::log) * dy;
+      if (!dag_.is_zero(dy.ref)) result = result + self * numbers.call(Op::log, x) * dy;
       return result.ref;
     }
-    case Op::sqrt: return (dx / (s(dag_.integer(2)) * self)).ref;
-    case Op::sin: return (call(Op::cos) * dx).ref;
-    case Op::cos: return (-(call(Op::sin) * dx)).ref;
-    case Op::tan: return ((one + square(self)) * dx).ref;
-    case Op::asin: return (dx / s(dag_.call(Op::sqrt, (one - square(x)).ref))).ref;
-    case Op::acos: return (-(dx / s(dag_.call(Op::sqrt, (one - square(x)).ref)))).ref;
-    case Op::atan: return (dx / (one + square(x))).ref;
-    case Op::sinh: return (call(Op::cosh) * dx).ref;
-    case Op::cosh: return (call(Op::sinh) * dx).ref;
-    case Op::tanh: return ((one - square(self)) * dx).ref;
-    case Op::exp: return (self * dx).ref;
-    case Op::log: return (dx / x).ref;
-    case Op::abs: return (call(Op::sign) * dx).ref;
     case Op::sign: return dag_.zero();  // away from the kink, which is a switching surface
-    case Op::atan2: return ((y * dx - x * dy) / (square(x) + square(y))).ref;
+    case Op::atan2: return ((y * dx - x * dy) / (numbers.square(x) + numbers.square(y))).ref;
     case Op::min: return dag_.select(x.ref, y.ref, dx.ref, dy.ref);
     case Op::max: return dag_.select(x.ref, y.ref, dy.ref, dx.ref);
     case Op::select: return dag_.select(node.args[0], node.args[1], d[2], d[3]);
     case Op::constant:
     case Op::pi:
-    case Op::symbol: break;
+    case Op::symbol: return dag_.zero();
+    default: {
+      const auto [size, divides, falls] = slope_of(function_of(node.op), x, self, numbers);
+      const Scalar slope = divides ? dx / size : size * dx;
+      return falls ? (-slope).ref : slope.ref;
+    }
   }
-  return dag_.zero();
 }
 
 Derivation partial(Dag& dag, Symbol symbol) { return Derivation(dag, {{symbol, dag.one()}}); }

@@ -6,6 +6,7 @@
 #include <cln/rational.h>
 
 #include "symbolic/dag.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::symbolic {
 namespace {
@@ -176,40 +177,12 @@ std::optional<Ref> Dag::exact_root(Ref a) {
 }
 
 Ref Dag::call(Op function, Ref a) {
-  if (is_zero(a)) {
-    switch (function) {
-      case Op::sqrt:
-      case Op::sin:
-      case Op::tan:
-      case Op::asin:
-      case Op::atan:
-      case Op::sinh:
-      case Op::tanh:
-      case Op::abs:
-      case Op::sign: return zero_;
-      case Op::cos:
-      case Op::cosh:
-      case Op::exp: return one_;
-      default: break;
-    }
-  }
+  const Function& row = function_of(function);
+  if (is_zero(a) && row.at_zero >= 0) return row.at_zero == 0 ? zero_ : one_;
   const Node node = nodes_[a.id];
-  const bool negative = node.op == Op::neg || is_negative_constant(*this, a);
-  if (negative) {
+  if (row.parity != Parity::none && (node.op == Op::neg || is_negative_constant(*this, a))) {
     const Ref positive = neg(a);
-    switch (function) {
-      case Op::sin:
-      case Op::tan:
-      case Op::asin:
-      case Op::atan:
-      case Op::sinh:
-      case Op::tanh:
-      case Op::sign: return neg(call(function, positive));
-      case Op::cos:
-      case Op::cosh:
-      case Op::abs: return call(function, positive);
-      default: break;
-    }
+    return row.parity == Parity::odd ? neg(call(function, positive)) : call(function, positive);
   }
   if (is_one(a) && function == Op::log) return zero_;
   if (is_constant(a)) {

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "symbolic/evaluate.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::symbolic {
 
@@ -42,27 +43,20 @@ bool PowerSeries::is_function(const Node& node) const {
 std::array<Ref, 2> PowerSeries::slopes(Ref r) {
   const Node node = dag_[r];
   const auto s = [this](Ref ref) { return Scalar{&dag_, ref}; };
-  const auto square = [this](Scalar a) { return Scalar{&dag_, dag_.power(a.ref, 2)}; };
-  const auto call = [this, &node](Op op) { return Scalar{&dag_, dag_.call(op, node.args[0])}; };
-  const Scalar self = s(r), x = s(node.args[0]), y = s(node.args[1]), one = s(dag_.one());
+  const ScalarNumbers numbers{dag_};
+  const Scalar self = s(r), x = s(node.args[0]), y = s(node.args[1]);
   const Ref none = dag_.zero();
   switch (node.op) {
     case Op::power: return {(s(dag_.integer(node.payload)) * s(dag_.power(x.ref, node.payload - 1))).ref, none};
-    case Op::pow: return {(y * self / x).ref, dag_.symbols({y.ref}).empty() ? none : (self * call(Op::log)).ref};
-    case Op::sqrt: return {(one / (s(dag_.integer(2)) * self)).ref, none};
-    case Op::sin: return {call(Op::cos).ref, none};
-    case Op::cos: return {(-call(Op::sin)).ref, none};
-    case Op::tan: return {(one + square(self)).ref, none};
-    case Op::asin: return {(one / s(dag_.call(Op::sqrt, (one - square(x)).ref))).ref, none};
-    case Op::acos: return {(-(one / s(dag_.call(Op::sqrt, (one - square(x)).ref)))).ref, none};
-    case Op::atan: return {(one / (one + square(x))).ref, none};
-    case Op::sinh: return {call(Op::cosh).ref, none};
-    case Op::cosh: return {call(Op::sinh).ref, none};
-    case Op::tanh: return {(one - square(self)).ref, none};
-    case Op::exp: return {r, none};
-    case Op::log: return {(one / x).ref, none};
-    case Op::atan2: return {(y / (square(x) + square(y))).ref, (-(x / (square(x) + square(y)))).ref};
-    default: return {none, none};
+    case Op::pow:
+      return {(y * self / x).ref, dag_.symbols({y.ref}).empty() ? none : (self * numbers.call(Op::log, x)).ref};
+    case Op::atan2:
+      return {(y / (numbers.square(x) + numbers.square(y))).ref, (-(x / (numbers.square(x) + numbers.square(y)))).ref};
+    default: {
+      const auto [size, divides, falls] = slope_of(function_of(node.op), x, self, numbers);
+      const Scalar slope = divides ? numbers.one() / size : size;
+      return {falls ? (-slope).ref : slope.ref, none};
+    }
   }
 }
 
