@@ -9,6 +9,7 @@
 #include "conservation/jumps.hpp"
 #include "derive/equations.hpp"
 #include "mechanics/vanishes.hpp"
+#include "numeric/elimination.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/factorisation.hpp"
 #include "symbolic/polynomial.hpp"
@@ -34,28 +35,18 @@ constexpr std::size_t gram_effort = 300'000, gram_terms = 400;
 
 /// The least-squares solution y of J y = d, if it is one: J is rows x n, row-major.
 bool is_in_range(const std::vector<double>& J, const std::vector<double>& d, std::size_t n, std::vector<double>& y) {
-  std::vector<double> N(n * n);
-  y.assign(n, 0.0);
+  numeric::Matrix<double> N(n, n), right(n, 1);
   double size = 0;
   for (std::size_t i = 0; i < n; ++i) {
     for (std::size_t r = 0; r < d.size(); ++r) {
-      y[i] += J[r * n + i] * d[r];
-      for (std::size_t k = 0; k < n; ++k) N[i * n + k] += J[r * n + i] * J[r * n + k];
+      right(i, 0) += J[r * n + i] * d[r];
+      for (std::size_t k = 0; k < n; ++k) N(i, k) += J[r * n + i] * J[r * n + k];
     }
-    size = std::max(size, N[i * n + i]);
+    size = std::max(size, N(i, i));
   }
-  for (std::size_t p = 0; p < n; ++p) {  // symmetric and positive definite: no pivoting
-    if (!(N[p * n + p] > 1e-10 * size)) return false;
-    for (std::size_t i = p + 1; i < n; ++i) {
-      const double factor = N[i * n + p] / N[p * n + p];
-      for (std::size_t k = p; k < n; ++k) N[i * n + k] -= factor * N[p * n + k];
-      y[i] -= factor * y[p];
-    }
-  }
-  for (std::size_t p = n; p-- > 0;) {
-    for (std::size_t k = p + 1; k < n; ++k) y[p] -= N[p * n + k] * y[k];
-    y[p] /= N[p * n + p];
-  }
+  const numeric::Elimination<double> factors(std::move(N), 1e-10 * size, numeric::Pivots::diagonal);
+  if (factors.rank() < n) return false;
+  y = factors.solve(right).a;
   double residual = 0, length = 0;
   for (std::size_t r = 0; r < d.size(); ++r) {
     double rest = d[r];

@@ -9,6 +9,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "numeric/numbers.hpp"
+
 namespace eomgen::linear {
 
 using Precise = cln::cl_R;
@@ -32,10 +34,9 @@ inline Precise tiny<Precise>(int exponent) {
   return cln::cl_float(cln::cl_R(cln::expt(cln::cl_RA(1) / 10, exponent)), precise_format());
 }
 
-inline double magnitude(double x) { return std::abs(x); }
-inline Precise magnitude(const Precise& x) { return cln::abs(x); }
-inline bool is_zero(double x) { return x == 0; }
-inline bool is_zero(const Precise& x) { return cln::zerop(x); }
+using numeric::is_zero;
+using numeric::magnitude;
+
 inline double to_double(double x) { return x; }
 /// 0 below the normal numbers, where CLN would throw.
 inline double to_double(const Precise& x) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "numeric/elimination.hpp"
 #include "symbolic/sample.hpp"
 #include "symbolic/series.hpp"
 
@@ -19,6 +20,7 @@ using Matrix = std::vector<Vector>;  // by rows
 using MatrixSeries = std::vector<Matrix>;
 
 constexpr int digits = 50, zero_digits = 20;  // of a direction beside those before it
+constexpr int regular_digits = 30;            // of a pivot
 constexpr std::size_t most_entries = 200000;  // of the slopes of all forms
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
@@ -46,40 +48,33 @@ bool add_direction(std::vector<Vector>& basis, Vector v) {
   return true;
 }
 
-/// Columns in which the rows are regular, by elimination with complete pivots; none where the rows are dependent.
-std::vector<std::size_t> pivots(Matrix A) {
-  std::vector<std::size_t> columns;
-  std::vector<bool> used(A.size(), false);
-  for (std::size_t step = 0; step < A.size(); ++step) {
-    std::size_t row = 0, column = 0;
-    cl_R largest = small(zero_digits);
-    bool found = false;
-    for (std::size_t i = 0; i < A.size(); ++i) {
-      for (std::size_t j = 0; j < A[i].size() && !used[i]; ++j) {
-        if (cln::abs(A[i][j]) > largest) largest = cln::abs(A[i][j]), row = i, column = j, found = true;
-      }
-    }
-    if (!found) return {};
-    used[row] = true;
-    columns.push_back(column);
-    for (std::size_t i = 0; i < A.size(); ++i) {
-      if (used[i] || cln::zerop(A[i][column])) continue;
-      const cl_R factor = A[i][column] / A[row][column];
-      for (std::size_t j = 0; j < A[i].size(); ++j) A[i][j] = j == column ? cl_R(0) : A[i][j] - factor * A[row][j];
-    }
+numeric::Matrix<cl_R> dense(const Matrix& A) {
+  numeric::Matrix<cl_R> result(A.size(), A.empty() ? 0 : A[0].size());
+  for (std::size_t i = 0; i < result.rows; ++i) {
+    for (std::size_t j = 0; j < result.cols; ++j) result(i, j) = A[i][j];
   }
+  return result;
+}
+
+/// Columns in which the rows are regular, by elimination with complete pivots; none where the rows are dependent.
+std::vector<std::size_t> pivots(const Matrix& A) {
+  const numeric::Elimination<cl_R> factors(dense(A), small(zero_digits), numeric::Pivots::complete);
+  if (factors.rank() < A.size()) return {};
+  std::vector<std::size_t> columns = factors.pivot_columns();
   std::sort(columns.begin(), columns.end());
   return columns;
 }
 
 Matrix inverse(const Matrix& A) {
   const std::size_t n = A.size();
-  Matrix result(n, Vector(n, cl_R(0)));
-  for (std::size_t j = 0; j < n; ++j) {
-    Vector unit(n, cl_R(0)), x;
-    unit[j] = 1;
-    if (!solve_small(A, unit, x)) throw std::domain_error("singular");
-    for (std::size_t i = 0; i < n; ++i) result[i][j] = x[i];
+  const numeric::Elimination<cl_R> factors(dense(A), small(regular_digits), numeric::Pivots::complete);
+  if (factors.rank() < n) throw std::domain_error("singular");
+  numeric::Matrix<cl_R> unit(n, n);
+  for (std::size_t i = 0; i < n; ++i) unit(i, i) = 1;
+  const numeric::Matrix<cl_R> X = factors.solve(unit);
+  Matrix result(n, Vector(n));
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) result[i][j] = X(i, j);
   }
   return result;
 }

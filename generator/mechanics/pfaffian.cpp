@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "mechanics/imposition.hpp"
+#include "numeric/elimination.hpp"
 #include "symbolic/evaluate.hpp"
 #include "symbolic/polynomial.hpp"
 #include "symbolic/sample.hpp"
@@ -47,28 +48,14 @@ symbolic::Substitution independent_parameters(const Mechanics& m) {
 
 bool solve_small(std::vector<std::vector<cln::cl_R>> A, std::vector<cln::cl_R> b, std::vector<cln::cl_R>& x) {
   const std::size_t n = b.size();
-  std::vector<std::size_t> columns(n);
-  for (std::size_t i = 0; i < n; ++i) columns[i] = i;
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t row = k, column = k;
-    for (std::size_t i = k; i < n; ++i) {
-      for (std::size_t j = k; j < n; ++j) {
-        if (cln::abs(A[i][columns[j]]) > cln::abs(A[row][columns[column]])) row = i, column = j;
-      }
-    }
-    if (cln::abs(A[row][columns[column]]) < small(agreed_digits)) return false;
-    std::swap(A[k], A[row]);
-    std::swap(b[k], b[row]);
-    std::swap(columns[k], columns[column]);
-    for (std::size_t i = 0; i < n; ++i) {
-      if (i == k) continue;
-      const cln::cl_R factor = A[i][columns[k]] / A[k][columns[k]];
-      for (std::size_t j = k; j < n; ++j) A[i][columns[j]] = A[i][columns[j]] - factor * A[k][columns[j]];
-      b[i] = b[i] - factor * b[k];
-    }
+  numeric::Matrix<cln::cl_R> matrix(n, n), side(n, 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = 0; j < n; ++j) matrix(i, j) = A[i][j];
+    side(i, 0) = b[i];
   }
-  x.assign(n, cln::cl_R(0));
-  for (std::size_t k = 0; k < n; ++k) x[columns[k]] = b[k] / A[k][columns[k]];
+  const numeric::Elimination<cln::cl_R> factors(std::move(matrix), small(agreed_digits), numeric::Pivots::complete);
+  if (factors.rank() < n) return false;
+  x = factors.solve(side).a;
   return true;
 }
 

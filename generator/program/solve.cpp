@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "error.hpp"
+#include "numeric/elimination.hpp"
 #include "program/constrained_solve.hpp"
 #include "program/polynomials.hpp"
 #include "symbolic/evaluate.hpp"
@@ -177,25 +178,10 @@ namespace {
 bool is_singular(std::vector<cln::cl_R> M, std::size_t n) {
   cln::cl_R largest = 0;
   for (std::size_t i = 0; i < n; ++i) largest = cln::max(largest, cln::abs(M[i * n + i]));
+  numeric::Matrix<cln::cl_R> matrix(n, n);
+  matrix.a = std::move(M);
   const cln::cl_R smallest = largest * cln::expt(cln::cl_RA(10), -25);
-  std::vector<bool> done(n, false);
-  for (std::size_t step = 0; step < n; ++step) {
-    std::size_t k = n;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (!done[i] && (k == n || cln::abs(M[i * n + i]) > cln::abs(M[k * n + k]))) k = i;
-    }
-    if (cln::abs(M[k * n + k]) <= smallest) return true;
-    done[k] = true;
-    std::vector<std::size_t> filled;  // large matrices are mostly empty
-    for (std::size_t j = 0; j < n; ++j) {
-      if (!done[j] && !cln::zerop(M[k * n + j])) filled.push_back(j);
-    }
-    for (const std::size_t i : filled) {
-      const cln::cl_R l = M[i * n + k] / M[k * n + k];
-      for (const std::size_t j : filled) M[i * n + j] = M[i * n + j] - l * M[k * n + j];
-    }
-  }
-  return false;
+  return numeric::Elimination<cln::cl_R>(std::move(matrix), smallest, numeric::Pivots::diagonal).rank() < n;
 }
 
 }  // namespace

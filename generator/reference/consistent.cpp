@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "error.hpp"
+#include "numeric/elimination.hpp"
 #include "program/interpret.hpp"
 
 namespace eomgen::reference {
@@ -73,37 +74,25 @@ class Start {
   }
 
   /// x -= A^T (A A^T)^-1 off, from entry `first` on.
-  void move(const Rows& rows, std::vector<Number> off, std::vector<Number>& x, std::size_t first) const {
+  void move(const Rows& rows, const std::vector<Number>& off, std::vector<Number>& x, std::size_t first) const {
     const std::size_t m = off.size();
-    std::vector<Number> G(m * m, zero_);
+    numeric::Matrix<cln::cl_R> G(m, m), side(m, 1);
     for (std::size_t k = 0; k < m; ++k) {
+      side(k, 0) = off[k];
       for (std::size_t l = 0; l < m; ++l) {
-        for (std::size_t j = 0; j < n_; ++j) G[k * m + l] = G[k * m + l] + rows.A[j * m + k] * rows.A[j * m + l];
+        for (std::size_t j = 0; j < n_; ++j) G(k, l) = G(k, l) + rows.A[j * m + k] * rows.A[j * m + l];
       }
     }
-    solve(G, off);
+    // Positive definite where the constraints are independent.
+    const numeric::Elimination<cln::cl_R> factors(std::move(G), 0, numeric::Pivots::diagonal);
+    if (factors.rank() < m) {
+      throw Error("reference", {}, "the constraints depend on one another at the start", "start elsewhere",
+                  Fault::numerical);
+    }
+    const numeric::Matrix<cln::cl_R> force = factors.solve(side);
     for (std::size_t j = 0; j < n_; ++j) {
-      for (std::size_t k = 0; k < m; ++k) x[first + j] = x[first + j] - rows.A[j * m + k] * off[k];
-    }
-  }
-
-  /// G is positive definite where the constraints are independent.
-  static void solve(std::vector<Number>& G, std::vector<Number>& b) {
-    const std::size_t m = b.size();
-    for (std::size_t k = 0; k < m; ++k) {
-      if (!cln::plusp(G[k * m + k])) {
-        throw Error("reference", {}, "the constraints depend on one another at the start", "start elsewhere",
-                    Fault::numerical);
-      }
-      for (std::size_t i = k + 1; i < m; ++i) {
-        const Number factor = G[i * m + k] / G[k * m + k];
-        for (std::size_t j = k; j < m; ++j) G[i * m + j] = G[i * m + j] - factor * G[k * m + j];
-        b[i] = b[i] - factor * b[k];
-      }
-    }
-    for (std::size_t k = m; k-- > 0;) {
-      for (std::size_t j = k + 1; j < m; ++j) b[k] = b[k] - G[k * m + j] * b[j];
-      b[k] = b[k] / G[k * m + k];
+      for (std::size_t k = 0; k < m; ++k)
+        x[first + j] = x[first + j] - rows.A[j * m + k] * cln::cl_float(force(k, 0), format_);
     }
   }
 

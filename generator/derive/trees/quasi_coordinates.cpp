@@ -5,6 +5,8 @@
 #include <map>
 #include <unordered_map>
 
+#include "numeric/elimination.hpp"
+
 namespace eomgen::derive {
 namespace {
 
@@ -150,30 +152,13 @@ class Rewriter {
 };
 
 /// The inverse of a square matrix, exactly; nothing where there is none.
-std::optional<std::vector<Rational>> inverse(std::vector<Rational> a, std::size_t n) {
-  std::vector<Rational> b(n * n, 0);
-  for (std::size_t i = 0; i < n; ++i) b[i * n + i] = 1;
-  for (std::size_t k = 0; k < n; ++k) {
-    std::size_t row = k;
-    while (row < n && cln::zerop(a[row * n + k])) ++row;
-    if (row == n) return std::nullopt;
-    const Rational pivot = a[row * n + k];
-    for (std::size_t j = 0; j < n; ++j) {
-      std::swap(a[k * n + j], a[row * n + j]);
-      std::swap(b[k * n + j], b[row * n + j]);
-      a[k * n + j] = a[k * n + j] / pivot;
-      b[k * n + j] = b[k * n + j] / pivot;
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      const Rational factor = a[i * n + k];
-      if (i == k || cln::zerop(factor)) continue;
-      for (std::size_t j = 0; j < n; ++j) {
-        a[i * n + j] = a[i * n + j] - factor * a[k * n + j];
-        b[i * n + j] = b[i * n + j] - factor * b[k * n + j];
-      }
-    }
-  }
-  return b;
+std::optional<std::vector<Rational>> inverse(const std::vector<Rational>& a, std::size_t n) {
+  numeric::Matrix<Rational> matrix(n, n), unit(n, n);
+  matrix.a = a;
+  for (std::size_t i = 0; i < n; ++i) unit(i, i) = 1;
+  const numeric::Elimination<Rational> factors(std::move(matrix), 0, numeric::Pivots::complete);
+  if (factors.rank() < n) return std::nullopt;
+  return factors.solve(unit).a;
 }
 
 QuasiCoordinates coordinates_themselves(Dag& dag, const std::vector<std::uint32_t>& of) {
