@@ -5,6 +5,10 @@
 
 #include <algorithm>
 #include <map>
+#include <type_traits>
+
+#include "symbolic/arithmetic.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::linear {
 namespace {
@@ -12,34 +16,25 @@ namespace {
 using symbolic::Op;
 
 template <class T>
-struct Functions;
+auto arithmetic() {
+  if constexpr (std::is_same_v<T, double>)
+    return symbolic::Binary64{};
+  else
+    return symbolic::Precise{precise_format()};
+}
 
-template <>
-struct Functions<double> {
-  static double pi() { return 3.14159265358979323846; }
-  static double sqrt(double x) { return std::sqrt(x); }
-  static double sin(double x) { return std::sin(x); }
-  static double cos(double x) { return std::cos(x); }
-  static double atan2(double y, double x) { return std::atan2(y, x); }
-  static double sinh(double x) { return std::sinh(x); }
-  static double cosh(double x) { return std::cosh(x); }
-  static double exp(double x) { return std::exp(x); }
-  static double log(double x) { return std::log(x); }
-  static double power(double x, long n) { return std::pow(x, static_cast<double>(n)); }
-};
+template <class T>
+T call(Op op, const T& x) {
+  return arithmetic<T>().call(op, x);
+}
 
-template <>
-struct Functions<Precise> {
-  static Precise pi() { return cln::pi(precise_format()); }
-  static Precise sqrt(const Precise& x) { return cln::sqrt(x); }
-  static Precise sin(const Precise& x) { return cln::sin(x); }
-  static Precise cos(const Precise& x) { return cln::cos(x); }
-  static Precise atan2(const Precise& y, const Precise& x) { return cln::atan(x, y); }
-  static Precise sinh(const Precise& x) { return cln::sinh(x); }
-  static Precise cosh(const Precise& x) { return cln::cosh(x); }
-  static Precise exp(const Precise& x) { return cln::exp(x); }
-  static Precise log(const Precise& x) { return cln::ln(x); }
-  static Precise power(const Precise& x, long n) { return cln::expt(x, cln::cl_I(n)); }
+/// `numbers` of symbolic::slope_of.
+template <class T>
+struct Numbers {
+  static T one() { return T(1); }
+  static T two() { return T(2); }
+  static T square(const T& x) { return x * x; }
+  static T call(Op op, const T& x) { return linear::call(op, x); }
 };
 
 /// A value and its partial derivatives by the operands; or why there are none.
@@ -73,20 +68,7 @@ Local<T> kinked(Op op, const std::array<T, 4>& x, bool moves, int edge) {
 }
 
 template <class T>
-Local<T> arcs(Op op, const T& x) {
-  using F = Functions<T>;
-  if (op == Op::atan) return {F::atan2(x, T(1)), {T(1) / (T(1) + x * x)}};
-  const T square = (T(1) - x) * (T(1) + x);
-  require_domain(!(square < T(0)), "asin or acos beyond 1");
-  const T root = F::sqrt(square);
-  const T value = op == Op::asin ? F::atan2(x, root) : F::atan2(root, x);
-  if (is_zero(root)) return {value, {}, "asin or acos at 1"};
-  return {value, {T(op == Op::asin ? 1 : -1) / root}};
-}
-
-template <class T>
-Local<T> arithmetic(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
-  using F = Functions<T>;
+Local<T> of_operator(Op op, std::int32_t payload, const std::array<T, 4>& x, const std::array<bool, 4>& moves) {
   switch (op) {
     case Op::add: return {x[0] + x[1], {T(1), T(1)}};
     case Op::sub: return {x[0] - x[1], {T(1), T(-1)}};
@@ -98,47 +80,27 @@ Local<T> arithmetic(Op op, std::int32_t payload, const std::array<T, 4>& x, cons
       return {v, {T(1) / x[1], -v / x[1]}};
     }
     case Op::power: {
-      const T before = F::power(x[0], payload - 1);
+      const T before = arithmetic<T>().power(x[0], payload - 1);
       return {before * x[0], {T(payload) * before}};
     }
     default: break;
   }
   require_domain(x[0] > T(0), "a real power of a number that is not positive");  // Op::pow
-  const T log = F::log(x[0]), v = F::exp(x[1] * log);
+  const T log = call<T>(Op::log, x[0]), v = call<T>(Op::exp, x[1] * log);
   return {v, {x[1] * v / x[0], moves[1] ? v * log : T(0)}};
 }
 
 template <class T>
 Local<T> of_function(Op op, const T& x, bool moves) {
-  using F = Functions<T>;
-  switch (op) {
-    case Op::sqrt: {
-      require_domain(!(x < T(0)), "sqrt of a negative number");
-      const T v = F::sqrt(x);
-      if (moves && is_zero(v)) return {v, {}, "sqrt of 0 has no slope"};
-      return {v, {moves ? T(1) / (T(2) * v) : T(0)}};
-    }
-    case Op::sin: return {F::sin(x), {F::cos(x)}};
-    case Op::cos: return {F::cos(x), {-F::sin(x)}};
-    case Op::tan: {
-      const T c = F::cos(x);
-      require_domain(!is_zero(c), "tan where cos is 0");
-      const T v = F::sin(x) / c;
-      return {v, {T(1) + v * v}};
-    }
-    case Op::sinh: return {F::sinh(x), {F::cosh(x)}};
-    case Op::cosh: return {F::cosh(x), {F::sinh(x)}};
-    case Op::tanh: {
-      const T v = F::sinh(x) / F::cosh(x);
-      return {v, {T(1) - v * v}};
-    }
-    case Op::exp: {
-      const T v = F::exp(x);
-      return {v, {v}};
-    }
-    case Op::log: require_domain(x > T(0), "log of a number that is not positive"); return {F::log(x), {T(1) / x}};
-    default: return arcs(op, x);
-  }
+  if (op == Op::sqrt) require_domain(!(x < T(0)), "sqrt of a negative number");
+  if (op == Op::log) require_domain(x > T(0), "log of a number that is not positive");
+  if (op == Op::asin || op == Op::acos) require_domain(!(magnitude(x) > T(1)), "asin or acos beyond 1");
+  const T v = call(op, x);
+  if (!moves) return {v, {}};
+  const auto [size, divides, falls] = symbolic::slope_of(symbolic::function_of(op), x, v, Numbers<T>{});
+  if (divides && is_zero(size)) return {v, {}, op == Op::sqrt ? "sqrt of 0 has no slope" : "asin or acos at 1"};
+  const T slope = divides ? T(T(1) / size) : size;
+  return {v, {falls ? T(-slope) : slope}};
 }
 
 template <class T>
@@ -151,11 +113,11 @@ Local<T> local(Op op, std::int32_t payload, const std::array<T, 4>& x, const std
     case Op::div:
     case Op::neg:
     case Op::power:
-    case Op::pow: return arithmetic(op, payload, x, moves);
+    case Op::pow: return of_operator(op, payload, x, moves);
     case Op::atan2: {
       const T square = x[0] * x[0] + x[1] * x[1];
       require_domain(square > T(0), "atan2(0, 0)");
-      return {Functions<T>::atan2(x[0], x[1]), {x[1] / square, -x[0] / square}};
+      return {arithmetic<T>().atan2(x[0], x[1]), {x[1] / square, -x[0] / square}};
     }
     default: return of_function(op, x[0], moves[0]);
   }
@@ -212,7 +174,7 @@ Tape::Run<T> Tape::run(const std::function<T(const Symbol&)>& lookup, int edge, 
   for (std::size_t k = 0; k < steps_.size(); ++k) {
     const Step& step = steps_[k];
     if (step.op == Op::constant) r.value[k] = number<T>(dag_.value(nodes_[k]));
-    if (step.op == Op::pi) r.value[k] = Functions<T>::pi();
+    if (step.op == Op::pi) r.value[k] = arithmetic<T>().pi();
     if (step.op == Op::symbol) {
       r.value[k] = lookup(dag_.symbol_of(nodes_[k]));
       if (step.moves && slopes) r.slope(step.place, step.direction) = T(1);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Values of expressions and their slopes along many directions at once, by differentiation forward through the graph:
-// numbers only, no derivative is written out. Independent of symbolic/calculus, which the emitted Jacobian comes from.
+// numbers only, no derivative is written out. Shares with symbolic/calculus the table of functions and nothing else.
 #pragma once
 
 #include <functional>
