@@ -34,7 +34,7 @@ std::vector<print::ConservedFinding> conserved_of(const Mechanics& m, const Read
                                                   const std::vector<conservation::Conserved>& conserved) {
   std::vector<print::ConservedFinding> result;
   for (const conservation::Conserved& c : conserved) {
-    result.push_back({c.name, c.title, c.expression, in_named_functions(m, two, c), c.cyclic,
+    result.push_back({c.kind, c.index, c.part, c.title, c.expression, in_named_functions(m, two, c),
                       c.certainty == conservation::Certainty::proven});
   }
   return result;

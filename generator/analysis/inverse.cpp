@@ -88,8 +88,7 @@ class Prescribed {
     if (request.begin) request.begin(scene_, result.columns);
     t_ = scene_.t0;
     for (const std::string& name : result.columns) {
-      const auto output =
-          std::find_if(system_.outputs.begin(), system_.outputs.end(), [&](const auto& o) { return o.name == name; });
+      const system::Output* output = system::find(system_.outputs, name);
       // What is 0 is shown as 0, not as the rounding of terms that cancel.
       const bool nothing = conservation::vanishing(*m_.dag, {output->value}) != conservation::Certainty::no;
       values_.push_back(nothing ? m_.dag->zero() : output->value);

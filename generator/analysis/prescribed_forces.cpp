@@ -19,6 +19,7 @@ using mechanics::write_out;
 using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::SymbolKind;
+using system::OutputKind;
 
 class Forces {
  public:
@@ -41,16 +42,18 @@ class Forces {
 
   std::vector<system::Output> outputs() {
     std::vector<system::Output> result;
-    for (std::size_t i = 0; i < Q_.size(); ++i) {
-      if (!mechanics::vanishes(dag_, {Q_[i]})) result.push_back({"force." + m_.model->coordinates[i].name, Q_[i]});
+    for (std::uint32_t i = 0; i < Q_.size(); ++i) {
+      if (!mechanics::vanishes(dag_, {Q_[i]}))
+        result.push_back({"force." + m_.model->coordinates[i].name, Q_[i], OutputKind::prescribed_force, i});
     }
-    for (std::size_t p = 0; p < m_.masses.size(); ++p) {
+    for (std::uint32_t p = 0; p < m_.masses.size(); ++p) {
       const std::optional<Vec3> force = on_particle(p);
       if (!force || mechanics::vanishes(dag_, {(*force)[0], (*force)[1], (*force)[2]})) continue;
-      for (std::size_t k = 0; k < 3; ++k)
-        result.push_back({m_.masses[p].name + ".force" + std::to_string(k + 1), (*force)[k]});
+      for (std::uint32_t k = 0; k < 3; ++k)
+        result.push_back(
+            {m_.masses[p].name + ".force" + std::to_string(k + 1), (*force)[k], OutputKind::particle_force, p, k});
     }
-    result.push_back({"prescribed.power", power_});
+    result.push_back({"prescribed.power", power_, OutputKind::prescribed_power});
     return result;
   }
 

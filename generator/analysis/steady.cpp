@@ -62,7 +62,8 @@ Reached run_until(const std::string& command, SimulationRequest request, double 
     for (system::EquationSystem& s : derived.candidates) {
       for (const system::IntegralState& i : s.integrals) {
         const std::string& name = derived.model.integrals[i.integral].name;
-        s.outputs.push_back({name, derived.mechanics.dag->symbol({symbolic::SymbolKind::integral, i.integral, 0})});
+        s.outputs.push_back({name, derived.mechanics.dag->symbol({symbolic::SymbolKind::integral, i.integral, 0}),
+                             system::OutputKind::time_integral, i.integral});
         if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
       }
     }

@@ -21,9 +21,10 @@ using symbolic::SymbolKind;
 const char* const command = "equilibria";
 
 bool is_energy(const conservation::Conserved& c) {
-  return c.name == "energy" || c.name == "jacobi" || c.name == "energy.applied";
+  using system::OutputKind;
+  return c.kind == OutputKind::energy || c.kind == OutputKind::jacobi || c.kind == OutputKind::applied_energy;
 }
-bool is_leaf(const conservation::Conserved& c) { return c.name.starts_with("integral."); }
+bool is_leaf(const conservation::Conserved& c) { return c.kind == system::OutputKind::integral; }
 
 /// Conserved at these parameters: its rate vanishes in many digits at points beside the start.
 bool is_kept(const SteadyProblem& p, const Quantity& quantity) {

@@ -10,11 +10,6 @@ namespace {
 
 bool is_plain(const std::string& unit) { return unit.empty() || unit == "1"; }
 
-std::string per_second(const std::string& unit) {
-  if (is_plain(unit)) return unit.empty() ? "" : "1/s";
-  return unit.find('/') == std::string::npos ? unit + "/s" : "(" + unit + ")/s";
-}
-
 void add(std::vector<Panel>& panels, const std::string& title, const std::string& name) {
   const auto found = std::find_if(panels.begin(), panels.end(),
                                   [&](const Panel& panel) { return panel.title == title && panel.over.empty(); });
@@ -29,58 +24,50 @@ std::string titled(const std::string& what, const std::string& unit) {
 }
 
 // A single curve has no legend to be told by.
-void name_single_curves(const model::Model& model, std::vector<Panel>& panels) {
+void name_single_curves(const std::vector<system::Output>& outputs, std::vector<Panel>& panels) {
   for (Panel& panel : panels) {
     if (panel.over.empty() && panel.names.size() == 1)
-      panel.title = titled(panel.names[0], unit_of(model, panel.names[0]));
+      panel.title = titled(panel.names[0], unit_of(outputs, panel.names[0]));
   }
 }
 
 }  // namespace
 
-std::string unit_of(const model::Model& model, const std::string& name) {
-  for (const model::Coordinate& c : model.coordinates) {
-    if (c.name == name) return c.unit.text;
-    if (c.name + "_dot" == name) return per_second(c.unit.text);
-    if (c.name + "_ddot" == name)
-      return is_plain(c.unit.text)                        ? (c.unit.text.empty() ? "" : "1/s^2")
-             : c.unit.text.find('/') == std::string::npos ? c.unit.text + "/s^2"
-                                                          : "(" + c.unit.text + ")/s^2";
-  }
-  for (const model::Definition& d : model.definitions) {
-    if (d.name == name) return d.unit.text;
-  }
-  if (name == "energy" || name == "kinetic" || name == "potential") return "J";
-  if (name == "power") return "W";
-  if (name.find(".position") != std::string::npos) return "m";
-  if (name.find(".velocity") != std::string::npos) return "m/s";
-  if (name.find(".omega") != std::string::npos) return "rad/s";
-  return "";
+std::string unit_of(const std::vector<system::Output>& outputs, const std::string& name) {
+  const system::Output* output = system::find(outputs, name);
+  return output == nullptr ? "" : output->unit;
 }
 
-std::vector<Panel> coordinate_panels(const model::Model& model) {
+std::vector<Panel> coordinate_panels(const std::vector<system::Output>& outputs) {
   std::vector<Panel> result;
-  for (const model::Coordinate& c : model.coordinates) add(result, titled("coordinates", c.unit.text), c.name);
-  name_single_curves(model, result);
+  for (const system::Output& output : outputs) {
+    if (output.kind == system::OutputKind::coordinate) add(result, titled("coordinates", output.unit), output.name);
+  }
+  name_single_curves(outputs, result);
   return result;
 }
 
-std::vector<Panel> panels(const model::Model& model, const std::vector<std::string>& outputs) {
-  std::vector<Panel> result = coordinate_panels(model);
-  for (const std::string& name : outputs) {
-    if (unit_of(model, name) != "J") add(result, titled("outputs", unit_of(model, name)), name);
+std::vector<Panel> panels(const std::vector<system::Output>& outputs, const std::vector<std::string>& wanted) {
+  using system::OutputKind;
+  std::vector<Panel> result = coordinate_panels(outputs);
+  for (const std::string& name : wanted) {
+    const system::Output* output = system::find(outputs, name);
+    const bool energy =
+        output != nullptr && (output->kind == OutputKind::energy || output->kind == OutputKind::kinetic ||
+                              output->kind == OutputKind::potential);
+    if (!energy) add(result, titled("outputs", unit_of(outputs, name)), name);
   }
-  name_single_curves(model, result);
+  name_single_curves(outputs, result);
   result.push_back({"energies in J", {"energy", "kinetic", "potential"}, {}});
   return result;
 }
 
-std::vector<Panel> chosen_panels(const model::Model& model, const std::vector<std::string>& wanted) {
+std::vector<Panel> chosen_panels(const std::vector<system::Output>& outputs, const std::vector<std::string>& wanted) {
   std::vector<Panel> result;
   for (const std::string& item : wanted) {
     const std::size_t comma = item.find(',');
     if (comma == std::string::npos) {
-      const std::string unit = unit_of(model, item);
+      const std::string unit = unit_of(outputs, item);
       add(result, is_plain(unit) ? "pure numbers, and what has no known unit" : "in " + unit, item);
       continue;
     }
@@ -89,9 +76,9 @@ std::vector<Panel> chosen_panels(const model::Model& model, const std::vector<st
       throw Error("run", {}, "--plot-of " + item + " is no phase plane",
                   "write one as x,x_dot: first what is along the horizontal axis");
     }
-    result.push_back({titled(name, unit_of(model, name)), {name}, over});
+    result.push_back({titled(name, unit_of(outputs, name)), {name}, over});
   }
-  name_single_curves(model, result);
+  name_single_curves(outputs, result);
   return result;
 }
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "model/model.hpp"
+#include "system/output.hpp"
 
 namespace eomgen::cli {
 
@@ -17,15 +17,15 @@ struct Panel {
 };
 
 /// "m/s^2"; empty where the unit is unknown or the quantity a pure number.
-std::string unit_of(const model::Model& model, const std::string& name);
+std::string unit_of(const std::vector<system::Output>& outputs, const std::string& name);
 
-/// One for each unit of coordinates and of the scene's outputs; and the energies.
-std::vector<Panel> panels(const model::Model& model, const std::vector<std::string>& outputs);
+/// One for each unit of coordinates and of what is `wanted` beside them; and the energies.
+std::vector<Panel> panels(const std::vector<system::Output>& outputs, const std::vector<std::string>& wanted);
 
 /// Coordinates alone.
-std::vector<Panel> coordinate_panels(const model::Model& model);
+std::vector<Panel> coordinate_panels(const std::vector<system::Output>& outputs);
 
 /// `wanted`: "theta", or "x,x_dot" for the curve of x_dot over x; names with one unit come together.
-std::vector<Panel> chosen_panels(const model::Model& model, const std::vector<std::string>& wanted);
+std::vector<Panel> chosen_panels(const std::vector<system::Output>& outputs, const std::vector<std::string>& wanted);
 
 }  // namespace eomgen::cli

@@ -14,14 +14,15 @@ namespace {
 
 constexpr int panel_height = 300, width = 760;
 
-std::string with_unit(const model::Model& model, const std::string& name) {
-  const std::string unit = unit_of(model, name);
+std::string with_unit(const std::vector<system::Output>& outputs, const std::string& name) {
+  const std::string unit = unit_of(outputs, name);
   return unit.empty() || unit == "1" ? name : name + " in " + unit;
 }
 
 }  // namespace
 
-RunPlot::RunPlot(std::vector<Panel> panels, const model::Model& model, const std::vector<std::string>& code)
+RunPlot::RunPlot(std::vector<Panel> panels, const std::vector<system::Output>& outputs,
+                 const std::vector<std::string>& code)
     : panels_(std::move(panels)) {
   const auto keep = [&](const std::string& name) {
     if (std::find(names_.begin(), names_.end(), name) != names_.end()) return;
@@ -35,7 +36,7 @@ RunPlot::RunPlot(std::vector<Panel> panels, const model::Model& model, const std
   };
   for (const Panel& panel : panels_) {
     std::for_each(panel.names.begin(), panel.names.end(), keep);
-    over_.push_back(panel.over.empty() ? "t in s" : with_unit(model, panel.over));
+    over_.push_back(panel.over.empty() ? "t in s" : with_unit(outputs, panel.over));
     if (!panel.over.empty()) keep(panel.over);
   }
   columns_.resize(names_.size());

@@ -14,8 +14,8 @@ namespace eomgen::cli {
 
 class RunPlot {
  public:
-  /// `code`: names of what rows hold. Throws Error where a name of a panel is not among them.
-  RunPlot(std::vector<Panel> panels, const model::Model& model, const std::vector<std::string>& code);
+  /// `outputs`: of the model; `code`: names of what rows hold. Throws Error where a name of a panel is not among them.
+  RunPlot(std::vector<Panel> panels, const std::vector<system::Output>& outputs, const std::vector<std::string>& code);
 
   void row(double t, std::span<const double> values);
 

@@ -25,13 +25,14 @@ std::string line(const std::string& label, const std::string& value) { return fm
 
 // What `final` holds: coordinates, energy, reactions and what was asked for; the rest served the watches.
 bool is_final(const pipeline::Simulation& simulation, const std::string& name) {
-  for (const model::Coordinate& c : simulation.derived->model.coordinates) {
-    if (name == c.name || name == c.name + "_dot") return true;
-  }
-  if (name.ends_with("_ddot") && simulation.scene.t1 == simulation.scene.t0) return true;
+  using system::OutputKind;
   const auto& wanted = simulation.scene.outputs;
-  return name == "energy" || name.starts_with("reaction.") ||
-         std::find(wanted.begin(), wanted.end(), name) != wanted.end();
+  if (std::find(wanted.begin(), wanted.end(), name) != wanted.end()) return true;
+  const system::Output* output = system::find(simulation.derived->candidates.front().outputs, name);
+  if (output == nullptr) return false;
+  if (output->kind == OutputKind::acceleration) return simulation.scene.t1 == simulation.scene.t0;
+  return output->kind == OutputKind::coordinate || output->kind == OutputKind::rate ||
+         output->kind == OutputKind::energy || system::is_reaction(output->kind);
 }
 
 /// Components of joints, and forces of constraints, that the motion leaves open, and so are not in `final`.

@@ -20,6 +20,7 @@ using symbolic::Dag;
 using symbolic::Ref;
 using symbolic::Symbol;
 using symbolic::SymbolKind;
+using system::OutputKind;
 
 namespace {
 
@@ -28,10 +29,6 @@ namespace {
 constexpr std::size_t proof_effort = 300'000, proof_terms = 400;
 
 }  // namespace
-
-std::string differential_output(const mechanics::Integral& integral, const std::string& variable) {
-  return std::string(differential_prefix) + integral.label + "." + variable;
-}
 
 const char* name(Certainty certainty) {
   switch (certainty) {
@@ -49,8 +46,6 @@ Certainty vanishing(Dag& dag, const std::vector<Ref>& expressions) {
   const auto is_empty = [&](Ref r) { return dag.is_zero(r) || dag.is_zero(expander.tidy(r)); };
   return std::all_of(expressions.begin(), expressions.end(), is_empty) ? Certainty::proven : Certainty::numerical;
 }
-
-std::string magnitude_output(const Conserved& conserved) { return magnitude_prefix + conserved.name; }
 
 namespace {
 
@@ -76,13 +71,14 @@ Applied applied_potentials(Mechanics& m) {
 std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem& s) {
   Dag& dag = *m.dag;
   std::vector<Conserved> result;
+  const auto offer = [&s](const Conserved& c) { s.outputs.push_back({c.name, c.expression, c.kind, c.index, c.part}); };
   const bool hit =
       std::any_of(m.contacts.begin(), m.contacts.end(), [](const mechanics::Contact& c) { return c.unilateral; });
   symbolic::Derivation by_time = symbolic::explicit_time(dag, m.model->functions.size());
   std::vector<Ref> power{s.power};
   for (const Ref surface : jump_surfaces(dag, {s.energy})) power.push_back(by_time(surface));
   if (const Certainty c = hit ? Certainty::no : vanishing(dag, power); c != Certainty::no)
-    result.push_back({"energy", "total energy T + U", s.energy, c});
+    result.push_back({"energy", "total energy T + U", s.energy, OutputKind::energy, 0, 0, c});
   // The constrained Lagrangian: what Approach II differentiates, so a cyclic coordinate of it is one of the motion.
   const Ref L = dag.sub(s.kinetic, s.potential);
   symbolic::Substitution imposed = impose(m), written = write_out(m);
@@ -107,8 +103,8 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     const Certainty certainty = vanishing(dag, must_vanish);
     if (certainty == Certainty::no) continue;
     const std::string& name = m.model->coordinates[i].name;
-    result.push_back({"momentum." + name, "generalised momentum of " + name, p, certainty, i});
-    s.outputs.push_back({result.back().name, p});
+    result.push_back({"momentum." + name, "generalised momentum of " + name, p, OutputKind::momentum, i, 0, certainty});
+    offer(result.back());
   }
   std::vector<Ref> must_vanish = s.b;  // constraints that move do work in the reduced system too
   must_vanish.push_back(by_time(dag.sub(L, V)));
@@ -118,23 +114,28 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, system::EquationSystem
     const bool plain = dag.is_zero(V);
     result.push_back({plain ? "jacobi" : "energy.applied",
                       plain ? "Jacobi integral T2 - T0 + U" : "T2 - T0 + U with the potentials of applied forces",
-                      jacobi, c});
-    s.outputs.push_back({result.back().name, jacobi});
+                      jacobi, plain ? OutputKind::jacobi : OutputKind::applied_energy, 0, 0, c});
+    offer(result.back());
   }
-  for (const mechanics::Integral& integral : m.integrals) {
-    const std::string name = "integral." + integral.label;
-    result.push_back({name, "what the constraint keeps, as it is at the start", integral.psi});
-    s.outputs.push_back({name, integral.psi});
+  for (std::uint32_t j = 0; j < m.integrals.size(); ++j) {
+    const mechanics::Integral& integral = m.integrals[j];
+    result.push_back({"integral." + integral.label, "what the constraint keeps, as it is at the start", integral.psi,
+                      OutputKind::integral, j});
+    offer(result.back());
+    const auto differential = [&](const std::string& by, Ref value) {
+      s.outputs.push_back({"differential." + integral.label + "." + by, value, OutputKind::differential, j});
+    };
     // Its differential, for the projection: by the free coordinates and t.
     for (const std::uint32_t i : s.free) {
       const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(integral.psi);
-      s.outputs.push_back({differential_output(integral, m.model->coordinates[i].name), slope});
+      differential(m.model->coordinates[i].name, slope);
     }
-    s.outputs.push_back({differential_output(integral, "t"), written(by_time(integral.psi))});
+    differential("t", written(by_time(integral.psi)));
   }
   for (Conserved& momentum : conserved_momenta(m, s, result)) {
-    s.outputs.push_back({momentum.name, momentum.expression});
-    s.outputs.push_back({magnitude_output(momentum), *momentum.magnitude});
+    offer(momentum);
+    s.outputs.push_back({"magnitude." + momentum.name, *momentum.magnitude, OutputKind::magnitude,
+                         static_cast<std::uint32_t>(result.size())});
     result.push_back(std::move(momentum));
   }
   return result;
@@ -154,7 +155,7 @@ std::vector<Conserved> conserved_quantities(Mechanics& m, std::vector<system::Eq
 std::vector<std::uint32_t> cyclic_coordinates(const std::vector<Conserved>& conserved) {
   std::vector<std::uint32_t> result;
   for (const Conserved& c : conserved) {
-    if (c.cyclic) result.push_back(*c.cyclic);
+    if (c.kind == OutputKind::momentum) result.push_back(c.index);
   }
   return result;
 }

@@ -24,20 +24,14 @@ struct Conserved {
   std::string name;          // "energy", "momentum.theta", "jacobi", "linear_momentum.E1"; also the name of the output
   std::string title;         // for reading
   symbolic::Ref expression;  // in the symbols of the EquationSystem
+  system::OutputKind kind = system::OutputKind::energy;  // of that output
+  std::uint32_t index = 0, part = 0;                     // as it has them
   Certainty certainty = Certainty::numerical;
-  std::optional<std::uint32_t> cyclic = {};     // the coordinate whose generalised momentum it is
   std::optional<symbolic::Ref> magnitude = {};  // size of the terms that it is the sum of, for the drift of a run
 };
 
-/// Output that is d psi/d q, or d psi/d t for "t", of an integral: for projections, not for tables.
-std::string differential_output(const mechanics::Integral& integral, const std::string& variable);
-inline constexpr const char* differential_prefix = "differential.";
-
-inline constexpr const char* magnitude_prefix = "magnitude.";
-std::string magnitude_output(const Conserved& conserved);  // for runs, not for tables
-
 /// Appends an output for each quantity that is not an output already (momenta, Jacobi integral, integrals of
-/// constraints), and for magnitudes.
+/// constraints), and what runs need: the differentials of these integrals, and magnitudes.
 std::vector<Conserved> conserved_quantities(mechanics::Mechanics& mechanics, system::EquationSystem& system);
 
 /// The same of systems of one Mechanics, which all have the same energies and constraints: found once, offered by all.

@@ -115,6 +115,8 @@ class Search {
     Conserved result;
     const std::string along = "E" + std::to_string(k + 1);
     result.name = (angular ? "angular_momentum." : "linear_momentum.") + along;
+    result.kind = angular ? system::OutputKind::angular_momentum : system::OutputKind::linear_momentum;
+    result.part = static_cast<std::uint32_t>(k);
     result.title = (angular ? "angular momentum about the origin along " : "linear momentum along ") + along;
     Ref expression = dag_.zero();
     for (std::size_t p = 0; p < r_.size(); ++p) {

@@ -10,6 +10,7 @@ namespace {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 using system::EquationSystem;
+using system::OutputKind;
 
 Symbol coordinate(std::uint32_t i, std::uint8_t order) { return {SymbolKind::coordinate, i, order}; }
 
@@ -90,52 +91,69 @@ void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
       return reaction.constraint >= j.first && reaction.constraint < j.first + j.equations();
     };
     if (!m.constraints[reaction.constraint].determined) continue;
+    const mechanics::Constraint& constraint = m.constraints[reaction.constraint];
+    const std::string vector = constraint.name == constraint.label ? "" : "reaction." + constraint.name;
     if (std::none_of(m.joints.begin(), m.joints.end(), of))
-      s.outputs.push_back({"reaction." + reaction.label, reaction.value});
+      s.outputs.push_back({"reaction." + reaction.label, reaction.value, OutputKind::constraint_reaction,
+                           reaction.constraint, 0, "", vector});
   }
-  for (std::size_t i = 0; i < m.joints.size(); ++i) {
+  for (std::uint32_t i = 0; i < m.joints.size(); ++i) {
     const mechanics::JointReaction& joint = m.joints[i];
-    for (std::size_t j = 0; j < joint.along.size(); ++j) {
+    const std::string vector = "reaction." + m.model->joints[i].name;
+    for (std::uint32_t j = 0; j < joint.along.size(); ++j) {
       if (!joint.determined[j]) continue;
       Ref sum = dag.zero();
       for (std::size_t k = 0; k < joint.equations(); ++k)
         sum = dag.add(sum, dag.mul(joint.along[j][k], s.reactions[joint.first + k].value));
-      s.outputs.push_back({"reaction." + m.model->joints[i].name + "." + std::to_string(j + 1), sum});
+      s.outputs.push_back({vector + "." + std::to_string(j + 1), sum, OutputKind::joint_reaction, i, j, "", vector});
     }
   }
-  for (const mechanics::Constraint& c : m.constraints) {
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
+    const mechanics::Constraint& c = m.constraints[k];
     if (c.need == mechanics::Need::redundant)
-      s.outputs.push_back({system::watched_prefix + c.label, c.holonomic() ? c.psi : m.velocity_form(c)});
+      s.outputs.push_back(
+          {"redundant." + c.label, c.holonomic() ? c.psi : m.velocity_form(c), OutputKind::redundant, k});
   }
 }
 
 void add_outputs(Mechanics& m, EquationSystem& s) {
-  const auto add = [&s](std::string name, Ref value) { s.outputs.push_back({std::move(name), value}); };
+  const auto add = [&s](std::string name, Ref value, OutputKind kind, const std::string& unit, std::uint32_t index = 0,
+                        std::uint32_t part = 0) {
+    s.outputs.push_back({std::move(name), value, kind, index, part, unit});
+  };
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {
-    add(m.model->coordinates[i].name, m.q[i]);
-    add(m.model->coordinates[i].name + "_dot", m.qdot[i]);
+    const model::Coordinate& c = m.model->coordinates[i];
+    add(c.name, m.q[i], OutputKind::coordinate, c.unit.text, i);
+    add(c.name + "_dot", m.qdot[i], OutputKind::rate, system::per_second(c.unit.text), i);
   }
-  add("energy", s.energy);
-  add("kinetic", s.kinetic);
-  add("potential", s.potential);
-  add("power", s.power);
+  add("energy", s.energy, OutputKind::energy, "J");
+  add("kinetic", s.kinetic, OutputKind::kinetic, "J");
+  add("potential", s.potential, OutputKind::potential, "J");
+  add("power", s.power, OutputKind::power, "W");
   symbolic::Derivation ddt = symbolic::total_time(*m.dag, m.q.size(), m.model->functions.size());
   for (std::uint32_t i = 1; i < m.model->places.size(); ++i) {
     const Vec3& position = *m.place_position[i];
     const std::string& name = m.model->places[i].name;
-    for (std::size_t k = 0; k < 3; ++k) add(name + ".position" + std::to_string(k + 1), position[k]);
-    for (std::size_t k = 0; k < 3; ++k) add(name + ".velocity" + std::to_string(k + 1), ddt(position[k]));
+    for (std::uint32_t k = 0; k < 3; ++k)
+      add(name + ".position" + std::to_string(k + 1), position[k], OutputKind::position, "m", i, k);
+    for (std::uint32_t k = 0; k < 3; ++k)
+      add(name + ".velocity" + std::to_string(k + 1), ddt(position[k]), OutputKind::velocity, "m/s", i, k);
   }
-  for (std::size_t f = 1; f < m.angular_velocity.size(); ++f) {
-    for (std::size_t k = 0; k < 3; ++k)
-      add(m.model->frames[f].name + ".omega" + std::to_string(k + 1), m.angular_velocity[f][k]);
+  for (std::uint32_t f = 1; f < m.angular_velocity.size(); ++f) {
+    for (std::uint32_t k = 0; k < 3; ++k)
+      add(m.model->frames[f].name + ".omega" + std::to_string(k + 1), m.angular_velocity[f][k],
+          OutputKind::angular_velocity, "rad/s", f, k);
   }
   add_reaction_outputs(m, s);
-  for (std::size_t i = 0; i < m.model->definitions.size(); ++i) {
+  for (std::uint32_t i = 0; i < m.model->definitions.size(); ++i) {
     const model::Definition& definition = m.model->definitions[i];
-    if (!definition.vector) add(definition.name, m.scalar_definition[i]);
+    if (!definition.vector)
+      add(definition.name, m.scalar_definition[i], OutputKind::definition, definition.unit.text, i);
   }
-  for (std::uint32_t i = 0; i < m.q.size(); ++i) add(m.model->coordinates[i].name + "_ddot", m.qddot[i]);
+  for (std::uint32_t i = 0; i < m.q.size(); ++i) {
+    const model::Coordinate& c = m.model->coordinates[i];
+    add(c.name + "_ddot", m.qddot[i], OutputKind::acceleration, system::per_second(c.unit.text, 2), i);
+  }
 }
 
 // A multiplier in an event is the reaction of that constraint, an expression where the constraint is eliminated.
@@ -176,16 +194,20 @@ void add_contacts(Mechanics& m, EquationSystem& s, Finish& finish) {
 }
 
 /// The slip velocity along each tangent, and its slopes by the rates of the free coordinates, in which it is linear.
-void add_slip_outputs(Mechanics& m, const mechanics::Contact& contact, EquationSystem& s) {
-  for (std::size_t a = 0; a < contact.dimensions(); ++a) {
-    const std::string name = contact.name + (contact.dimensions() > 1 ? "." + std::to_string(a + 1) : "");
-    s.outputs.push_back({"slip." + name, contact.slip[a]});
+void add_slip_outputs(Mechanics& m, std::uint32_t index, EquationSystem& s) {
+  const mechanics::Contact& contact = m.contacts[index];
+  const bool vector = contact.dimensions() > 1;
+  for (std::uint32_t a = 0; a < contact.dimensions(); ++a) {
+    const std::string name = contact.name + (vector ? "." + std::to_string(a + 1) : "");
+    s.outputs.push_back(
+        {"slip." + name, contact.slip[a], OutputKind::slip, index, a, "", vector ? "slip." + contact.name : ""});
     for (const std::uint32_t i : s.free) {
       const Ref slope = symbolic::partial(*m.dag, coordinate(i, 1))(contact.slip[a]);
-      s.outputs.push_back({system::slip_slope_output(name, m.model->coordinates[i].name), slope});
+      s.outputs.push_back(
+          {"contact.slope." + name + "." + m.model->coordinates[i].name, slope, OutputKind::slip_slope, index, a});
     }
-    const Ref phi = m.dag->symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(a), 0});
-    s.outputs.push_back({system::phi_output(name), phi});
+    const Ref phi = m.dag->symbol({SymbolKind::friction, contact.first + a, 0});
+    s.outputs.push_back({"contact.phi." + name, phi, OutputKind::friction_component, index, a});
   }
 }
 
@@ -198,24 +220,27 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
       return dag.symbol({SymbolKind::friction, contact.first + static_cast<std::uint32_t>(a), 0});
     };
     if (contact.directions.empty() && contact.dimensions() > 0)
-      s.outputs.push_back({"friction." + contact.name, phi(0)});
-    for (std::size_t axis = 0; axis < 3 && !contact.directions.empty(); ++axis) {
+      s.outputs.push_back({"friction." + contact.name, phi(0), OutputKind::friction, j});
+    for (std::uint32_t axis = 0; axis < 3 && !contact.directions.empty(); ++axis) {
       Ref sum = dag.zero();
       for (std::size_t a = 0; a < contact.dimensions(); ++a) {
         sum = dag.add(sum, dag.mul(contact.directions[a][axis], phi(a)));
       }
-      s.outputs.push_back({"friction." + contact.name + "." + std::to_string(axis + 1), sum});
+      const std::string vector = "friction." + contact.name;
+      s.outputs.push_back({vector + "." + std::to_string(axis + 1), sum, OutputKind::friction, j, axis, "", vector});
     }
     if (contact.touch && m.model->constraints[*contact.touch].rolls_by_friction()) {
+      const std::string vector = "reaction." + contact.name;
       for (std::uint32_t a = 0; a < 2; ++a)
-        s.outputs.push_back(
-            {"reaction." + contact.name + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a)});
+        s.outputs.push_back({vector + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a),
+                             OutputKind::rolling_reaction, j, a, "", vector});
     }
-    add_slip_outputs(m, contact, s);
+    add_slip_outputs(m, j, s);
     const Ref slides = contact.width ? dag.one() : dag.symbol(system::slides_symbol(j));
     const Ref apart = dag.select(dag.symbol(system::presses_symbol(j)), dag.zero(), dag.integer(2), slides);
-    s.outputs.push_back({"mode." + contact.name, contact.unilateral ? apart : slides});
-    if (contact.unilateral) s.outputs.push_back({system::restitution_output(contact.name), contact.restitution});
+    s.outputs.push_back({"mode." + contact.name, contact.unilateral ? apart : slides, OutputKind::mode, j});
+    if (contact.unilateral)
+      s.outputs.push_back({"contact.restitution." + contact.name, contact.restitution, OutputKind::restitution, j});
   }
 }
 

@@ -78,7 +78,7 @@ class Parts {
   static std::vector<std::string> results(const Function& function) {
     std::vector<std::string> list;
     for (const auto& result : function.results) {
-      if (!program::is_code(result.first)) list.push_back(result.first);
+      if (!result.is_test()) list.push_back(result.name);
     }
     return list;
   }

@@ -78,7 +78,7 @@ std::size_t entries(const program::Program& program, const std::string& function
   std::size_t count = 0;
   for (const program::Function& f : program.functions) {
     if (f.name != function) continue;
-    for (const auto& result : f.results) count += program::is_code(result.first) ? 0 : result.second.size();
+    for (const auto& result : f.results) count += result.is_test() ? 0 : result.entries.size();
   }
   return count;
 }

@@ -75,7 +75,7 @@ class Printer {
       left_ = table_.declare("left");
     }
     for (const auto& result : function_.results) {
-      if (!program::is_code(result.first)) text_.results.push_back(table_.declare(result.first));
+      if (!result.is_test()) text_.results.push_back(table_.declare(result.name));
     }
   }
 
@@ -126,8 +126,8 @@ class Printer {
       if (same_angle) continue;  // the pack names it once
       for (const Operand& operand : instruction.operands) use(operand, repeats_operands(instruction.op), part_[i]);
     }
-    for (const auto& [name, entries] : function_.results) {
-      for (const Operand& operand : entries) use(operand, false, leaves_.size() - 1);
+    for (const program::Result& result : function_.results) {
+      for (const Operand& operand : result.entries) use(operand, false, leaves_.size() - 1);
     }
     for (const auto& test : function_.pivots)
       use(test.pivot, true, part_of(test)), use(test.scale, true, part_of(test));
@@ -251,9 +251,9 @@ class Printer {
     section_ = "results";
     if (in_lanes()) return results_of_lanes();
     for (std::size_t r = 0; r < function_.results.size(); ++r) {
-      const auto& entries = function_.results[r].second;
-      if (program::is_code(function_.results[r].first)) {
-        end_where_negative(function_.results[r].first, entries);
+      const auto& entries = function_.results[r].entries;
+      if (function_.results[r].is_test()) {
+        end_where_negative(function_.results[r].code, entries);
         continue;
       }
       const bool optional = function_.name == "jac" && r == 1;  // dfdt may be NULL
@@ -283,15 +283,15 @@ class Printer {
   /// Lanes that do not end as others do are left to the function of one state, which tells why.
   void results_of_lanes() {
     std::string finite;
-    for (const auto& [name, entries] : function_.results) {
-      if (!program::is_code(name)) continue;
-      for (const Operand& entry : entries)
+    for (const program::Result& result : function_.results) {
+      if (!result.is_test()) continue;
+      for (const Operand& entry : result.entries)
         leave(fmt::format("{} < {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
     }
-    for (std::size_t i = 0; is_rhs() && i < function_.results[0].second.size(); ++i) {
+    for (std::size_t i = 0; is_rhs() && i < function_.results[0].entries.size(); ++i) {
       const std::size_t place = function_.places.empty() ? i : function_.places[i];
       if (place >= names_.acceleration.size())
-        finite += (finite.empty() ? "" : " + ") + expressions_.in_lanes(function_.results[0].second[i], true).text;
+        finite += (finite.empty() ? "" : " + ") + expressions_.in_lanes(function_.results[0].entries[i], true).text;
     }
     if (!finite.empty()) {
       const std::string sum = table_.declare("finite");
@@ -303,8 +303,8 @@ class Printer {
     const std::string step = table_.declare("step");
     line(fmt::format("const size_t {0} = {1}->to_step;", step, place));
     for (std::size_t r = 0, k = 0; r < function_.results.size(); ++r) {
-      const auto& [name, entries] = function_.results[r];
-      if (program::is_code(name)) continue;
+      const std::vector<Operand>& entries = function_.results[r].entries;
+      if (function_.results[r].is_test()) continue;
       const std::string& to = text_.results[k];
       body_ += fmt::format("  double* const {} = {}->to[{}];\n", to, place, k++);
       if (entries.empty()) body_ += fmt::format("  (void){};\n", to);
@@ -328,10 +328,9 @@ class Printer {
                      : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, left_, text_.work);
   }
 
-  void end_where_negative(const std::string& code, const std::vector<Operand>& entries) {
+  void end_where_negative(int code, const std::vector<Operand>& entries) {
     for (const Operand& entry : entries) {
-      line(fmt::format("if ({} < {}) return {};", expressions_.signed_value(entry).text, dialect_.constant(0),
-                       code.substr(1)));
+      line(fmt::format("if ({} < {}) return {};", expressions_.signed_value(entry).text, dialect_.constant(0), code));
     }
   }
 
@@ -367,7 +366,7 @@ class Printer {
       if (argument.kind != Argument::Kind::result && !used) unused.push_back(argument.name);
     }
     for (std::size_t r = 0; r < text_.results.size(); ++r) {
-      if (function_.results[r].second.empty()) unused.push_back(text_.results[r]);
+      if (function_.results[r].entries.empty()) unused.push_back(text_.results[r]);
     }
     std::string result;
     for (const std::string& name : unused) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", name);

@@ -51,14 +51,14 @@ void add_second_charts(Derived& own, program::Program& program, const std::vecto
     return s.route == program.route && s.approach == program.approach && s.form == program.form;
   });
   derived->candidates.resize(1);
-  std::vector<std::string> known, exchanged;
-  for (const system::Output& output : derived->candidates.front().outputs) known.push_back(output.name);
+  std::vector<std::uint32_t> exchanged;
   for (std::size_t j = 0; j < charts.size(); ++j) {
     for (const std::uint32_t angle : charts[j].angles) {
-      if ((mask >> j & 1) != 0) exchanged.push_back(own.model.coordinates[angle].name);
+      if ((mask >> j & 1) != 0) exchanged.push_back(angle);
     }
   }
-  const std::vector<std::uint32_t> places = program::shared_outputs(program.outputs, known, exchanged);
+  const std::vector<std::uint32_t> places = program::shared_outputs(program.outputs, own.candidates.front().outputs,
+                                                                    derived->candidates.front().outputs, exchanged);
   program::Request wanted = request.request;
   wanted.outputs.clear();
   for (const std::uint32_t i : places) wanted.outputs.push_back(program.outputs[i]);

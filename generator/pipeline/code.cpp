@@ -40,7 +40,7 @@ CompiledCode::CompiledCode(emit::Compiled compiled, const program::Program& prog
     : compiled_(std::move(compiled)), described_(described_code(program)) {
   for (const program::Function& function : program.functions) {
     for (const auto& result : function.results) {
-      if (!program::is_code(result.first)) arrays_[function.name].push_back(result.second.size());
+      if (!result.is_test()) arrays_[function.name].push_back(result.entries.size());
     }
   }
   if (program.taylor) arrays_["taylor"] = {};

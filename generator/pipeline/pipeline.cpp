@@ -130,7 +130,7 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
         const auto values = program::interpret(rhs, program::Arguments<cln::cl_R>{t, x, p, u, {}, {}, mode}, digits);
         for (std::size_t i = 1; i < values.results.size(); ++i) {
           for (const cln::cl_R& code : values.results[i]) {
-            if (program::is_code(rhs.results[i].first) && cln::minusp(code)) return std::vector<verify::Real>{};
+            if (rhs.results[i].is_test() && cln::minusp(code)) return std::vector<verify::Real>{};
           }
         }
         return values.results.front();

@@ -13,26 +13,31 @@
 namespace eomgen::pipeline {
 namespace {
 
-std::vector<run::ContactOutputs> contact_outputs(const Derived& derived) {
+using system::OutputKind;
+
+std::vector<run::ContactOutputs> contact_outputs(const system::EquationSystem& system) {
   std::vector<run::ContactOutputs> result;
-  for (const system::Contact& contact : derived.candidates.front().contacts) {
-    run::ContactOutputs outputs;
-    for (std::size_t a = 0; a < contact.slip.size(); ++a) {
-      const std::string name = contact.name + (contact.slip.size() > 1 ? "." + std::to_string(a + 1) : "");
-      outputs.slip.push_back("slip." + name);
-      outputs.phi.push_back(system::phi_output(name));
-      outputs.slopes.emplace_back();
-      for (const std::uint32_t q : derived.mechanics.free) {
-        outputs.slopes.back().push_back(system::slip_slope_output(name, derived.model.coordinates[q].name));
-      }
+  for (const system::Contact& contact : system.contacts) {
+    result.emplace_back().slopes.resize(contact.slip.size());
+    if (contact.unilateral) result.back().constraint = *contact.unilateral;
+  }
+  for (const system::Output& output : system.outputs) {
+    switch (output.kind) {
+      case OutputKind::slip: result[output.index].slip.push_back(output.name); break;
+      case OutputKind::friction_component: result[output.index].phi.push_back(output.name); break;
+      case OutputKind::slip_slope: result[output.index].slopes[output.part].push_back(output.name); break;
+      case OutputKind::restitution: result[output.index].restitution = output.name; break;
+      default: break;
     }
-    if (contact.unilateral) {
-      outputs.constraint = *contact.unilateral;
-      outputs.restitution = system::restitution_output(contact.name);
-    }
-    result.push_back(std::move(outputs));
   }
   return result;
+}
+
+/// Empty where it has none.
+std::string magnitude_of(const system::EquationSystem& system, std::size_t conserved) {
+  const std::vector<std::string> names =
+      system::names_of(system.outputs, OutputKind::magnitude, static_cast<std::uint32_t>(conserved));
+  return names.empty() ? "" : names.front();
 }
 
 /// All that the compiled code gives: coordinates, energies, what is watched, reactions, what is asked for.
@@ -47,19 +52,18 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
   }
   for (const char* name : {"energy", "kinetic", "potential"}) add(name);
   if (watch_power) add("power");
-  for (const conservation::Conserved& c : derived.conserved) {
-    add(c.name);
-    if (c.magnitude) add(conservation::magnitude_output(c));
+  const system::EquationSystem& system = derived.candidates.front();
+  for (std::size_t i = 0; i < derived.conserved.size(); ++i) {
+    add(derived.conserved[i].name);
+    if (const std::string magnitude = magnitude_of(system, i); !magnitude.empty()) add(magnitude);
   }
-  for (const mechanics::Integral& i : derived.mechanics.integrals) {
-    for (const std::uint32_t q : derived.mechanics.free)
-      add(conservation::differential_output(i, derived.model.coordinates[q].name));
-    add(conservation::differential_output(i, "t"));
+  for (const system::Output& output : system.outputs) {
+    if (output.kind == OutputKind::differential) add(output.name);
   }
-  for (const system::Output& output : derived.candidates.front().outputs) {
-    if (output.name.starts_with("reaction.") || output.name.starts_with(system::watched_prefix)) add(output.name);
+  for (const system::Output& output : system.outputs) {
+    if (system::is_reaction(output.kind) || output.kind == OutputKind::redundant) add(output.name);
   }
-  for (const run::ContactOutputs& contact : contact_outputs(derived)) {
+  for (const run::ContactOutputs& contact : contact_outputs(system)) {
     for (const auto* list : {&contact.slip, &contact.phi}) std::for_each(list->begin(), list->end(), add);
     for (const std::vector<std::string>& slopes : contact.slopes) std::for_each(slopes.begin(), slopes.end(), add);
     if (!contact.restitution.empty()) add(contact.restitution);
@@ -73,7 +77,7 @@ std::vector<std::string> code_outputs(const Derived& derived, const run::Scene& 
 
 bool energy_is_conserved(const Derived& derived) {
   return std::any_of(derived.conserved.begin(), derived.conserved.end(),
-                     [](const conservation::Conserved& c) { return c.name == "energy"; });
+                     [](const conservation::Conserved& c) { return c.kind == OutputKind::energy; });
 }
 
 }  // namespace
@@ -114,26 +118,24 @@ static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scen
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {
   run::RunRequest run{code, scene, state_names(derived), {}, {}, !energy_is_conserved(derived), estimate, 0, {},
                       {},   {}};
-  for (const conservation::Conserved& c : derived.conserved) {
-    run.conserved.push_back(c.name);
-    run.magnitudes.push_back(c.magnitude ? conservation::magnitude_output(c) : "");
+  const system::EquationSystem& system = derived.candidates.front();
+  for (std::size_t i = 0; i < derived.conserved.size(); ++i) {
+    const conservation::Conserved& c = derived.conserved[i];
+    run.conserved.push_back(
+        {c.name, magnitude_of(system, i), c.kind == OutputKind::energy || c.kind == OutputKind::jacobi});
+    if (c.kind == OutputKind::integral)
+      run.integrals.push_back({c.name, system::names_of(system.outputs, OutputKind::differential, c.index)});
   }
-  for (const mechanics::Integral& i : derived.mechanics.integrals) {
-    run::IntegralOutputs names{"integral." + i.label, {}};
-    for (const std::uint32_t q : derived.mechanics.free) {
-      names.slopes.push_back(conservation::differential_output(i, derived.model.coordinates[q].name));
-    }
-    names.slopes.push_back(conservation::differential_output(i, "t"));
-    run.integrals.push_back(std::move(names));
+  for (const system::Output& output : system.outputs) {
+    if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
-  run.contacts = contact_outputs(derived);
+  run.contacts = contact_outputs(system);
   run.ranges = ranges_of(derived, scene, code);
-  run.narrow = run::NarrowForces(derived.candidates.front(), scene.parameters);
+  run.narrow = run::NarrowForces(system, scene.parameters);
   run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return holds_beyond_range(derived, scene, code, coordinate, t, x);
   };
-  for (const std::uint32_t k : derived.candidates.front().active)
-    run.constraint_names.push_back(derived.mechanics.constraints[k].label);
+  for (const std::uint32_t k : system.active) run.constraint_names.push_back(derived.mechanics.constraints[k].label);
   for (std::size_t i = 0; i < derived.model.events.size(); ++i) {
     const model::Event& event = derived.model.events[i];
     run.events.push_back({event.name, eom::Direction::any, scene.stops[i]});

@@ -23,10 +23,11 @@ struct ForceFinding {
 };
 
 struct ConservedFinding {
-  std::string name, title;  // as conservation::Conserved has them
+  system::OutputKind kind;  // as conservation::Conserved has them
+  std::uint32_t index, part;
+  std::string title;
   symbolic::Ref expression;
   std::optional<reading::Sum> named;  // the same, where functions of time keep their names
-  std::optional<std::uint32_t> cyclic;
   bool proven = true;
 };
 

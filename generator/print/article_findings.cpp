@@ -10,6 +10,7 @@ namespace eomgen::print {
 
 using reading::Formula;
 using reading::mark;
+using system::OutputKind;
 
 namespace {
 
@@ -26,13 +27,14 @@ std::string number_in_latex(double value) {
 }
 
 Formula letter_of(const Article& a, const ConservedFinding& c) {
-  if (c.cyclic) return reading::symbol(reading::momentum_symbol(*c.cyclic));
-  const auto ends = [&](const char* axis) { return c.name.ends_with(axis); };
-  const long axis = ends("E1") ? 1 : ends("E2") ? 2 : 3;
-  if (c.name.starts_with("linear_momentum.")) return mark(free_letter(a.model, "G", "cal G"), {reading::number(axis)});
-  if (c.name.starts_with("angular_momentum.")) return mark(free_letter(a.model, "H", "cal H"), {reading::number(axis)});
-  if (c.name == "energy") return mark("cal E");  // E is the letter of the fixed axes
-  return mark(free_letter(a.model, "h", "cal H"));
+  const Formula axis = reading::number(static_cast<long>(c.part) + 1);
+  switch (c.kind) {
+    case OutputKind::momentum: return reading::symbol(reading::momentum_symbol(c.index));
+    case OutputKind::linear_momentum: return mark(free_letter(a.model, "G", "cal G"), {axis});
+    case OutputKind::angular_momentum: return mark(free_letter(a.model, "H", "cal H"), {axis});
+    case OutputKind::energy: return mark("cal E");  // E is the letter of the fixed axes
+    default: return mark(free_letter(a.model, "h", "cal H"));
+  }
 }
 
 std::string reason_of(const Article& a, const ConservedFinding& c) {
@@ -42,24 +44,27 @@ std::string reason_of(const Article& a, const ConservedFinding& c) {
                "the slope of ") +
            what + " by the time, and all of this vanishes";
   };
-  if (c.cyclic) {
-    const std::string q = a.name_of(*c.cyclic);
-    return q + " is cyclic: the Lagrangian of Approach II has " + a.name_of(*c.cyclic, 1) + " but not " + q +
-           ", and along " + q + " neither a force beyond the potential nor a constraint that keeps its multiplier acts";
+  switch (c.kind) {
+    case OutputKind::momentum: {
+      const std::string q = a.name_of(c.index);
+      return q + " is cyclic: the Lagrangian of Approach II has " + a.name_of(c.index, 1) + " but not " + q +
+             ", and along " + q +
+             " neither a force beyond the potential nor a constraint that keeps its multiplier acts";
+    }
+    case OutputKind::energy: return rates("the Lagrangian");
+    case OutputKind::jacobi:
+      return "the Lagrangian of Approach II is free of the time, and no constraint that keeps its multiplier moves; "
+             "the energy itself is not conserved, since constraints do work";
+    case OutputKind::applied_energy:
+      return "all forces have potentials, which are added here to $U$, and the Lagrangian is free of the time";
+    case OutputKind::linear_momentum:
+      return "a displacement of the whole along this axis changes neither energies nor constraints, and no force acts "
+             "along it";
+    case OutputKind::angular_momentum:
+      return "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts about "
+             "it";
+    default: return "the constraint on velocities is the rate of it";
   }
-  if (c.name == "energy") return rates("the Lagrangian");
-  if (c.name == "jacobi") {
-    return "the Lagrangian of Approach II is free of the time, and no constraint that keeps its multiplier moves; the "
-           "energy itself is not conserved, since constraints do work";
-  }
-  if (c.name == "energy.applied")
-    return "all forces have potentials, which are added here to $U$, and the Lagrangian is free of the time";
-  if (c.name.starts_with("linear_momentum."))
-    return "a displacement of the whole along this axis changes neither energies nor constraints, and no force acts "
-           "along it";
-  if (c.name.starts_with("angular_momentum."))
-    return "a turn of the whole about this axis changes neither energies nor constraints, and no moment acts about it";
-  return "the constraint on velocities is the rate of it";
 }
 
 /// Nothing where it is too long to be written out.
@@ -114,13 +119,13 @@ void write_conserved(Article& a) {
         "None was found: no coordinate is cyclic, neither the energy nor Jacobi's integral is conserved, nor a "
         "momentum along or about a fixed axis.");
   for (const ConservedFinding& c : all) {
-    std::string title = c.cyclic ? "generalised momentum of " + a.name_of(*c.cyclic) : words(c.title);
+    const std::string title =
+        c.kind == OutputKind::momentum ? "generalised momentum of " + a.name_of(c.index) : words(c.title);
     a.out.paragraph("The " + title + " is conserved: " + reason_of(a, c) +
                     (c.proven ? "." : " (shown by numbers, in 40 digits)."));
     const std::optional<Formula> value = value_of(a, c);
     if (!value) continue;
-    const bool integral = c.name.starts_with("integral.");
-    a.out.display({integral ? *value : reading::relation({letter_of(a, c), *value})});
+    a.out.display({c.kind == OutputKind::integral ? *value : reading::relation({letter_of(a, c), *value})});
   }
 }
 

@@ -16,6 +16,8 @@ using symbolic::SymbolKind;
 
 namespace {
 
+constexpr int no_solution = 3, many_solutions = 4;  // codes of docs/abi.md: of the law of friction
+
 constexpr const char* section_mass = "mass matrix";
 constexpr const char* section_forces = "forces";
 constexpr const char* section_constraints = "constraints";
@@ -117,7 +119,7 @@ void AbiFunctions::label_matrices(WantedFunction& function) {
 void AbiFunctions::add_solution(WantedFunction& function) {
   const std::vector<Ref> needed = [&] {
     std::vector<Ref> roots;
-    for (const auto& result : function.results) roots.insert(roots.end(), result.second.begin(), result.second.end());
+    for (const auto& result : function.results) roots.insert(roots.end(), result.entries.begin(), result.entries.end());
     return system_.dag->reachable(roots);
   }();
   std::vector<Pivot> pivots;
@@ -145,12 +147,12 @@ void AbiFunctions::add_solution(WantedFunction& function) {
 
 WantedFunction AbiFunctions::rhs() {
   WantedFunction function{"rhs", {{"dx", qdot_}}, {}, {}};
-  auto& dx = function.results[0].second;
+  auto& dx = function.results[0].entries;
   dx.insert(dx.end(), qddot_.begin(), qddot_.end());
   for (const system::IntegralState& integral : system_.integrals) dx.push_back(integral.rate);
   if (!friction_.none.empty()) {
-    function.results.emplace_back(no_solution, friction_.none);
-    function.results.emplace_back(many_solutions, friction_.many);
+    function.results.push_back({"", friction_.none, no_solution});
+    function.results.push_back({"", friction_.many, many_solutions});
   }
   add_solution(function);
   return function;
@@ -188,8 +190,8 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
 WantedFunction AbiFunctions::jac() {
   const Dag& dag = *system_.dag;
   WantedFunction function{"jac", {{"dfdx", {}}, {"dfdt", {}}}, {}, {}};
-  auto& dfdx = function.results[0].second;
-  auto& dfdt = function.results[1].second;
+  auto& dfdx = function.results[0].entries;
+  auto& dfdt = function.results[1].entries;
   for (std::uint8_t order = 0; order < 2; ++order) {
     for (std::size_t j = 0; j < n_; ++j) {
       for (std::size_t i = 0; i < n_; ++i) dfdx.push_back(order == 1 && i == j ? dag.one() : dag.zero());
@@ -211,7 +213,7 @@ WantedFunction AbiFunctions::jac() {
 
 WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
   WantedFunction function{"jac_p", {{"dfdp", {}}}, {}, {}};
-  auto& dfdp = function.results[0].second;
+  auto& dfdp = function.results[0].entries;
   for (std::uint32_t j = 0; j < parameters; ++j) {
     dfdp.insert(dfdp.end(), n_, system_.dag->zero());
     const std::vector<Ref> lower = column({SymbolKind::parameter, j, 0});
@@ -238,8 +240,8 @@ WantedFunction AbiFunctions::momenta() {
     for (std::size_t j = 0; j < n_; ++j) {
       rate = dag.add(rate, dag.mul(symbolic::partial(dag, {SymbolKind::coordinate, system_.free[j], 0})(p), qdot_[j]));
     }
-    function.results[0].second.push_back(p);
-    function.results[1].second.push_back(rate);
+    function.results[0].entries.push_back(p);
+    function.results[1].entries.push_back(rate);
   }
   label_matrices(function);
   return function;
@@ -248,14 +250,14 @@ WantedFunction AbiFunctions::momenta() {
 WantedFunction AbiFunctions::mass() {
   WantedFunction function{"mass", {{"M", {}}, {"h", {}}}, {}, {}};
   for (std::size_t j = 0; j < n_; ++j) {
-    for (std::size_t i = 0; i < n_; ++i) function.results[0].second.push_back(live_M_[i * n_ + j]);
+    for (std::size_t i = 0; i < n_; ++i) function.results[0].entries.push_back(live_M_[i * n_ + j]);
   }
   std::map<Symbol, Ref> none;  // h is without friction, which depends on the mode
   for (std::size_t b = 0; b < friction_.phi.size(); ++b) {
     none[{SymbolKind::friction, static_cast<std::uint32_t>(b), 0}] = system_.dag->zero();
   }
   Substitution frictionless(*system_.dag, none);
-  for (const Ref f : live_f_) function.results[1].second.push_back(system_.dag->neg(frictionless(f)));
+  for (const Ref f : live_f_) function.results[1].entries.push_back(system_.dag->neg(frictionless(f)));
   label_matrices(function);
   return function;
 }
@@ -263,7 +265,7 @@ WantedFunction AbiFunctions::mass() {
 WantedFunction AbiFunctions::constraints() {
   WantedFunction function{"constraints", {{"psi", system_.psi}, {"A", {}}, {"b", system_.b}}, {}, {}};
   for (std::size_t j = 0; j < n_; ++j) {
-    for (std::size_t k = 0; k < m_; ++k) function.results[1].second.push_back(live_A_[k * n_ + j]);
+    for (std::size_t k = 0; k < m_; ++k) function.results[1].entries.push_back(live_A_[k * n_ + j]);
   }
   return function;
 }
@@ -280,7 +282,7 @@ WantedFunction AbiFunctions::reactions() {
   WantedFunction function{"reactions", {{"lambda", {}}}, {}, {}};
   bool solved = false;
   for (const auto& reaction : system_.reactions) {
-    function.results[0].second.push_back(written_out(reaction.value, solved));
+    function.results[0].entries.push_back(written_out(reaction.value, solved));
   }
   if (solved) add_solution(function);
   return function;
@@ -297,7 +299,7 @@ WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
       for (const auto& output : system_.outputs) known += (known.empty() ? "" : ", ") + output.name;
       throw Error("program", {}, fmt::format("there is no output `{}`", name), "outputs of this model: " + known);
     }
-    function.results[0].second.push_back(written_out(found->value, solved));
+    function.results[0].entries.push_back(written_out(found->value, solved));
   }
   if (solved) add_solution(function);
   return function;
@@ -307,12 +309,12 @@ WantedFunction AbiFunctions::events() {
   WantedFunction function{"events", {{"g", {}}}, {}, {}};
   bool solved = false;
   for (const system::Event& event : system_.events)
-    function.results[0].second.push_back(written_out(event.value, solved));
-  for (const Kink& kink : kinks_) function.results[0].second.push_back(kink.value);
+    function.results[0].entries.push_back(written_out(event.value, solved));
+  for (const Kink& kink : kinks_) function.results[0].entries.push_back(kink.value);
   for (const ContactWatch& watch : friction_.watch) {
     solved = true;
     for (const Ref value : {watch.slip, watch.above, watch.below, watch.hold, watch.margin})
-      function.results[0].second.push_back(value);
+      function.results[0].entries.push_back(value);
   }
   if (solved) add_solution(function);
   return function;

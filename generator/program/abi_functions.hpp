@@ -21,9 +21,16 @@ struct WantedLabel {
   std::string name, section;
 };
 
+/// As Result has it.
+struct WantedResult {
+  std::string name;
+  std::vector<Ref> entries;
+  int code = 0;
+};
+
 struct WantedFunction {
   std::string name;
-  std::vector<std::pair<std::string, std::vector<Ref>>> results;  // argument name, entries (column-major)
+  std::vector<WantedResult> results;
   std::vector<Pivot> pivots;
   std::vector<WantedLabel> labels;
 };

@@ -54,7 +54,7 @@ bool ends_well(const Function& function, const Values<cl_R>& values) {
     if (cln::zerop(pivot) || cln::abs(pivot) <= least) return false;
   }
   for (std::size_t r = 0; r < values.results.size(); ++r) {
-    if (!is_code(function.results[r].first)) continue;
+    if (!function.results[r].is_test()) continue;
     if (std::any_of(values.results[r].begin(), values.results[r].end(),
                     [](const cl_R& code) { return cln::minusp(code); }))
       return false;
@@ -65,7 +65,7 @@ bool ends_well(const Function& function, const Values<cl_R>& values) {
 template <class Real>
 void drop_codes(const Function& function, std::vector<std::vector<Real>>& results) {
   for (std::size_t r = results.size(); r-- > 0;) {
-    if (is_code(function.results[r].first)) results.erase(results.begin() + static_cast<std::ptrdiff_t>(r));
+    if (function.results[r].is_test()) results.erase(results.begin() + static_cast<std::ptrdiff_t>(r));
   }
 }
 

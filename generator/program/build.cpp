@@ -57,10 +57,10 @@ std::vector<Polynomials> starts(const Polynomials& graph) {
   return result;
 }
 
-std::vector<std::pair<std::string, std::size_t>> shape(const WantedFunction& wanted) {
-  std::vector<std::pair<std::string, std::size_t>> result;
-  for (const auto& [argument, entries] : wanted.results) result.emplace_back(argument, entries.size());
-  return result;
+std::vector<ResultShape> shape(const WantedFunction& wanted) {
+  std::vector<ResultShape> shape;
+  for (const WantedResult& result : wanted.results) shape.push_back({result.name, result.entries.size(), result.code});
+  return shape;
 }
 
 Function finished(const Polynomials& graph, const WantedFunction& wanted) {

@@ -23,30 +23,32 @@ Function exchange(const symbolic::Dag& dag, const std::string& name, const Progr
     for (const std::uint32_t q : program.free) {
       const auto angle = std::find(change.angles.begin(), change.angles.end(), q);
       const std::size_t place = static_cast<std::size_t>(angle - change.angles.begin()) + order * change.angles.size();
-      wanted.results[0].second.push_back(
+      wanted.results[0].entries.push_back(
           angle == change.angles.end() ? graph.symbol({symbolic::SymbolKind::coordinate, q, order}) : formulas[place]);
     }
   }
   for (const std::uint32_t i : program.integrals) {
-    wanted.results[0].second.push_back(graph.symbol({symbolic::SymbolKind::integral, i, 0}));
+    wanted.results[0].entries.push_back(graph.symbol({symbolic::SymbolKind::integral, i, 0}));
     integrals.push_back({i, graph.zero()});
   }
   const Polynomials result = flatten(from_dag(graph, wanted, program.free, integrals), false);
-  return schedule(result, wanted.name, {{"y", wanted.results[0].second.size()}});
+  return schedule(result, wanted.name, {{"y", wanted.results[0].entries.size()}});
 }
 
 }  // namespace
 
 std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs,
-                                          const std::vector<std::string>& known,
-                                          const std::vector<std::string>& exchanged) {
+                                          const std::vector<system::Output>& own,
+                                          const std::vector<system::Output>& second,
+                                          const std::vector<std::uint32_t>& exchanged) {
   std::vector<std::uint32_t> result;
   for (std::uint32_t i = 0; i < outputs.size(); ++i) {
-    const bool momentum = std::any_of(exchanged.begin(), exchanged.end(), [&](const std::string& angle) {
-      return outputs[i] == angle + "_ddot" || outputs[i] == "momentum." + angle ||
-             outputs[i] == "magnitude.momentum." + angle;
-    });
-    if (!momentum && std::find(known.begin(), known.end(), outputs[i]) != known.end()) result.push_back(i);
+    const system::Output* output = system::find(own, outputs[i]);
+    const bool other_meaning =
+        output != nullptr &&
+        (output->kind == system::OutputKind::acceleration || output->kind == system::OutputKind::momentum) &&
+        std::find(exchanged.begin(), exchanged.end(), output->index) != exchanged.end();
+    if (!other_meaning && system::find(second, outputs[i]) != nullptr) result.push_back(i);
   }
   return result;
 }

@@ -12,10 +12,12 @@ namespace eomgen::program {
 inline constexpr std::size_t most_kinks_with_charts = 10;
 
 /// Which of these outputs a program in second charts can give as they are meant: all but momenta and accelerations of
-/// exchanged angles and what only the own charts conserve. `known`: outputs of its equations.
+/// exchanged angles and what only the own charts conserve. `own`, `second`: of the equations in these charts;
+/// `exchanged`: coordinates of the model.
 std::vector<std::uint32_t> shared_outputs(const std::vector<std::string>& outputs,
-                                          const std::vector<std::string>& known,
-                                          const std::vector<std::string>& exchanged);
+                                          const std::vector<system::Output>& own,
+                                          const std::vector<system::Output>& second,
+                                          const std::vector<std::uint32_t>& exchanged);
 
 /// Puts the functions of the exchange into `program`; `dag`: that of the changes.
 void add_charts(Program& program, const symbolic::Dag& dag, const std::vector<system::ChartChange>& changes);

@@ -63,9 +63,9 @@ class Writer {
 
   void function(const Function& f) {
     words(f.name, f.results.size(), f.constants.size(), f.code.size(), f.pivots.size());
-    for (const auto& [name, entries] : f.results) {
-      words(name, entries.size());
-      for (const Operand& o : entries) operand(o);
+    for (const Result& result : f.results) {
+      words(result.name, result.code, result.entries.size());
+      for (const Operand& o : result.entries) operand(o);
     }
     list(f.places);
     for (const symbolic::Rational& constant : f.constants) {

@@ -19,7 +19,7 @@ class Conversion {
 
   Polynomials run(const WantedFunction& wanted) {
     std::vector<Ref> roots;
-    for (const auto& result : wanted.results) roots.insert(roots.end(), result.second.begin(), result.second.end());
+    for (const auto& result : wanted.results) roots.insert(roots.end(), result.entries.begin(), result.entries.end());
     for (const Pivot& pivot : wanted.pivots) roots.insert(roots.end(), {pivot.pivot, pivot.scale});
     value_.resize(dag_.size());
     known_.assign(dag_.size(), false);
@@ -28,7 +28,7 @@ class Conversion {
       known_[r.id] = true;
     }
     for (const auto& result : wanted.results) {
-      for (const Ref r : result.second) graph_.results.push_back(value_[r.id]);
+      for (const Ref r : result.entries) graph_.results.push_back(value_[r.id]);
     }
     for (const Pivot& pivot : wanted.pivots) {
       graph_.pivots.push_back({value_[pivot.pivot.id], value_[pivot.scale.id]});

@@ -105,8 +105,8 @@ void keep_needed(Function& rest, Polynomials& prepare) {
   for (Instruction& instruction : rest.code) {
     for (Operand& operand : instruction.operands) visit(operand);
   }
-  for (auto& [name, entries] : rest.results) {
-    for (Operand& operand : entries) visit(operand);
+  for (Result& result : rest.results) {
+    for (Operand& operand : result.entries) visit(operand);
   }
   for (PivotTest& test : rest.pivots) visit(test.pivot), visit(test.scale);
   prepare.results = std::move(kept);
@@ -115,7 +115,7 @@ void keep_needed(Function& rest, Polynomials& prepare) {
 }  // namespace
 
 std::optional<Hoisted> hoist(const std::vector<Polynomials>& starts, const Operations& whole, const std::string& name,
-                             const std::vector<std::pair<std::string, std::size_t>>& shape) {
+                             const std::vector<ResultShape>& shape) {
   Polynomials best, prepare;
   const std::size_t least = std::max<std::size_t>(2, (whole.cost() + worth_hoisting - 1) / worth_hoisting);
   if (whole.cost() < least) return std::nullopt;

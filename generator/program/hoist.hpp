@@ -19,6 +19,6 @@ struct Hoisted {
 /// The cheapest of what the equal graphs `starts` become without their parts of parameters only; nothing where that
 /// saves less than a fiftieth of the cost of `whole`. `shape` as in `schedule`.
 std::optional<Hoisted> hoist(const std::vector<Polynomials>& starts, const Operations& whole, const std::string& name,
-                             const std::vector<std::pair<std::string, std::size_t>>& shape);
+                             const std::vector<ResultShape>& shape);
 
 }  // namespace eomgen::program

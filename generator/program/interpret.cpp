@@ -84,9 +84,9 @@ Values<Real> run(const Function& function, const Arguments<Real>& arguments, con
     }
   }
   Values<Real> values;
-  for (const auto& [name, entries] : function.results) {
+  for (const Result& result : function.results) {
     std::vector<Real> list;
-    for (const Operand& entry : entries) list.push_back(needed(entry));
+    for (const Operand& entry : result.entries) list.push_back(needed(entry));
     values.results.push_back(std::move(list));
   }
   for (const PivotTest& test : function.pivots) values.pivots.emplace_back(needed(test.pivot), needed(test.scale));

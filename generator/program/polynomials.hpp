@@ -118,10 +118,9 @@ class Walk {
 /// Operations of the straight-line code that `schedule` makes of a graph.
 Operations count_operations(const Polynomials& graph);
 
-/// Straight-line code. `shape`: argument names and the numbers of their entries, which are the graph's results in
+/// Straight-line code. `shape`: of its results, whose entries are the graph's results in
 /// order.
-Function schedule(const Polynomials& graph, const std::string& name,
-                  const std::vector<std::pair<std::string, std::size_t>>& shape);
+Function schedule(const Polynomials& graph, const std::string& name, const std::vector<ResultShape>& shape);
 
 /// The same results with chains merged: a node that is used once goes into its user; with `inline_products` products
 /// that are shared do too (so that other factorings can be found).

@@ -51,9 +51,24 @@ struct PivotTest {
 /// entry times the number of rows: below 1e-13 of it no more than two or three digits are right.
 inline constexpr double pivot_tolerance = 1e-13;
 
+/// An argument of the function, or a test that ends it.
+struct Result {
+  std::string name;              // of the argument; of a test: empty
+  std::vector<Operand> entries;  // column-major
+  int code = 0;                  // of a test: where an entry is negative the function ends with it
+  bool is_test() const { return code != 0; }
+};
+
+/// What a function is to give: Result without the operands.
+struct ResultShape {
+  std::string name;
+  std::size_t entries = 0;
+  int code = 0;
+};
+
 struct Function {
-  std::string name;                                                   // of the ABI: "rhs", "prepare", "mass", ...
-  std::vector<std::pair<std::string, std::vector<Operand>>> results;  // argument name, its entries (column-major)
+  std::string name;  // of the ABI: "rhs", "prepare", "mass", ...
+  std::vector<Result> results;
   std::vector<std::uint32_t> places;  // where the entries of the first result go; none: one after the other
   std::vector<symbolic::Rational> constants;
   std::vector<Instruction> code;
@@ -79,11 +94,6 @@ struct Tried {
   Operations operations;
 };
 
-/// Names of results of rhs that are no arguments: where an entry is negative the function ends with code 3 or 4.
-inline constexpr const char* no_solution = "?3";
-inline constexpr const char* many_solutions = "?4";
-inline bool is_code(const std::string& result) { return result[0] == '?'; }
-
 /// A contact with friction or that can be left: one digit of the mode.
 struct ContactInfo : eom::ContactShape {
   std::string name;
@@ -104,7 +114,7 @@ struct Program {
   /// Entries of the first result of a function; 0: there is no such function.
   std::size_t entries(std::string_view function_name) const {
     for (const Function& function : functions) {
-      if (function.name == function_name) return function.results[0].second.size();
+      if (function.name == function_name) return function.results[0].entries.size();
     }
     return 0;
   }

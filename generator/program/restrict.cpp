@@ -13,10 +13,10 @@ Function restricted(const Function& function, const std::vector<std::size_t>& en
   result.constants = function.constants;
   result.uses_input = function.uses_input;
   result.operations = function.operations;
-  result.results.emplace_back(function.results[0].first, std::vector<Operand>{});
+  result.results.push_back({function.results[0].name, {}});
   for (const std::size_t i : entries) {
-    result.results[0].second.push_back(function.results[0].second.at(i));
-    need(result.results[0].second.back());
+    result.results[0].entries.push_back(function.results[0].entries.at(i));
+    need(result.results[0].entries.back());
   }
   for (std::size_t i = function.code.size(); i-- > 0;) {
     if (!needed[i]) continue;
@@ -34,7 +34,7 @@ Function restricted(const Function& function, const std::vector<std::size_t>& en
     result.code.back().pack = result.code.back().lane = 0;
     for (Operand& operand : result.code.back().operands) moved(operand);
   }
-  for (Operand& operand : result.results[0].second) moved(operand);
+  for (Operand& operand : result.results[0].entries) moved(operand);
   return result;
 }
 

@@ -122,9 +122,9 @@ class Run {
   std::vector<std::vector<double>> operator()() {
     for (const Instruction& instruction : function_.code) value_.push_back(of(instruction));
     std::vector<std::vector<double>> result;
-    for (const auto& [name, entries] : function_.results) {
+    for (const Result& of_function : function_.results) {
       result.emplace_back();
-      for (const Operand& entry : entries) {
+      for (const Operand& entry : of_function.entries) {
         const Bounded b = read(entry);
         result.back().push_back(std::isfinite(b.value) && std::isfinite(b.off) ? b.off : infinite);
       }

@@ -75,7 +75,7 @@ class Schedule {
     function_.name = std::move(name);
   }
 
-  Function run(const std::vector<std::pair<std::string, std::size_t>>& shape) {
+  Function run(const std::vector<ResultShape>& shape) {
     prepare();
     Walk walk(graph_);
     const auto take = [this](NodeId id) { emit(id); };
@@ -282,12 +282,12 @@ class Schedule {
     return result;
   }
 
-  void finish(const std::vector<std::pair<std::string, std::size_t>>& shape) {
+  void finish(const std::vector<ResultShape>& shape) {
     std::size_t next = 0;
-    for (const auto& [argument, entries] : shape) {
+    for (const ResultShape& result : shape) {
       std::vector<Operand> values;
-      for (std::size_t i = 0; i < entries; ++i) values.push_back(operand(graph_.results[next++]));
-      function_.results.emplace_back(argument, std::move(values));
+      for (std::size_t i = 0; i < result.entries; ++i) values.push_back(operand(graph_.results[next++]));
+      function_.results.push_back({result.name, std::move(values), result.code});
     }
     test_pivots();
   }
@@ -320,8 +320,7 @@ class Schedule {
 
 }  // namespace
 
-Function schedule(const Polynomials& graph, const std::string& name,
-                  const std::vector<std::pair<std::string, std::size_t>>& shape) {
+Function schedule(const Polynomials& graph, const std::string& name, const std::vector<ResultShape>& shape) {
   return Schedule(graph, name).run(shape);
 }
 

@@ -342,15 +342,15 @@ class Recurrences {
   }
 
   void write_results() {
-    for (const auto& [name, entries] : rhs_.results) {
+    for (const Result& result : rhs_.results) {
       std::vector<Operand> zero, next;
-      for (const Operand& entry : entries) {
+      for (const Operand& entry : result.entries) {
         const Series series = read(entry);
         zero.push_back(series.zero);
         next.push_back(series.moves ? series.next : constant(next_, 0));
       }
-      start_.results.emplace_back(name, zero);
-      if (!is_code(name)) next_.results.emplace_back(name, next);
+      start_.results.push_back({result.name, zero, result.code});
+      if (!result.is_test()) next_.results.push_back({result.name, next});
     }
     for (const PivotTest& test : rhs_.pivots) start_.pivots.push_back({read(test.pivot).zero, read(test.scale).zero});
     const Operand none = constant(next_, 0);
@@ -394,8 +394,8 @@ class Recurrences {
     number_packs();
     for (Instruction& instruction : next_.code)
       std::for_each(instruction.operands.begin(), instruction.operands.end(), [this](Operand& o) { place(o); });
-    for (auto& [name, entries] : next_.results)
-      std::for_each(entries.begin(), entries.end(), [this](Operand& o) { place(o); });
+    for (Result& result : next_.results)
+      std::for_each(result.entries.begin(), result.entries.end(), [this](Operand& o) { place(o); });
     for (Function* function : {&start_, &next_}) count(*function);
     return {std::move(start_), std::move(next_), zeros_.size(), factors_.size()};
   }

@@ -16,7 +16,7 @@ using symbolic::Op;
 Expansion::Expansion(const program::Taylor& taylor, int digits)
     : taylor_(taylor), digits_(digits), format_(cln::float_format(static_cast<std::uintptr_t>(digits))) {
   const program::Function& next = taylor.next;
-  states_ = next.results[2].second.size();
+  states_ = next.results[2].entries.size();
   for (const symbolic::Rational& constant : next.constants) values_.push_back(cln::cl_float(constant, format_));
   values_.push_back(cln::pi(format_));
   at_k_ = values_.size();
@@ -30,11 +30,11 @@ Expansion::Expansion(const program::Taylor& taylor, int digits)
     code_.push_back({instruction.op, {}});
     for (const Operand& operand : instruction.operands) code_.back().operands.push_back(place(operand));
   }
-  for (const Operand& entry : next.results[0].second) a_.push_back(place(entry));
-  for (const Operand& entry : next.results[1].second) b_.push_back(place(entry));
-  for (const Operand& entry : next.results[2].second) dx_.push_back(place(entry));
+  for (const Operand& entry : next.results[0].entries) a_.push_back(place(entry));
+  for (const Operand& entry : next.results[1].entries) b_.push_back(place(entry));
+  for (const Operand& entry : next.results[2].entries) dx_.push_back(place(entry));
   for (std::size_t i = 0; i < a_.size(); ++i) {
-    const Operand& factor = next.results[0].second[i];
+    const Operand& factor = next.results[0].entries[i];
     if (factor.slot != Slot::constant || next.constants[factor.index] != 0) sums_ = i + 1;
   }
 }

@@ -5,7 +5,6 @@
 #include <stdexcept>
 
 #include "run/jumps.hpp"
-#include "system/equation_system.hpp"
 
 namespace eomgen::run {
 namespace {
@@ -41,20 +40,15 @@ class PlaceOf {
 };
 
 void bind_outputs(const RunRequest& request, Problem& problem) {
-  const std::vector<std::string>& names = request.code.output_names;
-  const PlaceOf place(names);
+  const PlaceOf place(request.code.output_names);
   problem.kinetic = place("kinetic");
   problem.potential = place("potential");
   problem.energy = place("energy");
   if (request.watch_power) problem.power = place("power");
-  for (std::size_t i = 0; i < names.size(); ++i) {
-    if (names[i].starts_with(system::watched_prefix)) problem.redundant.push_back(i);
-  }
-  for (std::size_t i = 0; i < request.conserved.size(); ++i) {
-    const std::string& name = request.conserved[i];
-    problem.invariants.push_back({name, place(name), {}, name == "energy" || name == "jacobi"});
-    if (i < request.magnitudes.size() && !request.magnitudes[i].empty())
-      problem.invariants.back().magnitude = place(request.magnitudes[i]);
+  problem.redundant = place(request.redundant);
+  for (const ConservedOutput& conserved : request.conserved) {
+    problem.invariants.push_back({conserved.name, place(conserved.name), {}, conserved.energy});
+    if (!conserved.magnitude.empty()) problem.invariants.back().magnitude = place(conserved.magnitude);
   }
   for (const IntegralOutputs& outputs : request.integrals)
     problem.integrals.push_back({place(outputs.psi), place(outputs.slopes)});

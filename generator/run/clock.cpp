@@ -95,7 +95,7 @@ class Search {
     const std::size_t moving = roots.size();
     for (const Ref r : {system_.kinetic, system_.potential}) roots.push_back(r);
     for (const system::Output& output : system_.outputs) {  // what jumps there
-      if (output.name.find(".position") != std::string::npos || output.name.find(".velocity") != std::string::npos)
+      if (output.kind == system::OutputKind::position || output.kind == system::OutputKind::velocity)
         roots.push_back(output.value);
     }
     depends_.see(roots);

@@ -20,9 +20,6 @@ constexpr double rounding = 1e-9;     // of what jumps: a smaller difference is 
 constexpr double far = 1e-6;          // of the time: a change over so much
 constexpr double part_of_far = 1e-4;  // what changes by less than this part of it at the kink does not jump
 
-bool is_position(const std::string& output) { return output.find(".position") != std::string::npos; }
-bool is_velocity(const std::string& output) { return output.find(".velocity") != std::string::npos; }
-
 /// t, free coordinates and rates, integrals, inputs.
 RangeCode::Lookup symbols_of(const system::EquationSystem& s, const std::vector<double>& parameters) {
   return [&s, &parameters](const Symbol& symbol) {
@@ -66,10 +63,10 @@ Jumps::Jumps(const mechanics::Mechanics& m, const system::EquationSystem& s, con
   for (const Ref r : s.A) add(r, What::row);
   for (const Ref r : s.b) add(r, What::rate);
   for (const system::Output& output : s.outputs) {
-    const bool coordinate = std::any_of(m.model->coordinates.begin(), m.model->coordinates.end(),
-                                        [&](const auto& c) { return c.name == output.name; });
-    if (coordinate || is_position(output.name)) add(output.value, What::place, output.name);
-    if (is_velocity(output.name)) add(output.value, What::velocity, output.name);
+    using system::OutputKind;
+    if (output.kind == OutputKind::coordinate || output.kind == OutputKind::position)
+      add(output.value, What::place, output.name);
+    if (output.kind == OutputKind::velocity) add(output.value, What::velocity, output.name);
   }
   std::vector<Ref> energies{s.kinetic};
   energies.insert(energies.end(), roots.begin(), roots.end());

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <set>
 
-#include "conservation/conserved.hpp"
 #include "run/scene.hpp"
 
 namespace eomgen::run {
 namespace {
 
 using mechanics::Mechanics;
+using system::OutputKind;
 
 // A component of a joint's reaction, or all of them, or the force of a constraint, that the motion does not determine.
 void refuse_undetermined(const Mechanics& m, const model::Named& want) {
@@ -45,37 +45,29 @@ void refuse_undetermined(const Mechanics& m, const model::Named& want) {
 
 std::vector<std::string> expand_outputs(const Mechanics& m, const system::EquationSystem& system,
                                         const std::vector<model::Named>& wanted) {
-  std::set<std::string> coordinates;
-  for (const model::Coordinate& c : m.model->coordinates) {
-    coordinates.insert(c.name);
-    coordinates.insert(c.name + "_dot");
-  }
+  // Every table has these.
+  const auto of_state = [](const system::Output& output) {
+    return output.kind == OutputKind::coordinate || output.kind == OutputKind::rate;
+  };
+  const auto for_reader = [](const system::Output& output) {
+    return system::audience(output.kind) == system::Audience::reader;
+  };
   std::vector<std::string> result;
   std::set<std::string> seen;
-  const auto take = [&](const std::string& name) {
-    if (!coordinates.contains(name) && seen.insert(name).second) result.push_back(name);
-  };
   for (const model::Named& want : wanted) {
-    bool found = coordinates.contains(want.name);
+    bool found = false;
     for (const system::Output& output : system.outputs) {
-      const bool part = output.name.starts_with(want.name + ".") && want.name.find('.') != std::string::npos;
-      const bool table = !output.name.starts_with(conservation::differential_prefix) &&
-                         !output.name.starts_with(conservation::magnitude_prefix) &&
-                         !output.name.starts_with(system::contact_prefix) &&
-                         !output.name.starts_with(system::watched_prefix);
-      const bool of_all = want.name == "all" && table;
+      const bool of_all = want.name == "all" && for_reader(output);
+      const bool part = !output.vector.empty() && output.vector == want.name;
       if (!of_all && output.name != want.name && !part) continue;
-      take(output.name);
       found = true;
+      if (!of_state(output) && seen.insert(output.name).second) result.push_back(output.name);
     }
     if (!found) {
       refuse_undetermined(m, want);
       std::string names;
       for (const system::Output& output : system.outputs) {
-        const bool hidden = output.name.starts_with(conservation::magnitude_prefix) ||
-                            output.name.starts_with(system::contact_prefix) ||
-                            output.name.starts_with(system::watched_prefix);
-        if (!coordinates.contains(output.name) && !hidden) names += (names.empty() ? "" : ", ") + output.name;
+        if (!of_state(output) && for_reader(output)) names += (names.empty() ? "" : ", ") + output.name;
       }
       const Where where = want.span.line > 0 ? m.model->where(want.span) : Where{};
       throw Error("scene", where, fmt::format("there is no output '{}'", want.name), "choose from: " + names + ", all");

@@ -129,8 +129,9 @@ RunResult integrate_scene(const RunRequest& request) {
   result.contact_work = run.impulse_work;
   for (std::size_t i = 0; i < run.outputs.size(); ++i) {
     const std::string& name = request.code.output_names[i];
-    const auto& sizes = request.magnitudes;
-    if (std::find(sizes.begin(), sizes.end(), name) == sizes.end()) result.final.emplace_back(name, run.outputs[i]);
+    const bool size = std::any_of(request.conserved.begin(), request.conserved.end(),
+                                  [&](const ConservedOutput& c) { return c.magnitude == name; });
+    if (!size) result.final.emplace_back(name, run.outputs[i]);
   }
   result.state = run.state;
   if (run.unsure_from) {

@@ -68,6 +68,12 @@ struct RunResult {
   std::vector<KinkCrossings> kinks;
 };
 
+/// An output that no motion changes.
+struct ConservedOutput {
+  std::string name, magnitude;  // the size of its terms; none: ""
+  bool energy = false;          // an impulse of a support changes it
+};
+
 /// The outputs that are an integral of constraints on velocities, and its derivatives by the free coordinates and t.
 struct IntegralOutputs {
   std::string psi;
@@ -87,10 +93,10 @@ struct ContactOutputs {
 struct RunRequest {
   const Code& code;
   const Scene& scene;
-  std::vector<std::string> state_names;   // of x
-  std::vector<std::string> conserved;     // outputs that are invariants
-  std::vector<WatchedEvent> events = {};  // of the model, all
-  bool watch_power = false;               // power is not identically zero: its work is integrated alongside
+  std::vector<std::string> state_names;    // of x
+  std::vector<ConservedOutput> conserved;  // the invariants
+  std::vector<WatchedEvent> events = {};   // of the model, all
+  bool watch_power = false;                // power is not identically zero: its work is integrated alongside
   bool estimate = true;
   double every = 0;  // interval of rows; 0: no rows
   std::function<void(double t, std::span<const double> y)> row;
@@ -98,7 +104,7 @@ struct RunRequest {
   const std::atomic<bool>* interrupt = nullptr;
   std::vector<IntegralOutputs> integrals = {};  // that the projection keeps
   std::vector<ContactOutputs> contacts = {};    // per Code::contacts
-  std::vector<std::string> magnitudes = {};     // per invariant: the output that tells the size of its terms, or ""
+  std::vector<std::string> redundant = {};      // outputs: psi of constraints that the others make hold
   std::vector<ExchangedChart> charts = {};      // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts =
       {};                   // code that knows these second charts, and those asked for before

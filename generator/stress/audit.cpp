@@ -62,7 +62,7 @@ Auditor::Auditor(const mechanics::Mechanics& mechanics, const program::Program& 
   divided_.results = {{"denominators", {}}};
   divided_.places.clear();
   for (const Divisor& d : divisors(rhs_, program, mechanics)) {
-    divided_.results.front().second.push_back(d.operand);
+    divided_.results.front().entries.push_back(d.operand);
     audit_.denominators.push_back({d.expression, d.zero, d.test});
   }
 }

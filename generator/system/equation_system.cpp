@@ -14,10 +14,4 @@ const char* name(Form form) {
   return "multipliers";
 }
 
-std::string slip_slope_output(const std::string& slip, const std::string& coordinate) {
-  return contact_prefix + ("slope." + slip) + "." + coordinate;
-}
-std::string phi_output(const std::string& slip) { return contact_prefix + ("phi." + slip); }
-std::string restitution_output(const std::string& contact) { return contact_prefix + ("restitution." + contact); }
-
 }  // namespace eomgen::system

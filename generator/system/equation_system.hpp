@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "symbolic/factorisation.hpp"
+#include "system/output.hpp"
 
 namespace eomgen::system {
 
@@ -34,11 +35,6 @@ struct Reaction {
   std::uint32_t constraint;  // index into Mechanics::constraints
   std::string label;
   Ref value;
-};
-
-struct Output {
-  std::string name;  // "R", "R_dot", "energy", "power", "P.position1", ...
-  Ref value;         // may use qddot of free coordinates and multipliers
 };
 
 /// M = S^T M_theta S, f = S^T f_theta for rates theta_dot = S qdot with constant S: cheaper to solve where M_theta is
@@ -95,13 +91,6 @@ struct Contact {
 inline symbolic::Symbol slides_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 0}; }
 inline symbolic::Symbol presses_symbol(std::uint32_t contact) { return {symbolic::SymbolKind::contact, contact, 1}; }
 
-/// Outputs that a run needs of a contact, and nobody asks for by name: the slope of slip.NAME by the rate of a
-/// coordinate, phi along the tangent, the coefficient of restitution.
-inline constexpr const char* contact_prefix = "contact.";
-std::string slip_slope_output(const std::string& slip, const std::string& coordinate);
-std::string phi_output(const std::string& slip);
-std::string restitution_output(const std::string& contact);
-
 /// An equation that the active constraints make hold; runs watch psi, and starts satisfy it too.
 struct Watched {
   std::uint32_t constraint;  // index into Mechanics::constraints
@@ -109,8 +98,6 @@ struct Watched {
   std::vector<Ref> A;  // n
   Ref b;
 };
-/// The output that is psi of such an equation, which nobody asks for by name.
-inline constexpr const char* watched_prefix = "redundant.";
 
 struct EquationSystem {
   std::shared_ptr<Dag> dag;

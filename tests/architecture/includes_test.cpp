@@ -27,6 +27,7 @@ const std::vector<std::pair<std::string, std::string>> products = {
     {"model", "model/expression.hpp"},
     {"model", "model/model.hpp"},
     {"mechanics", "mechanics/mechanics.hpp"},
+    {"system", "system/output.hpp"},
     {"system", "system/equation_system.hpp"},
     {"system", "system/expressions.hpp"},
     {"system", "system/chart_change.hpp"},

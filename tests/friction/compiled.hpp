@@ -38,7 +38,7 @@ class RoughProgram {
     std::copy(values[0].begin(), values[0].end(), dx);
     for (std::size_t i = 1; i < values.size(); ++i) {
       for (const double code : values[i]) {
-        if (code < 0) return program_.functions[0].results[i].first == program::no_solution ? 3 : 4;
+        if (code < 0) return program_.functions[0].results[i].code;
       }
     }
     return 0;

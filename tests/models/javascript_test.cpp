@@ -42,8 +42,8 @@ Json values_of_c(const emit::LoadedModel& c, const program::Program& program, co
   for (const emit::TestVector& at : context.tests) {
     for (const program::Function& function : program.functions) {
       std::vector<std::vector<double>> y;
-      for (const auto& [name, entries] : function.results) {
-        if (!program::is_code(name)) y.emplace_back(entries.size());
+      for (const program::Result& result : function.results) {
+        if (!result.is_test()) y.emplace_back(result.entries.size());
       }
       y.resize(3);
       double *const a = y[0].data(), *const b = y[1].data(), *const d = y[2].data();

@@ -39,7 +39,7 @@ TEST_CASE("hoisting: prepare and rhs_prepared give what rhs gives, to 45 digits,
     const auto* prepare = function_of(built, "prepare");
     const auto* rest = function_of(built, "rhs_prepared");
     CHECK((prepare == nullptr) == (rest == nullptr));
-    CHECK(built.prepared_count() == (prepare == nullptr ? 0 : prepare->results[0].second.size()));
+    CHECK(built.prepared_count() == (prepare == nullptr ? 0 : prepare->results[0].entries.size()));
     if (rest == nullptr) continue;
     ++split;
     CHECK(rest->operations.cost() + 2 <= built.functions[0].operations.cost());

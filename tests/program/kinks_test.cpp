@@ -152,7 +152,8 @@ TEST_CASE("system: for_each_expression comes to every expression once") {
   contact.directions = {{next(), next(), next()}};
   contact.width = next(), contact.restitution = next();
   s.contacts = {contact};
-  s.reactions = {{0, "r", next()}}, s.outputs = {{"o", next()}}, s.events = {{"e", next()}};
+  s.reactions = {{0, "r", next()}}, s.outputs = {{"o", next(), system::OutputKind::definition}},
+  s.events = {{"e", next()}};
   s.energy = next(), s.kinetic = next(), s.potential = next(), s.power = next();
   std::set<Ref> seen;
   const system::EquationSystem& constant = s;

@@ -75,7 +75,7 @@ TEST_CASE("optimiser: the value of every function stays the same to 45 digits") 
       for (std::size_t i = 0; i < wanted.size(); ++i) {
         const auto values = program::interpret(built.functions[i], arguments_at<cln::cl_R>(system, 3), 60);
         for (std::size_t r = 0; r < wanted[i].results.size(); ++r) {
-          const auto expected = expressions_at(*system.dag, wanted[i].results[r].second, 3);
+          const auto expected = expressions_at(*system.dag, wanted[i].results[r].entries, 3);
           CHECK(difference(expected, values.results[r]) < tolerances::same_value);
         }
       }
@@ -94,7 +94,7 @@ TEST_CASE("optimiser: the value of random expressions stays the same to 45 digit
     const auto raw = program::from_dag(*k.dag, wanted, system.free);
     const auto best = program::optimise({program::flatten(raw, false), program::flatten(program::expand(raw), false)});
     const auto function = program::schedule(best, "outputs", {{"y", 2}});
-    const auto expected = expressions_at(*k.dag, wanted.results[0].second, seed);
+    const auto expected = expressions_at(*k.dag, wanted.results[0].entries, seed);
     const auto got = program::interpret(function, arguments_at<cln::cl_R>(system, seed), 60);
     CHECK(difference(expected, got.results[0]) < tolerances::same_value);
     CHECK(program::count_operations(best).cost() <= program::count_operations(program::flatten(raw, false)).cost());
@@ -109,7 +109,7 @@ TEST_CASE("optimiser: what is counted is what is in the code") {
     const auto wanted = functions.rhs();
     const auto graph = program::flatten(program::from_dag(*system.dag, wanted, system.free), false);
     const auto counted = program::count_operations(graph);
-    const auto written = program::schedule(graph, "rhs", {{"dx", wanted.results[0].second.size()}}).operations;
+    const auto written = program::schedule(graph, "rhs", {{"dx", wanted.results[0].entries.size()}}).operations;
     CHECK(counted.add == written.add);
     CHECK(counted.mul == written.mul);
     CHECK(counted.div == written.div);

@@ -15,7 +15,7 @@ namespace {
 
 program::Function written(const Maker& k, const std::vector<Scalar>& results) {
   program::WantedFunction wanted{"outputs", {{"y", {}}}, {}, {}};
-  for (const Scalar& result : results) wanted.results[0].second.push_back(result.ref);
+  for (const Scalar& result : results) wanted.results[0].entries.push_back(result.ref);
   const program::Polynomials graph = program::from_dag(*k.dag, wanted, {0, 1, 2});
   return program::schedule(program::flatten(graph, false), "outputs", {{"y", results.size()}});
 }

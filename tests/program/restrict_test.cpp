@@ -14,7 +14,7 @@ using namespace test_systems;
 TEST_CASE("restriction: entries in any order have their values, by fewer instructions; of none there is no code") {
   for (const auto& system : {double_pendulum(), cart_pendulum(), chain(4)}) {
     const program::Function whole = build(system).functions[0];
-    const std::size_t n = whole.results[0].second.size();
+    const std::size_t n = whole.results[0].entries.size();
     const std::vector<std::size_t> places{n - 1, 0, n - 1};
     const program::Function part = program::restricted(whole, places);
     CHECK(part.code.size() <= whole.code.size());

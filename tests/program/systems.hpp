@@ -51,7 +51,9 @@ inline system::EquationSystem lagrange(const Maker& k, std::uint32_t n, Scalar T
   system.potential = V.ref;
   system.energy = (T + V).ref;
   system.power = k.dag->zero();
-  system.outputs = {{"energy", system.energy}, {"kinetic", T.ref}, {"potential", V.ref}};
+  system.outputs = {{"energy", system.energy, system::OutputKind::energy},
+                    {"kinetic", T.ref, system::OutputKind::kinetic},
+                    {"potential", V.ref, system::OutputKind::potential}};
   return system;
 }
 
@@ -72,7 +74,7 @@ inline void constrain(system::EquationSystem& system, const Maker& k, const std:
   system.gamma.push_back(k.ddt(rate, n).ref);
   const Ref lambda = k.dag->symbol({SymbolKind::multiplier, index, 0});
   system.reactions.push_back({index, label, lambda});
-  system.outputs.push_back({"reaction." + label, lambda});
+  system.outputs.push_back({"reaction." + label, lambda, system::OutputKind::constraint_reaction, index});
 }
 
 /// Parameters m, l, g; theta from the downward vertical.

@@ -141,7 +141,6 @@ void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run
   std::vector<std::vector<std::string>> rows;
   const Json& estimate = run["error_estimate"];
   for (const auto& [name, value] : run["final"].items()) {
-    if (name.starts_with(drawn_prefix)) continue;
     rows.push_back(
         {name, text(value),
          estimate.is_object() && estimate.contains(name) ? fmt::format("{:.1e}", estimate[name].get<double>()) : ""});
@@ -187,8 +186,9 @@ int execute(const Options& options, const Common& common) {
   request.prepare = [&](pipeline::Derived& derived) {
     drawing.emplace(derived);
     outputs = drawing->outputs();
-    curves = panels(derived.model, run::expand_outputs(derived.mechanics, derived.candidates.front(),
-                                                       derived.model.scene(options.scene).outputs));
+    curves = panels(
+        derived.candidates.front().outputs,
+        run::expand_outputs(derived.mechanics, derived.candidates.front(), derived.model.scene(options.scene).outputs));
     for (const Panel& panel : curves) {
       for (const std::string& name : panel.names) {
         if (std::find(outputs.begin(), outputs.end(), name) == outputs.end()) outputs.push_back(name);

@@ -54,10 +54,10 @@ run::Overrides overrides_of(const Options& options) {
 /// Rows to the CSV file and to the plot.
 class Rows {
  public:
-  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const model::Model& model,
+  Rows(const std::string& csv, const std::vector<Panel>& panels, bool yes, const pipeline::Derived& derived,
        const run::Scene& scene, const std::vector<std::string>& code) {
-    if (!panels.empty()) plot_.emplace(panels, model, code);
-    for (const model::Coordinate& c : model.coordinates) {
+    if (!panels.empty()) plot_.emplace(panels, derived.candidates.front().outputs, code);
+    for (const model::Coordinate& c : derived.model.coordinates) {
       columns_.push_back(c.name);
       columns_.push_back(c.name + "_dot");
     }
@@ -197,9 +197,9 @@ int execute(const Options& options, const Common& common) {
                         const std::vector<std::string>& names) {
       std::vector<Panel> panels;
       if (!options.plot.empty())
-        panels =
-            options.plot_of.empty() ? coordinate_panels(derived.model) : chosen_panels(derived.model, options.plot_of);
-      rows.emplace(options.out, panels, options.yes, derived.model, scene, names);
+        panels = options.plot_of.empty() ? coordinate_panels(derived.candidates.front().outputs)
+                                         : chosen_panels(derived.candidates.front().outputs, options.plot_of);
+      rows.emplace(options.out, panels, options.yes, derived, scene, names);
     };
     request.row = [&rows](double t, std::span<const double> y) { (*rows)(t, y); };
   }

@@ -40,11 +40,12 @@ std::size_t Drawing::vector_of(const std::string& base) {
 std::size_t Drawing::vector(pipeline::Derived& derived, const Vec3& value) {
   symbolic::Substitution imposed = mechanics::impose(derived.mechanics),
                          written = mechanics::write_out(derived.mechanics);
-  const std::string base = drawn_prefix + std::to_string(outputs_.size()) + ".";
-  for (std::size_t k = 0; k < 3; ++k) {
+  const auto first = static_cast<std::uint32_t>(outputs_.size());
+  const std::string base = "draw." + std::to_string(first) + ".";
+  for (std::uint32_t k = 0; k < 3; ++k) {
     const Ref finished = written(imposed(value[k]));
     for (system::EquationSystem& candidate : derived.candidates)
-      candidate.outputs.push_back({base + std::to_string(k + 1), finished});
+      candidate.outputs.push_back({base + std::to_string(k + 1), finished, system::OutputKind::drawn, first, k});
   }
   return vector_of(base);
 }

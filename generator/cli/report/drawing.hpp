@@ -13,9 +13,6 @@
 
 namespace eomgen::cli {
 
-/// Names that no other output has: of vectors that are drawn, and of nothing else.
-inline constexpr const char* drawn_prefix = "draw.";
-
 class Drawing {
  public:
   /// Adds the outputs that the model has not got by itself to every candidate.

@@ -94,13 +94,12 @@ class Live {
     return places;
   }
 
-  program::Function function(const std::string& name,
-                             const std::vector<std::pair<std::string, std::vector<Ref>>>& results) {
+  program::Function function(const std::string& name, const std::vector<program::WantedResult>& results) {
     program::WantedFunction wanted;
     wanted.name = name;
     wanted.results = results;
-    std::vector<std::pair<std::string, std::size_t>> shape;
-    for (const auto& [argument, entries] : results) shape.emplace_back(argument, entries.size());
+    std::vector<program::ResultShape> shape;
+    for (const program::WantedResult& result : results) shape.push_back({result.name, result.entries.size()});
     return program::schedule(program::flatten(program::from_dag(dag_, wanted, s_.program.free), false), name, shape);
   }
 

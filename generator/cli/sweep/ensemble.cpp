@@ -87,7 +87,7 @@ class Runs {
     potential_ = place("potential");
     const auto& conserved = first.derived->conserved;
     watches_energy_ = std::any_of(conserved.begin(), conserved.end(),
-                                  [](const conservation::Conserved& c) { return c.name == "energy"; });
+                                  [](const conservation::Conserved& c) { return c.kind == system::OutputKind::energy; });
   }
 
   void run() {

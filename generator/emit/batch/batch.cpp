@@ -88,17 +88,17 @@ class File {
 
   void add(const Function& function) {
     const bool gives =
-        std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.second.empty(); });
+        std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.entries.empty(); });
     if (!gives) return;
     const FunctionText text = print_function(function, names_, context_, dialect_);
     FunctionText plain;
     for (const auto& result : function.results) {
-      if (!program::is_code(result.first)) plain.results.push_back(result.first);
+      if (!result.is_test()) plain.results.push_back(result.name);
     }
     const std::vector<Argument> list = arguments(function.name, plain, abi_names());
     std::size_t numbers = 0;
     for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array) : 0;
-    for (const auto& result : function.results) numbers += result.second.size();
+    for (const auto& result : function.results) numbers += result.entries.size();
     if (numbers > most_numbers) return;
     packs_ = packs_ || text.packs > 0;
     library_.insert(text.library.begin(), text.library.end());
@@ -194,9 +194,10 @@ class File {
       fill += fmt::format("  call.mode = mode;\n  call.own_modes = mode && (own & {}_own_modes) != 0;\n", name_);
     }
     std::size_t r = 0;
-    for (const auto& [result, list_of] : function.results) {
-      if (program::is_code(result)) continue;
-      fill += fmt::format("  call.to[{0}] = {1};\n  call.results[{0}] = {2};\n", r++, result, size(list_of.size()));
+    for (const program::Result& result : function.results) {
+      if (result.is_test()) continue;
+      fill += fmt::format("  call.to[{0}] = {1};\n  call.results[{0}] = {2};\n", r++, result.name,
+                          size(result.entries.size()));
     }
     body += fmt::format("  double room[({}WIDTH + 1)*({})];\n", prefix_, numbers.empty() ? "1" : numbers);
     return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,

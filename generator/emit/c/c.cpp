@@ -38,7 +38,7 @@ std::string prototype(const std::string& name, const FilePart& part) {
   if (part.function == nullptr) return head_of(name, part.arguments);
   FunctionText text;
   for (const auto& result : part.function->results) {
-    if (!program::is_code(result.first)) text.results.push_back(result.first);
+    if (!result.is_test()) text.results.push_back(result.name);
   }
   return function_head(name, *part.function, text, abi_names(), "double");
 }
