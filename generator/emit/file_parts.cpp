@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <eom/modes/chart_state.hpp>
 
+#include "abi/functions.hpp"
 #include "emit/metadata.hpp"
 #include "emit/signature.hpp"
 
@@ -25,7 +26,7 @@ std::string chart_name(int in_charts) {
   return in_charts == 0 ? "own" : fmt::format("chart{}", eom::charts_of(in_charts));
 }
 
-bool is_without_mode(const std::string& name) { return name == "mass" || name == "constraints"; }
+bool is_without_mode(const std::string& name) { return !abi::find(name)->takes(abi::Input::mode); }
 
 class Parts {
  public:
@@ -40,7 +41,7 @@ class Parts {
       }
       in_each_chart(function.name);
       if (function.name == "prepare") {
-        prepare(function);
+        prepare();
       } else {
         choose(function);
       }
@@ -75,29 +76,13 @@ class Parts {
                    const std::string& offset = "") const {
     return fmt::format("{}{}_{}({})", prefix_, chart_name(p.in_charts), name, names(list, offset));
   }
-  static std::vector<std::string> results(const Function& function) {
-    std::vector<std::string> list;
-    for (const auto& result : function.results) {
-      if (!result.is_test()) list.push_back(result.name);
-    }
-    return list;
-  }
-  static std::vector<Argument> plain(const std::string& name, const Function& function) {
-    FunctionText text;
-    text.results = results(function);
-    return arguments(name, text, abi_names());
-  }
-
   void choose(const Function& function) {
     const std::string& name = function.name;
-    const std::vector<Argument> list = plain(name, function);
+    const std::vector<Argument> list = abi_arguments(name);
     if (is_without_mode(name)) {
       add(name, purpose(name) + " In the own charts.", argument_list(list, real_),
           fmt::format("  return {};\n", call(program_, name, list)));
-      std::vector<Argument> with_mode = list;
-      with_mode.insert(with_mode.begin() + 3, {Argument::Kind::mode, program::Slot::side, "mode"});
-      add(name + "_in", purpose(name) + " In the charts of a mode.", argument_list(with_mode, real_),
-          by_mode(name, list));
+      add(name + "_in", purpose(name + "_in"), argument_list(abi_arguments(name + "_in"), real_), by_mode(name, list));
       return;
     }
     add(name, purpose(name), argument_list(list, real_), by_mode(name, list));
@@ -108,12 +93,12 @@ class Parts {
         fmt::format("  switch (mode >> {} & {}) {{\n", eom::first_chart_bit, eom::charts_of(eom::chart_bits));
     std::size_t offset = 0;
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
-      const bool prepared = name == "rhs_prepared";
+      const bool prepared = abi::find(name)->takes(abi::Input::prepared);
       std::string calls;
       if (!prepared || find(*p, name) != nullptr) {
         calls = call(*p, name, list, prepared && offset > 0 ? fmt::format(" + {}", offset) : "");
       } else {  // nothing worth preparing in this chart
-        calls = call(*p, "rhs", plain("rhs", *find(*p, "rhs")));
+        calls = call(*p, "rhs", abi_arguments("rhs"));
       }
       if (prepared) offset += p->entries("prepare");
       body += fmt::format("    case {}: return {};\n", eom::charts_of(p->in_charts), calls);
@@ -121,7 +106,7 @@ class Parts {
     return body + "    default: return 2;\n  }\n";
   }
 
-  void prepare(const Function& function) {
+  void prepare() {
     std::string body = "  int code = 0;\n";
     std::size_t offset = 0;
     for (const Program* p = next(nullptr); p != nullptr; p = next(p)) {
@@ -131,7 +116,7 @@ class Parts {
                           offset > 0 ? fmt::format(" + {}", offset) : "");
       offset += entries;
     }
-    add("prepare", purpose("prepare"), argument_list(plain("prepare", function), real_), body + "  return code;\n");
+    add("prepare", purpose("prepare"), argument_list(abi_arguments("prepare"), real_), body + "  return code;\n");
   }
 
   /// From one chart to another: one bit of `mode` after the other.
@@ -152,8 +137,7 @@ class Parts {
           "{1}to_own_{2}(y, y);\n",
           bit, prefix_, j + 1);
     }
-    add("chart", "The state x of the charts of `mode` in those of `to`; y may be x.",
-        fmt::format("const {0}* x, int mode, int to, {0}* y", real_), body + "  return code;\n");
+    add("chart", purpose("chart"), argument_list(abi_arguments("chart"), real_), body + "  return code;\n");
   }
 
   void add(const std::string& name, const std::string& what, const std::string& arguments, const std::string& body) {

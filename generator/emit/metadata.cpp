@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "abi/functions.hpp"
 #include "emit/file_parts.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
@@ -301,24 +302,8 @@ std::string defaults_body(const program::Program& program, const EmissionContext
 }
 
 std::string purpose(const std::string& function) {
-  if (function == "rhs") return "dx = d/dt of the state x.";
-  if (function == "prepare")
-    return "w = what the right-hand side needs of the parameters only: to be called again where they change.";
-  if (function == "rhs_prepared") return "The same as rhs, with w from prepare.";
-  if (function == "jac") return "dfdx[i + N j] = d(dx_i)/d(x_j) with N entries of x; dfdt at fixed x.";
-  if (function == "jac_p") return "dfdp[i + N j] = d(dx_i)/d(p_j) with N entries of x.";
-  if (function == "mass") return "M qddot + h = A^T lambda: M by columns, h.";
-  if (function == "momenta") return "momenta = dL/d(qdot), and their rates but for the forces of constraints.";
-  if (function == "constraints") return "psi = 0, A qdot + b = 0 of the constraints with multipliers: A by columns.";
-  if (function == "reactions") return "The multipliers of all constraints, in the order of the model.";
-  if (function == "taylor") {
-    return "coefficients[i + N k], k = 0..order: the k-th derivative of x_i over k!, N entries of x; u stands still. "
-           "6: order is beyond NAME_taylor_order.";
-  }
-  if (function == "events")
-    return "Event functions: each event is where its entry changes its sign; then kinks, then contacts.";
-  if (function == "outputs") return "The outputs asked for.";
-  return function;
+  const abi::Function* found = abi::find(function);
+  return found == nullptr ? function : found->purpose;
 }
 
 void require_consistent(const program::Program& program, const EmissionContext& context) {

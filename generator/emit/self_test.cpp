@@ -9,6 +9,7 @@
 #include <eom/modes/chart_state.hpp>
 #include <numbers>
 
+#include "abi/functions.hpp"
 #include "emit/text.hpp"
 #include "program/abi_values.hpp"
 
@@ -235,7 +236,7 @@ class Body {
       arrays += fmt::format(", y{}", r + 1);
     }
     const std::size_t prepared = program_.prepared_count();
-    if (function == "rhs_prepared")
+    if (abi::find(function)->takes(abi::Input::prepared))
       text_ += fmt::format("      double w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", prepared,
                            names_.called("prepare"), at_p_);
     text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function),
@@ -253,20 +254,27 @@ class Body {
   }
 
   std::string arguments(const std::string& function, int to) const {
-    const std::string p = fmt::format("point + {}", at_p_), mode = with_modes_ ? "modes[state]" : "0";
-    if (function == "prepare") return p;
-    if (function == "chart") return fmt::format("point + 1, {}, {}", mode, to);
-    const std::string of_state = "point[0], point + 1, " + p;
-    if (function == "mass" || function == "constraints") return of_state;
-    if (function == "mass_in" || function == "constraints_in") return fmt::format("{}, {}", of_state, mode);
+    std::string list;
+    for (const abi::Input input : abi::find(function)->inputs) list += (list.empty() ? "" : ", ") + argument(input, to);
+    return list;
+  }
+
+  std::string argument(abi::Input input, int to) const {
+    switch (input) {
+      case abi::Input::time: return "point[0]";
+      case abi::Input::state: return "point + 1";
+      case abi::Input::parameters: return fmt::format("point + {}", at_p_);
+      case abi::Input::prepared: return "w";
+      case abi::Input::mode: return with_modes_ ? "modes[state]" : "0";
+      case abi::Input::order: return std::to_string(taylor_order);
+      case abi::Input::to: return std::to_string(to);
+      case abi::Input::inputs: break;
+    }
     // At the first state the inputs are their defaults, as they are where none are given.
     const std::string given = fmt::format("point + {}", at_u_);
-    const std::string u = context_.inputs.empty() ? names_.null
-                          : starts_               ? fmt::format("state > 0 ? {} : {}", given, names_.null)
-                                                  : given;
-    const std::string w = function == "rhs_prepared" ? ", w" : "",
-                      order = function == "taylor" ? fmt::format(", {}", taylor_order) : "";
-    return fmt::format("{}{}, {}, {}{}", of_state, w, u, mode, order);
+    return context_.inputs.empty() ? names_.null
+           : starts_               ? fmt::format("state > 0 ? {} : {}", given, names_.null)
+                                   : given;
   }
 
   const program::Program& program_;
@@ -288,7 +296,7 @@ std::optional<TestVector> test_vector(const program::Program& program, const Emi
   const std::optional<FunctionValues> rhs = values_at(program, "rhs", arguments);
   if (!rhs) return std::nullopt;
   for (const std::string& name : program::abi_function_names(program)) {
-    const bool of_mode = program::has_mode(name) || name == "prepare";
+    const bool of_mode = abi::find(name + "_in") == nullptr;
     if (!of_mode && !smooth) continue;
     if (name != "rhs" && !is_held(entries(program, name), index)) continue;
     std::optional<FunctionValues> values = name == "rhs" ? rhs : values_at(program, name, arguments);

@@ -3,47 +3,61 @@
 
 #include <fmt/format.h>
 
+#include "abi/functions.hpp"
 #include "emit/text.hpp"
 
 namespace eomgen::emit {
 
 using program::Slot;
 
-std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names) {
+namespace {
+
+/// Of the table, and of what emitted code keeps to itself.
+std::vector<abi::Input> inputs_of(const std::string& function) {
+  using enum abi::Input;
+  if (const abi::Function* found = abi::find(function)) return found->inputs;
+  if (function == "taylor_next") return {time, state, prepared};
+  if (function == "to_second" || function == "to_own") return {state};
+  return abi::find("rhs")->inputs;  // taylor_start
+}
+
+Argument argument(abi::Input input, const ModelNames& names) {
   using Kind = Argument::Kind;
+  switch (input) {
+    case abi::Input::time: return {Kind::number, Slot::time, names.arguments_t};
+    case abi::Input::state: return {Kind::input, Slot::state, names.x};
+    case abi::Input::parameters: return {Kind::input, Slot::parameter, names.p};
+    case abi::Input::prepared: return {Kind::input, Slot::prepared, names.w};
+    case abi::Input::inputs: return {Kind::input, Slot::input, names.u};
+    case abi::Input::mode: return {Kind::mode, Slot::side, names.mode};
+    case abi::Input::order:
+    case abi::Input::to: break;
+  }
+  return {Kind::integer, Slot::constant, abi::name(input)};
+}
+
+}  // namespace
+
+std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names) {
   std::vector<Argument> list;
-  if (function == "taylor_next") {
-    list = {{Kind::number, Slot::time, names.arguments_t},
-            {Kind::input, Slot::state, names.x},
-            {Kind::input, Slot::prepared, names.w}};
-    for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
-    return list;
-  }
-  if (function == "to_second" || function == "to_own") {
-    list.push_back({Kind::input, Slot::state, names.x});
-    for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
-    return list;
-  }
-  const bool of_state = function != "prepare";
-  if (of_state) list.push_back({Kind::number, Slot::time, names.arguments_t});
-  if (of_state) list.push_back({Kind::input, Slot::state, names.x});
-  list.push_back({Kind::input, Slot::parameter, names.p});
-  if (function == "rhs_prepared") list.push_back({Kind::input, Slot::prepared, names.w});
-  if (of_state && function != "mass" && function != "constraints") {
-    list.push_back({Kind::input, Slot::input, names.u});
-    list.push_back({Kind::mode, Slot::side, names.mode});
-  }
-  for (const std::string& result : text.results) list.push_back({Kind::result, Slot::constant, result});
+  for (const abi::Input input : inputs_of(function)) list.push_back(argument(input, names));
+  for (const std::string& result : text.results) list.push_back({Argument::Kind::result, Slot::constant, result});
   return list;
+}
+
+std::vector<Argument> abi_arguments(const std::string& function) {
+  FunctionText text;
+  for (const abi::Result& result : abi::find(function)->results) text.results.emplace_back(result.name);
+  return arguments(function, text, abi_names());
 }
 
 ModelNames abi_names() {
   ModelNames names;
-  names.x = "x";
-  names.p = "p";
-  names.w = "w";
-  names.u = "u";
-  names.mode = "mode";
+  names.x = abi::name(abi::Input::state);
+  names.p = abi::name(abi::Input::parameters);
+  names.w = abi::name(abi::Input::prepared);
+  names.u = abi::name(abi::Input::inputs);
+  names.mode = abi::name(abi::Input::mode);
   return names;
 }
 
@@ -54,7 +68,8 @@ std::string argument_list(const std::vector<Argument>& arguments, const std::str
     switch (argument.kind) {
       case Argument::Kind::number: list += fmt::format("{} {}", real, argument.name); break;
       case Argument::Kind::input: list += fmt::format("const {}* {}", real, argument.name); break;
-      case Argument::Kind::mode: list += fmt::format("int {}", argument.name); break;
+      case Argument::Kind::mode:
+      case Argument::Kind::integer: list += fmt::format("int {}", argument.name); break;
       case Argument::Kind::result: list += fmt::format("{}* {}", real, argument.name); break;
     }
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which arguments each function of the ABI takes (docs/abi.md).
+// The arguments of each function of the ABI (abi/functions.inc), as emitted text.
 #pragma once
 
 #include <string>
@@ -10,13 +10,16 @@
 namespace eomgen::emit {
 
 struct Argument {
-  enum class Kind : std::uint8_t { number, input, mode, result } kind;  // Real, const Real*, int, Real*
-  program::Slot slot = program::Slot::constant;                         // what is read from it; constant: nothing
+  enum class Kind : std::uint8_t { number, input, mode, integer, result } kind;  // Real, const Real*, int, int, Real*
+  program::Slot slot = program::Slot::constant;  // what is read from it; constant: nothing
   std::string name;
 };
 
 /// With the names that `text` and `names` give to them.
 std::vector<Argument> arguments(const std::string& function, const FunctionText& text, const ModelNames& names);
+
+/// With the names of docs/abi.md, results included.
+std::vector<Argument> abi_arguments(const std::string& function);
 
 /// The names of docs/abi.md, whatever the model's own names are.
 ModelNames abi_names();

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "abi/functions.hpp"
 #include "emit/expressions.hpp"
 #include "emit/leaves.hpp"
 #include "emit/names.hpp"
@@ -256,7 +257,7 @@ class Printer {
         end_where_negative(function_.results[r].code, entries);
         continue;
       }
-      const bool optional = function_.name == "jac" && r == 1;  // dfdt may be NULL
+      const bool optional = may_be_null(r);
       if (optional) body_ += fmt::format("  if ({}) {{\n", text_.results[r]);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::size_t place = r > 0 || function_.places.empty() ? i : function_.places[i];
@@ -308,7 +309,7 @@ class Printer {
       const std::string& to = text_.results[k];
       body_ += fmt::format("  double* const {} = {}->to[{}];\n", to, place, k++);
       if (entries.empty()) body_ += fmt::format("  (void){};\n", to);
-      const bool optional = function_.name == "jac" && r == 1;
+      const bool optional = may_be_null(r);
       if (optional) body_ += fmt::format("  if ({}) {{\n", to);
       for (std::size_t i = 0; i < entries.size(); ++i) {
         const std::size_t at = r > 0 || function_.places.empty() ? i : function_.places[i];
@@ -356,8 +357,15 @@ class Printer {
       result += fmt::format("{}(void){};", result.empty() ? "  " : " ", argument.name);
     return result + fmt::format(" (void){};\n", text_.work);
   }
-  /// The ABI gives these two functions no inputs: they see the defaults.
-  bool takes_inputs() const { return function_.name != "mass" && function_.name != "constraints"; }
+  /// Functions of the state that the ABI gives no inputs see the defaults.
+  bool takes_inputs() const {
+    const abi::Function* found = abi::find(function_.name);
+    return found == nullptr || found->takes(abi::Input::inputs) || !found->takes(abi::Input::state);
+  }
+  bool may_be_null(std::size_t result) const {
+    const abi::Function* found = abi::find(function_.name);
+    return found != nullptr && result < found->results.size() && found->results[result].may_be_null;
+  }
   std::string unused_arguments() const {
     if (!dialect_.typed) return "";
     std::vector<std::string> unused;

@@ -118,10 +118,8 @@ TaylorText print_taylor(const program::Program& program, const ModelNames& names
                           : fmt::format(fmt::runtime(c_sums), prefix, taylor.products, program::taylor_lanes));
   TaylorText result;
   const std::string name = prefix + "taylor";
-  result.head = wrapped(
-      fmt::format("int {1}({0} t, const {0}* x, const {0}* p, const {0}* u, int mode, int order, {0}* coefficients)",
-                  real, name),
-      std::string(name.size() + 5, ' '));
+  result.head = wrapped(fmt::format("int {}({})", name, argument_list(abi_arguments("taylor"), real)),
+                        std::string(name.size() + 5, ' '));
   const auto converted = [&](const char* k) {
     return generic ? fmt::format("Real({})", k) : fmt::format("(double)({})", k);
   };

@@ -65,24 +65,10 @@ std::optional<std::vector<std::vector<double>>> called(const emit::LoadedModel& 
   if (function == "taylor") y.emplace_back(x.size() * static_cast<std::size_t>(at.order + 1));
   y.resize(std::max<std::size_t>(3, y.size()));
   std::vector<double> w(prepared + 1);
-  double *const a = y[0].data(), *const b = y[1].data(), *const c = y[2].data();
-  int code = -1;
-  if (function == "rhs") code = m.rhs(t, x.data(), p.data(), u.data(), at.mode, a);
-  if (function == "prepare") code = m.prepare(p.data(), a);
-  if (function == "rhs_prepared") {
-    code = m.prepare(p.data(), w.data());
-    if (code == 0) code = m.rhs_prepared(t, x.data(), p.data(), w.data(), u.data(), at.mode, a);
-  }
-  if (function == "jac") code = m.jac(t, x.data(), p.data(), u.data(), at.mode, a, b);
-  if (function == "jac_p") code = m.jac_p(t, x.data(), p.data(), u.data(), at.mode, a);
-  if (function == "mass") code = m.mass(t, x.data(), p.data(), a, b);
-  if (function == "momenta") code = m.momenta(t, x.data(), p.data(), u.data(), at.mode, a, b);
-  if (function == "constraints") code = m.constraints(t, x.data(), p.data(), a, b, c);
-  if (function == "reactions") code = m.reactions(t, x.data(), p.data(), u.data(), at.mode, a);
-  if (function == "outputs") code = m.outputs(t, x.data(), p.data(), u.data(), at.mode, a);
-  if (function == "events") code = m.events(t, x.data(), p.data(), u.data(), at.mode, a);
-  if (function == "taylor") code = m.taylor(t, x.data(), p.data(), u.data(), at.mode, at.order, a);
-  if (code != 0) return std::nullopt;
+  if (abi::find(function)->takes(abi::Input::prepared) && m.prepare(p.data(), w.data()) != 0) return std::nullopt;
+  const abi::Given given{
+      t, x.data(), p.data(), w.data(), u.data(), at.mode, at.order, 0, {y[0].data(), y[1].data(), y[2].data()}};
+  if (m.call(function, given) != 0) return std::nullopt;
   return y;
 }
 
@@ -115,20 +101,13 @@ verify::CompiledForm CompiledCode::form() const {
 run::Code CompiledCode::for_run() const {
   const emit::LoadedModel& model = compiled_.model;
   run::Code code = described_;
-  code.rhs = model.rhs;
-  code.prepare = model.prepare;
-  code.rhs_prepared = model.rhs_prepared;
-  code.outputs = model.outputs;
-  code.events = model.events;
-  code.jac = model.jac;
-  code.jac_p = model.jac_p;
-  code.mass = model.mass;
-  code.constraints = model.constraints;
-  code.taylor = model.taylor;
-  code.momenta = model.momenta;
-  code.chart = model.chart;
-  code.mass_in = model.mass_in;
-  code.constraints_in = model.constraints_in;
+  const auto bind = [&](const auto& one) { one(code, model); };  // what a run has
+#define ABI_FUNCTION(name, takes, gives, comes, purpose)      \
+  bind([](auto& to, const auto& from) {                       \
+    if constexpr (requires { to.name; }) to.name = from.name; \
+  });
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
   return code;
 }
 

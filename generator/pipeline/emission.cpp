@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "abi/functions.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 #include "pipeline/charts.hpp"
@@ -15,8 +16,11 @@
 namespace eomgen::pipeline {
 
 const std::vector<std::string>& emitted_functions() {
-  static const std::vector<std::string> names{"jac",     "jac_p",  "mass",   "momenta", "constraints", "reactions",
-                                              "outputs", "events", "energy", "taylor",  "charts",      "run"};
+  static const std::vector<std::string> names = [] {
+    std::vector<std::string> all = abi::asked_for();
+    all.insert(all.end(), {"energy", "charts", "run"});
+    return all;
+  }();
   return names;
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/verification.hpp"
 
+#include "abi/functions.hpp"
 #include "error.hpp"
 #include "pipeline/code.hpp"
 
@@ -10,12 +11,13 @@ namespace {
 /// Every function that `emit` may be asked for, but for Taylor series where the program is too large for them.
 program::Program with_every_function(Derived& derived) {
   program::Request request;
-  request.with = {"jac", "jac_p", "mass", "momenta", "constraints", "reactions", "events", "taylor"};
+  request.with = abi::asked_for();
+  std::erase(request.with, "outputs");  // by their names
   for (const system::Output& output : derived.candidates.front().outputs) request.outputs.push_back(output.name);
   try {
     return make_program(derived, request);
   } catch (const Error&) {
-    request.with.pop_back();
+    std::erase(request.with, "taylor");
     return make_program(derived, request);
   }
 }

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "abi/functions.hpp"
 #include "error.hpp"
 #include "system/expressions.hpp"
 
@@ -46,6 +47,13 @@ void leave_open_contacts(system::EquationSystem& s) {
     s.apart.resize(s.active.size(), zero);
     s.apart[k] = dag.select(side, zero, dag.one(), zero);
   }
+}
+
+/// With the arrays that it writes, which have no entries yet.
+WantedFunction nothing_of(const char* name) {
+  WantedFunction function{name, {}, {}, {}};
+  for (const abi::Result& result : abi::find(name)->results) function.results.push_back({result.name, {}});
+  return function;
 }
 
 /// "12" or, from ten rows on, "3_12".
@@ -146,8 +154,9 @@ void AbiFunctions::add_solution(WantedFunction& function) {
 }
 
 WantedFunction AbiFunctions::rhs() {
-  WantedFunction function{"rhs", {{"dx", qdot_}}, {}, {}};
+  WantedFunction function = nothing_of("rhs");
   auto& dx = function.results[0].entries;
+  dx = qdot_;
   dx.insert(dx.end(), qddot_.begin(), qddot_.end());
   for (const system::IntegralState& integral : system_.integrals) dx.push_back(integral.rate);
   if (!friction_.none.empty()) {
@@ -189,7 +198,7 @@ std::vector<Ref> AbiFunctions::column(Symbol along) {
 
 WantedFunction AbiFunctions::jac() {
   const Dag& dag = *system_.dag;
-  WantedFunction function{"jac", {{"dfdx", {}}, {"dfdt", {}}}, {}, {}};
+  WantedFunction function = nothing_of("jac");
   auto& dfdx = function.results[0].entries;
   auto& dfdt = function.results[1].entries;
   for (std::uint8_t order = 0; order < 2; ++order) {
@@ -212,7 +221,7 @@ WantedFunction AbiFunctions::jac() {
 }
 
 WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
-  WantedFunction function{"jac_p", {{"dfdp", {}}}, {}, {}};
+  WantedFunction function = nothing_of("jac_p");
   auto& dfdp = function.results[0].entries;
   for (std::uint32_t j = 0; j < parameters; ++j) {
     dfdp.insert(dfdp.end(), n_, system_.dag->zero());
@@ -227,7 +236,7 @@ WantedFunction AbiFunctions::jac_p(std::size_t parameters) {
 // it.
 WantedFunction AbiFunctions::momenta() {
   Dag& dag = *system_.dag;
-  WantedFunction function{"momenta", {{"momenta", {}}, {"rates", {}}}, {}, {}};
+  WantedFunction function = nothing_of("momenta");
   const Ref lagrangian = dag.sub(system_.kinetic, system_.potential);
   symbolic::Derivation by_time = symbolic::partial(dag, {SymbolKind::time, 0, 0});
   std::map<Symbol, Ref> none;
@@ -248,7 +257,7 @@ WantedFunction AbiFunctions::momenta() {
 }
 
 WantedFunction AbiFunctions::mass() {
-  WantedFunction function{"mass", {{"M", {}}, {"h", {}}}, {}, {}};
+  WantedFunction function = nothing_of("mass");
   for (std::size_t j = 0; j < n_; ++j) {
     for (std::size_t i = 0; i < n_; ++i) function.results[0].entries.push_back(live_M_[i * n_ + j]);
   }
@@ -263,7 +272,9 @@ WantedFunction AbiFunctions::mass() {
 }
 
 WantedFunction AbiFunctions::constraints() {
-  WantedFunction function{"constraints", {{"psi", system_.psi}, {"A", {}}, {"b", system_.b}}, {}, {}};
+  WantedFunction function = nothing_of("constraints");
+  function.results[0].entries = system_.psi;
+  function.results[2].entries = system_.b;
   for (std::size_t j = 0; j < n_; ++j) {
     for (std::size_t k = 0; k < m_; ++k) function.results[1].entries.push_back(live_A_[k * n_ + j]);
   }
@@ -279,7 +290,7 @@ Ref AbiFunctions::written_out(Ref expression, bool& solved) {
 }
 
 WantedFunction AbiFunctions::reactions() {
-  WantedFunction function{"reactions", {{"lambda", {}}}, {}, {}};
+  WantedFunction function = nothing_of("reactions");
   bool solved = false;
   for (const auto& reaction : system_.reactions) {
     function.results[0].entries.push_back(written_out(reaction.value, solved));
@@ -289,7 +300,7 @@ WantedFunction AbiFunctions::reactions() {
 }
 
 WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
-  WantedFunction function{"outputs", {{"y", {}}}, {}, {}};
+  WantedFunction function = nothing_of("outputs");
   bool solved = false;
   for (const std::string& name : names) {
     const auto found = std::find_if(system_.outputs.begin(), system_.outputs.end(),
@@ -306,7 +317,7 @@ WantedFunction AbiFunctions::outputs(const std::vector<std::string>& names) {
 }
 
 WantedFunction AbiFunctions::events() {
-  WantedFunction function{"events", {{"g", {}}}, {}, {}};
+  WantedFunction function = nothing_of("events");
   bool solved = false;
   for (const system::Event& event : system_.events)
     function.results[0].entries.push_back(written_out(event.value, solved));

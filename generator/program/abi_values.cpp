@@ -12,6 +12,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "abi/functions.hpp"
 #include "program/kinks.hpp"
 #include "program/rounding.hpp"
 
@@ -30,7 +31,7 @@ template <class Real>
 Arguments<Real> prepared_for(const Program& program, const std::string& function, Arguments<Real> at,
                              const std::vector<Real>& defaults) {
   at.side.assign(program.kinks.size(), Real(0));
-  if (!has_mode(function)) {
+  if (!abi::find(function)->takes(abi::Input::mode)) {
     at.u = defaults;
     at.mode = 0;
     return at;
@@ -162,10 +163,6 @@ std::vector<std::string> abi_function_names(const Program& program) {
   for (const Function& function : program.functions) names.push_back(function.name);
   if (program.taylor) names.emplace_back("taylor");
   return names;
-}
-
-bool has_mode(const std::string& function) {
-  return function != "mass" && function != "constraints" && function != "prepare";
 }
 
 std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments,

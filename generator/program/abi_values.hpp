@@ -29,8 +29,6 @@ const Program* in_charts(const Program& program, int mode);
 
 /// "rhs", "jac", .., "prepare", "rhs_prepared", "taylor": those that the program has.
 std::vector<std::string> abi_function_names(const Program& program);
-/// Whether a function of that name takes a mode.
-bool has_mode(const std::string& function);
 
 /// Nothing where the function has no value there: outside a domain, singular, no law of friction, not in these charts.
 std::optional<AbiResults> abi_values(const Program& program, const std::string& function, const AbiArguments& arguments,

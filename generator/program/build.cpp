@@ -4,9 +4,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <optional>
+#include <string_view>
 
+#include "abi/functions.hpp"
 #include "error.hpp"
 #include "program/from_dag.hpp"
 #include "program/hoist.hpp"
@@ -147,18 +150,18 @@ std::size_t parameter_count(const system::EquationSystem& system) {
 }
 
 WantedFunction wanted_function(AbiFunctions& functions, const std::string& name, const Request& request) {
-  if (name == "jac") return functions.jac();
-  if (name == "jac_p") {
+  static const std::map<std::string_view, WantedFunction (AbiFunctions::*)()> formulas{
+      {"jac", &AbiFunctions::jac},
+      {"mass", &AbiFunctions::mass},
+      {"momenta", &AbiFunctions::momenta},
+      {"constraints", &AbiFunctions::constraints},
+      {"reactions", &AbiFunctions::reactions},
+      {"events", &AbiFunctions::events}};
+  if (const auto found = formulas.find(name); found != formulas.end()) return (functions.*found->second)();
+  if (name == "jac_p")
     return functions.jac_p(request.parameters > 0 ? request.parameters : parameter_count(functions.system()));
-  }
-  if (name == "mass") return functions.mass();
-  if (name == "constraints") return functions.constraints();
-  if (name == "momenta") return functions.momenta();
-  if (name == "reactions") return functions.reactions();
-  if (name == "events") return functions.events();
-  throw Error(
-      "program", {}, fmt::format("there is no function `{}`", name),
-      "functions that can be asked for: jac, jac_p, mass, momenta, constraints, reactions, outputs, events, taylor");
+  throw Error("program", {}, fmt::format("there is no function `{}`", name),
+              fmt::format("functions that can be asked for: {}", fmt::join(abi::asked_for(), ", ")));
 }
 
 }  // namespace

@@ -8,6 +8,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <stdexcept>
+#include <string_view>
 
 #include "symbolic/evaluate.hpp"
 #include "verify/plain_forces.hpp"
@@ -63,20 +66,26 @@ class Functions {
       if (!values) continue;
       sizes_ = sizes(function, *values);
       if (sizes_.empty()) continue;  // too near another branch
-      if (function == "rhs_prepared") prepared(*values);
-      if (function == "jac") jacobian(*values);
-      if (function == "jac_p") parameters(*values);
-      if (function == "mass") mass(*values);
-      if (function == "constraints") constraints(*values);
-      if (function == "momenta") momenta(*values);
-      if (function == "reactions") reactions(*values);
-      if (function == "outputs") outputs(*values);
-      if (function == "events") events(*values);
-      if (function == "taylor") taylor();
+      (this->*statement_of(function))(*values);
     }
   }
 
  private:
+  using Statement = void (Functions::*)(const Arrays&);
+
+  /// What a function is held against.
+  static Statement statement_of(const std::string& function) {
+    static const std::map<std::string_view, Statement> statements{
+        {"rhs_prepared", &Functions::prepared}, {"jac", &Functions::jacobian},
+        {"jac_p", &Functions::parameters},      {"mass", &Functions::mass},
+        {"momenta", &Functions::momenta},       {"constraints", &Functions::constraints},
+        {"reactions", &Functions::reactions},   {"outputs", &Functions::outputs},
+        {"events", &Functions::events},         {"taylor", &Functions::taylor}};
+    const auto found = statements.find(function);
+    if (found == statements.end()) throw std::logic_error("nothing is said of the function '" + function + "'");
+    return found->second;
+  }
+
   /// The system of the program's route.
   const EquationSystem& system_of(const Subjects& subjects) const {
     for (const EquationSystem& s : subjects.systems) {
@@ -351,7 +360,7 @@ class Functions {
 
   /// The polynomial X of order K obeys X' = f(X) but for terms of h^K: h is so small that these are beyond the digits
   /// compared.
-  void taylor() {
+  void taylor(const Arrays&) {
     constexpr int order = 4, beyond = 20;
     const int exponent = step_digits() + beyond, more = order * exponent + 60;
     const Precision precision(more);

@@ -23,14 +23,10 @@ const fs::path root = eomgen::test::source_folder();
 /// The products that the stages hand to one another, in the order of the data flow: plain data, so that a later stage
 /// may read them without needing the stage that makes them.
 const std::vector<std::pair<std::string, std::string>> products = {
-    {"forces", "forces/registry.inc"},
-    {"model", "model/expression.hpp"},
-    {"model", "model/model.hpp"},
-    {"mechanics", "mechanics/mechanics.hpp"},
-    {"system", "system/output.hpp"},
-    {"system", "system/equation_system.hpp"},
-    {"system", "system/expressions.hpp"},
-    {"system", "system/chart_change.hpp"},
+    {"forces", "forces/registry.inc"},    {"model", "model/expression.hpp"},
+    {"model", "model/model.hpp"},         {"mechanics", "mechanics/mechanics.hpp"},
+    {"system", "system/output.hpp"},      {"system", "system/equation_system.hpp"},
+    {"system", "system/expressions.hpp"}, {"system", "system/chart_change.hpp"},
     {"program", "program/program.hpp"},
 };
 const std::vector<std::string> data_flow = {"forces", "model",  "coordinates",  "symbolic", "mechanics",

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "abi/functions.hpp"
 #include "analysis/article.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
@@ -137,8 +138,9 @@ Execute declare_emit(CLI::App& app) {
   app.add_option("--target", options->target, "cpp, c, batch, python, javascript, or latex for a document")
       ->capture_default_str();
   add_list(app, "--with", options->with,
-           "functions beside rhs: jac, jac_p, mass, constraints, reactions, outputs (the scene's), events, energy, "
-           "taylor; charts: second ones; run: all that a run calls");
+           fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
+                       "run calls",
+                       fmt::join(abi::asked_for(), ", ")));
   add_list(app, "--output", options->outputs, "names for the function outputs");
   app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
   app.add_option("--form", options->form,

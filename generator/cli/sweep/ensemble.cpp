@@ -86,8 +86,9 @@ class Runs {
     kinetic_ = place("kinetic");
     potential_ = place("potential");
     const auto& conserved = first.derived->conserved;
-    watches_energy_ = std::any_of(conserved.begin(), conserved.end(),
-                                  [](const conservation::Conserved& c) { return c.kind == system::OutputKind::energy; });
+    watches_energy_ = std::any_of(conserved.begin(), conserved.end(), [](const conservation::Conserved& c) {
+      return c.kind == system::OutputKind::energy;
+    });
   }
 
   void run() {

@@ -91,11 +91,7 @@ class File {
         std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.entries.empty(); });
     if (!gives) return;
     const FunctionText text = print_function(function, names_, context_, dialect_);
-    FunctionText plain;
-    for (const auto& result : function.results) {
-      if (!result.is_test()) plain.results.push_back(result.name);
-    }
-    const std::vector<Argument> list = arguments(function.name, plain, abi_names());
+    const std::vector<Argument> list = abi_arguments(function.name);
     std::size_t numbers = 0;
     for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array) : 0;
     for (const auto& result : function.results) numbers += result.entries.size();

@@ -36,11 +36,7 @@ std::string head_of(const std::string& name, const std::string& arguments) {
 /// The prototype with the argument names of docs/abi.md, whatever the model's own names are.
 std::string prototype(const std::string& name, const FilePart& part) {
   if (part.function == nullptr) return head_of(name, part.arguments);
-  FunctionText text;
-  for (const auto& result : part.function->results) {
-    if (!result.is_test()) text.results.push_back(result.name);
-  }
-  return function_head(name, *part.function, text, abi_names(), "double");
+  return head_of(name, argument_list(abi_arguments(part.function->name), "double"));
 }
 
 /// The function; where it tries near angles first, what it is made of and the one for far angles before it.

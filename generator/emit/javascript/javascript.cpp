@@ -6,6 +6,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "abi/functions.hpp"
 #include "emit/metadata.hpp"
 #include "emit/names.hpp"
 #include "emit/signature.hpp"
@@ -104,6 +105,16 @@ void require_known(const program::Program& program) {
                 "use the target c or cpp, or leave --with charts out");
 }
 
+/// name === "mass" || name === "constraints": those of the state that see neither inputs nor a mode.
+std::string without_inputs() {
+  std::string condition;
+  for (const abi::Function& function : abi::functions()) {
+    if (function.comes != abi::Comes::with || function.takes(abi::Input::inputs)) continue;
+    condition += fmt::format("{}name === \"{}\"", condition.empty() ? "" : " || ", function.name);
+  }
+  return condition;
+}
+
 }  // namespace
 
 std::vector<EmittedFile> emit_javascript(const program::Program& program, const EmissionContext& context) {
@@ -127,6 +138,7 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"defaults", defaults_body(program, context, dialect)},
       {"list", list},
       {"prepared", std::to_string(program.prepared_count())},
+      {"without_inputs", without_inputs()},
       {"vectors", vectors(context)}};
   return {{name + ".js", rendered(skeleton::javascript_model_js, values, functions)}};
 }

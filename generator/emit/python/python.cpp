@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/python/python.hpp"
 
+#include <fmt/format.h>
+
+#include "abi/functions.hpp"
 #include "emit/c/c.hpp"
 #include "emit/metadata.hpp"
 #include "error.hpp"
@@ -8,6 +11,27 @@
 #include "skeletons/python_simulate_c.hpp"
 
 namespace eomgen::emit {
+namespace {
+
+// Those that the module wraps.
+constexpr const char* wrapped_functions[] = {"rhs",         "jac",       "jac_p",   "mass",
+                                             "constraints", "reactions", "outputs", "events"};
+
+/// _rhs = _function("rhs", "daaaia"): the types of the arguments, one letter each.
+std::string functions_of_c() {
+  std::string lines;
+  for (const char* name : wrapped_functions) {
+    const abi::Function& function = *abi::find(name);
+    std::string types;
+    for (const abi::Input input : function.inputs)
+      types += input == abi::Input::time ? 'd' : input == abi::Input::mode ? 'i' : 'a';
+    types.append(function.results.size(), 'a');
+    lines += fmt::format("{0}_{1} = _function(\"{1}\", \"{2}\")", lines.empty() ? "" : "\n", name, types);
+  }
+  return lines;
+}
+
+}  // namespace
 
 std::vector<EmittedFile> emit_python(const program::Program& program, const EmissionContext& context) {
   if (!program.contacts.empty()) {
@@ -20,9 +44,11 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
   files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, {{"name", name}}, {})});
-  files.push_back({module_name(context.id) + ".py",
-                   rendered(skeleton::python_model_py,
-                            {{"banner", banner(program, context, "# ", "# ", "")}, {"name", name}}, {})});
+  files.push_back({module_name(context.id) + ".py", rendered(skeleton::python_model_py,
+                                                             {{"banner", banner(program, context, "# ", "# ", "")},
+                                                              {"name", name},
+                                                              {"functions_of_c", functions_of_c()}},
+                                                             {})});
   return files;
 }
 

@@ -9,6 +9,7 @@
 #include <optional>
 #include <type_traits>
 
+#include "abi/functions.hpp"
 #include "emit/metadata.hpp"
 #include "emit/text.hpp"
 #include "skeletons/cpp_run_hpp.hpp"
@@ -96,17 +97,30 @@ class Statements {
   std::string of_, lines_;
 };
 
+/// Whether a run calls it.
+bool is_of_runs(const std::string& function) {
+  const auto of = [](const auto& code, const auto& member) { return member(code); };
+#define ABI_FUNCTION(name, takes, gives, comes, purpose)  \
+  if (function == #name)                                  \
+    return of(eom::hybrid::Code{}, [](const auto& code) { \
+      return requires { code.name; };                     \
+    });
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
+  return false;
+}
+
 std::string code_text(const program::Program& program, const eom::hybrid::Code& code, const std::string& name) {
   Statements s("code");
   const auto bind = [&](const std::string& function) { s.line(fmt::format("code.{0} = {1}_{0};", function, name)); };
   for (const program::Function& f : program.functions) {
-    if (f.name != "reactions") bind(f.name);
+    if (is_of_runs(f.name)) bind(f.name);
   }
   if (program.taylor) bind("taylor");
   if (!program.charts.empty()) {
     bind("chart");
     for (const program::Function& f : program.functions) {
-      if (f.name == "mass" || f.name == "constraints") bind(f.name + "_in");
+      if (abi::find(f.name + "_in") != nullptr) bind(f.name + "_in");
     }
   }
   if (code.prepared > 0) s.set("prepared", code.prepared);

@@ -37,21 +37,7 @@ LoadedModel::LoadedModel(const std::string& path, const std::string& name) {
   find(handle_, name + "_selftest", selftest);
   find(handle_, name + "_info", information);
   find(handle_, name + "_defaults", defaults);
-  find(handle_, name + "_rhs", rhs);
-  find(handle_, name + "_prepare", prepare);
-  find(handle_, name + "_rhs_prepared", rhs_prepared);
-  find(handle_, name + "_jac", jac);
-  find(handle_, name + "_jac_p", jac_p);
-  find(handle_, name + "_taylor", taylor);
-  find(handle_, name + "_mass", mass);
-  find(handle_, name + "_momenta", momenta);
-  find(handle_, name + "_constraints", constraints);
-  find(handle_, name + "_reactions", reactions);
-  find(handle_, name + "_outputs", outputs);
-  find(handle_, name + "_events", events);
-  find(handle_, name + "_chart", chart);
-  find(handle_, name + "_mass_in", mass_in);
-  find(handle_, name + "_constraints_in", constraints_in);
+  each([&](const char* function, auto& pointer) { find(handle_, name + "_" + function, pointer); });
   std::string wrong;
   if (abi == nullptr || selftest == nullptr || information == nullptr || defaults == nullptr || rhs == nullptr) {
     wrong = "compiled code lacks functions of the C ABI: " + path;
@@ -74,21 +60,7 @@ LoadedModel::~LoadedModel() {
 LoadedModel::LoadedModel(LoadedModel&& other) noexcept { *this = std::move(other); }
 
 LoadedModel& LoadedModel::operator=(LoadedModel&& other) noexcept {
-  rhs = other.rhs;
-  prepare = other.prepare;
-  rhs_prepared = other.rhs_prepared;
-  jac_p = other.jac_p;
-  reactions = other.reactions;
-  outputs = other.outputs;
-  events = other.events;
-  jac = other.jac;
-  taylor = other.taylor;
-  mass = other.mass;
-  momenta = other.momenta;
-  constraints = other.constraints;
-  chart = other.chart;
-  mass_in = other.mass_in;
-  constraints_in = other.constraints_in;
+  abi::Compiled::operator=(other);
   defaults = other.defaults;
   info = std::move(other.info);
   std::swap(handle_, other.handle_);

@@ -7,25 +7,12 @@
 #include <memory>
 #include <string>
 
+#include "abi/compiled.hpp"
+
 namespace eomgen::emit {
 
-using RhsFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dx);
-using PrepareFunction = int (*)(const double* p, double* w);
-using PreparedRhsFunction = int (*)(double t, const double* x, const double* p, const double* w, const double* u,
-                                    int mode, double* dx);
-using JacobianFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, double* dfdx,
-                                 double* dfdt);
-using TaylorFunction = int (*)(double t, const double* x, const double* p, const double* u, int mode, int order,
-                               double* coefficients);
-using MassFunction = int (*)(double t, const double* x, const double* p, double* M, double* h);
-using MassInFunction = int (*)(double t, const double* x, const double* p, int mode, double* M, double* h);
-using ConstraintInFunction = int (*)(double t, const double* x, const double* p, int mode, double* psi, double* A,
-                                     double* b);
-using ChartFunction = int (*)(const double* x, int mode, int to, double* y);
-using ConstraintFunction = int (*)(double t, const double* x, const double* p, double* psi, double* A, double* b);
-
 /// The functions of the C ABI (docs/abi.md); null where a function was not asked for. Unloads the library at the end.
-class LoadedModel {
+class LoadedModel : public abi::Compiled {
  public:
   /// `name`: NAME of the symbols; `path`: of a shared library. Throws Error{Fault::tool} if it cannot be loaded, is of
   /// another ABI, or fails its self test.
@@ -36,22 +23,6 @@ class LoadedModel {
   LoadedModel(const LoadedModel&) = delete;
   LoadedModel& operator=(const LoadedModel&) = delete;
 
-  RhsFunction rhs = nullptr;
-  PrepareFunction prepare = nullptr;           // null too where nothing is worth preparing
-  PreparedRhsFunction rhs_prepared = nullptr;  // there with `prepare`
-  JacobianFunction momenta = nullptr;          // momenta, rates in place of dfdx, dfdt
-  RhsFunction jac_p = nullptr;                 // dfdp in place of dx
-  RhsFunction reactions = nullptr;             // lambda in place of dx
-  RhsFunction events = nullptr;                // g in place of dx
-  RhsFunction outputs = nullptr;               // y in place of dx
-  JacobianFunction jac = nullptr;
-  TaylorFunction taylor = nullptr;
-  MassFunction mass = nullptr;
-  ConstraintFunction constraints = nullptr;
-  // Only of code that knows several charts.
-  ChartFunction chart = nullptr;
-  MassInFunction mass_in = nullptr;
-  ConstraintInFunction constraints_in = nullptr;
   void (*defaults)(double* x, double* p) = nullptr;
   std::string info;  // JSON
 

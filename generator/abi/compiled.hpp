@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Compiled functions of the table (functions.hpp): their types, and calls by name.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <initializer_list>
+#include <string_view>
+#include <utility>
+
+#include "abi/functions.hpp"
+
+namespace eomgen::abi {
+
+/// What compiled functions are called with; what one does not take is not read.
+struct Given {
+  double t = 0;
+  const double *x = nullptr, *p = nullptr, *w = nullptr, *u = nullptr;
+  int mode = 0, order = 0, to = 0;
+  std::array<double*, 3> results{};
+};
+
+constexpr std::size_t count(std::initializer_list<Result> results) { return results.size(); }
+
+template <Input input>
+constexpr auto handed(const Given& given) {
+  if constexpr (input == Input::time)
+    return given.t;
+  else if constexpr (input == Input::state)
+    return given.x;
+  else if constexpr (input == Input::parameters)
+    return given.p;
+  else if constexpr (input == Input::prepared)
+    return given.w;
+  else if constexpr (input == Input::inputs)
+    return given.u;
+  else if constexpr (input == Input::mode)
+    return given.mode;
+  else if constexpr (input == Input::order)
+    return given.order;
+  else
+    return given.to;
+}
+
+template <Input... inputs>
+struct Takes {
+  template <std::size_t... result>
+  static int call(auto function, const Given& given, std::index_sequence<result...>) {
+    return function(handed<inputs>(given)..., given.results[result]...);
+  }
+  template <std::size_t... result>
+  static auto pointer(std::index_sequence<result...>)
+      -> int (*)(decltype(handed<inputs>(Given{}))..., decltype(std::get<result>(Given{}.results) + 0)...);
+};
+
+/// The type of a function that takes so and gives that many arrays.
+template <class Inputs, std::size_t results>
+using Pointer = decltype(Inputs::pointer(std::make_index_sequence<results>{}));
+
+/// All functions of the table: null where code lacks them.
+struct Compiled {
+#define TAKES(...) Takes<__VA_ARGS__>
+#define GIVES(...) count({__VA_ARGS__})
+#define ABI_FUNCTION(name, takes, gives, comes, purpose) Pointer<takes, gives> name = nullptr;
+  using enum Input;
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
+
+  /// Calls visit(name, pointer) for each, with a reference to the pointer.
+  template <class Visit>
+  void each(Visit&& visit) {
+#define ABI_FUNCTION(name, takes, gives, comes, purpose) visit(#name, name);
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
+  }
+
+  bool has(std::string_view function) const {
+#define ABI_FUNCTION(name, takes, gives, comes, purpose) \
+  if (function == #name) return name != nullptr;
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
+    return false;
+  }
+
+  /// The code that the function of this name returns; it must be there.
+  int call(std::string_view function, const Given& given) const {
+#define ABI_FUNCTION(name, takes, gives, comes, purpose) \
+  if (function == #name) return takes::call(name, given, std::make_index_sequence<gives>{});
+#include "abi/functions.inc"
+#undef ABI_FUNCTION
+    return -1;
+  }
+#undef GIVES
+#undef TAKES
+};
+
+}  // namespace eomgen::abi
