@@ -16,7 +16,7 @@ std::span<const Command> commands() {
       Command{"run", "derive, emit, compile and integrate a scene", declare_run},
       Command{"equilibria", "equilibria and steady motions, and whether they are stable", declare_equilibria},
       Command{"linearize", "the equations linearised at a state, and their eigenvalues", declare_linearize},
-      Command{"bench", "true error against run time, every fitting solver", declare_bench},
+      Command{"bench", "true error against run time, every eligible solver", declare_bench},
       Command{"stress", "stiff and extreme variations: what each solver makes of them", declare_stress},
       Command{"inverse", "the forces that prescribed motions need", declare_inverse},
       Command{"sweep", "many runs over a grid of parameters, in parallel, resumable", declare_sweep},

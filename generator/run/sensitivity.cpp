@@ -113,7 +113,7 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
 }
 
 /// The method that ran, or, where it needs a series, momenta or constraints, one of as high an order that does not.
-std::string fitting(const std::string& solver) {
+std::string without_requirements(const std::string& solver) {
   const eom::MethodInfo& method = method_named(solver);
   if (method.needs.required.none()) return solver;
   return uses_jacobian(method) ? "radau5" : "dop853";
@@ -131,7 +131,7 @@ Sensitivities integrate_sensitivities(const RunRequest& request, const std::stri
                                       const std::vector<Direction>& directions, bool estimate) {
   require_smooth(request);
   Sensitivities result;
-  result.solver = fitting(solver);
+  result.solver = without_requirements(solver);
   eom::Options options;
   options.rtol = request.scene.rtol;
   options.atol = request.scene.atol;

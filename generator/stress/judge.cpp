@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "stress/reference_solution.hpp"
 #include "stress/stress.hpp"
-#include "stress/yardstick.hpp"
 
 namespace eomgen::stress {
 namespace {
@@ -22,14 +22,15 @@ constexpr int shortenings = 24;       // of the span, each to a half at most, un
 
 class Judgement {
  public:
-  Judgement(const Case& test, const run::Scene& scene, const Request& request, const Truth* truth, double stable_step)
-      : test_(test), scene_(scene), request_(request), truth_(truth), stable_step_(stable_step) {}
+  Judgement(const Case& test, const run::Scene& scene, const Request& request, const ReferenceSolution* reference,
+            double stable_step)
+      : test_(test), scene_(scene), request_(request), reference_(reference), stable_step_(stable_step) {}
 
   Row row(const std::string& solver) {
     Row row;
     row.test = test_.name;
     row.solver = solver;
-    if (truth_ != nullptr) row.condition = truth_->condition;
+    if (reference_ != nullptr) row.condition = reference_->condition;
     Clock clock(request_.seconds_limit, request_.interrupt);
     const run::RunResult result = made(scene_, solver, clock);
     row.seconds = clock.seconds();
@@ -40,7 +41,7 @@ class Judgement {
     if (clock.was_late() || result.outcome != eom::Outcome::done) {
       row.error = row.estimate = infinity;
       row.verdict = Verdict::told;
-    } else if (truth_ != nullptr) {
+    } else if (reference_ != nullptr) {
       compare(result, run::method_named(solver).adaptive, row);
     } else {
       row.error = row.estimate = infinity;
@@ -73,11 +74,11 @@ class Judgement {
   }
 
   void compare(const run::RunResult& result, bool adaptive, Row& row) const {
-    const double condition = std::min(truth_->condition, most_condition),
-                 largest = *std::max_element(truth_->scale.begin(), truth_->scale.end());
+    const double condition = std::min(reference_->condition, most_condition),
+                 largest = *std::max_element(reference_->scale.begin(), reference_->scale.end());
     bool kept = true;
-    for (std::size_t i = 0; i < truth_->x.size(); ++i) {
-      const double scale = truth_->scale[i], error = std::abs(result.state[i] - truth_->x[i]) / scale;
+    for (std::size_t i = 0; i < reference_->x.size(); ++i) {
+      const double scale = reference_->scale[i], error = std::abs(result.state[i] - reference_->x[i]) / scale;
       // The start is rounded to binary64, and so is every sum on the way, beside the largest component.
       double tolerance = unit * largest / scale;
       if (adaptive)
@@ -89,7 +90,7 @@ class Judgement {
     }
     if (kept)
       row.verdict = Verdict::kept;
-    else if (row.error - truth_->uncertainty <= told_within * row.estimate || !result.estimate_note.empty())
+    else if (row.error - reference_->uncertainty <= told_within * row.estimate || !result.estimate_note.empty())
       row.verdict = Verdict::told;
     else
       row.verdict = Verdict::silent;
@@ -98,7 +99,7 @@ class Judgement {
   const Case& test_;
   const run::Scene& scene_;
   const Request& request_;
-  const Truth* truth_;
+  const ReferenceSolution* reference_;
   double stable_step_;  // where fixed steps are to be near it
 };
 
@@ -134,27 +135,27 @@ double stable_step(const run::Scene& scene, const Request& request) {
 std::vector<Row> judge(const Case& test, const run::Scene& given, const Request& request, std::string& left_out) {
   run::Scene scene = given;
   std::vector<Row> rows;
-  std::optional<Truth> truth;
+  std::optional<ReferenceSolution> reference;
   const auto interrupted = [&] { return request.interrupt != nullptr && *request.interrupt; };
   if (!test.without_value) {
-    for (int k = 0; k <= shortenings && !truth; ++k) {
+    for (int k = 0; k <= shortenings && !reference; ++k) {
       if (interrupted()) return rows;
       double next = 0;
-      truth = Yardstick(scene, given.t1 - given.t0, test.nearness, request).truth(left_out, next);
-      if (truth) break;
+      reference = ReferenceRuns(scene, given.t1 - given.t0, test.nearness, request).solution(left_out, next);
+      if (reference) break;
       if (next == 0) return rows;
       scene.t1 = scene.t0 + next;
     }
-    if (!truth) return rows;
+    if (!reference) return rows;
   }
   left_out.clear();
-  if (truth && request.seen) request.seen(test, scene, truth->samples);
+  if (reference && request.seen) request.seen(test, scene, reference->samples);
   const double stable = test.of_limit ? stable_step(scene, request) : 0;
   if (test.of_limit && !(stable > 0 && (scene.t1 - scene.t0) / stable > fewest_stable)) {
     left_out = "nothing in it is so fast that few steps would be unstable";
     return rows;
   }
-  Judgement judgement(test, scene, request, truth ? &*truth : nullptr, stable);
+  Judgement judgement(test, scene, request, reference ? &*reference : nullptr, stable);
   const run::RunRequest run = request.run(scene);
   for (const std::string& solver : request.solvers) {
     if (interrupted()) break;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stress/yardstick.hpp"
+#include "stress/reference_solution.hpp"
 
 #include <fmt/format.h>
 
@@ -40,7 +40,7 @@ double distance(const State& a, const State& b, const State& scale) {
   return largest;
 }
 
-Yardstick::Yardstick(const run::Scene& scene, double whole, double nearness, const Request& request)
+ReferenceRuns::ReferenceRuns(const run::Scene& scene, double whole, double nearness, const Request& request)
     : scene_(scene),
       whole_(whole),
       disturbance_(std::clamp(bends_within * nearness, 4 * unit, disturbance)),
@@ -50,9 +50,9 @@ Yardstick::Yardstick(const run::Scene& scene, double whole, double nearness, con
   run_.watch_power = false;
 }
 
-std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
+std::optional<ReferenceSolution> ReferenceRuns::solution(std::string& why, double& next_span) {
   const double span = scene_.t1 - scene_.t0;
-  Truth truth;
+  ReferenceSolution reference;
   State second;
   std::vector<double> reached;
   for (const TightSolver& solver : tight_solvers) {
@@ -66,13 +66,13 @@ std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
     }
     reached.push_back(run.reached);
     if (run.x.empty()) continue;
-    if (!truth.x.empty()) {
+    if (!reference.x.empty()) {
       second = std::move(run.x);
       continue;
     }
-    truth.x = std::move(run.x);
-    truth.scale = std::move(scale);
-    truth.samples = std::move(run.samples);
+    reference.x = std::move(run.x);
+    reference.scale = std::move(scale);
+    reference.samples = std::move(run.samples);
     solver_ = solver.name;
     rtol_ = solver.rtol;
   }
@@ -83,24 +83,25 @@ std::optional<Truth> Yardstick::truth(std::string& why, double& next_span) {
     return std::nullopt;
   }
   next_span = shorter * span;
-  if (!condition(truth)) {
+  if (!condition(reference)) {
     why = late_ ? by_the_clock : "a start that is a little disturbed does not come to the end";
     if (late_) next_span = 0;
     return std::nullopt;
   }
   // The start and every sum on the way are rounded to binary64, whatever two runs agree in.
-  truth.uncertainty = doubt * distance(truth.x, second, truth.scale) + unit * truth.condition;
-  if (truth.growth <= most_condition && truth.uncertainty < most_uncertain) {
+  reference.uncertainty = doubt * distance(reference.x, second, reference.scale) + unit * reference.condition;
+  if (reference.growth <= most_condition && reference.uncertainty < most_uncertain) {
     const run::Integration start(run_, solver_);
-    truth.samples.insert(truth.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
-    return truth;
+    reference.samples.insert(reference.samples.begin(), {scene_.t0, start.initial_state(), start.contact_mode()});
+    return reference;
   }
   why = fmt::format("disturbances of the start grow by a factor of {:.1e}, and the end is known to {:.1e}",
-                    truth.growth, truth.uncertainty);
+                    reference.growth, reference.uncertainty);
   return std::nullopt;
 }
 
-Yardstick::Tight Yardstick::tight(const std::string& solver, double rtol, const State* start, State* scale) const {
+ReferenceRuns::Tight ReferenceRuns::tight(const std::string& solver, double rtol, const State* start,
+                                          State* scale) const {
   run::Scene scene = start != nullptr ? started(*start) : scene_;
   run::RunRequest request = request_.run(scene);
   request.estimate = request.watch_power = false;
@@ -127,7 +128,7 @@ Yardstick::Tight Yardstick::tight(const std::string& solver, double rtol, const 
   return result;
 }
 
-void Yardstick::sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const {
+void ReferenceRuns::sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const {
   while (samples.size() < sample_count) {
     const double part = static_cast<double>(samples.size() + 1) / static_cast<double>(sample_count);
     const double t = samples.size() + 1 == sample_count ? scene_.t1 : scene_.t0 + part * (scene_.t1 - scene_.t0);
@@ -139,7 +140,7 @@ void Yardstick::sample(const eom::StepView& view, int mode, std::vector<Sample>&
 }
 
 // A component that stays 0 beside others of its kind is 0 to their rounding.
-void Yardstick::level(State& scale, const State& x0) const {
+void ReferenceRuns::level(State& scale, const State& x0) const {
   scale.resize(run_.state_names.size());
   double largest = 0;
   for (std::size_t i = 0; i < scale.size(); ++i)
@@ -149,7 +150,7 @@ void Yardstick::level(State& scale, const State& x0) const {
   for (std::size_t i = 0; i < n; ++i) scale[n + i] = std::max(scale[n + i], scale[i] / whole_);
 }
 
-run::Scene Yardstick::started(const State& x) const {
+run::Scene ReferenceRuns::started(const State& x) const {
   run::Scene scene = scene_;
   const std::vector<std::uint32_t>& free = run_.code.free;
   for (std::size_t i = 0; i < free.size(); ++i) {
@@ -160,30 +161,30 @@ run::Scene Yardstick::started(const State& x) const {
 }
 
 /// Of disturbances along and against, the one that moves the end most; false where one of them cannot be followed.
-bool Yardstick::condition(Truth& truth) {
+bool ReferenceRuns::condition(ReferenceSolution& reference) {
   const State x0 = run::Integration(run_, solver_).initial_state();
   for (const int pattern : {0, 1, 2}) {
     // The other way may lie beyond where coordinates end.
-    if (!moved(truth, x0, pattern, 1) && (late_ || !moved(truth, x0, pattern, -1))) return false;
+    if (!moved(reference, x0, pattern, 1) && (late_ || !moved(reference, x0, pattern, -1))) return false;
   }
   return true;
 }
 
-bool Yardstick::moved(Truth& truth, const State& x0, int pattern, double sign) {
+bool ReferenceRuns::moved(ReferenceSolution& reference, const State& x0, int pattern, double sign) {
   State x = x0;
   for (std::size_t i = 0; i < 2 * run_.code.free.size(); ++i) {
     const bool against = pattern > 0 && ((i >> (pattern - 1)) & 1) != 0;
-    x[i] += (against ? -sign : sign) * disturbance_ * truth.scale[i];
+    x[i] += (against ? -sign : sign) * disturbance_ * reference.scale[i];
   }
   const Tight end = tight(solver_, std::max(rtol_, disturbed_rtol), &x, nullptr);
   late_ = late_ || end.late;
-  if (end.x.empty() || end.samples.size() != truth.samples.size()) return false;
+  if (end.x.empty() || end.samples.size() != reference.samples.size()) return false;
   double early = 1;
   for (std::size_t k = 0; k < early_samples; ++k)
-    early = std::max(early, distance(end.samples[k].x, truth.samples[k].x, truth.scale) / disturbance_);
-  const double late = distance(end.x, truth.x, truth.scale) / disturbance_;
-  truth.condition = std::max(truth.condition, late);
-  truth.growth = std::max(truth.growth, late / early);
+    early = std::max(early, distance(end.samples[k].x, reference.samples[k].x, reference.scale) / disturbance_);
+  const double late = distance(end.x, reference.x, reference.scale) / disturbance_;
+  reference.condition = std::max(reference.condition, late);
+  reference.growth = std::max(reference.growth, late / early);
   return true;
 }
 

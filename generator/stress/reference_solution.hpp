@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a scene's motion ends in, and how well that is known: tight runs by solvers that have nothing in common but the
+// The reference solution of a scene and how well it is known: tight runs by solvers that have nothing in common but the
 // right-hand side. All budgets are steps, so that a slower machine comes to the same verdict; the clock is a guard, and
 // its hitting is told.
 #pragma once
@@ -33,7 +33,7 @@ class Clock {
 
 using State = std::vector<double>;
 
-struct Truth {
+struct ReferenceSolution {
   State x;
   State scale;  // largest value of each component along the motion; of rates no less than what turns the coordinate
                 // over in the whole span
@@ -47,15 +47,15 @@ inline constexpr double unit = std::numeric_limits<double>::epsilon();
 inline constexpr double most_condition =
     1.6e5;  // e^12: what grows by more, in twelve Lyapunov times, says nothing; and no run is kept by more
 
-class Yardstick {
+class ReferenceRuns {
  public:
   /// whole: the span that was asked for, of which the scene may have a part; nearness: of the start to where
   /// coordinates fail.
-  Yardstick(const run::Scene& scene, double whole, double nearness, const Request& request);
+  ReferenceRuns(const run::Scene& scene, double whole, double nearness, const Request& request);
 
   /// Nothing where no two solvers come to the end, or not to the same; `why` says so, and the span to try next (0:
   /// none).
-  std::optional<Truth> truth(std::string& why, double& next_span);
+  std::optional<ReferenceSolution> solution(std::string& why, double& next_span);
 
  private:
   struct Tight {
@@ -68,8 +68,8 @@ class Yardstick {
   void sample(const eom::StepView& view, int mode, std::vector<Sample>& samples) const;
   void level(State& scale, const State& x0) const;
   run::Scene started(const State& x) const;
-  bool condition(Truth& truth);
-  bool moved(Truth& truth, const State& x0, int pattern, double sign);
+  bool condition(ReferenceSolution& reference);
+  bool moved(ReferenceSolution& reference, const State& x0, int pattern, double sign);
 
   const run::Scene& scene_;
   double whole_, disturbance_;
