@@ -7,11 +7,19 @@ function(eomgen_precompile target)
   endif()
 endfunction()
 
-# eomgen_stage(NAME SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
+# eomgen_take_precompiled(TARGET OWNER): the precompiled headers of another target, compiled with the same options.
+function(eomgen_take_precompiled target owner)
+  if(EOMGEN_PRECOMPILE)
+    target_precompile_headers(${target} REUSE_FROM ${owner})
+    target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>)
+  endif()
+endfunction()
+
+# eomgen_stage(NAME [OWN_HEADERS] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
-# Headers are included as "stage/file.hpp" from generator/.
+# Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: it precompiles others than the stages share.
 function(eomgen_stage name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_HEADERS" "" "SOURCES;NEEDS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})
   target_include_directories(eomgen_${name} PUBLIC ${PROJECT_SOURCE_DIR}/generator)
   target_link_libraries(eomgen_${name} PRIVATE eomgen_warnings)
@@ -19,6 +27,9 @@ function(eomgen_stage name)
     target_link_libraries(eomgen_${name} PUBLIC eomgen_${stage})
   endforeach()
   target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})
+  if(ARG_NEEDS AND NOT ARG_OWN_HEADERS)  # those without are tables
+    eomgen_take_precompiled(eomgen_${name} eomgen_error)
+  endif()
 endfunction()
 
 # eomgen_registered(FOLDER RESULT): NAME.cpp for each line WORD(NAME) of generator/FOLDER/registry.inc, which is read again where it changes.

@@ -21,25 +21,26 @@ std::size_t size_of(const Files& files) {
   return sum;
 }
 
-/// What `words` writes into out/, from `processes` processes, two at a time; from two of them where it is long.
+/// What `words` writes into out/, from `processes` processes, two at a time; from two of them where it is long. The
+/// first two verify, each by itself; the others derive and emit anew, with the certificates that these kept.
 std::vector<Files> emit_repeatedly(const Words& words) {
   std::vector<Files> result;
+  std::vector<std::unique_ptr<Folder>> folders;
   for (int k = 0; k < processes; k += 2) {
     if (k >= at_least && size_of(result.front()) > long_output) break;
-    std::vector<std::unique_ptr<Folder>> folders;
     std::vector<std::unique_ptr<Child>> children;
     for (int i = k; i < std::min(k + 2, processes); ++i) {
       folders.push_back(std::make_unique<Folder>());
       ChildCommand call = command(*folders.back(), words);
       // Moves the stack, and the hashes of a program that would seed them from its environment.
       call.environment["EOMGEN_TEST_PADDING"] = std::string(static_cast<std::size_t>(1 + 977 * i), 'x');
-      call.environment["EOMGEN_CACHE_DIR"] =
-          *folders.back() / "cache";  // a certificate that one keeps is not the other's
+      call.environment["EOMGEN_CACHE_DIR"] = *folders[static_cast<std::size_t>(i % 2)] / "cache";
       call.environment["LC_ALL"] = i % 2 == 0 ? "C" : "C.UTF-8";
       children.push_back(std::make_unique<Child>(call));
     }
-    for (std::size_t i = 0; i < children.size(); ++i) {
-      const ChildResult finished = children[i]->finish();
+    for (std::size_t c = 0; c < children.size(); ++c) {
+      const std::size_t i = folders.size() - children.size() + c;
+      const ChildResult finished = children[c]->finish();
       CAPTURE(finished.err);
       CHECK(finished.status == 0);
       Files files{{"standard output", finished.out}};
