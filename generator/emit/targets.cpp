@@ -13,13 +13,13 @@ namespace eomgen::emit {
 namespace {
 
 constexpr TargetEntry registry[] = {
-    {"cpp", "C++20 header of templates, and the C sources", emit_cpp},
-    {"c", "C11 sources with the C ABI", emit_c},
-    {"batch", "C11 sources, and the same functions for any number of states at once", emit_batch},
+    {"cpp", "C++20 header of templates, and the C sources", emit_cpp, mangled_id},
+    {"c", "C11 sources with the C ABI", emit_c, mangled_id},
+    {"batch", "C11 sources, and the same functions for any number of states at once", emit_batch, mangled_id},
     {"cuda", "CUDA and HIP, or C++20 as the host form: the functions for threads of a device, and ensembles on it",
-     emit_cuda},
-    {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python},
-    {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript},
+     emit_cuda, mangled_id},
+    {"python", "Python module over the C sources: ctypes, numpy where it is there", emit_python, module_name},
+    {"javascript", "JavaScript, a script and a module, without libraries", emit_javascript, script_name},
 };
 
 }  // namespace

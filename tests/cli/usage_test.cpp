@@ -189,6 +189,34 @@ TEST_CASE("-o and --out are one option, of every command that writes") {
   CHECK(folder.names() == Words{"p.toml"});
 }
 
+TEST_CASE(
+    "emit: --print-name tells of every target the name that its files have; --help and messages list all targets") {
+  const Folder folder;
+  const Json targets = document(folder, {"list"})["targets"];
+  const std::string help = expect(0, folder, {"emit", "--help"}).out;
+  REQUIRE(targets.size() >= 6);
+  for (const char* id : {"p", "numpy", "Math"}) {
+    const std::string file = std::string(id) + ".toml";
+    folder.write(file, pendulum_text("[scene.default]\nt = [0, 0.1]\ninitial = { x = 1, y = 0, x_dot = 0 }\n"));
+    for (const Json& target : targets) {
+      const std::string target_name = target["name"];
+      CAPTURE(id);
+      CAPTURE(target_name);
+      CHECK(contains(help, target_name));
+      std::string told = expect(0, folder, {"emit", file, "--target", target_name, "--print-name"}).out;
+      REQUIRE(told.ends_with('\n'));
+      told.pop_back();
+      const Json files = document(folder, {"emit", file, "--target", target_name, "-o", target_name})["files"];
+      CHECK(std::any_of(files.begin(), files.end(), [&](const Json& written) {
+        return std::filesystem::path(written.get<std::string>()).stem() == told;
+      }));
+    }
+  }
+  const ChildResult wrong = expect(2, folder, {"emit", "p.toml", "--target", "cobol", "--print-name"});
+  CHECK(contains(wrong.err, "there is no target 'cobol'"));
+  for (const Json& target : targets) CHECK(contains(wrong.err, target["name"].get<std::string>()));
+}
+
 TEST_CASE("a run of no length gives the state, accelerations and reactions at the start") {
   const Folder folder;
   folder.write("p.toml",

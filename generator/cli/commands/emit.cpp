@@ -26,12 +26,26 @@ struct Options {
   bool print_name = false;
 };
 
+constexpr const char* document_target = "latex";  // beside the targets of code
+
+std::vector<std::string> target_names() {
+  std::vector<std::string> names;
+  for (const emit::TargetEntry& entry : emit::targets()) names.emplace_back(entry.name);
+  names.emplace_back(document_target);
+  return names;
+}
+
 void require_target(const std::string& target) {
-  std::vector<std::string> known;
-  for (const emit::TargetEntry& entry : emit::targets()) known.emplace_back(entry.name);
-  known.emplace_back("latex");
+  const std::vector<std::string> known = target_names();
   if (std::find(known.begin(), known.end(), target) != known.end()) return;
   throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
+}
+
+std::string name_for(const std::string& target, const std::string& id) {
+  for (const emit::TargetEntry& entry : emit::targets()) {
+    if (target == entry.name) return entry.name_of(id);
+  }
+  return emit::mangled_id(id);
 }
 
 int emit_document(const Options& options, const Common& common) {
@@ -60,10 +74,8 @@ json hoisted(const program::Program& program) {
 
 int execute(const Options& options, const Common& common) {
   if (options.print_name) {
-    const std::string id = std::filesystem::path(options.model).stem().string();
-    fmt::print("{}\n", options.target == "python"       ? emit::module_name(id)
-                       : options.target == "javascript" ? emit::script_name(id)
-                                                        : emit::mangled_id(id));
+    require_target(options.target);
+    fmt::print("{}\n", name_for(options.target, std::filesystem::path(options.model).stem().string()));
     return 0;
   }
   if (options.folder.empty())
@@ -77,7 +89,7 @@ int execute(const Options& options, const Common& common) {
                                           options.outputs,
                                           options.fix,
                                           common.seed};
-  if (options.target == "latex") return emit_document(options, common);
+  if (options.target == document_target) return emit_document(options, common);
   double reading = 0;
   const auto model = load_model(options.model, &reading);
   const pipeline::Emission emission = pipeline::emit_model(model, request);
@@ -135,7 +147,8 @@ Execute declare_emit(CLI::App& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
   add_place(app, "-o,--out", options->folder, "the folder for the sources; it is made if need be");
-  app.add_option("--target", options->target, "cpp, c, batch, python, javascript, or latex for a document")
+  app.add_option("--target", options->target,
+                 fmt::format("{}; {} is a document", fmt::join(target_names(), ", "), document_target))
       ->capture_default_str();
   add_list(app, "--with", options->with,
            fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
