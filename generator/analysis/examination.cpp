@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/examination.hpp"
 
+#include <cln/real.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "pipeline/charts.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/decimal.hpp"
+#include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -117,8 +119,18 @@ void add_charts(const mechanics::Mechanics& m, Examination& found) {
   }
 }
 
-// A number as a decimal; what other parameters determine as their expression.
-std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value) {
+// A number as a decimal; what other parameters determine as their expression. Throws Error at `span` for what numbers
+// alone determine and has no value, as sqrt(-1).
+std::string value_of(const mechanics::Mechanics& m, symbolic::Ref value, const std::string& what,
+                     const model::Span& span) {
+  constexpr int digits = 20;
+  if (m.dag->symbols({value}).empty()) try {
+      symbolic::evaluate(
+          *m.dag, {value}, [](const symbolic::Symbol&) -> cln::cl_R { return 0; }, digits);
+    } catch (const std::domain_error& error) {
+      throw Error("mechanics", m.model->where(span), fmt::format("{} has no value: {}", what, error.what()),
+                  "check the numbers that it is computed from");
+    }
   return m.dag->is_constant(value) ? symbolic::decimal_text(m.dag->value(value)) : shown(m, value);
 }
 
@@ -135,12 +147,17 @@ void fill_in(std::shared_ptr<const model::Model> read, Examination& found) {
   found.degrees_of_freedom = m.freedom();
   for (std::size_t i = 0; i < model.parameters.size(); ++i) {
     const model::Parameter& p = model.parameters[i];
-    found.parameters.push_back({p.name, unit_of(p), value_of(m, m.parameter_value[i]), p.written});
+    found.parameters.push_back({p.name, unit_of(p),
+                                value_of(m, m.parameter_value[i], fmt::format("parameter '{}'", p.name), p.span),
+                                p.written});
   }
   for (const model::Input& input : model.inputs) {
     const bool given = input.fallback != model::no_node;
-    found.inputs.push_back(
-        {input.name, unit_of(input), given ? value_of(m, mechanics::lower_scalar(m, input.fallback)) : "0", ""});
+    found.inputs.push_back({input.name, unit_of(input),
+                            given ? value_of(m, mechanics::lower_scalar(m, input.fallback),
+                                             fmt::format("input '{}'", input.name), m.model->arena[input.fallback].span)
+                                  : "0",
+                            ""});
   }
   found.every_unit = every_unit;
   add_constraints(m, found);
