@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The right-hand side of a planar chain of N equal point masses m on massless rods of length L, absolute angles from
 // the downward vertical, written by hand as a specialist would, who knows that all masses and all lengths are equal.
-// The yardsticks for emitted code, behind the same prototype: every way of solving with every way to sines and cosines.
+// Emitted code is measured against these, behind the same prototype: every way of solving with every way to sines and
+// cosines.
 //
 // `dense`: handwritten_chain.hpp.
 // `tensions`: along the rods, k_i = T_i/(m L), a tridiagonal system and N divisions;

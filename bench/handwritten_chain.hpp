@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The right-hand side of a planar chain of N equal point masses m on massless rods of length L, absolute angles from
 // the downward vertical, written by hand as a specialist would: composite masses, each sine and cosine once, the
-// differences of angles from products, an unrolled LDL^T, libm. The yardstick for emitted code.
+// differences of angles from products, an unrolled LDL^T, libm. Emitted code is measured against it.
 //   sum_j mu_ij (cos(th_i - th_j) w_j' + sin(th_i - th_j) w_j^2) = -(N - i) (g/L) sin th_i,  mu_ij = N - max(i, j)
 #pragma once
 

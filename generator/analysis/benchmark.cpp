@@ -74,9 +74,9 @@ reference::Problem problem_of(const Simulation& simulation, const run::RunReques
   ends.push_back(scene.t1);
   double from = scene.t0;
   for (const double end : ends) {
-    problem.pieces.push_back({end, {}});
+    problem.segments.push_back({end, {}});
     for (const run::Signal& signal : scene.inputs)
-      problem.pieces.back().u.push_back(signal((from + end) / 2, (from + end) / 2));
+      problem.segments.back().u.push_back(signal((from + end) / 2, (from + end) / 2));
     from = end;
   }
   return problem;

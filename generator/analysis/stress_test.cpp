@@ -105,7 +105,7 @@ void repeat_constraints(const model::Model& given, std::vector<Row>& rows, LeftO
       mechanics::build_mechanics(model);
       rows.push_back({.test = test,
                       .solver = "none",
-                      .verdict = Verdict::silent,
+                      .verdict = Verdict::unreported,
                       .outcome = "accepted",
                       .note = "a constraint that repeats another is taken for one more"});
     } catch (const Error& error) {

@@ -27,7 +27,8 @@ std::string stiffness(const std::vector<Row>& rows) {
   }
   if (fewest[0] == nullptr || fewest[1] == nullptr || fewest[0]->steps < many * fewest[1]->steps) return "";
   return fmt::format(
-      " The motion is stiff: explicit solvers are unfit, stability asks of them for {} steps and more ({}), where {} "
+      " The motion is stiff: explicit solvers are inefficient, stability asks of them for {} steps and more ({}), "
+      "where {} "
       "takes {}.",
       fewest[0]->steps, fewest[0]->solver, fewest[1]->solver, fewest[1]->steps);
 }

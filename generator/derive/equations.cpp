@@ -229,7 +229,7 @@ void add_contact_outputs(Mechanics& m, EquationSystem& s) {
       const std::string vector = "friction." + contact.name;
       s.outputs.push_back({vector + "." + std::to_string(axis + 1), sum, OutputKind::friction, j, axis, "", vector});
     }
-    if (contact.touch && m.model->constraints[*contact.touch].rolls_by_friction()) {
+    if (contact.body_contact && m.model->constraints[*contact.body_contact].rolls_by_friction()) {
       const std::string vector = "reaction." + contact.name;
       for (std::uint32_t a = 0; a < 2; ++a)
         s.outputs.push_back({vector + "." + std::to_string(a + 1), mechanics::rolling_friction(m, contact, a),

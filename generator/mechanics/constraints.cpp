@@ -97,15 +97,15 @@ void add_velocity_form(const Mechanics& m, Lowering& lower, Constraint& result) 
 }
 
 // The point of contact stays on both surfaces, whatever moves.
-void check_touch(const Mechanics& m, Lowering& lower, const model::Constraint& constraint) {
-  const model::Touch& touch = *constraint.touch;
+void check_contact(const Mechanics& m, Lowering& lower, const model::Constraint& constraint) {
+  const model::BodyContact& contact = *constraint.contact;
   const auto refuse = [&](const std::string& what, const char* remedy) {
     throw Error("mechanics", m.model->where(constraint.span), what, remedy);
   };
-  const bool plane = touch.other_frame == 0;
-  for (std::size_t k = 0; k < touch.sinking.size(); ++k) {
-    if (vanishes(*m.dag, {lower.scalar(touch.sinking[k])})) continue;
-    const std::string& body = m.model->frames[k == 0 ? touch.frame : touch.other_frame].name;
+  const bool plane = contact.other_frame == 0;
+  for (std::size_t k = 0; k < contact.normal_velocity.size(); ++k) {
+    if (vanishes(*m.dag, {lower.scalar(contact.normal_velocity[k])})) continue;
+    const std::string& body = m.model->frames[k == 0 ? contact.frame : contact.other_frame].name;
     if (plane)
       refuse("the point of contact of '" + constraint.name + "' leaves the plane as the body turns",
              "give in 'at' the point of the body that is nearest to the plane, or the shape");
@@ -114,8 +114,8 @@ void check_touch(const Mechanics& m, Lowering& lower, const model::Constraint& c
            "direction across both surfaces there");
   }
   if (plane) return;
-  const Vec3 beside = lower.vector(touch.beside);
-  if (!vanishes(*m.dag, {beside[0], beside[1], beside[2]})) {
+  const Vec3 offset = lower.vector(contact.offset);
+  if (!vanishes(*m.dag, {offset[0], offset[1], offset[2]})) {
     refuse("'at' and 'at_b' of '" + constraint.name + "' lead to points that lie beside one another",
            "give the vectors so that their points differ along the normal alone, for all positions");
   }
@@ -173,7 +173,7 @@ bool may_repeat(const Mechanics& m, const Constraint& constraint) {
 
 void add_constraints(Mechanics& m, Lowering& lower) {
   for (const model::Constraint& constraint : m.model->constraints) {
-    if (constraint.touch) check_touch(m, lower, constraint);
+    if (constraint.contact) check_contact(m, lower, constraint);
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) {
       Constraint result;
       result.name = constraint.name;

@@ -32,12 +32,12 @@ class ContactReader {
     contact_.unilateral = constraint.unilateral;
     contact_.restitution =
         constraint.restitution == model::no_node ? dag_.zero() : lower_.scalar(constraint.restitution);
-    if (constraint.touch) {
-      contact_.touch = static_cast<std::uint32_t>(&constraint - m_.model->constraints.data());
-      contact_.rolls = rolls(*constraint.touch);
+    if (constraint.contact) {
+      contact_.body_contact = static_cast<std::uint32_t>(&constraint - m_.model->constraints.data());
+      contact_.rolls = rolls(*constraint.contact);
     }
     if (!constraint.friction) return add();
-    if (constraint.touch) return read_body(*constraint.touch, *constraint.friction);
+    if (constraint.contact) return read_body(*constraint.contact, *constraint.friction);
     find_particle();
     find_tangents();
     const Vec3 v = lower_.ddt(lower_.position(contact_.place), constraint.friction->span);
@@ -65,13 +65,13 @@ class ContactReader {
  private:
   // The point of the body that touches has F . dv/dqdot_i, and what it touches the opposite: of the slip velocity v all
   // at once.
-  void read_body(const model::Touch& touch, const model::Friction& law) {
-    contact_.place = touch.place;
+  void read_body(const model::BodyContact& contact, const model::Friction& law) {
+    contact_.place = contact.place;
     contact_.gram = {dag_.one()};
-    Vec3 slip = lower_.vector(touch.slip);
+    Vec3 slip = lower_.vector(contact.slip);
     if (law.surface_velocity != model::no_node) slip = lower_.subtract(slip, lower_.vector(law.surface_velocity));
     for (std::uint32_t a = 0; a < 2; ++a) {
-      const Vec3 t = lower_.vector(touch.tangents[a]);
+      const Vec3 t = lower_.vector(contact.tangents[a]);
       const Ref w = lower_.dot(t, slip);
       std::vector<Ref> slopes;
       for (std::uint32_t i = 0; i < m_.q.size(); ++i)
@@ -83,10 +83,10 @@ class ContactReader {
     }
     finish(law);
   }
-  bool rolls(const model::Touch& touch) {
-    if (touch.rolling) return true;
-    const Vec3 wandering = lower_.vector(touch.wandering);
-    return !vanishes(dag_, {wandering[0], wandering[1], wandering[2]});
+  bool rolls(const model::BodyContact& contact) {
+    if (contact.rolling) return true;
+    const Vec3 tangential_velocity = lower_.vector(contact.tangential_velocity);
+    return !vanishes(dag_, {tangential_velocity[0], tangential_velocity[1], tangential_velocity[2]});
   }
 
   Ref tidy(Ref r) { return expand_.tidy(r); }
@@ -343,11 +343,11 @@ void drop_held_directions(Mechanics& m) {
   for (Contact& contact : m.contacts) {
     for (std::size_t a = contact.directions.size(); a-- > 0 && contact.directions.size() == 2;) {
       const Ref slip = imposed(contact.slip[a]);
-      if (contact.touch ? !vanishes(*m.dag, {slip}) : !m.dag->is_zero(slip))
+      if (contact.body_contact ? !vanishes(*m.dag, {slip}) : !m.dag->is_zero(slip))
         continue;  // a plane body has no slip across its plane
       const auto drop = [a](auto& list) { list.erase(list.begin() + static_cast<std::ptrdiff_t>(a)); };
       drop(contact.directions), drop(contact.tangents), drop(contact.slip);
-      if (contact.touch) drop(contact.numbers);
+      if (contact.body_contact) drop(contact.numbers);
     }
     contact.first = first;
     first += static_cast<std::uint32_t>(contact.dimensions());

@@ -18,12 +18,12 @@ const char* name(Need need) {
 void add_joints(Mechanics& m, Lowering& lower) {
   Dag& dag = *m.dag;
   for (const model::Joint& joint : m.model->joints) {
-    for (const model::NodeId stray : joint.stray) {
-      if (stray == model::no_node) continue;
-      const Vec3 v = lower.vector(stray);
+    for (const model::NodeId drift : joint.drift) {
+      if (drift == model::no_node) continue;
+      const Vec3 v = lower.vector(drift);
       if (vanishes(dag, {v[0], v[1], v[2]})) continue;
       throw Error(
-          "mechanics", m.model->where(m.model->arena[stray].span),
+          "mechanics", m.model->where(m.model->arena[drift].span),
           "this point of the joint '" + joint.name + "' is not fixed in its body",
           "make it of the body, its axes and lengths, such as \"B - L/2*B.e1\", or name a [[point]] with on = \"B\"");
     }

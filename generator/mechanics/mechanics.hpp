@@ -113,7 +113,7 @@ struct Contact {
   std::optional<Ref> width;                     // of the smooth law -mu |N| w / sqrt(w^2 + width^2)
   bool unilateral = false;                      // its one constraint can be left
   Ref restitution;                              // of impacts then
-  std::optional<std::uint32_t> touch;           // of a body: index into Model::constraints
+  std::optional<std::uint32_t> body_contact;    // of a body: index into Model::constraints
   bool rolls = false;                           // sticking is rolling: the point of contact wanders over the body
 
   std::size_t dimensions() const { return tangents.size(); }

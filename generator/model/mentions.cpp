@@ -65,13 +65,13 @@ class Collector {
       of_ = fmt::format("constraint '{}'", c.name);
       for (const NodeId psi : c.psi) more({psi});
       more({c.restitution});
-      if (c.touch) touch(*c.touch);
+      if (c.contact) contact(*c.contact);
       if (c.friction) law(*c.friction);
     }
   }
-  void touch(const Touch& t) {
-    more({t.arm, t.other_arm, t.tangents[0], t.tangents[1], t.slip, t.wandering, t.beside});
-    for (const NodeId id : t.sinking) more({id});
+  void contact(const BodyContact& t) {
+    more({t.arm, t.other_arm, t.tangents[0], t.tangents[1], t.slip, t.tangential_velocity, t.offset});
+    for (const NodeId id : t.normal_velocity) more({id});
   }
   void law(const Friction& f) { more({f.static_coefficient, f.dynamic_coefficient, f.width, f.surface_velocity}); }
 

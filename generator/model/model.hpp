@@ -168,16 +168,16 @@ struct Force {
 };
 
 /// Where a body touches a plane or another body: rolling = { .. }, sliding = { .. }.
-struct Touch {
+struct BodyContact {
   std::uint32_t place = 0, frame = 0;              // of the body
   NodeId arm = no_node;                            // from its centre of mass to the point of contact
   std::uint32_t other_place = 0, other_frame = 0;  // of the body that it touches; 0: a plane
   NodeId other_arm = no_node;
   std::array<NodeId, 2> tangents{no_node, no_node};  // t1, t2; vectors
   NodeId slip = no_node;                             // vector: the velocity of its point there against what it touches
-  NodeId wandering = no_node;                        // vector: that of the point of contact over the body
-  std::vector<NodeId> sinking;                       // vanish if the point of contact is one, per body
-  NodeId beside = no_node;  // vector: vanishes if the points of both bodies are over one another
+  NodeId tangential_velocity = no_node;              // vector: that of the point of contact over the body
+  std::vector<NodeId> normal_velocity;               // vanish if the point of contact is one, per body
+  NodeId offset = no_node;  // vector: vanishes if the points of both bodies are over one another
   bool rolling = false;     // written as rolling
 };
 
@@ -189,9 +189,9 @@ struct Constraint {
   bool curve = false;       // holonomic = ["psi1", "psi2"]
   bool velocity = false;    // velocity = "..": psi binds velocities
   bool rolling = false;     // without friction: of three equations the first two bind velocities, the third positions
-  std::optional<Touch> touch;    // of rolling and sliding
-  bool unilateral = false;       // psi >= 0: it pushes and does not pull
-  NodeId restitution = no_node;  // of impacts of a unilateral one; none: 0
+  std::optional<BodyContact> contact;  // of rolling and sliding
+  bool unilateral = false;             // psi >= 0: it pushes and does not pull
+  NodeId restitution = no_node;        // of impacts of a unilateral one; none: 0
   std::optional<Friction> friction;
   std::optional<std::uint32_t> joint;  // whose equations these are
   bool unit = false;                   // the length of Euler parameters
@@ -199,7 +199,7 @@ struct Constraint {
 
   bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }
   /// Rolls while friction holds it: one equation, and two components of friction as reactions before it.
-  bool rolls_by_friction() const { return touch && touch->rolling && friction; }
+  bool rolls_by_friction() const { return contact && contact->rolling && friction; }
   std::size_t reactions() const { return joint ? joint_components : rolls_by_friction() ? 3 : psi.size(); }
 };
 
@@ -209,7 +209,7 @@ struct Joint {
   std::string type;                                // name in joints::registry()
   std::array<std::uint32_t, 2> frames{};           // of A and B; 0: the ground
   std::array<NodeId, 2> points{no_node, no_node};  // of the joint in A and B
-  std::array<NodeId, 2> stray{
+  std::array<NodeId, 2> drift{
       no_node, no_node};  // vectors that vanish if these points are fixed in their bodies; no_node: they are
   std::vector<NodeId> force,
       moment;              // per equation, vectors: what lambda = 1 is on B, the moment about its point; no_node: none

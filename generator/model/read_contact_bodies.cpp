@@ -13,17 +13,17 @@ bool ContactsReader::touches_body(const Value& on) {
   return symbol != nullptr && symbol->frame > 0;
 }
 
-std::optional<std::string> ContactsReader::between_bodies(Touch& touch, const Value& table,
+std::optional<std::string> ContactsReader::between_bodies(BodyContact& contact, const Value& table,
                                                           std::map<std::string, Typed>& local) {
   const Value& on = *table.find("on");
-  touch.other_frame = frame_named(on, "'on'");
-  touch.other_place = frame_sources_[touch.other_frame].place;
-  if (touch.other_place == 0)
+  contact.other_frame = frame_named(on, "'on'");
+  contact.other_place = frame_sources_[contact.other_frame].place;
+  if (contact.other_place == 0)
     source_.fail(on.span, fmt::format("{} has no mass: contact of two bodies needs two", quote(on.text)),
                  "name a [[body]], or write the plane: on = { point = .., normal = .. }");
-  if (touch.other_frame == touch.frame)
+  if (contact.other_frame == contact.frame)
     source_.fail(on.span, fmt::format("{} cannot touch itself", quote(on.text)), "name the other body, or \"ground\"");
-  name_motion(touch.other_frame, "b", on.span, local);
+  name_motion(contact.other_frame, "b", on.span, local);
   const bool shapes = table.find("shape") != nullptr;
   if (shapes) {
     spheres_in_contact(table, local);

@@ -17,11 +17,12 @@ class ContactsReader : private SectionReader {
   std::map<std::string, Typed> plane_of_contact(const Value& on);
   void tangent_of_contact(const Value& table, std::map<std::string, Typed>& local);
   void name_motion(std::uint32_t frame, const std::string& ending, Span span, std::map<std::string, Typed>& local);
-  void read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local);
+  void read_contact_point(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local);
   Typed contact_arm(const Value& table, std::map<std::string, Typed> local);
   bool touches_body(const Value& on);
   /// psi, where it is not that of two points and a normal.
-  std::optional<std::string> between_bodies(Touch& touch, const Value& table, std::map<std::string, Typed>& local);
+  std::optional<std::string> between_bodies(BodyContact& contact, const Value& table,
+                                            std::map<std::string, Typed>& local);
   void spheres_in_contact(const Value& table, std::map<std::string, Typed>& local);
   void points_in_contact(const Value& table, std::map<std::string, Typed>& local);
 };

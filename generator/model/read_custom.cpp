@@ -17,7 +17,7 @@ constexpr const char* give_x = "give x = [\"..\", \"..\", \"..\"] in terms of th
 
 }  // namespace
 
-PositionsReader::Spelt PositionsReader::custom_position(const Value& table, const Entry& entry) {
+PositionsReader::ExpandedPosition PositionsReader::custom_position(const Value& table, const Entry& entry) {
   as(Value::Kind::array, entry.value, "'custom'", form);
   if (entry.value.items.size() != 3) {
     source_.fail(entry.value.span, fmt::format("'custom' has {} entries", entry.value.items.size()), form);
@@ -35,24 +35,24 @@ PositionsReader::Spelt PositionsReader::custom_position(const Value& table, cons
                    "give three expressions");
     }
   }
-  Spelt spelt;
-  spelt.chart.system = "custom";
+  ExpandedPosition expanded;
+  expanded.chart.system = "custom";
   for (std::size_t k = 0; k < 3; ++k) {
     const Value& item = entry.value.items[k];
     if (!item.is(Value::Kind::text) || !is_identifier(item.text)) {
       source_.fail(item.span, "an entry of custom is the name of a coordinate", form);
     }
-    spelt.chart.entries[k] =
+    expanded.chart.entries[k] =
         resolver_.value(item, {"an entry of the position", on_motion, Shape::scalar, std::nullopt, ""}).node;
   }
   const Context context{"the position", on_motion, Shape::scalar, dimension_of("m"), ""};
   if (x != nullptr) {
-    for (std::size_t k = 0; k < 3; ++k) spelt.x[k] = resolver_.value(x->items[k], context);
+    for (std::size_t k = 0; k < 3; ++k) expanded.x[k] = resolver_.value(x->items[k], context);
   } else {
-    spelt.x = solved_position(entry.value, *q, context);
+    expanded.x = solved_position(entry.value, *q, context);
   }
-  if (q != nullptr) check_inverse(spelt, *q, x != nullptr);
-  return spelt;
+  if (q != nullptr) check_inverse(expanded, *q, x != nullptr);
+  return expanded;
 }
 
 // q(x) alone: solved for x1, x2, x3.
@@ -85,11 +85,11 @@ std::array<Typed, 3> PositionsReader::solved_position(const Value& names, const 
 }
 
 // q(x(q)) = q at made-up points.
-void PositionsReader::check_inverse(const Spelt& spelt, const Value& q, bool both) {
+void PositionsReader::check_inverse(const ExpandedPosition& expanded, const Value& q, bool both) {
   constexpr int tries = 200, enough = 8;
   constexpr double tolerance = 1e-8;  // of values around 1, through a few roots and quotients
   std::map<std::string, Typed> local;
-  for (std::size_t k = 0; k < 3; ++k) local[cartesian_names[k]] = spelt.x[k];
+  for (std::size_t k = 0; k < 3; ++k) local[cartesian_names[k]] = expanded.x[k];
   std::array<NodeId, 3> back{};
   for (std::size_t k = 0; k < 3; ++k) {
     const Context context{"an entry of q", on_time, Shape::scalar, std::nullopt,
@@ -102,7 +102,7 @@ void PositionsReader::check_inverse(const Spelt& spelt, const Value& q, bool bot
     samples.next();
     bool finite = true;
     for (std::size_t i = 0; i < 3; ++i) {
-      const double was = samples.value(spelt.chart.entries[i]), is = samples.value(back[i]);
+      const double was = samples.value(expanded.chart.entries[i]), is = samples.value(back[i]);
       finite = finite && std::isfinite(was) && std::isfinite(is);
       if (!finite || std::abs(is - was) <= tolerance * (1 + std::abs(was))) continue;
       source_.fail(

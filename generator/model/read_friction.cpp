@@ -71,7 +71,7 @@ void FrictionReader::of_constraint(Constraint& constraint, const Value& value) {
                  "friction belongs to one equation (a surface) or to two (a curve)");
   }
   Friction law = coefficients(value, what, dimension_of("m/s"));
-  if (law.width != no_node && constraint.touch && constraint.touch->rolling) {
+  if (law.width != no_node && constraint.contact && constraint.contact->rolling) {
     source_.fail(value.span, fmt::format("under the smooth law '{}' creeps and never rolls", constraint.name),
                  "write sliding = { .. } in place of rolling, or law = \"coulomb\"");
   }

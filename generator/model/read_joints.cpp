@@ -188,7 +188,7 @@ void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, con
       const std::map<std::string, Typed> local{{"p", ends[k].point},
                                                {"r", resolver_.place(frame_sources_[frame].place, at.items[k].span)},
                                                {"w", resolver_.angular_velocity(frame, at.items[k].span)}};
-      joint.stray[k] = resolver_
+      joint.drift[k] = resolver_
                            .text("ddt(p - r) - cross(w, p - r)", local, at.items[k].span,
                                  {what, on_anything, Shape::vector, std::nullopt, ""})
                            .node;

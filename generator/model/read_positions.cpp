@@ -112,16 +112,16 @@ std::array<Typed, 3> PositionsReader::chart_entries(const coordinates::Coordinat
 }
 
 // A system of the registry: its expressions over the entries and its constant.
-PositionsReader::Spelt PositionsReader::spelt_position(const Value& table, const Entry& entry) {
+PositionsReader::ExpandedPosition PositionsReader::expanded_position(const Value& table, const Entry& entry) {
   const coordinates::CoordinateSystem& system = *coordinates::find(entry.key);
   const Span span = entry.value.span;
   const std::array<Typed, 3> parts = chart_entries(system, entry.value);
-  Spelt spelt;
-  spelt.chart.system = std::string(system.name);
-  spelt.chart.planar = entry.value.items.size() == 2;
+  ExpandedPosition expanded;
+  expanded.chart.system = std::string(system.name);
+  expanded.chart.planar = entry.value.items.size() == 2;
   std::map<std::string, Typed> local;
   for (std::size_t k = 0; k < 3; ++k) {
-    spelt.chart.entries[k] = parts[k].node;
+    expanded.chart.entries[k] = parts[k].node;
     local[std::string(system.slots[k].name)] = parts[k];
   }
   if (const std::string key(system.constant.name); !key.empty()) {
@@ -131,22 +131,22 @@ PositionsReader::Spelt PositionsReader::spelt_position(const Value& table, const
         constant, {fmt::format("'{}'", key), on_time, Shape::scalar, dimension_of(system.constant.unit), ""});
   }
   const Context context{"the position", on_motion, Shape::scalar, std::nullopt, ""};
-  for (std::size_t k = 0; k < 3; ++k) spelt.x[k] = resolver_.text(system.x[k], local, span, context);
+  for (std::size_t k = 0; k < 3; ++k) expanded.x[k] = resolver_.text(system.x[k], local, span, context);
   for (std::size_t i = 0; i < 3; ++i) {
     if (system.e[i][0].empty()) continue;
     std::array<Typed, 3> e;
     for (std::size_t k = 0; k < 3; ++k) e[k] = resolver_.text(system.e[i][k], local, span, context);
-    spelt.chart.unit_basis[i] = resolver_.array_of(e, span).node;
+    expanded.chart.unit_basis[i] = resolver_.array_of(e, span).node;
   }
-  return spelt;
+  return expanded;
 }
 
 // Coordinates that do not tell places apart would give a singular inertia matrix wherever one starts.
-void PositionsReader::check_independent(const Spelt& spelt, const Entry& entry, Span constant) {
+void PositionsReader::check_independent(const ExpandedPosition& expanded, const Entry& entry, Span constant) {
   constexpr int points = 12;
   constexpr double smallest = 1e-9;  // squared sine of the angle between tangents; rounding leaves 1e-18 of it
   std::vector<std::uint32_t> coordinates;
-  for (const NodeId id : spelt.chart.entries) {
+  for (const NodeId id : expanded.chart.entries) {
     const Node& node = model_.arena[id];
     const bool known = std::find(coordinates.begin(), coordinates.end(), node.index) != coordinates.end();
     if (node.op == Op::coordinate && node.order == 0 && !known) coordinates.push_back(node.index);
@@ -155,7 +155,8 @@ void PositionsReader::check_independent(const Spelt& spelt, const Entry& entry, 
   bool some = false;
   for (int k = 0; k < points; ++k) {
     samples.next();
-    const double independence = samples.independence({spelt.x[0].node, spelt.x[1].node, spelt.x[2].node}, coordinates);
+    const double independence =
+        samples.independence({expanded.x[0].node, expanded.x[1].node, expanded.x[2].node}, coordinates);
     if (independence > smallest) return;
     some = some || !std::isnan(independence);
   }
@@ -172,12 +173,12 @@ Typed PositionsReader::position(std::uint32_t place, const Value& table) {
   const Entry& entry = system_entry(table);
   const Span span = entry.value.span;
   const coordinates::CoordinateSystem* system = coordinates::find(entry.key);
-  Spelt spelt = system == nullptr ? custom_position(table, entry) : spelt_position(table, entry);
-  if (system == nullptr) check_independent(spelt, entry, span);
+  ExpandedPosition expanded = system == nullptr ? custom_position(table, entry) : expanded_position(table, entry);
+  if (system == nullptr) check_independent(expanded, entry, span);
   if (system != nullptr && !system->constant.name.empty()) {
-    check_independent(spelt, entry, table.find(system->constant.name)->span);
+    check_independent(expanded, entry, table.find(system->constant.name)->span);
   }
-  Typed position = resolver_.array_of(spelt.x, span);
+  Typed position = resolver_.array_of(expanded.x, span);
   if (const Value* axes = table.find("axes")) {
     const std::uint32_t frame = frame_named(*axes, "'axes'");
     const auto along = [&](const std::array<Typed, 3>& x) {
@@ -187,8 +188,8 @@ Typed PositionsReader::position(std::uint32_t place, const Value& table) {
       }
       return sum;
     };
-    position = along(spelt.x);
-    for (NodeId& e : spelt.chart.unit_basis) {
+    position = along(expanded.x);
+    for (NodeId& e : expanded.chart.unit_basis) {
       if (e == no_node) continue;
       std::array<Typed, 3> components;
       for (std::size_t k = 0; k < 3; ++k) {
@@ -203,7 +204,7 @@ Typed PositionsReader::position(std::uint32_t place, const Value& table) {
     model_.places[place].from = base;
     if (base > 0) position = resolver_.sum_of(resolver_.place(base, from->span), position, span);
   }
-  model_.places[place].chart = std::move(spelt.chart);
+  model_.places[place].chart = std::move(expanded.chart);
   return position;
 }
 

@@ -16,16 +16,16 @@ class PositionsReader : private SectionReader {
 
  private:
   /// A position in a chart, from where the chart measures.
-  struct Spelt {
+  struct ExpandedPosition {
     Chart chart;
     std::array<Typed, 3> x;
   };
   const Entry& system_entry(const Value& table) const;
-  Spelt spelt_position(const Value& table, const Entry& entry);
-  Spelt custom_position(const Value& table, const Entry& entry);
+  ExpandedPosition expanded_position(const Value& table, const Entry& entry);
+  ExpandedPosition custom_position(const Value& table, const Entry& entry);
   std::array<Typed, 3> solved_position(const Value& names, const Value& q, const Context& context);
-  void check_inverse(const Spelt& spelt, const Value& q, bool both);
-  void check_independent(const Spelt& spelt, const Entry& entry, Span constant);
+  void check_inverse(const ExpandedPosition& expanded, const Value& q, bool both);
+  void check_independent(const ExpandedPosition& expanded, const Entry& entry, Span constant);
   std::array<Typed, 3> chart_entries(const coordinates::CoordinateSystem& system, const Value& entries);
 };
 

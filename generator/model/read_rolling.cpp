@@ -105,22 +105,23 @@ void ContactsReader::tangent_of_contact(const Value& table, std::map<std::string
 }
 
 // Where it touches, and how fast its point there moves against what it touches.
-void ContactsReader::read_touch(Constraint& constraint, const Value& table, const std::map<std::string, Typed>& local) {
+void ContactsReader::read_contact_point(Constraint& constraint, const Value& table,
+                                        const std::map<std::string, Typed>& local) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
-  Touch& touch = *constraint.touch;
-  touch.arm = local.at("p").node;
-  touch.tangents = {local.at("t1").node, local.at("t2").node};
+  BodyContact& contact = *constraint.contact;
+  contact.arm = local.at("p").node;
+  contact.tangents = {local.at("t1").node, local.at("t2").node};
   const auto read = [&](const std::string& text, Shape shape) {
     return resolver_.text(text, local, table.span, {what, on_motion | on_velocity, shape, std::nullopt, ""}).node;
   };
-  touch.slip = read("v + cross(w, p) - V", Shape::vector);
-  touch.wandering = read("ddt(p) - cross(w, p)", Shape::vector);
+  contact.slip = read("v + cross(w, p) - V", Shape::vector);
+  contact.tangential_velocity = read("ddt(p) - cross(w, p)", Shape::vector);
   // What touches may move on the body, but not into what it touches: then it would not be the point of contact.
-  touch.sinking.push_back(read("dot(ddt(p) - cross(w, p), n)", Shape::scalar));
-  if (touch.other_frame == 0) return;
-  touch.other_arm = local.at("pb").node;
-  touch.sinking.push_back(read("dot(ddt(pb) - cross(wb, pb), n)", Shape::scalar));
-  touch.beside = read("x + p - o - dot(x + p - o, n)*n", Shape::vector);
+  contact.normal_velocity.push_back(read("dot(ddt(p) - cross(w, p), n)", Shape::scalar));
+  if (contact.other_frame == 0) return;
+  contact.other_arm = local.at("pb").node;
+  contact.normal_velocity.push_back(read("dot(ddt(pb) - cross(wb, pb), n)", Shape::scalar));
+  contact.offset = read("x + p - o - dot(x + p - o, n)*n", Shape::vector);
 }
 
 void ContactsReader::read(Constraint& constraint, const Value& table, bool rolling, bool rough) {
@@ -131,16 +132,16 @@ void ContactsReader::read(Constraint& constraint, const Value& table, bool rolli
   const std::uint32_t frame = frame_named(name, fmt::format("'body' of {}", what));
   if (frame == 0 || frame_sources_[frame].place == 0)
     source_.fail(name.span, fmt::format("{} needs a body, and this has no mass", what), "name a [[body]]");
-  constraint.touch.emplace();
-  constraint.touch->frame = frame;
-  constraint.touch->place = frame_sources_[frame].place;
-  constraint.touch->rolling = rolling;
+  constraint.contact.emplace();
+  constraint.contact->frame = frame;
+  constraint.contact->place = frame_sources_[frame].place;
+  constraint.contact->rolling = rolling;
   const Value& on = needed(table, "on", what, "add on = \"ground\"");
   std::map<std::string, Typed> local;
   std::string psi = "dot(x + p - o, n)";
   if (touches_body(on)) {
     name_motion(frame, "", table.span, local);
-    psi = between_bodies(*constraint.touch, table, local).value_or(psi);
+    psi = between_bodies(*constraint.contact, table, local).value_or(psi);
   } else {
     for (const char* key : {"at_b", "shape_b", "normal"}) {
       if (table.find(key) == nullptr) continue;
@@ -163,7 +164,7 @@ void ContactsReader::read(Constraint& constraint, const Value& table, bool rolli
     }
   }
   constraint.psi.push_back(equation(psi).node);
-  read_touch(constraint, table, local);
+  read_contact_point(constraint, table, local);
 }
 
 }  // namespace eomgen::model

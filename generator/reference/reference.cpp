@@ -50,22 +50,22 @@ class Run {
   }
 
   States run() {
-    for (const Piece& piece : problem_.pieces) {
-      const double until = &piece == &problem_.pieces.back() ? problem_.times.back() : piece.until;
+    for (const InputSegment& segment : problem_.segments) {
+      const double until = &segment == &problem_.segments.back() ? problem_.times.back() : segment.until;
       const Number end = expand_.number(until);
-      while (t_ != end) step(piece, end);
+      while (t_ != end) step(segment, end);
     }
     return std::move(wanted_);
   }
   std::size_t steps() const { return steps_; }
 
  private:
-  void step(const Piece& piece, const Number& end) {
+  void step(const InputSegment& segment, const Number& end) {
     if (problem_.interrupt != nullptr && *problem_.interrupt) fail(t_, "interrupted");
     if (++steps_ > most_steps) fail(t_, fmt::format("more than {} steps", most_steps));
     States c;
     try {
-      c = expand_(t_, x_, problem_.p, piece.u, settings_.order);
+      c = expand_(t_, x_, problem_.p, segment.u, settings_.order);
     } catch (const std::domain_error& error) {
       fail(t_, error.what());
     } catch (const cln::runtime_exception& error) {

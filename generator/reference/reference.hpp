@@ -15,8 +15,8 @@
 
 namespace eomgen::reference {
 
-/// Inputs stand still until the end of each piece; the last one holds to the end.
-struct Piece {
+/// Inputs stand still until the end of each segment; the last one holds to the end.
+struct InputSegment {
   double until;
   std::vector<double> u;
 };
@@ -25,7 +25,7 @@ struct Problem {
   const program::Function& rhs;  // without branches that change on the way
   std::vector<double> x, p;
   double t0 = 0;
-  std::vector<Piece> pieces;
+  std::vector<InputSegment> segments;
   std::vector<double> times;  // where the state is wanted, in the direction of the run; the last is its end
   const program::Function* constraints =
       nullptr;                  // the function of that name, where there is one: the start is moved to meet them

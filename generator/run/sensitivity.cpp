@@ -63,7 +63,7 @@ class Variational {
     return code;
   }
 
-  double side = 0;  // of jumps of inputs: a time inside the piece that is being integrated
+  double side = 0;  // of jumps of inputs: a time inside the segment that is being integrated
 
  private:
   const Code& code_;
@@ -74,8 +74,8 @@ class Variational {
   bool prepared_ = false;
 };
 
-/// Ends of the pieces between jumps of the inputs and kinks of time, and where the next one begins.
-std::vector<Break> pieces(const Scene& scene, double t_end) {
+/// Ends of the segments between jumps of the inputs and kinks of time, and where the next one begins.
+std::vector<Break> segments(const Scene& scene, double t_end) {
   std::vector<Break> ends;
   const double direction = t_end < scene.t0 ? -1 : 1;
   for (const Signal& signal : scene.inputs) {
@@ -101,11 +101,11 @@ eom::Result run(const RunRequest& request, const std::string& solver, double t_e
   eom::Result total;
   total.t = request.scene.t0;
   total.x = f.start();
-  for (const auto& [end, next] : pieces(request.scene, t_end)) {
+  for (const auto& [end, next] : segments(request.scene, t_end)) {
     f.side = (total.t + end) / 2;
-    eom::Result piece = eom::integrate(solver, f, total.t, total.x, end, options);
-    piece.statistics += total.statistics;
-    total = std::move(piece);
+    eom::Result segment = eom::integrate(solver, f, total.t, total.x, end, options);
+    segment.statistics += total.statistics;
+    total = std::move(segment);
     if (total.outcome != eom::Outcome::done) break;
     total.t = next;
   }

@@ -47,8 +47,8 @@ Signal::Signal(std::vector<double> time, std::vector<double> value)
 double Signal::operator()(double t, double side_of) const {
   if (time_.empty()) return code_.empty() ? 0.0 : evaluate(t);
   const auto after = std::upper_bound(time_.begin(), time_.end(), side_of);
-  const auto piece = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - time_.begin() - 1));
-  return value_[piece];
+  const auto segment = static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - time_.begin() - 1));
+  return value_[segment];
 }
 
 bool Signal::moves() const {

@@ -16,7 +16,7 @@ class Signal {
   /// value[k] from time[k] until time[k+1]; value[0] before time[0].
   Signal(std::vector<double> time, std::vector<double> value);
 
-  /// The value at t. At a jump: the value of the piece that `side_of` (a time inside the current piece) lies in.
+  /// The value at t. At a jump: the value of the segment that `side_of` (a time inside the current segment) lies in.
   double operator()(double t, double side_of) const;
   /// Whether it changes between its jumps.
   bool moves() const;

@@ -50,7 +50,7 @@ class StartSolver {
     target_.assign(b_.size(), 0);
     for (const StartProblem::Turn& turn : p_.turns) add_turn(turn);
     const model::Model& model = *p_.mechanics.model;
-    const auto touches = [](const model::Constraint& c) { return c.touch.has_value(); };
+    const auto touches = [](const model::Constraint& c) { return c.contact.has_value(); };
     if (std::any_of(model.constraints.begin(), model.constraints.end(), touches)) hold_angles(held_);
     if (!model.joints.empty()) hold_angles(loose_);
   }
@@ -105,8 +105,8 @@ class StartSolver {
   bool add_rolling() {
     const std::size_t before = rows_[1].size();
     for (std::size_t j = 0; j < s_.contacts.size(); ++j) {
-      const std::optional<std::uint32_t> touch = p_.mechanics.contacts[j].touch;
-      if (!touch || !p_.mechanics.model->constraints[*touch].rolls_by_friction() || p_.apart[j]) continue;
+      const std::optional<std::uint32_t> body_contact = p_.mechanics.contacts[j].body_contact;
+      if (!body_contact || !p_.mechanics.model->constraints[*body_contact].rolls_by_friction() || p_.apart[j]) continue;
       if (s_.contacts[j].unilateral &&
           std::find(rows_[1].begin(), rows_[1].end(), *s_.contacts[j].unilateral) == rows_[1].end())
         continue;

@@ -158,8 +158,8 @@ std::vector<Case> cases(const mechanics::Mechanics& mechanics, const run::Scene&
 const char* name(Verdict verdict) {
   switch (verdict) {
     case Verdict::kept: return "kept";
-    case Verdict::told: return "told";
-    case Verdict::silent: break;
+    case Verdict::reported: return "told";
+    case Verdict::unreported: break;
   }
   return "silent";
 }

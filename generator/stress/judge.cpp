@@ -40,12 +40,12 @@ class Judgement {
                                         : result.estimate_note;
     if (clock.was_late() || result.outcome != eom::Outcome::done) {
       row.error = row.estimate = infinity;
-      row.verdict = Verdict::told;
+      row.verdict = Verdict::reported;
     } else if (reference_ != nullptr) {
       compare(result, run::method_named(solver).adaptive, row);
     } else {
       row.error = row.estimate = infinity;
-      row.verdict = Verdict::silent;
+      row.verdict = Verdict::unreported;
       row.note = "no motion exists, and this calls itself one";
     }
     return row;
@@ -91,9 +91,9 @@ class Judgement {
     if (kept)
       row.verdict = Verdict::kept;
     else if (row.error - reference_->uncertainty <= told_within * row.estimate || !result.estimate_note.empty())
-      row.verdict = Verdict::told;
+      row.verdict = Verdict::reported;
     else
-      row.verdict = Verdict::silent;
+      row.verdict = Verdict::unreported;
   }
 
   const Case& test_;

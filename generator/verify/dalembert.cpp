@@ -246,8 +246,8 @@ void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<
       sums[friction.coordinate].add(-friction.force[0]);
       continue;
     }
-    if (friction.touch) {
-      subtract_contact(*model_.constraints[*friction.touch].touch, friction.force, now, sums);
+    if (friction.body_contact) {
+      subtract_contact(*model_.constraints[*friction.body_contact].contact, friction.force, now, sums);
       continue;
     }
     const Vector r = by_q.place(friction.place);
@@ -259,7 +259,7 @@ void Judge::subtract_friction(const State& state, Interpreter& now, std::vector<
 
 // A force where a body is touched: at its centre of mass, with its moment about that, F . dr/dq_i + (p x F) .
 // dw/dqdot_i; what it touches bears the opposite.
-void Judge::subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now,
+void Judge::subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                              std::vector<Residual>& sums) const {
   Interpreter& by_q = now.by_coordinates(false);
   const auto act = [&](std::uint32_t place, std::uint32_t frame, model::NodeId arm, int sign) {
@@ -273,8 +273,8 @@ void Judge::subtract_contact(const model::Touch& touch, const std::array<Real, 3
       }
     }
   };
-  act(touch.place, touch.frame, touch.arm, 1);
-  if (touch.other_frame > 0) act(touch.other_place, touch.other_frame, touch.other_arm, -1);
+  act(contact.place, contact.frame, contact.arm, 1);
+  if (contact.other_frame > 0) act(contact.other_place, contact.other_frame, contact.other_arm, -1);
 }
 
 ConstraintValues Judge::constraint_values(const State& state, Margin* margin) const {

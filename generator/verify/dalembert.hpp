@@ -26,10 +26,10 @@ namespace eomgen::verify {
 
 /// A friction force of any size: the equations must take it up whatever the law says of it.
 struct FrictionForce {
-  std::uint32_t place = 0;                  // of the particle; 0 where a coordinate rubs
-  std::uint32_t coordinate = 0;             // that rubs
-  std::array<Real, 3> force{};              // on the particle; force[0] on the coordinate
-  std::optional<std::uint32_t> touch = {};  // on a body where this constraint of the model says that it touches
+  std::uint32_t place = 0;                         // of the particle; 0 where a coordinate rubs
+  std::uint32_t coordinate = 0;                    // that rubs
+  std::array<Real, 3> force{};                     // on the particle; force[0] on the coordinate
+  std::optional<std::uint32_t> body_contact = {};  // on a body where this constraint of the model says that it touches
 };
 
 struct State {
@@ -113,7 +113,7 @@ class Judge {
   bool needs_derivatives(model::NodeId expression) const;
   Real integral_value(std::uint32_t integral, const State& state) const;
   void subtract_friction(const State& state, Interpreter& now, std::vector<Residual>& sums) const;
-  void subtract_contact(const model::Touch& touch, const std::array<Real, 3>& force, Interpreter& now,
+  void subtract_contact(const model::BodyContact& contact, const std::array<Real, 3>& force, Interpreter& now,
                         std::vector<Residual>& sums) const;
   /// What does not depend on accelerations and constraint forces, kept for the last state that was asked about.
   Standing& standing(const State& state) const;

@@ -102,7 +102,7 @@ void set_friction(const mechanics::Mechanics& m, const Judge& judge, State& stat
   const Lookup lookup(judge, state);
   for (const mechanics::Contact& contact : m.contacts) {
     if (contact.dimensions() == 0) continue;
-    FrictionForce friction{contact.place, contact.coordinate, {Real(0), Real(0), Real(0)}, contact.touch};
+    FrictionForce friction{contact.place, contact.coordinate, {Real(0), Real(0), Real(0)}, contact.body_contact};
     if (contact.place == 0) friction.force[0] = state.phi[contact.first];
     for (std::size_t a = 0; a < contact.directions.size(); ++a) {
       const mechanics::Vec3& t = contact.directions[a];

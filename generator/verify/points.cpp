@@ -14,14 +14,14 @@
 namespace eomgen::verify {
 namespace {
 
-/// Unfit, and why; counted by reason.
-struct Unfit : std::runtime_error {
+/// A state that is not compared, and why; counted by reason.
+struct Rejected : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
 /// The constraints cannot be met there.
-struct Unclosed : Unfit {
-  using Unfit::Unfit;
+struct Unclosed : Rejected {
+  using Rejected::Rejected;
 };
 
 // How far random values go from the defaults and starts, before anything is rejected.
@@ -317,7 +317,7 @@ void Points::require_implied(const State& s) const {
       rate = rate + cln::abs(c.gradient[k][i] * s.qdot[i]);
     }
     if (cln::abs(c.psi[k]) > small * size || cln::abs(c.psi_dot[k]) > small * rate)
-      throw Unfit("a joint closes in another way");
+      throw Rejected("a joint closes in another way");
   }
 }
 
@@ -327,7 +327,7 @@ void Points::require_inside(const State& s) const {
     const double q = cln::double_approx(s.q[i]);
     const double margin = c.has_lower && c.has_upper ? 0.5 * range_margin * (c.upper - c.lower) : 0;
     if ((c.has_lower && q <= c.lower + margin) || (c.has_upper && q >= c.upper - margin))
-      throw Unfit("outside the range of a coordinate");
+      throw Rejected("outside the range of a coordinate");
   }
 }
 
@@ -335,7 +335,7 @@ void Points::require_smooth(const State& s) const {
   Margin margin;
   const std::vector<Real> no_forces(judge_.constraints().size(), Real(0));
   judge_.dalembert(s, no_forces, &margin);
-  if (margin.kink < kink_margin) throw Unfit("too near a kink");
+  if (margin.kink < kink_margin) throw Rejected("too near a kink");
 }
 
 // One more contact stays open, each of those that were to be closed in turn. False: the fault lies elsewhere.
@@ -374,8 +374,8 @@ State Points::next() {
       return s;
     } catch (const Unclosed& unclosed) {
       if (!give_up_closing(choosing)) reject(unclosed.what());
-    } catch (const Unfit& unfit) {
-      reject(unfit.what());
+    } catch (const Rejected& rejected) {
+      reject(rejected.what());
     } catch (const Singular& singular) {
       reject(singular.what());
     }

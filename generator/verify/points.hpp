@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Random states that the model allows. In: the judge. Out: t, parameters about their defaults, coordinates within
 // their ranges about the start of the default scene, put onto the constraints by Newton's method at full precision
-// (positions, then velocities). Deterministic by seed on every platform; what is unfit is rejected and counted.
+// (positions, then velocities). Deterministic by seed on every platform; what cannot be compared is rejected and
+// counted.
 #pragma once
 
 #include <cln/rational.h>
@@ -27,7 +28,7 @@ class Points {
 
   /// A state with qddot = 0. Throws Error (Fault::check) once too many were rejected.
   State next();
-  /// The state that next() gave is unfit after all.
+  /// The state that next() gave cannot be compared after all.
   void reject(const std::string& why);
   const std::map<std::string, std::size_t>& rejected() const { return rejected_; }
   /// The largest distance of a parameter, a start, a rate or a time from 1, in powers of ten.

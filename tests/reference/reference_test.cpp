@@ -62,16 +62,16 @@ TEST_CASE("reference: there and back again") {
     CHECK(std::abs(back.x[1][i] - start[i]) < 1e-12);  // the middle was rounded to binary64
 }
 
-TEST_CASE("reference: inputs stand still on each piece") {
+TEST_CASE("reference: inputs stand still on each segment") {
   const auto built = build(cart_pendulum());
   reference::Problem whole = problem(built, {0, 0.25, 0, 0}, {2, 1, 1, 9.81, 0.5}, 0, 2);
-  whole.pieces = {{1, {3}}, {2, {-3}}};
+  whole.segments = {{1, {3}}, {2, {-3}}};
   whole.times = {1, 2};
   const auto both = reference::solve(whole);
   reference::Problem second = whole;
   second.t0 = 1;
   second.x = both.x[0];
-  second.pieces = {{2, {-3}}};
+  second.segments = {{2, {-3}}};
   second.times = {2};
   const auto alone = reference::solve(second);
   for (std::size_t i = 0; i < 4; ++i) CHECK(std::abs(alone.x[0][i] - both.x[1][i]) < 1e-14);

@@ -64,7 +64,7 @@ TEST_CASE("stress: a motion that is easy is kept by solvers that control their e
   REQUIRE(rows.size() == 4);
   for (const stress::Row& row : rows) {
     CAPTURE(row.solver);
-    CHECK(row.verdict == (row.solver == "rk4" ? stress::Verdict::told : stress::Verdict::kept));
+    CHECK(row.verdict == (row.solver == "rk4" ? stress::Verdict::reported : stress::Verdict::kept));
     CHECK(row.outcome == "done");
     CHECK(row.error < 1e-7);
     CHECK(row.condition >= 1);
@@ -79,7 +79,7 @@ TEST_CASE("stress: a result that is wrong and comes with a small estimate is sil
   };  // from here on the runs, no longer what they are held against
   for (const stress::Row& row : stress::judge({.name = "another motion"}, o.scene, o.request, o.why)) {
     CAPTURE(row.solver);
-    CHECK(row.verdict == stress::Verdict::silent);
+    CHECK(row.verdict == stress::Verdict::unreported);
     CHECK(row.error > 1e-4);
     CHECK(row.estimate < 1e-5);
   }
@@ -95,12 +95,12 @@ TEST_CASE(
     CHECK(rows.size() == 4);
     for (const stress::Row& row : rows) CHECK(row.verdict == verdict);
   };
-  all(stress::Verdict::silent);
+  all(stress::Verdict::unreported);
   o.scene.parameters = {std::numeric_limits<double>::infinity()};  // which the right-hand side does not look at
-  all(stress::Verdict::told);
+  all(stress::Verdict::reported);
   o.scene.parameters = {1};
   rate = std::numeric_limits<double>::quiet_NaN();
-  all(stress::Verdict::told);
+  all(stress::Verdict::reported);
 }
 
 TEST_CASE(
@@ -113,7 +113,7 @@ TEST_CASE(
   const std::vector<stress::Row> rows = stress::judge({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(rows.size() == 1);
   CHECK(rows[0].note.find("until t = ") == 0);
-  CHECK(rows[0].verdict != stress::Verdict::silent);
+  CHECK(rows[0].verdict != stress::Verdict::unreported);
   o.scene.t1 = 300;
   o.scene.rtol = o.scene.atol =
       1e-15;  // dop853 and radau5 come to the end at their tolerances, dopri5 at this one does not
@@ -121,7 +121,7 @@ TEST_CASE(
   const std::vector<stress::Row> slower = stress::judge({.name = "long"}, o.scene, o.request, o.why);
   REQUIRE(slower.size() == 1);
   CHECK(slower[0].outcome == "max_steps");
-  CHECK(slower[0].verdict == stress::Verdict::told);
+  CHECK(slower[0].verdict == stress::Verdict::reported);
 }
 
 TEST_CASE("stress: fixed steps that damp what they cannot follow end alike, and the states on the way tell") {
@@ -134,7 +134,7 @@ TEST_CASE("stress: fixed steps that damp what they cannot follow end alike, and 
   CHECK(rows[0].error > 0.5);
   CHECK(rows[0].estimate > 0.1);
   CHECK(rows[0].note.find("do not resolve the motion") != std::string::npos);
-  CHECK(rows[0].verdict == stress::Verdict::told);
+  CHECK(rows[0].verdict == stress::Verdict::reported);
 }
 
 TEST_CASE("stress: where the clock ends a tight run nothing is judged, and that is told") {

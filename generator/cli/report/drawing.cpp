@@ -12,7 +12,6 @@
 
 namespace eomgen::cli {
 
-using Json = nlohmann::ordered_json;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 using symbolic::Vec3;
@@ -131,15 +130,15 @@ void Drawing::contacts(pipeline::Derived& derived) {
   parts_["contacts"] = Json::array();
   mechanics::Mechanics& m = derived.mechanics;
   for (const model::Constraint& constraint : derived.model.constraints) {
-    if (!constraint.touch || constraint.touch->arm == model::no_node) continue;
-    const model::Touch& touch = *constraint.touch;
-    Vec3 at = *m.place_position[touch.place];
-    const Vec3 arm = mechanics::lower_vector(m, touch.arm);
+    if (!constraint.contact || constraint.contact->arm == model::no_node) continue;
+    const model::BodyContact& contact = *constraint.contact;
+    Vec3 at = *m.place_position[contact.place];
+    const Vec3 arm = mechanics::lower_vector(m, contact.arm);
     for (std::size_t k = 0; k < 3; ++k) at[k] = m.dag->add(at[k], arm[k]);
     Json tangents = nullptr;
-    if (touch.other_place == 0 && touch.tangents[0] != model::no_node && touch.tangents[1] != model::no_node) {
-      tangents = {vector(derived, mechanics::lower_vector(m, touch.tangents[0])),
-                  vector(derived, mechanics::lower_vector(m, touch.tangents[1]))};
+    if (contact.other_place == 0 && contact.tangents[0] != model::no_node && contact.tangents[1] != model::no_node) {
+      tangents = {vector(derived, mechanics::lower_vector(m, contact.tangents[0])),
+                  vector(derived, mechanics::lower_vector(m, contact.tangents[1]))};
     }
     parts_["contacts"].push_back({{"name", constraint.name}, {"at", vector(derived, at)}, {"tangents", tangents}});
   }

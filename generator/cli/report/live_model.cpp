@@ -15,7 +15,6 @@
 namespace eomgen::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using symbolic::Ref;
 using symbolic::SymbolKind;
 
@@ -120,7 +119,7 @@ class Live {
     return symbolic::Substitution(dag_, formulas);
   }
   /// Dependent parameters may depend on one another, without cycles.
-  Ref spelt(Ref expression) {
+  Ref expanded(Ref expression) {
     for (std::size_t round = 0; round <= derived_.model.parameters.size(); ++round) {
       const Ref next = by_independent()(expression);
       if (next == expression) return expression;
@@ -134,7 +133,7 @@ class Live {
   program::Function setup() {
     std::vector<Ref> p, x, sizes;
     for (std::uint32_t i = 0; i < derived_.model.parameters.size(); ++i)
-      p.push_back(spelt(dag_.symbol({SymbolKind::parameter, i, 0})));
+      p.push_back(expanded(dag_.symbol({SymbolKind::parameter, i, 0})));
     const std::size_t n = m_.free.size();
     symbolic::Substitution written = mechanics::write_out(m_);
     for (std::size_t k = 0; k < 2 * n; ++k) {
@@ -143,11 +142,11 @@ class Live {
       for (const model::InitialValue& initial : model_scene().initial) {
         if (initial.coordinate != c || initial.order != (k < n ? 0 : 1)) continue;
         const Ref formula = written(mechanics::lower_scalar(m_, initial.value));
-        if (is_of_parameters(dag_, formula) && !dag_.symbols({formula}).empty()) value = spelt(formula);
+        if (is_of_parameters(dag_, formula) && !dag_.symbols({formula}).empty()) value = expanded(formula);
       }
       x.push_back(value);
     }
-    for (const Ref size : drawing_.sizes()) sizes.push_back(spelt(size));
+    for (const Ref size : drawing_.sizes()) sizes.push_back(expanded(size));
     return function("setup", {{"p_all", p}, {"x_start", x}, {"sizes", sizes}});
   }
 

@@ -26,11 +26,11 @@ std::optional<system::EquationSystem> by_articulated(Mechanics& m, system::Appro
   Dag& dag = *m.dag;
   const std::optional<TreeEquations> motion = motion_of_tree(m, approach);
   if (!motion) return std::nullopt;
-  const auto rods = rods_of(dag, motion->tree);
-  if (!rods) return std::nullopt;
+  const auto links = loaded_links(dag, motion->tree);
+  if (!links) return std::nullopt;
   std::optional<system::EquationSystem> s = assemble_tree(m, *motion, "articulated", approach);
   if (!s) return std::nullopt;
-  system::Solution solution = accelerations(dag, motion->tree, *rods);
+  system::Solution solution = accelerations(dag, motion->tree, *links);
   symbolic::Substitution back = motion->tree.coordinates.back(dag);
   for (Ref& r : solution.qddot) r = back(r);
   for (symbolic::Pivot& pivot : solution.pivots) pivot = {back(pivot.pivot), back(pivot.scale)};

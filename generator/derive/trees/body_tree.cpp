@@ -27,7 +27,7 @@ class Builder {
         dag_(*m.dag),
         of_(of),
         lower_(m),
-        spelled_(m, imposed),
+        expanded_(m, imposed),
         bias_(symbolic::total_time(dag_, m.q.size(), 0, true)) {}
 
   std::optional<BodyTree> build() {
@@ -39,8 +39,8 @@ class Builder {
     }
     if (!covers_coordinates()) return std::nullopt;
     Ref potential;
-    tree_.gravity = take_gravity(m_, spelled_, potential);
-    tree_.Q = other_forces(m_, of_, spelled_, potential);
+    tree_.gravity = take_gravity(m_, expanded_, potential);
+    tree_.Q = other_forces(m_, of_, expanded_, potential);
     return std::move(tree_);
   }
 
@@ -52,7 +52,7 @@ class Builder {
   };
 
   bool add_mass(const mechanics::PointMass& mass) {
-    const Ref m = spelled_(mass.mass);
+    const Ref m = expanded_(mass.mass);
     if (!is_constant(m)) return false;
     const model::Body* body = nullptr;
     for (const model::Body& b : m_.model->bodies) body = b.place == mass.place ? &b : body;
@@ -77,7 +77,7 @@ class Builder {
   void add_inertia(BodyLink& link, const model::Body& body) {
     for (std::size_t i = 0; i < 3; ++i) {
       for (std::size_t k = 0; k < 3; ++k)
-        link.inertia[i][k] = dag_.add(link.inertia[i][k], spelled_(lower_.scalar(body.inertia[i][k])));
+        link.inertia[i][k] = dag_.add(link.inertia[i][k], expanded_(lower_.scalar(body.inertia[i][k])));
     }
   }
 
@@ -117,7 +117,7 @@ class Builder {
       return std::make_pair(a != here, depth(a)) < std::make_pair(b != here, depth(b));
     });
     for (const std::uint32_t frame : frames) {
-      const Vec3 v = spelled_(components.at(frame));
+      const Vec3 v = expanded_(components.at(frame));
       if (is_zero(dag_, v)) continue;
       const std::optional<Anchor> next = attached(at, frame);
       if (!next) return std::nullopt;
@@ -194,8 +194,8 @@ class Builder {
     for (const model::Stage& stage : m_.model->frames[frame].stages) {
       Step step;
       for (std::size_t k = 0; k < 3; ++k) {
-        for (std::size_t j = 0; j < 3; ++j) step.R[k][j] = spelled_(lower_.scalar(stage.R[k][j]));
-        step.w[k] = spelled_(lower_.scalar(stage.w[k]));
+        for (std::size_t j = 0; j < 3; ++j) step.R[k][j] = expanded_(lower_.scalar(stage.R[k][j]));
+        step.w[k] = expanded_(lower_.scalar(stage.w[k]));
         step.w_bias[k] = bias_(step.w[k]);
       }
       turn.steps.push_back(step);
@@ -258,7 +258,7 @@ class Builder {
   Dag& dag_;
   const std::vector<std::uint32_t>& of_;
   mechanics::Lowering lower_;
-  Spelled spelled_;
+  Expansion expanded_;
   symbolic::Derivation bias_;
   BodyTree tree_;
   std::vector<Spinning> spinning_;

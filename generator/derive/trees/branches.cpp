@@ -92,14 +92,14 @@ std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>&
   else if (!dag.is_zero(m.kinetic_given))
     return std::nullopt;
   if (masses.empty() || !m.spins.empty()) return std::nullopt;
-  Spelled spelled(m, imposed);
+  Expansion expanded(m, imposed);
   std::vector<Vec3> positions;
-  for (const mechanics::PointMass& mass : masses) positions.push_back(spelled(mass.position));
+  for (const mechanics::PointMass& mass : masses) positions.push_back(expanded(mass.position));
   Branches b;
   b.coordinates = quasi_coordinates(dag, of, positions);
   symbolic::Derivation bias = b.coordinates.bias(dag);
   for (std::size_t k = 0; k < positions.size(); ++k) {
-    Carried particle{spelled(masses[k].mass), positions[k], {}, {}};
+    TreeParticle particle{expanded(masses[k].mass), positions[k], {}, {}};
     for (std::size_t i = 0; i < 3; ++i) particle.velocity[i] = bias(positions[k][i]);
     for (std::size_t i = 0; i < 3; ++i) particle.bias[i] = bias(particle.velocity[i]);
     b.particles.push_back(particle);
@@ -107,8 +107,8 @@ std::optional<Branches> branches(Mechanics& m, const std::vector<std::uint32_t>&
   std::vector<std::set<std::size_t>> moved;
   if (!find_joints(dag, b, moved) || !find_links(dag, b, moved)) return std::nullopt;
   Ref potential;
-  b.gravity = take_gravity(m, spelled, potential);
-  b.f = other_forces(m, of, spelled, potential);
+  b.gravity = take_gravity(m, expanded, potential);
+  b.f = other_forces(m, of, expanded, potential);
   if (!b.coordinates.identity()) b.f = symbolic::transposed_applied(dag, b.coordinates.S_inverse, b.f);
   return b;
 }

@@ -15,7 +15,7 @@ namespace eomgen::derive {
 using mechanics::Mechanics;
 
 /// A particle as the coordinates `of` move it; everything in theta, rates of theta and time.
-struct Carried {
+struct TreeParticle {
   Ref mass;
   Vec3 position, velocity, bias;  // bias: acceleration with the second rates of theta at zero
 };
@@ -30,7 +30,7 @@ struct Link {
 
 struct Branches {
   QuasiCoordinates coordinates;
-  std::vector<Carried> particles;
+  std::vector<TreeParticle> particles;
   std::vector<Vec3> J;          // per theta
   std::vector<std::size_t> of;  // link of each theta
   std::vector<Link> links;      // parents first

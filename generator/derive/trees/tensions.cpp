@@ -76,24 +76,24 @@ Vec3 unit(Dag& dag, std::size_t axis) {
   return e;
 }
 
-/// Directions normal to all J of a rod and to one another, none along the axis `still`: the rod itself where it is one,
-/// else cross products. Nothing where the J leave a plane that has no plain basis.
-std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const Rod& rod, const Vec3& along,
+/// Directions normal to all J of a link and to one another, none along the axis `still`: the link itself where it is
+/// one, else cross products. Nothing where the J leave a plane that has no plain basis.
+std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const LoadedLink& loaded, const Vec3& along,
                                          std::optional<std::size_t> still) {
-  const std::size_t left = (still ? 2 : 3) - rod.J.size();
+  const std::size_t left = (still ? 2 : 3) - loaded.J.size();
   if (left == 0) return std::vector<Vec3>{};
-  const bool is_rod = !is_zero(dag, along) && std::all_of(rod.J.begin(), rod.J.end(), [&](const Vec3& J) {
+  const bool is_rod = !is_zero(dag, along) && std::all_of(loaded.J.begin(), loaded.J.end(), [&](const Vec3& J) {
     return dag.is_zero(tidy.dot(along, J));
   });
   if (left == 1 && is_rod) return std::vector<Vec3>{unit_if_plain(dag, tidy, along)};
   if (left == 1) {
-    const Vec3 second = still ? unit(dag, *still) : rod.J[1];
-    return std::vector<Vec3>{unit_if_plain(dag, tidy, cross(dag, rod.J[0], second))};
+    const Vec3 second = still ? unit(dag, *still) : loaded.J[1];
+    return std::vector<Vec3>{unit_if_plain(dag, tidy, cross(dag, loaded.J[0], second))};
   }
   for (std::size_t axis = 3; axis-- > 0 && left == 2;) {  // J in a plane: its normal, and what is left in the plane
-    if (!dag.is_zero(rod.J[0][axis])) continue;
+    if (!dag.is_zero(loaded.J[0][axis])) continue;
     const Vec3 e = unit(dag, axis);
-    return std::vector<Vec3>{e, unit_if_plain(dag, tidy, cross(dag, rod.J[0], e))};
+    return std::vector<Vec3>{e, unit_if_plain(dag, tidy, cross(dag, loaded.J[0], e))};
   }
   return std::nullopt;
 }
@@ -101,10 +101,11 @@ std::optional<std::vector<Vec3>> normals(Dag& dag, Tidy& tidy, const Rod& rod, c
 /// The linear system of the tensions, and what it leaves.
 class Tensions {
  public:
-  Tensions(Dag& dag, const Branches& tree, const Rods& rods) : dag_(dag), tidy_(dag), tree_(tree), rods_(rods) {
-    for (std::size_t k = 0; k < rods_.rods.size(); ++k) {
-      free_.push_back(free_force(rods_.rods[k]));
-      for (const Vec3& N : rods_.rods[k].N) carrying_.push_back({k, N});
+  Tensions(Dag& dag, const Branches& tree, const LoadedLinks& links)
+      : dag_(dag), tidy_(dag), tree_(tree), links_(links) {
+    for (std::size_t k = 0; k < links_.links.size(); ++k) {
+      free_.push_back(free_force(links_.links[k]));
+      for (const Vec3& N : links_.links[k].N) carrying_.push_back({k, N});
     }
   }
 
@@ -122,69 +123,70 @@ class Tensions {
     symbolic::Factorisation factors(dag_, std::move(S), n, symbolic::Ties::descending);
     tension_ = factors.backward(factors.forward(b));
     result.pivots = factors.pivots();
-    for (std::size_t k = 0; k < rods_.rods.size(); ++k) second_rates(k, result);
+    for (std::size_t k = 0; k < links_.links.size(); ++k) second_rates(k, result);
     return result;
   }
 
  private:
   /// W_k / m_first: the force along the J that does on theta_k what f_k does.
-  Vec3 free_force(const Rod& rod) {
+  Vec3 free_force(const LoadedLink& loaded) {
     const Vec3 none = symbolic::zero_vector(dag_);
     std::vector<Ref> f;
-    for (const std::size_t a : rod.joints) f.push_back(dag_.div(tree_.f[a], rods_.first_mass));
+    for (const std::size_t a : loaded.joints) f.push_back(dag_.div(tree_.f[a], links_.first_mass));
     if (std::all_of(f.begin(), f.end(), [this](Ref r) { return dag_.is_zero(r); })) return none;
-    const std::vector<Ref> x = along_joints(rod, f, nullptr);
+    const std::vector<Ref> x = along_joints(loaded, f, nullptr);
     Vec3 W = none;
     for (std::size_t a = 0; a < x.size(); ++a) {
-      for (std::size_t i = 0; i < 3; ++i) W[i] = dag_.add(W[i], dag_.mul(rod.J[a][i], x[a]));
+      for (std::size_t i = 0; i < 3; ++i) W[i] = dag_.add(W[i], dag_.mul(loaded.J[a][i], x[a]));
     }
     return W;
   }
 
   /// x with J_a . sum_b J_b x_b = r_a.
-  std::vector<Ref> along_joints(const Rod& rod, const std::vector<Ref>& r, std::vector<symbolic::Pivot>* pivots) {
-    const std::size_t n = rod.J.size();
+  std::vector<Ref> along_joints(const LoadedLink& loaded, const std::vector<Ref>& r,
+                                std::vector<symbolic::Pivot>* pivots) {
+    const std::size_t n = loaded.J.size();
     std::vector<Ref> gram(n * n);
     for (std::size_t a = 0; a < n; ++a) {
-      for (std::size_t b = 0; b <= a; ++b) gram[a * n + b] = gram[b * n + a] = tidy_.dot(rod.J[a], rod.J[b]);
+      for (std::size_t b = 0; b <= a; ++b) gram[a * n + b] = gram[b * n + a] = tidy_.dot(loaded.J[a], loaded.J[b]);
     }
     symbolic::Factorisation factors(dag_, std::move(gram), n, symbolic::Ties::ascending);
     if (pivots != nullptr) pivots->insert(pivots->end(), factors.pivots().begin(), factors.pivots().end());
     return factors.backward(factors.forward(r));
   }
 
-  /// How tension or free force of rod `source`, along `force`, moves particle k relative to its parent, along
+  /// How tension or free force of link `source`, along `force`, moves particle k relative to its parent, along
   /// `direction`.
   Ref response(std::size_t k, const Vec3& direction, std::size_t source, const Vec3& force) {
     // force acts on the particle of `source` and, reversed, on its parent.
     const auto weight_at = [&](int particle) {
       Ref w = dag_.zero();
-      if (particle == static_cast<int>(source)) w = dag_.add(w, rods_.rods[source].weight);
-      if (particle >= 0 && particle == rods_.rods[source].parent) {
-        w = dag_.sub(w, rods_.rods[static_cast<std::size_t>(particle)].weight);
+      if (particle == static_cast<int>(source)) w = dag_.add(w, links_.links[source].weight);
+      if (particle >= 0 && particle == links_.links[source].parent) {
+        w = dag_.sub(w, links_.links[static_cast<std::size_t>(particle)].weight);
       }
       return w;
     };
-    const Ref w = dag_.sub(weight_at(static_cast<int>(k)), weight_at(rods_.rods[k].parent));
+    const Ref w = dag_.sub(weight_at(static_cast<int>(k)), weight_at(links_.links[k].parent));
     if (dag_.is_zero(w)) return w;
-    // Within one rod sines and cosines meet their squares, and normals are normal.
+    // Within one link sines and cosines meet their squares, and normals are normal.
     const Ref along = k == source ? tidy_.dot(direction, force) : dot(dag_, direction, force);
     return dag_.mul(w, along);
   }
 
   /// a_k - a_parent - c_k along `direction` without tensions.
   Ref relative(std::size_t k, const Vec3& direction) {
-    const Rod& rod = rods_.rods[k];
-    Ref sum = dag_.neg(tidy_.dot(direction, rod.c));
-    if (rod.parent < 0) sum = dag_.add(sum, dot(dag_, direction, tree_.gravity));
-    for (std::size_t s = 0; s < rods_.rods.size(); ++s) sum = dag_.add(sum, response(k, direction, s, free_[s]));
+    const LoadedLink& loaded = links_.links[k];
+    Ref sum = dag_.neg(tidy_.dot(direction, loaded.c));
+    if (loaded.parent < 0) sum = dag_.add(sum, dot(dag_, direction, tree_.gravity));
+    for (std::size_t s = 0; s < links_.links.size(); ++s) sum = dag_.add(sum, response(k, direction, s, free_[s]));
     return sum;
   }
 
   void second_rates(std::size_t k, system::Solution& result) {
-    const Rod& rod = rods_.rods[k];
+    const LoadedLink& loaded = links_.links[k];
     std::vector<Ref> r;
-    for (const Vec3& J : rod.J) {
+    for (const Vec3& J : loaded.J) {
       Ref sum = relative(k, J);
       for (std::size_t i = 0; i < carrying_.size(); ++i) {
         const auto& [source, N] = carrying_[i];
@@ -192,52 +194,52 @@ class Tensions {
       }
       r.push_back(sum);
     }
-    const std::vector<Ref> x = along_joints(rod, r, &result.pivots);
-    for (std::size_t a = 0; a < x.size(); ++a) result.qddot[rod.joints[a]] = x[a];
+    const std::vector<Ref> x = along_joints(loaded, r, &result.pivots);
+    for (std::size_t a = 0; a < x.size(); ++a) result.qddot[loaded.joints[a]] = x[a];
   }
 
   Dag& dag_;
   Tidy tidy_;
   const Branches& tree_;
-  const Rods& rods_;
-  std::vector<Vec3> free_;                              // W of each rod
-  std::vector<std::pair<std::size_t, Vec3>> carrying_;  // rod, direction
+  const LoadedLinks& links_;
+  std::vector<Vec3> free_;                              // W of each link
+  std::vector<std::pair<std::size_t, Vec3>> carrying_;  // link, direction
   std::vector<Ref> tension_;                            // T / m_first, of each of these
 };
 
 }  // namespace
 
-std::optional<Rods> rods_of(Dag& dag, const Branches& tree) {
+std::optional<LoadedLinks> loaded_links(Dag& dag, const Branches& tree) {
   Tidy tidy(dag);
   const std::optional<std::size_t> still = still_axis(dag, tree);
   const std::size_t dimensions = still ? 2 : 3;
   symbolic::Derivation bias = tree.coordinates.bias(dag);
-  Rods result;
+  LoadedLinks result;
   for (const Link& link : tree.links) {
     if (link.particles.size() != 1 || link.joints.size() > dimensions) return {};
-    const Carried& particle = tree.particles[link.particles[0]];
+    const TreeParticle& particle = tree.particles[link.particles[0]];
     if (dag.is_zero(particle.mass) || !dag.is_zero(bias(particle.mass))) return {};
-    Rod rod{link.parent, {}, link.joints, {}, {}, {}};
-    if (result.rods.empty()) result.first_mass = particle.mass;
-    rod.weight = dag.div(result.first_mass, particle.mass);
-    for (const std::size_t a : link.joints) rod.J.push_back(tree.J[a]);
+    LoadedLink loaded{link.parent, {}, link.joints, {}, {}, {}};
+    if (result.links.empty()) result.first_mass = particle.mass;
+    loaded.weight = dag.div(result.first_mass, particle.mass);
+    for (const std::size_t a : link.joints) loaded.J.push_back(tree.J[a]);
     Vec3 along = particle.position;
     if (link.parent >= 0) {
       const Link& parent = tree.links[static_cast<std::size_t>(link.parent)];
       const Vec3& from = tree.particles[parent.particles[0]].position;
       for (std::size_t i = 0; i < 3; ++i) along[i] = difference(dag, along[i], from[i]);
     }
-    for (std::size_t i = 0; i < 3; ++i) rod.c[i] = bias(bias(along[i]));
-    const std::optional<std::vector<Vec3>> N = normals(dag, tidy, rod, along, still);
+    for (std::size_t i = 0; i < 3; ++i) loaded.c[i] = bias(bias(along[i]));
+    const std::optional<std::vector<Vec3>> N = normals(dag, tidy, loaded, along, still);
     if (!N) return {};
-    rod.N = *N;
-    result.rods.push_back(std::move(rod));
+    loaded.N = *N;
+    result.links.push_back(std::move(loaded));
   }
   return result;
 }
 
-system::Solution accelerations(Dag& dag, const Branches& tree, const Rods& rods) {
-  return Tensions(dag, tree, rods).solve();
+system::Solution accelerations(Dag& dag, const Branches& tree, const LoadedLinks& links) {
+  return Tensions(dag, tree, links).solve();
 }
 
 }  // namespace eomgen::derive

@@ -10,7 +10,7 @@
 namespace eomgen::derive {
 
 /// One link with its particle. Vectors are in theta and its rate.
-struct Rod {
+struct LoadedLink {
   int parent = -1;
   Ref weight;                       // m_first / m_k: dimensionless inverse mass
   std::vector<std::size_t> joints;  // indices of theta
@@ -19,16 +19,16 @@ struct Rod {
   Vec3 c;               // acceleration relative to the parent at zero second rates
 };
 
-struct Rods {
-  std::vector<Rod> rods;  // parents first
+struct LoadedLinks {
+  std::vector<LoadedLink> links;  // parents first
   Ref first_mass;
 };
 
 /// Nothing where a link has no particle or several, a mass that varies or is zero, or leaves directions that are not
 /// known.
-std::optional<Rods> rods_of(Dag& dag, const Branches& tree);
+std::optional<LoadedLinks> loaded_links(Dag& dag, const Branches& tree);
 
 /// Second rates of theta, as expressions in theta and its rate.
-system::Solution accelerations(Dag& dag, const Branches& tree, const Rods& rods);
+system::Solution accelerations(Dag& dag, const Branches& tree, const LoadedLinks& links);
 
 }  // namespace eomgen::derive

@@ -11,7 +11,7 @@ std::vector<Vec3> inertia_beyond(Dag& dag, const Branches& b) {
   symbolic::Derivation bias = b.coordinates.bias(dag);
   for (std::size_t l = b.links.size(); l-- > 0;) {
     for (const std::size_t k : b.links[l].particles) {
-      const Carried& particle = b.particles[k];
+      const TreeParticle& particle = b.particles[k];
       const Ref mass_rate = bias(particle.mass);
       for (std::size_t i = 0; i < 3; ++i) {
         const Ref felt = dag.mul(particle.mass, dag.sub(particle.bias[i], b.gravity[i]));

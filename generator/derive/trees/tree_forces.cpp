@@ -10,31 +10,31 @@ namespace eomgen::derive {
 using symbolic::Symbol;
 using symbolic::SymbolKind;
 
-Vec3 take_gravity(Mechanics& m, Spelled& spelled, Ref& other_potential) {
+Vec3 take_gravity(Mechanics& m, Expansion& expanded, Ref& other_potential) {
   Dag& dag = *m.dag;
   Vec3 sum = symbolic::zero_vector(dag);
-  other_potential = spelled(mechanics::lower_scalar(m, m.model->energy.potential));
+  other_potential = expanded(mechanics::lower_scalar(m, m.model->energy.potential));
   for (std::size_t i = 0; i < m.model->forces.size(); ++i) {
     const model::NodeId gravity = m.model->forces[i].acceleration();
     Vec3 g = symbolic::zero_vector(dag);
-    if (gravity != model::no_node) g = spelled(mechanics::lower_vector(m, gravity));
+    if (gravity != model::no_node) g = expanded(mechanics::lower_vector(m, gravity));
     const std::vector<Symbol> symbols = dag.symbols({g[0], g[1], g[2]});
     const bool uniform = gravity != model::no_node && std::all_of(symbols.begin(), symbols.end(), [](const Symbol& s) {
                            return s.kind == SymbolKind::parameter || s.kind == SymbolKind::time;
                          });
     for (std::size_t k = 0; k < 3 && uniform; ++k) sum[k] = dag.add(sum[k], g[k]);
-    if (!uniform) other_potential = dag.add(other_potential, spelled(m.potential_by_force[i]));
+    if (!uniform) other_potential = dag.add(other_potential, expanded(m.potential_by_force[i]));
   }
   return sum;
 }
 
-std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Spelled& spelled, Ref potential) {
+std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Expansion& expanded, Ref potential) {
   Dag& dag = *m.dag;
   const std::vector<Ref> Q = generalized_forces(m);
   std::vector<Ref> by_coordinate;
   for (const std::uint32_t i : of) {
     const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(potential);
-    by_coordinate.push_back(dag.sub(spelled(Q[i]), slope));
+    by_coordinate.push_back(dag.sub(expanded(Q[i]), slope));
   }
   return by_coordinate;
 }

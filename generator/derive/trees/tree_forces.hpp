@@ -10,9 +10,9 @@
 namespace eomgen::derive {
 
 /// Imposes the constraints where they are to be, and writes functions of time out.
-class Spelled {
+class Expansion {
  public:
-  Spelled(Mechanics& m, bool imposed) : imposed_(imposed), impose_(impose(m)), write_(write_out(m)) {}
+  Expansion(Mechanics& m, bool imposed) : imposed_(imposed), impose_(impose(m)), write_(write_out(m)) {}
   Ref operator()(Ref r) { return write_(imposed_ ? impose_(r) : r); }
   Vec3 operator()(const Vec3& v) { return {(*this)(v[0]), (*this)(v[1]), (*this)(v[2])}; }
 
@@ -22,9 +22,9 @@ class Spelled {
 };
 
 /// Uniform gravity as an acceleration; `other_potential` is the potential of everything else.
-Vec3 take_gravity(Mechanics& m, Spelled& spelled, Ref& other_potential);
+Vec3 take_gravity(Mechanics& m, Expansion& expanded, Ref& other_potential);
 
 /// Q_i - d(potential)/dq_i of the coordinates `of`.
-std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Spelled& spelled, Ref potential);
+std::vector<Ref> other_forces(Mechanics& m, const std::vector<std::uint32_t>& of, Expansion& expanded, Ref potential);
 
 }  // namespace eomgen::derive
