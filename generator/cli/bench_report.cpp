@@ -8,8 +8,6 @@
 namespace eomgen::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 std::string error_text(double value) { return std::isfinite(value) ? fmt::format("{:.1e}", value) : "-"; }
 std::string setting(const bench::Row& row) {

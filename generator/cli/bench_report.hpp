@@ -2,10 +2,10 @@
 // What `bench` measured, as a table, as JSON and as CSV.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "analysis/benchmark.hpp"
+#include "cli/json.hpp"
 
 namespace eomgen::cli {
 
@@ -13,7 +13,7 @@ struct BenchReport {
   const analysis::Benchmark& found;
   std::string compiler;
 
-  nlohmann::ordered_json json() const;
+  Json json() const;
   std::string text() const;
   std::string csv() const;
 };

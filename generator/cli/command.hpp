@@ -2,12 +2,11 @@
 // A command of the program: one file each in commands/, one line each in registry.cpp.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <functional>
 #include <span>
 #include <string>
-#include <vector>
 
+#include "cli/arguments.hpp"
 #include "error.hpp"
 
 namespace eomgen::cli {
@@ -26,7 +25,7 @@ struct Common {
 struct Command {
   const char* name;
   const char* summary;
-  std::function<int(const Common&)> (*declare)(CLI::App&);
+  std::function<int(const Common&)> (*declare)(Arguments&);
 };
 
 std::span<const Command> commands();

@@ -4,14 +4,13 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 namespace eomgen::cli {
 
 using linear::Precise;
 
-nlohmann::ordered_json eigenvalue_json(const linear::Eigenvalue& e) {
-  nlohmann::ordered_json result{{"re", e.re}, {"im", e.im}};
+Json eigenvalue_json(const linear::Eigenvalue& e) {
+  Json result{{"re", e.re}, {"im", e.im}};
   if (!e.holds()) result["error"] = e.error;
   if (!e.in_binary64) result["in_binary64"] = false;
   return result;

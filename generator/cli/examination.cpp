@@ -4,21 +4,19 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-
 template <class T>
-json or_null(const std::optional<T>& value) {
-  return value ? json(*value) : json(nullptr);
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
 }
 
-json list(const std::vector<std::string>& names) {
-  json result = json::array();
+Json list(const std::vector<std::string>& names) {
+  Json result = Json::array();
   for (const std::string& name : names) result.push_back(name);
   return result;
 }
 
-json values(const std::vector<analysis::ExaminedValue>& quantities, const char* key, bool written) {
-  json result = json::array();
+Json values(const std::vector<analysis::ExaminedValue>& quantities, const char* key, bool written) {
+  Json result = Json::array();
   for (const analysis::ExaminedValue& q : quantities) {
     result.push_back({{"name", q.name}, {"unit", q.unit}, {key, q.value}});
     if (written) result.back()["written"] = q.written;
@@ -26,8 +24,8 @@ json values(const std::vector<analysis::ExaminedValue>& quantities, const char* 
   return result;
 }
 
-json constraints(const analysis::Examination& found) {
-  json result = json::array();
+Json constraints(const analysis::Examination& found) {
+  Json result = Json::array();
   for (const analysis::ExaminedConstraint& c : found.constraints) {
     result.push_back({{"name", c.name},
                       {"kind", c.kind},
@@ -42,8 +40,8 @@ json constraints(const analysis::Examination& found) {
   return result;
 }
 
-json joints(const analysis::Examination& found) {
-  json result = json::array();
+Json joints(const analysis::Examination& found) {
+  Json result = Json::array();
   for (const analysis::ExaminedJoint& j : found.joints) {
     result.push_back({{"name", j.name},
                       {"type", j.type},
@@ -55,12 +53,12 @@ json joints(const analysis::Examination& found) {
   return result;
 }
 
-json forces(const analysis::Examination& found) {
-  json result = json::array();
+Json forces(const analysis::Examination& found) {
+  Json result = Json::array();
   for (const analysis::ExaminedForce& f : found.forces) {
     result.push_back({{"name", f.name},
                       {"conservative", f.conservative},
-                      {"potential", f.potential ? json(f.potential->text) : json(nullptr)},
+                      {"potential", f.potential ? Json(f.potential->text) : Json(nullptr)},
                       {"domain", list(f.domain)},
                       {"many_valued", f.many_valued},
                       {"in_energy", f.in_energy},
@@ -71,10 +69,10 @@ json forces(const analysis::Examination& found) {
 
 }  // namespace
 
-json to_json(const model::Model& model, const analysis::Examination& found) {
-  json result{{"format", 1}, {"model", model.id}, {"title", model.title}};
-  json coordinates = json::array(), contacts = json::array(), conserved = json::array(), singular = json::array(),
-       charts = json::array(), warnings = json::array(), left_out = json::array();
+Json to_json(const model::Model& model, const analysis::Examination& found) {
+  Json result{{"format", 1}, {"model", model.id}, {"title", model.title}};
+  Json coordinates = Json::array(), contacts = Json::array(), conserved = Json::array(), singular = Json::array(),
+       charts = Json::array(), warnings = Json::array(), left_out = Json::array();
   for (const auto& c : found.coordinates)
     coordinates.push_back({{"name", c.name}, {"unit", c.unit}, {"eliminated", c.eliminated}});
   for (const auto& c : found.contacts) {

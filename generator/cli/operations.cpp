@@ -5,7 +5,7 @@
 
 namespace eomgen::cli {
 
-nlohmann::ordered_json to_json(const program::Operations& o) {
+Json to_json(const program::Operations& o) {
   return {{"add", o.add}, {"mul", o.mul}, {"div", o.div}, {"sqrt", o.sqrt}, {"trig", o.trig}, {"other", o.other}};
 }
 

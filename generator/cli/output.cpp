@@ -123,20 +123,7 @@ eom::WholeFile open(const std::string& path) {
 
 }  // namespace
 
-namespace {
-
-void drop_signs_of_zeros(nlohmann::ordered_json& document) {
-  if (document.is_number_float()) document = unsigned_zero(document.get<double>());
-  if (!document.is_structured()) return;
-  for (auto& part : document) drop_signs_of_zeros(part);
-}
-
-}  // namespace
-
-void print_document(nlohmann::ordered_json document) {
-  drop_signs_of_zeros(document);
-  fmt::print("{}\n", document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-}
+void print_document(const Json& document) { fmt::print("{}\n", document.dump(2, false)); }
 
 void tell(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);

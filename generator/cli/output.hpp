@@ -3,12 +3,12 @@
 #pragma once
 
 #include <eom/output/csv.hpp>
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "emit/targets.hpp"
 
 namespace eomgen::cli {
@@ -18,7 +18,7 @@ inline double unsigned_zero(double value) { return value == 0 ? 0 : value; }
 
 /// To standard output. Bytes that are no UTF-8 (of a path, say) are replaced, numbers that are not finite are null, -0
 /// is 0.
-void print_document(nlohmann::ordered_json document);
+void print_document(const Json& document);
 
 /// To standard error; where that is closed or full the words are lost, and nothing else is.
 void tell(std::string_view text) noexcept;

@@ -9,18 +9,16 @@
 #include <csignal>
 #include <cstdio>
 #include <exception>
-#include <map>
-#include <memory>
 #include <new>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
+#include "cli/declaration.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/usage.hpp"
 #include "cli/watch.hpp"
 #include "work.hpp"
 
@@ -70,38 +68,14 @@ class Teller : public work::Listener {
 
 int run_program(std::span<char* const> typed, const char* name, std::span<const Command> commands, Team* team) try {
   take_closed_streams();
-  CLI::App app{"eomgen: equations of motion of mechanical systems, from a text model", name};
-  app.set_version_flag("--version", EOMGEN_VERSION);
-  app.require_subcommand(1);
-  app.formatter(std::make_shared<HelpPage>());
-  Common common;
-  common.team = team;
-  std::map<const CLI::App*, std::function<int(const Common&)>> actions;
-  std::vector<std::string> names;
-  for (const Command& command : commands) {
-    CLI::App* sub = app.add_subcommand(command.name, command.summary);
-    sub->add_flag("--json", common.json, "one JSON document instead of readable output");
-    sub->add_option("--seed", common.seed, "fixes every random choice")
-        ->check(whole_number(0, 999'999'999'999'999))
-        ->capture_default_str();
-    actions[sub] = command.declare(*sub);
-    names.emplace_back(command.name);
-  }
-  std::vector<std::string> words = with_help(typed);
-  std::vector<char*> pointers;
-  for (std::string& word : words) pointers.push_back(word.data());
-  require_command(pointers, names);
-  try {
-    app.parse(static_cast<int>(pointers.size()), pointers.data());
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == 0) return app.exit(error);  // --help, --version
-    return report(usage_error(error, app));
-  }
+  Declaration declared(name, commands);
+  declared.common.team = team;
+  if (const std::optional<int> code = declared.read(typed)) return *code;
   heed_signals();
   const Watch watch;
   const Teller teller;
   const work::Stage stage("reading the model");
-  const int code = actions.at(app.get_subcommands().front())(common);
+  const int code = declared.execute();
   // A full disk or a closed pipe loses results; that is a failure, not a silence.
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) return output_lost();
   return code;

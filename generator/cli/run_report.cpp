@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
@@ -15,8 +14,6 @@ namespace eomgen::cli {
 namespace {
 
 constexpr double unbounded = 1e308;  // an estimate that is not finite: JSON has no infinity
-
-using Json = nlohmann::ordered_json;
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
 
@@ -103,7 +100,7 @@ std::string watched(const pipeline::Simulation& simulation) {
 
 }  // namespace
 
-nlohmann::ordered_json RunReport::json() const {
+Json RunReport::json() const {
   const auto& [derived_model, scene, program, certificate, code, result, charts] = simulation;
   const pipeline::Derived& derived = *derived_model;
   const emit::Compiled& compiled = code.compiled();

@@ -2,12 +2,12 @@
 // A run told to a person, and as the JSON document of docs/schema/run.schema.json.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "analysis/sensitivities.hpp"
+#include "cli/json.hpp"
 #include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
@@ -26,7 +26,7 @@ struct RunReport {
   std::vector<WrittenFile> files = {};
 
   std::string text() const;
-  nlohmann::ordered_json json() const;
+  Json json() const;
 };
 
 }  // namespace eomgen::cli

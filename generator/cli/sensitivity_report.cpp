@@ -9,8 +9,6 @@
 
 namespace eomgen::cli {
 
-using Json = nlohmann::ordered_json;
-
 namespace {
 
 Json number(double value) { return std::isfinite(value) ? Json(value) : Json(nullptr); }
@@ -29,7 +27,7 @@ std::string text_of(const run::Sensitivities& found, const std::vector<std::stri
   return found.estimate_note.empty() ? out : out + "  " + found.estimate_note + "\n";
 }
 
-nlohmann::ordered_json json_of(const run::Sensitivities& found, const std::vector<std::string>& states) {
+Json json_of(const run::Sensitivities& found, const std::vector<std::string>& states) {
   Json values = Json::object(), errors = Json::object();
   bool estimated = false;
   for (const run::Sensitivity& s : found.list) {

@@ -2,16 +2,16 @@
 // What `run --sensitivity` shows.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "run/sensitivity.hpp"
 
 namespace eomgen::cli {
 
 std::string text_of(const run::Sensitivities& found, const std::vector<std::string>& states);
 /// {"method", "t", "outcome", "values": {of: {state: value}}, "error_estimate": the same or null, "rhs_evaluations"}
-nlohmann::ordered_json json_of(const run::Sensitivities& found, const std::vector<std::string>& states);
+Json json_of(const run::Sensitivities& found, const std::vector<std::string>& states);
 
 }  // namespace eomgen::cli

@@ -55,8 +55,8 @@ StressTest Model::stress_test(const StressOptions& options, const Task& task) co
           {row.test, row.solver, stress::name(row.verdict), row.error, row.estimate, row.outcome, row.note});
     for (const auto& [test, why] : found.left_out) result.left_out.push_back({test, why});
     result.kept = found.count(stress::Verdict::kept);
-    result.told = found.count(stress::Verdict::told);
-    result.silent = found.count(stress::Verdict::silent);
+    result.told = found.count(stress::Verdict::reported);
+    result.silent = found.count(stress::Verdict::unreported);
     return result;
   });
 }

@@ -143,6 +143,8 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
 
 }  // namespace
 
+std::vector<std::string> approach_words() { return {"auto", "I", "II"}; }
+
 ApproachChoice approach_choice(const std::string& text) {
   if (text == "auto") return ApproachChoice::automatic;
   if (text == "I") return ApproachChoice::one;
@@ -150,14 +152,14 @@ ApproachChoice approach_choice(const std::string& text) {
   throw Error("cli", {}, fmt::format("there is no approach '{}'", text), "choose auto, I or II");
 }
 
+std::vector<std::string> form_words() { return {"auto", "multipliers", "nullspace", "chaplygin"}; }
+
 FormChoice form_choice(const std::string& text) {
   if (text == "auto") return std::nullopt;
   for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
     if (text == system::name(form)) return form;
   }
-  const bool later = text == "routh";
-  throw Error("cli", {},
-              later ? fmt::format("form '{}' is not supported yet", text) : fmt::format("there is no form '{}'", text),
+  throw Error("cli", {}, fmt::format("there is no form '{}'", text),
               "choose auto, multipliers, nullspace or chaplygin");
 }
 

@@ -24,10 +24,12 @@ struct Timings {
 };
 
 enum class ApproachChoice { automatic, one, two };
+std::vector<std::string> approach_words();
 ApproachChoice approach_choice(const std::string& text);  // "auto", "I", "II"; throws Error
 
 /// Nothing: the cheapest of those that hold everywhere.
 using FormChoice = std::optional<system::Form>;
+std::vector<std::string> form_words();
 FormChoice form_choice(const std::string& text);  // "auto", "multipliers", "nullspace", "chaplygin"; throws Error
 
 /// A model and its equations. It stays where it is: what is made from it refers to it.

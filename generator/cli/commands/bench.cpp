@@ -74,21 +74,23 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_bench(CLI::App& app) {
+Execute declare_bench(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
-  add_list(app, "--solver", options->solvers, "only these solvers");
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
+  app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
   app.add_option("--seconds", options->seconds, "what takes longer is interrupted")
-      ->check(positive_number())
-      ->capture_default_str();
+      .check(positive_number())
+      .show_preset();
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
-  add_place(app, "-o,--out,--csv", options->csv, "the table as a CSV file");
-  add_place(app, "--plot,--svg", options->svg, "error over run time as an SVG plot");
-  app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
-  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();
+  app.add_place("-o,--out,--csv", options->csv, "the table as a CSV file");
+  app.add_place("--plot,--svg", options->svg, "error over run time as an SVG plot");
+  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
+  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")
+      .show_preset()
+      .one_of(pipeline::form_words());
   return [options](const Common& common) { return execute(*options, common); };
 }
 

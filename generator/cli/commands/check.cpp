@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/commands/commands.hpp"
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
@@ -12,52 +10,50 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-
-std::string text(const json& value) { return value.get<std::string>(); }
+std::string text(const Json& value) { return value.get<std::string>(); }
 
 /// "48.85 deg", as the author has it; a bare number with the unit that it was given.
-std::string as_written(const json& parameter) {
+std::string as_written(const Json& parameter) {
   const std::string value = text(parameter["value"]), written = text(parameter["written"]),
                     unit = text(parameter["unit"]);
   const bool bare = written.find_first_not_of("0123456789.+-eE") == std::string::npos;
   return bare || written.empty() ? fmt::format("{} {}", value, unit) : written;
 }
 
-std::string from_others(const json& constraint) {
+std::string from_others(const Json& constraint) {
   std::string others;
-  for (const json& name : constraint["integral_of"]) {
+  for (const Json& name : constraint["integral_of"]) {
     if (name != constraint["name"]) others += (others.empty() ? "" : ", ") + text(name);
   }
   return others.empty() ? "" : "   (with " + others + ")";
 }
 
-void print_joints(const json& found) {
+void print_joints(const Json& found) {
   if (!found["joints"].empty()) fmt::print("\njoints\n");
-  for (const json& j : found["joints"]) {
+  for (const Json& j : found["joints"]) {
     std::string open;
-    for (const json& name : j["undetermined"]) open += (open.empty() ? "" : ", ") + text(name);
-    fmt::print("  {:<20} {} of {} and {}{}\n", text(j["name"]), text(j["type"]), text(j["bodies"][0]),
+    for (const Json& name : j["undetermined"]) open += (open.empty() ? "" : ", ") + text(name);
+    fmt::print("  {:<20} {} of {} and {}{}\n", text(j["name"]), text(j["type"]), text(j["bodies"].front()),
                text(j["bodies"][1]), open.empty() ? "" : "; the motion does not determine " + open);
   }
 }
 
-void print_readable(const json& found) {
+void print_readable(const Json& found) {
   const auto heading = [](const char* name) { fmt::print("\n{}\n", name); };
   fmt::print("{}{}{}\n", text(found["model"]), text(found["title"]).empty() ? "" : ": ", text(found["title"]));
   heading("coordinates");
-  for (const json& c : found["coordinates"]) {
+  for (const Json& c : found["coordinates"]) {
     fmt::print("  {:<20} {}{}\n", text(c["name"]), text(c["unit"]),
                c["eliminated"].get<bool>() ? "  (fixed by a constraint)" : "");
   }
   fmt::print("  {} degree{} of freedom\n", found["dof"].get<long>(), found["dof"] == 1 ? "" : "s");
   heading("parameters");
-  for (const json& p : found["parameters"]) fmt::print("  {:<20} {}\n", text(p["name"]), as_written(p));
+  for (const Json& p : found["parameters"]) fmt::print("  {:<20} {}\n", text(p["name"]), as_written(p));
   if (!found["inputs"].empty()) heading("inputs");
-  for (const json& u : found["inputs"])
+  for (const Json& u : found["inputs"])
     fmt::print("  {:<20} {}  ({} where a scene gives none)\n", text(u["name"]), text(u["unit"]), text(u["default"]));
   if (!found["constraints"].empty()) heading("constraints");
-  for (const json& c : found["constraints"]) {
+  for (const Json& c : found["constraints"]) {
     const bool holonomic = c["kind"] == "holonomic";
     fmt::print("  {:<20} {}({}, {})\n", text(c["name"]), holonomic ? text(c["integral"]) + "   " : "", text(c["kind"]),
                text(c["use"]));
@@ -67,19 +63,19 @@ void print_readable(const json& found) {
   }
   print_joints(found);
   if (!found["forces"].empty()) heading("forces");
-  for (const json& f : found["forces"]) {
+  for (const Json& f : found["forces"]) {
     fmt::print("  {:<20} conservative: {}", text(f["name"]), text(f["conservative"]));
     if (!f["potential"].is_null())
       fmt::print(", {}U = {}", f["many_valued"].get<bool>() ? "locally " : "", text(f["potential"]));
-    for (const json& condition : f["domain"])
+    for (const Json& condition : f["domain"])
       fmt::print("{}{}", &condition == &f["domain"].front() ? " where " : ", ", text(condition));
     if (!text(f["reason"]).empty()) fmt::print(" ({})", text(f["reason"]));
     fmt::print("\n");
   }
   if (!found["contacts"].empty()) heading("contacts");
-  for (const json& c : found["contacts"]) {
+  for (const Json& c : found["contacts"]) {
     std::string slip;
-    for (const json& w : c["slip"]) slip += (slip.empty() ? ", slip " : "; ") + text(w);
+    for (const Json& w : c["slip"]) slip += (slip.empty() ? ", slip " : "; ") + text(w);
     const std::string law = c["law"] == "none"     ? "no friction"
                             : c["law"] == "smooth" ? "the smooth law of friction"
                                                    : "Coulomb's law";
@@ -87,16 +83,16 @@ void print_readable(const json& found) {
                c["unilateral"].get<bool>() ? "; can be left" : "");
   }
   if (!found["conserved"].empty()) heading("conserved");
-  for (const json& c : found["conserved"]) {
+  for (const Json& c : found["conserved"]) {
     fmt::print("  {:<20} {} = {}{}\n", text(c["name"]), text(c["title"]), text(c["expression"]),
                c["certainty"] == "numerical" ? "   (shown by numbers)" : "");
   }
   if (!found["singular"].empty()) heading("singular sets");
-  for (const json& s : found["singular"]) fmt::print("  {:<20} (approach {})\n", text(s["set"]), text(s["approach"]));
+  for (const Json& s : found["singular"]) fmt::print("  {:<20} (approach {})\n", text(s["set"]), text(s["approach"]));
   if (!found["left_out"].empty()) heading("left out");
-  for (const json& l : found["left_out"]) fmt::print("  {}: {}\n", text(l["what"]), text(l["why"]));
+  for (const Json& l : found["left_out"]) fmt::print("  {}: {}\n", text(l["what"]), text(l["why"]));
   if (!found["charts"].empty()) heading("charts");
-  for (const json& c : found["charts"]) {
+  for (const Json& c : found["charts"]) {
     const bool exchanged = c["exchanged"].get<bool>();
     fmt::print("  {:<20} {}{}\n", text(c["of"]), text(c["own"]),
                exchanged ? fmt::format(", and {} near where it fails", text(c["second"]))
@@ -107,14 +103,14 @@ void print_readable(const json& found) {
 
 }  // namespace
 
-Execute declare_check(CLI::App& app) {
+Execute declare_check(Arguments& app) {
   auto name = std::make_shared<std::string>();
-  app.add_option("MODEL", *name, "a model file, or the name of one in models/")->required();
+  app.add_option("MODEL", *name, "a model file, or the name of one in models/").required();
   return [name](const Common& common) {
     const auto model = load_model(*name);
     const analysis::Examination examination = analysis::examine(model, true);
     const work::Kept kept;
-    json found = to_json(*model, examination);
+    Json found = to_json(*model, examination);
     if (examination.interrupted) found["left_out"].push_back({{"what", "what is not shown"}, {"why", "interrupted"}});
     if (common.json) {
       print_document(found);

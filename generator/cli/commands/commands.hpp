@@ -7,20 +7,22 @@ namespace eomgen::cli {
 
 using Execute = std::function<int(const Common&)>;
 
-Execute declare_new(CLI::App& app);
-Execute declare_list(CLI::App& app);
-Execute declare_check(CLI::App& app);
-Execute declare_derive(CLI::App& app);
-Execute declare_verify(CLI::App& app);
-Execute declare_emit(CLI::App& app);
-Execute declare_run(CLI::App& app);
-Execute declare_equilibria(CLI::App& app);
-Execute declare_linearize(CLI::App& app);
-Execute declare_inverse(CLI::App& app);
-Execute declare_sweep(CLI::App& app);
-Execute declare_merge(CLI::App& app);
-Execute declare_report(CLI::App& app);
-Execute declare_bench(CLI::App& app);
-Execute declare_stress(CLI::App& app);
+Execute declare_new(Arguments& app);
+Execute declare_list(Arguments& app);
+Execute declare_check(Arguments& app);
+Execute declare_derive(Arguments& app);
+Execute declare_verify(Arguments& app);
+Execute declare_emit(Arguments& app);
+Execute declare_run(Arguments& app);
+Execute declare_equilibria(Arguments& app);
+Execute declare_linearize(Arguments& app);
+Execute declare_inverse(Arguments& app);
+Execute declare_sweep(Arguments& app);
+Execute declare_merge(Arguments& app);
+Execute declare_report(Arguments& app);
+Execute declare_bench(Arguments& app);
+Execute declare_stress(Arguments& app);
+Execute declare_manual(Arguments& app);
+Execute declare_completion(Arguments& app);
 
 }  // namespace eomgen::cli

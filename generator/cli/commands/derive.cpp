@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "analysis/article.hpp"
 #include "analysis/equations.hpp"
@@ -14,8 +13,6 @@
 
 namespace eomgen::cli {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 struct Options {
   std::string model, approach = "auto", format = "text", document;
@@ -32,18 +29,18 @@ const std::string& in_format(const print::Item& item, const std::string& format)
   return format == "latex" ? item.latex : format == "mathml" ? item.mathml : item.text;
 }
 
-json to_json(const std::vector<print::Item>& items, const std::string& approach, const std::vector<std::string>& show,
+Json to_json(const std::vector<print::Item>& items, const std::string& approach, const std::vector<std::string>& show,
              const std::vector<work::LeftOut>& left_out) {
-  json result{{"format", 1}, {"approach", approach}, {"equations", json::array()}, {"reactions", json::array()}};
+  Json result{{"format", 1}, {"approach", approach}, {"equations", Json::array()}, {"reactions", Json::array()}};
   const bool all = std::find(show.begin(), show.end(), "all") != show.end();
   for (const std::string& key : analysis::equation_keys()) {
     const bool wanted =
         std::find(show.begin(), show.end(), key) != show.end() || (all && key != "linear" && key != "routh");
-    if (wanted && key != "all") result[key] = json::array();  // also where there turns out to be nothing to show
+    if (wanted && key != "all") result[key] = Json::array();  // also where there turns out to be nothing to show
   }
   for (const print::Item& item : items) {
     if (!item.left_out.empty()) continue;
-    json entry;
+    Json entry;
     if (!item.coordinate.empty()) entry["coordinate"] = item.coordinate;
     if (!item.name.empty()) entry["name"] = item.name;
     if (!item.role.empty()) entry["role"] = item.role;
@@ -52,7 +49,7 @@ json to_json(const std::vector<print::Item>& items, const std::string& approach,
     entry["mathml"] = item.mathml;
     result[item.key].push_back(entry);
   }
-  result["left_out"] = json::array();
+  result["left_out"] = Json::array();
   for (const work::LeftOut& l : left_out) result["left_out"].push_back({{"what", l.what}, {"why", l.why}});
   return result;
 }
@@ -100,8 +97,8 @@ std::string readable(const std::vector<print::Item>& items, const std::string& a
   return text;
 }
 
-json to_json(const std::vector<analysis::Multiplier>& multipliers) {
-  json result = json::array();
+Json to_json(const std::vector<analysis::Multiplier>& multipliers) {
+  Json result = Json::array();
   for (const analysis::Multiplier& m : multipliers)
     result.push_back({{"name", m.name}, {"of", m.of}, {"meaning", m.meaning}, {"latex", m.latex}});
   return result;
@@ -130,9 +127,9 @@ int execute(const Options& options, const Common& common) {
   if (found.interrupted) found.left_out.push_back({"what is not shown", "interrupted"});
   const std::string approach = system::name(found.approach);
   if (common.json) {
-    json result = to_json(found.items, approach, options.show, found.left_out);
+    Json result = to_json(found.items, approach, options.show, found.left_out);
     result["multipliers"] = to_json(found.multipliers);
-    if (!options.document.empty()) result["document"] = written ? json(options.document) : json(nullptr);
+    if (!options.document.empty()) result["document"] = written ? Json(options.document) : Json(nullptr);
     print_document(result);
   } else {
     const bool taken = is_standard_output(options.document);
@@ -145,14 +142,17 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_derive(CLI::App& app) {
+Execute declare_derive(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
-  add_list(app, "--show", options->show,
-           fmt::format("what to show; a list of {}", fmt::join(analysis::equation_keys(), ", ")));
-  app.add_option("--format", options->format, "text, latex or mathml")->capture_default_str();
-  add_place(app, "--document", options->document, "the whole derivation as a LaTeX document, F.tex");
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
+  app.add_list("--show", options->show,
+               fmt::format("what to show; a list of {}", fmt::join(analysis::equation_keys(), ", ")))
+      .one_of(analysis::equation_keys());
+  app.add_option("--format", options->format, "text, latex or mathml")
+      .show_preset()
+      .one_of({"text", "latex", "mathml"});
+  app.add_place("--document", options->document, "the whole derivation as a LaTeX document, F.tex");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -3,11 +3,11 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "abi/functions.hpp"
 #include "analysis/article.hpp"
 #include "cli/commands/commands.hpp"
+#include "cli/declaration.hpp"
 #include "cli/locate.hpp"
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
@@ -18,22 +18,11 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-
 struct Options {
   std::string model, folder, target = "cpp", approach = "auto", form = "auto";
   std::vector<std::string> with, fix, outputs;
   bool print_name = false;
 };
-
-constexpr const char* document_target = "latex";  // beside the targets of code
-
-std::vector<std::string> target_names() {
-  std::vector<std::string> names;
-  for (const emit::TargetEntry& entry : emit::targets()) names.emplace_back(entry.name);
-  names.emplace_back(document_target);
-  return names;
-}
 
 void require_target(const std::string& target) {
   const std::vector<std::string> known = target_names();
@@ -58,7 +47,7 @@ int emit_document(const Options& options, const Common& common) {
   const std::vector<std::string> files =
       write_results(options.folder, {{emit::mangled_id(model->id) + ".tex", text}}, model->file);
   if (common.json) {
-    print_document(json{{"format", 1}, {"files", files}});
+    print_document(Json{{"format", 1}, {"files", files}});
   } else {
     for (const std::string& file : files) fmt::print("wrote {}\n", file);
   }
@@ -66,7 +55,7 @@ int emit_document(const Options& options, const Common& common) {
 }
 
 /// What is computed once for the parameters, and the right-hand side that is left; null where it is not split.
-json hoisted(const program::Program& program) {
+Json hoisted(const program::Program& program) {
   if (program.prepared_count() == 0) return nullptr;
   return {{"prepare", to_json(program.functions.rbegin()[1].operations)},
           {"rhs_prepared", to_json(program.functions.back().operations)}};
@@ -98,13 +87,13 @@ int execute(const Options& options, const Common& common) {
   const std::vector<std::string> files = write_results(options.folder, emission.files, model->file);
   const pipeline::Timings& seconds = emission.seconds;
   if (common.json) {
-    json tried = json::array();
+    Json tried = Json::array();
     for (const program::Tried& t : program.tried)
       tried.push_back({{"route", t.route},
                        {"approach", system::name(t.approach)},
                        {"form", system::name(t.form)},
                        {"operations", to_json(t.operations)}});
-    const json document{{"format", 1},
+    const Json document{{"format", 1},
                         {"files", files},
                         {"route", program.route},
                         {"approach", system::name(program.approach)},
@@ -143,25 +132,29 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_emit(CLI::App& app) {
+Execute declare_emit(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  add_place(app, "-o,--out", options->folder, "the folder for the sources; it is made if need be");
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_place("-o,--out", options->folder, "the folder for the sources; it is made if need be");
   app.add_option("--target", options->target,
                  fmt::format("{}; {} is a document", fmt::join(target_names(), ", "), document_target))
-      ->capture_default_str();
-  add_list(app, "--with", options->with,
-           fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
-                       "run calls",
-                       fmt::join(abi::asked_for(), ", ")));
-  add_list(app, "--output", options->outputs, "names for the function outputs");
-  app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
+      .show_preset()
+      .one_of(target_names());
+  app.add_list(
+         "--with", options->with,
+         fmt::format("functions beside rhs: {} (outputs: the scene's), energy; charts: second ones; run: all that a "
+                     "run calls",
+                     fmt::join(abi::asked_for(), ", ")))
+      .one_of(pipeline::emitted_functions());
+  app.add_list("--output", options->outputs, "names for the function outputs");
+  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
   app.add_option("--form", options->form,
                  "auto, multipliers, nullspace or chaplygin: how constraints that stay are solved")
-      ->capture_default_str();
+      .show_preset()
+      .one_of(pipeline::form_words());
   app.add_flag("--print-name", options->print_name,
                "only prints NAME, which the model's file gives to files and symbols");
-  add_list(app, "--fix", options->fix, "parameters that become numbers");
+  app.add_list("--fix", options->fix, "parameters that become numbers");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <nlohmann/json.hpp>
-
 #include "analysis/steady_search.hpp"
 #include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
@@ -18,15 +16,13 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-
 struct Options {
   std::string model, scene = "default";
   std::vector<std::string> set, hold;
   std::size_t starts = 300;
 };
 
-json to_json(const linear::Verdict& verdict) {
+Json to_json(const linear::Verdict& verdict) {
   if (verdict.stability == linear::Stability::unknown) return "unknown";
   return verdict.stability == linear::Stability::stable;
 }
@@ -40,11 +36,11 @@ const char* to_text(const linear::Verdict& verdict) {
   return "stability unknown";
 }
 
-json to_json(const analysis::SteadyMotions& found, const Options& options) {
+Json to_json(const analysis::SteadyMotions& found, const Options& options) {
   const std::vector<std::string>& names = found.problem.flow->names();
-  json points = json::array(), held = json::array();
+  Json points = Json::array(), held = Json::array();
   for (const analysis::SteadyMotion& point : found.points) {
-    json values = json::object(), eigenvalues = json::array();
+    Json values = Json::object(), eigenvalues = Json::array();
     for (std::size_t i = 0; i + 1 < point.l.z.size(); ++i) values[names[i]] = shown(point.l.z[i]);
     for (const linear::Eigenvalue& e : point.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
     points.push_back({{"kind", linear::name(point.l.kind)},
@@ -141,16 +137,16 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_equilibria(CLI::App& app) {
+Execute declare_equilibria(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")
-      ->capture_default_str();
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  add_list(app, "--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
+      .show_preset();
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
   app.add_option("--starts", options->starts, "how many starts the search has")
-      ->check(whole_number(1, 100000))
-      ->capture_default_str();
+      .check(whole_number(1, 100000))
+      .show_preset();
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 
@@ -19,8 +18,6 @@
 
 namespace eomgen::cli {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 struct Options {
   std::string model, scene = "default", out;
@@ -56,9 +53,9 @@ class Table {
   std::size_t rows_ = 0;
 };
 
-json to_json(const analysis::InverseAnswer& answer, const Table& table, const std::string& file,
+Json to_json(const analysis::InverseAnswer& answer, const Table& table, const std::string& file,
              const model::Model& model, const std::string& scene) {
-  json columns = json::array({"t"}), extremes = json::object();
+  Json columns = Json::array({"t"}), extremes = Json::object();
   for (const std::string& name : answer.columns) columns.push_back(name);
   for (std::size_t i = 0; i < answer.columns.size(); ++i) {
     const std::string& name = answer.columns[i];
@@ -77,7 +74,7 @@ json to_json(const analysis::InverseAnswer& answer, const Table& table, const st
           {"certificate", answer.certificate}};
 }
 
-std::string readable(const json& found) {
+std::string readable(const Json& found) {
   std::string out =
       fmt::format("model        {}, scene {}\n", found["model"].get<std::string>(), found["scene"].get<std::string>());
   out += fmt::format("certificate  {}\n", found["certificate"].get<std::string>());
@@ -85,7 +82,7 @@ std::string readable(const json& found) {
                      found["detail"].get<std::string>());
   out += fmt::format("  {:<28} {:>24} {:>24}\n", "force", "least", "greatest");
   for (const auto& [name, range] : found["forces"].items()) {
-    const auto shown = [](const json& x) { return x.is_null() ? std::string("-") : shortest(x.get<double>()); };
+    const auto shown = [](const Json& x) { return x.is_null() ? std::string("-") : shortest(x.get<double>()); };
     out += fmt::format("  {:<28} {:>24} {:>24}\n", name, shown(range["min"]), shown(range["max"]));
   }
   return out +
@@ -118,7 +115,7 @@ int execute(const Options& options, const Common& common) {
   request.row = [&](double t, std::span<const double> values) { table->row(t, values); };
   const analysis::InverseAnswer answer = analysis::inverse_dynamics(request);
   table->finish(answer.outcome);
-  const json found = to_json(answer, *table, file, model, options.scene);
+  const Json found = to_json(answer, *table, file, model, options.scene);
   if (common.json) {
     print_document(found);
   } else {
@@ -129,22 +126,22 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_inverse(CLI::App& app) {
+Execute declare_inverse(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  add_list(app, "--constraint", options->constraints,
-           "constraints whose forces are asked for; without it those that prescribe a coordinate");
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--t-end", options->t_end, "the end of the motion")->check(finite_number());
-  app.add_option("--every", options->every, "interval of the rows")->check(positive_number());
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  app.add_list("--constraint", options->constraints,
+               "constraints whose forces are asked for; without it those that prescribe a coordinate");
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the motion").check(finite_number());
+  app.add_option("--every", options->every, "interval of the rows").check(positive_number());
   app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")
-      ->check(number_not_negative());
+      .check(number_not_negative());
   app.add_option("--atol", options->atol, "absolute tolerance where something is free to move")
-      ->check(number_not_negative());
+      .check(number_not_negative());
   app.add_option("--max-steps", options->max_steps, "the most steps, where something is free to move")
-      ->check(whole_number(1, 1'000'000'000'000'000));
-  add_place(app, "-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
+      .check(whole_number(1, 1'000'000'000'000'000));
+  app.add_place("-o,--out", options->out, "the table, a CSV file; without it MODEL_inverse.csv in this folder");
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   return [options](const Common& common) { return execute(*options, common); };
 }

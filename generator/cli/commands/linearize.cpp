@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "analysis/steady.hpp"
@@ -17,8 +16,6 @@
 
 namespace eomgen::cli {
 namespace {
-
-using json = nlohmann::ordered_json;
 
 struct Options {
   std::string model, scene = "default";
@@ -66,18 +63,18 @@ struct Answer {
   }
 };
 
-json rows(const linear::Matrix<linear::Precise>& A) {
-  json result = json::array();
+Json rows(const linear::Matrix<linear::Precise>& A) {
+  Json result = Json::array();
   for (std::size_t i = 0; i < A.rows; ++i) {
-    json row = json::array();
+    Json row = Json::array();
     for (std::size_t j = 0; j < A.cols; ++j) row.push_back(shown(A(i, j)));
     result.push_back(row);
   }
   return result;
 }
 
-json to_json(const Answer& a) {
-  json eigenvalues = json::array(), point = json::object();
+Json to_json(const Answer& a) {
+  Json eigenvalues = Json::array(), point = Json::object();
   for (const linear::Eigenvalue& e : a.l.spectrum.values) eigenvalues.push_back(eigenvalue_json(e));
   for (std::size_t i = 0; i + 1 < a.l.z.size(); ++i) point[a.problem.flow->names()[i]] = shown(a.l.z[i]);
   return {{"format", 1},
@@ -159,13 +156,13 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_linearize(CLI::App& app) {
+Execute declare_linearize(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
   app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")
-      ->check(finite_number());
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+      .check(finite_number());
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

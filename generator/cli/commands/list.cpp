@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
 #include "coordinates/coordinate_system.hpp"
@@ -18,13 +16,11 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-
-json registries() {
-  json result{{"format", 1}};
-  json coordinates = json::array(), routes = json::array(), solvers = json::array(), targets = json::array();
+Json registries() {
+  Json result{{"format", 1}};
+  Json coordinates = Json::array(), routes = Json::array(), solvers = Json::array(), targets = Json::array();
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
-    json slots = json::array();
+    Json slots = Json::array();
     for (const coordinates::Slot& slot : system->slots) slots.push_back(slot.name);
     coordinates.push_back(
         {{"name", system->name}, {"title", system->title}, {"slots", slots}, {"singular", system->singular}});
@@ -32,7 +28,7 @@ json registries() {
   // Defined by the model itself, so it is no entry of that registry.
   coordinates.push_back({{"name", "custom"},
                          {"title", "coordinates that a model defines, by x(q) or by q(x)"},
-                         {"slots", json::array()},
+                         {"slots", Json::array()},
                          {"singular", ""}});
   for (const derive::RouteEntry& route : derive::routes())
     routes.push_back({{"name", route.name}, {"title", route.title}});
@@ -53,9 +49,9 @@ json registries() {
   targets.push_back(
       {{"name", "latex"}, {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;
-  json rotations = json::array();
+  Json rotations = Json::array();
   for (const rotations::Rotation& rotation : rotations::registry()) {
-    json entries = json::array();
+    Json entries = Json::array();
     for (const rotations::Entry& entry : rotation.entries) entries.push_back(entry.name);
     rotations.push_back({{"name", rotation.name},
                          {"title", rotation.title},
@@ -64,16 +60,16 @@ json registries() {
                          {"singular", rotation.singular}});
   }
   result["rotations"] = rotations;
-  result["joints"] = json::array();
+  result["joints"] = Json::array();
   for (const joints::Joint& joint : joints::registry()) {
     result["joints"].push_back({{"name", joint.name}, {"title", joint.title}, {"equations", joint.equations.size()}});
   }
-  result["couplings"] = json::array();
+  result["couplings"] = Json::array();
   for (const couplings::Coupling& coupling : couplings::registry())
     result["couplings"].push_back({{"name", coupling.name}, {"title", coupling.title}});
-  result["forces"] = json::array();
+  result["forces"] = Json::array();
   for (const forces::Kind& kind : forces::registry()) {
-    json keys = json::array();
+    Json keys = Json::array();
     for (const forces::Key& key : kind.keys) keys.push_back(key.name);
     result["forces"].push_back({{"name", kind.name}, {"title", kind.title}, {"keys", keys}});
   }
@@ -84,7 +80,7 @@ json registries() {
 }
 
 int execute(const Common& common) {
-  const json all = registries();
+  const Json all = registries();
   if (common.json) {
     print_document(all);
     return 0;
@@ -93,7 +89,7 @@ int execute(const Common& common) {
     if (!entries.is_array()) continue;
     fmt::print("{}:\n", key);
     if (entries.empty()) fmt::print("  none yet\n");
-    for (const json& entry : entries) {
+    for (const Json& entry : entries) {
       const std::string title =
           entry.contains("title")
               ? entry["title"].get<std::string>()
@@ -109,6 +105,6 @@ int execute(const Common& common) {
 
 }  // namespace
 
-Execute declare_list(CLI::App&) { return execute; }
+Execute declare_list(Arguments&) { return execute; }
 
 }  // namespace eomgen::cli

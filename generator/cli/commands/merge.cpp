@@ -9,7 +9,6 @@
 #include <cstring>
 #include <eom/output/whole_file.hpp>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 
@@ -170,8 +169,7 @@ int execute(const Options& options, const Common& common) {
                 emit::fault_of_writing(error.code()));
   }
   if (common.json) {
-    nlohmann::ordered_json found{
-        {"format", 1}, {"shards", tables.shards()}, {"runs", tables.runs()}, {"file", options.out}};
+    Json found{{"format", 1}, {"shards", tables.shards()}, {"runs", tables.runs()}, {"file", options.out}};
     if (options.statistics) found["statistics"] = to_json(tables.statistics());
     print_document(found);
   } else {
@@ -184,10 +182,10 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_merge(CLI::App& app) {
+Execute declare_merge(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("TABLES", options->tables, "what sweep --shard wrote, every shard of one sweep")->required();
-  add_place(app, "-o,--out", options->out, "the whole table: F.csv, or F.npz for arrays of columns")->required();
+  app.add_option("TABLES", options->tables, "what sweep --shard wrote, every shard of one sweep").required();
+  app.add_place("-o,--out", options->out, "the whole table: F.csv, or F.npz for arrays of columns").required();
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -3,7 +3,6 @@
 
 #include <cctype>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
@@ -36,7 +35,7 @@ int execute(const Options& options, const Common& common) {
   for (std::size_t at; (at = text.find("NAME.")) != std::string::npos;) text.replace(at, 4, options.name);
   write_text(file, text);
   if (common.json) {
-    print_document(nlohmann::ordered_json{{"format", 1}, {"file", file}});
+    print_document(Json{{"format", 1}, {"file", file}});
   } else {
     fmt::print("wrote {}\n", file);
   }
@@ -45,9 +44,9 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_new(CLI::App& app) {
+Execute declare_new(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("NAME", options->name, "name of the model; NAME.toml is written here")->required();
+  app.add_option("NAME", options->name, "name of the model; NAME.toml is written here").required();
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
 
@@ -25,8 +24,6 @@
 
 namespace eomgen::cli {
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 struct Options {
   std::string model, scene = "default", out;
@@ -231,16 +228,16 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_report(CLI::App& app) {
+Execute declare_report(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  add_place(app, "-o,--out", options->out, "the page; without it report.html in this folder");
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
-  app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_place("-o,--out", options->out, "the page; without it report.html in this folder");
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
+  app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   return [options](const Common& common) { return execute(*options, common); };
 }
 

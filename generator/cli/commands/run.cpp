@@ -239,33 +239,34 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_run(CLI::App& app) {
+Execute declare_run(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
-  app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
-  app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
-  app.add_option("--max-step", options->max_step, "the longest step where steps are chosen")->check(positive_number());
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
+  app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
+  app.add_option("--step", options->step, "a fixed step, without error control").check(positive_number());
+  app.add_option("--max-step", options->max_step, "the longest step where steps are chosen").check(positive_number());
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
   app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")
-      ->check(whole_number(1, 1'000'000'000'000'000));
-  app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
-  app.add_option("--every", options->every, "interval of the rows of the CSV file")->check(positive_number());
-  add_place(app, "-o,--out", options->out, "the table, a CSV file");
-  add_place(app, "--plot", options->plot,
-            "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
+      .check(whole_number(1, 1'000'000'000'000'000));
+  app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
+  app.add_option("--every", options->every, "interval of the rows of the CSV file").check(positive_number());
+  app.add_place("-o,--out", options->out, "the table, a CSV file");
+  app.add_place("--plot", options->plot,
+                "a plot of the coordinates over time, SVG or PNG by its ending; - draws it with characters");
   app.add_option("--plot-of", options->plot_of,
                  "what is plotted: a name, or x,x_dot for a phase plane; may be repeated")
-      ->allow_extra_args(false)
-      ->take_all();
+      .repeated();
   app.add_flag("--yes", options->yes, "writes a table however large it is");
-  add_list(app, "--sensitivity", options->sensitivity,
-           "derivatives of the end by these parameters and values of the start");
-  add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
-  app.add_option("--approach", options->approach, "auto, I or II")->capture_default_str();
-  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")->capture_default_str();
+  app.add_list("--sensitivity", options->sensitivity,
+               "derivatives of the end by these parameters and values of the start");
+  app.add_list("--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
+  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
+  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")
+      .show_preset()
+      .one_of(pipeline::form_words());
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
   app.add_flag("--no-charts", options->no_charts, "keep to the model's angles where they fail");
   return [options](const Common& common) { return execute(*options, common); };

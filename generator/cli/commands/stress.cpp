@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "analysis/stress_test.hpp"
@@ -18,7 +17,6 @@
 namespace eomgen::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using stress::Verdict;
 
 struct Options {
@@ -77,10 +75,10 @@ Json document(const model::Model& model, const analysis::StressFindings& found) 
           {"rows", list},
           {"left_out", without},
           {"kept", found.count(Verdict::kept)},
-          {"told", found.count(Verdict::told)},
-          {"silent", found.count(Verdict::silent)},
+          {"told", found.count(Verdict::reported)},
+          {"silent", found.count(Verdict::unreported)},
           {"denominator_audit", of(found.audit)},
-          {"verdict", found.count(Verdict::silent) == 0 ? "pass" : "fail"}};
+          {"verdict", found.count(Verdict::unreported) == 0 ? "pass" : "fail"}};
 }
 
 void print_audit(const Json& audit) {
@@ -165,19 +163,19 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_stress(CLI::App& app) {
+Execute declare_stress(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--t-end", options->t_end, "the end of the run")->check(finite_number());
-  add_list(app, "--solver", options->solvers, "only these solvers");
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
+  app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
   app.add_option("--steps", options->steps, "what takes more is ended, and told")
-      ->check(CLI::Range(std::size_t{100}, std::size_t{1000000000}))
-      ->capture_default_str();
+      .check(whole_number(100, 1'000'000'000))
+      .show_preset();
   app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")
-      ->check(positive_number())
-      ->capture_default_str();
+      .check(positive_number())
+      .show_preset();
   app.add_flag("--quick", options->quick, "a few variations of each kind");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
@@ -16,9 +15,9 @@
 namespace eomgen::cli {
 namespace {
 
-nlohmann::ordered_json document(const SweepOptions& options, const model::Model& model, const Sweep& sweep) {
+Json document(const SweepOptions& options, const model::Model& model, const Sweep& sweep) {
   const Sweep::Counts counts = sweep.counts();
-  nlohmann::ordered_json found = {
+  Json found = {
       {"format", 1},         {"model", model.id},       {"scene", options.scene},     {"runs", sweep.runs()},
       {"done", counts.done}, {"failed", counts.failed}, {"resumed", sweep.resumed()}, {"file", sweep.place()}};
   if (options.shard) found["shard"] = *options.shard;
@@ -30,7 +29,7 @@ int execute(const SweepOptions& options, const Common& common) {
   Sweep sweep(options, common, model);
   const bool whole = sweep.run();
   if (common.team != nullptr && !common.team->leads()) return 0;  // the first one tells
-  nlohmann::ordered_json found = document(options, model, sweep);
+  Json found = document(options, model, sweep);
   if (common.json) {
     if (options.statistics) found["statistics"] = to_json(sweep.statistics());
     print_document(found);
@@ -49,15 +48,15 @@ int execute(const SweepOptions& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_sweep(CLI::App& app) {
+Execute declare_sweep(Arguments& app) {
   auto options = std::make_shared<SweepOptions>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
-  add_list(app, "--grid", options->grid,
-           "PARAMETER=FROM:TO:COUNT, PARAMETER=FROM:TO:log:COUNT or PARAMETER=a,b,c; may be repeated", '\0');
-  add_list(app, "--sample", options->sample,
-           "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
+  app.add_list("--grid", options->grid,
+               "PARAMETER=FROM:TO:COUNT, PARAMETER=FROM:TO:log:COUNT or PARAMETER=a,b,c; may be repeated", '\0');
+  app.add_list("--sample", options->sample,
+               "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
   app.add_option("--samples", options->samples, "how many, at every point of the grid")
-      ->check(whole_number(1, most_points));
+      .check(whole_number(1, most_points));
   app.add_option("--design", options->design,
                  "of samples: random, latin (hypercube) or sobol; without it random. All follow from --seed");
   app.add_option("--points", options->points,
@@ -65,18 +64,18 @@ Execute declare_sweep(CLI::App& app) {
                  "every point of the grid");
   app.add_option("--shard", options->shard, "NUMBER/COUNT: only these runs; eomgen merge joins the tables");
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
-  app.add_option("--scene", options->scene, "a scene of the model")->capture_default_str();
-  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto");
-  app.add_option("--rtol", options->rtol, "relative tolerance")->check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance")->check(number_not_negative());
-  app.add_option("--step", options->step, "a fixed step, without error control")->check(positive_number());
-  add_list(app, "--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
-  app.add_option("--t-end", options->t_end, "the end of the runs")->check(finite_number());
-  add_place(app, "-o,--out", options->out,
-            "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
-  add_list(app, "--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
+  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
+  app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
+  app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
+  app.add_option("--step", options->step, "a fixed step, without error control").check(positive_number());
+  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_option("--t-end", options->t_end, "the end of the runs").check(finite_number());
+  app.add_place("-o,--out", options->out,
+                "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
+  app.add_list("--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
   app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")
-      ->check(whole_number(1, 1024));
+      .check(whole_number(1, 1024));
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");
   app.add_flag("--ensemble", options->ensemble,
                "many runs side by side in the lanes of vector registers, without error estimates");

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
@@ -14,8 +13,6 @@
 namespace eomgen::cli {
 namespace {
 
-using json = nlohmann::ordered_json;
-
 struct Options {
   std::string model;
   int digits = 50;
@@ -23,8 +20,8 @@ struct Options {
   bool no_compile = false;
 };
 
-json to_json(const verify::Certificate& certificate) {
-  json routes = json::array(), reasons = json::object(), left_out = json::array();
+Json to_json(const verify::Certificate& certificate) {
+  Json routes = Json::array(), reasons = Json::object(), left_out = Json::array();
   for (const work::LeftOut& l : certificate.left_out) left_out.push_back({{"what", l.what}, {"why", l.why}});
   for (const verify::Comparison& c : certificate.comparisons) {
     routes.push_back({{"a", c.a},
@@ -84,13 +81,13 @@ int execute(const Options& options, const Common& common) {
 
 }  // namespace
 
-Execute declare_verify(CLI::App& app) {
+Execute declare_verify(Arguments& app) {
   auto options = std::make_shared<Options>();
-  app.add_option("MODEL", options->model, "a model file, or the name of one in models/")->required();
+  app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--digits", options->digits, "decimal digits of the arithmetic")
-      ->check(whole_number(20, 300))
-      ->capture_default_str();
-  app.add_option("--points", options->points, "random states")->check(whole_number(1, 10000))->capture_default_str();
+      .check(whole_number(20, 300))
+      .show_preset();
+  app.add_option("--points", options->points, "random states").check(whole_number(1, 10000)).show_preset();
   app.add_flag("--no-compile", options->no_compile, "leave the emitted code out, which needs a C compiler");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -4,11 +4,11 @@
 // among them.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "pipeline/pipeline.hpp"
 
 namespace eomgen::cli {
@@ -24,7 +24,7 @@ class Drawing {
   /// negative number: unknown.
   const std::vector<symbolic::Ref>& sizes() const { return sizes_; }
   /// The parts: places, bodies, springs, dampers, joints, contacts, by indices into the outputs and the sizes.
-  const nlohmann::ordered_json& parts() const { return parts_; }
+  const Json& parts() const { return parts_; }
 
  private:
   std::size_t vector_of(const std::string& base);  // of outputs that are there: base1 .. base3
@@ -39,7 +39,7 @@ class Drawing {
 
   std::vector<std::string> outputs_;
   std::vector<symbolic::Ref> sizes_;
-  nlohmann::ordered_json parts_;
+  Json parts_;
 };
 
 /// The direction in which things fall, where gravity is uniform; nothing where there is none.

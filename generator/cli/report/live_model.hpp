@@ -3,11 +3,11 @@
 // and a change of a parameter need. Or why the page can only replay the run.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <set>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "cli/report/drawing.hpp"
 #include "pipeline/simulate.hpp"
 
@@ -17,8 +17,8 @@ struct LiveModel {
   std::string
       script;        // of the target javascript, ending in an expression statement free of side effects; empty: replay
   std::string name;  // what the script calls the model
-  std::string reason;            // a sentence: why it is replayed
-  nlohmann::ordered_json start;  // names, given starts, parameters, events, tolerances
+  std::string reason;  // a sentence: why it is replayed
+  Json start;          // names, given starts, parameters, events, tolerances
 };
 
 /// `outputs`: names in the order of the array that the page draws and plots from; `set`: parameters that the command

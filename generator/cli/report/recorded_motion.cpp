@@ -13,8 +13,6 @@
 namespace eomgen::cli {
 namespace {
 
-using Json = nlohmann::ordered_json;
-
 constexpr double least_seconds = 4, most_seconds = 20;  // of an animation, whatever the time span of the run
 constexpr int digits_of_states = 10, digits_of_screens = 6;
 

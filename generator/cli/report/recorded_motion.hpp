@@ -2,11 +2,11 @@
 // The rows of a run, kept for the plots and the animation of a page.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "cli/json.hpp"
 #include "cli/panels.hpp"
 #include "cli/report/drawing.hpp"
 #include "cli/report/live_model.hpp"
@@ -23,12 +23,12 @@ class RecordedMotion {
 
   /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
   /// which the script computes the rest; else all `outputs`.
-  nlohmann::ordered_json json(const pipeline::Simulation& simulation, const Drawing& drawing, const LiveModel& live,
-                              const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
+  Json json(const pipeline::Simulation& simulation, const Drawing& drawing, const LiveModel& live,
+            const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
 
  private:
   std::vector<double> column(const std::string& name) const;
-  nlohmann::ordered_json rows(const std::vector<std::string>& names, int digits) const;
+  Json rows(const std::vector<std::string>& names, int digits) const;
 
   std::vector<std::string> names_;
   std::vector<double> t_;

@@ -103,8 +103,8 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   return result;
 }
 
-nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns) {
-  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+Json to_json(const std::vector<ColumnStatistics>& columns) {
+  Json list = Json::array();
   for (const ColumnStatistics& c : columns) {
     list.push_back({{"column", c.name},
                     {"count", c.count},
@@ -113,7 +113,7 @@ nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns) {
                     {"min", c.least},
                     {"max", c.greatest},
                     {"histogram", c.histogram}});
-    nlohmann::ordered_json& quantiles = list.back()["quantiles"] = nlohmann::ordered_json::array();
+    Json& quantiles = list.back()["quantiles"] = Json::array();
     for (std::size_t i = 0; i < c.quantiles.size(); ++i)
       quantiles.push_back({{"part", quantile_parts[i]}, {"value", c.quantiles[i]}});
   }

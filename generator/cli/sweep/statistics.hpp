@@ -3,10 +3,11 @@
 #pragma once
 
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "cli/json.hpp"
 
 namespace eomgen::cli {
 
@@ -36,7 +37,7 @@ using EachRow = std::function<void(const std::function<void(std::string_view row
 /// memory.
 std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows, const EachRow& each_row);
 
-nlohmann::ordered_json to_json(const std::vector<ColumnStatistics>& columns);
+Json to_json(const std::vector<ColumnStatistics>& columns);
 std::string to_text(const std::vector<ColumnStatistics>& columns);
 
 }  // namespace eomgen::cli

@@ -1,0 +1,20 @@
+# `cpack -G DEB` in a build folder: a Debian package of what cmake --install gives; `cpack -G TGZ` the same as an archive.
+set(CPACK_PACKAGE_NAME eomgen)
+set(CPACK_PACKAGE_VENDOR "eomgen contributors")
+set(CPACK_PACKAGE_CONTACT "eomgen contributors")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "equations of motion of mechanical systems, from a text model")
+set(CPACK_PACKAGE_DESCRIPTION "Derives Lagrange's equations symbolically, holds every derivation against an independent judge, shows them in LaTeX,
+ writes C and C++, integrates, and tells how large the error is. With headers for programs of others: the runtime (MIT)
+ and the library of the generator.")
+set(CPACK_RESOURCE_FILE_LICENSE ${PROJECT_SOURCE_DIR}/LICENSE)
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_VERBATIM_VARIABLES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+# Libraries are read off the programs. `run` calls a C compiler; the runtime's headers include Eigen.
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "gcc | c-compiler, libeigen3-dev")
+set(CPACK_DEBIAN_PACKAGE_SUGGESTS "g++, cmake, texlive-latex-recommended")
+install(FILES ${PROJECT_SOURCE_DIR}/cmake/copyright DESTINATION ${CMAKE_INSTALL_DOCDIR})
+include(CPack)

@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/arguments.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <utility>
+
+#include "model/names.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+template <typename Accept>
+Check number(const char* what, Accept accept) {
+  return [what, accept](const std::string& text) {
+    double value = 0;
+    const bool fine = CLI::detail::lexical_cast(text, value) && std::isfinite(value) && accept(value);
+    return fine ? std::string() : fmt::format("{} is not {}", model::quote(text), what);
+  };
+}
+
+}  // namespace
+
+Check finite_number() {
+  return number("a number", [](double) { return true; });
+}
+Check positive_number() {
+  return number("a number greater than 0", [](double value) { return value > 0; });
+}
+Check number_not_negative() {
+  return number("a number, 0 or greater", [](double value) { return value >= 0; });
+}
+
+Check whole_number(unsigned long long least, unsigned long long most) {
+  return [least, most](const std::string& text) {
+    const bool digits = !text.empty() && text.size() <= 19 && text.find_first_not_of("0123456789") == std::string::npos;
+    const unsigned long long value = digits ? std::stoull(text) : 0;
+    if (digits && value >= least && value <= most) return std::string();
+    return fmt::format("{} is not a whole number from {} to {}", model::quote(text), least, most);
+  };
+}
+
+Option Option::required() const {
+  option_->required();
+  return *this;
+}
+
+Option Option::check(Check complaint) const {
+  option_->check(CLI::Validator([complaint = std::move(complaint)](std::string& text) { return complaint(text); }, ""));
+  return *this;
+}
+
+Option Option::show_preset() const {
+  option_->capture_default_str();
+  return *this;
+}
+
+Option Option::repeated() const {
+  option_->allow_extra_args(false)->take_all();
+  return *this;
+}
+
+Option Option::one_of(std::vector<std::string> words) const {
+  words_[option_] = std::move(words);
+  return *this;
+}
+
+Option Arguments::add_option(const std::string& flags, std::string& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_option(const std::string& flags, double& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_option(const std::string& flags, int& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_option(const std::string& flags, std::uint64_t& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_option(const std::string& flags, std::optional<std::string>& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_option(const std::string& flags, std::optional<double>& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_option(const std::string& flags, std::vector<std::string>& target, const std::string& help) {
+  return {app_.add_option(flags, target, help), words_};
+}
+Option Arguments::add_flag(const std::string& flags, bool& target, const std::string& help) {
+  return {app_.add_flag(flags, target, help), words_};
+}
+
+Option Arguments::add_place(const std::string& flags, std::string& target, const std::string& help) {
+  return add_option(flags, target, help).check([](const std::string& path) {
+    return path.empty() ? std::string("'' names no file; - is standard output") : std::string();
+  });
+}
+
+Option Arguments::add_list(const std::string& flag, std::vector<std::string>& target, const std::string& help,
+                           char delimiter) {
+  return {app_.add_option(flag, target, help)->delimiter(delimiter)->allow_extra_args(false), words_};
+}
+
+}  // namespace eomgen::cli

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Values of the JSON documents. The library that writes them is included by json.cpp alone: its templates would cost
+// every file that makes a document some seconds of compilation.
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstdint>
+#include <initializer_list>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace eomgen::cli {
+
+/// Null, a truth value, a number, a text, a list, or an object whose members keep their order. A list in braces is an
+/// object where each of its elements is a pair whose first is a text, as in {{"format", 1}, {"file", name}}.
+class Json {
+ public:
+  using Array = std::vector<Json>;
+  using Member = std::pair<std::string, Json>;
+  using Object = std::vector<Member>;
+
+  Json() = default;
+  Json(std::nullptr_t) {}
+  Json(bool value) : value_(value) {}
+  Json(double value) : value_(value) {}
+  Json(const char* text) : value_(std::string(text)) {}
+  Json(std::string_view text) : value_(std::string(text)) {}
+  Json(std::string text) : value_(std::move(text)) {}
+  template <std::signed_integral T>
+  Json(T value) : value_(static_cast<std::int64_t>(value)) {}
+  template <std::unsigned_integral T>
+  requires(!std::same_as<T, bool>) Json(T value) : value_(static_cast<std::uint64_t>(value)) {}
+  template <typename T>
+  Json(const std::vector<T>& list) : value_(Array(list.begin(), list.end())) {}
+  template <typename T, std::size_t n>
+  Json(const std::array<T, n>& list) : value_(Array(list.begin(), list.end())) {}
+  Json(std::initializer_list<Json> list);
+  Json(const Json&) = default;
+  Json(Json&&) noexcept = default;
+  Json& operator=(const Json&) = default;
+  Json& operator=(Json&&) noexcept = default;
+  ~Json() = default;
+
+  static Json array(std::initializer_list<Json> list = {});
+  static Json object();
+
+  bool is_null() const { return std::holds_alternative<std::nullptr_t>(value_); }
+  bool is_string() const { return std::holds_alternative<std::string>(value_); }
+  bool is_object() const { return std::holds_alternative<Object>(value_); }
+  bool is_array() const { return std::holds_alternative<Array>(value_); }
+  bool is_float() const { return std::holds_alternative<double>(value_); }
+
+  /// What it holds; std::logic_error where that is something else, or an integer that T cannot hold.
+  template <typename T>
+  T get() const {
+    if constexpr (std::same_as<T, bool>) {
+      return truth();
+    } else if constexpr (std::same_as<T, std::string>) {
+      return text();
+    } else if constexpr (std::floating_point<T>) {
+      return number();
+    } else {
+      const std::int64_t value = whole();
+      if (!std::in_range<T>(value)) refuse("a number of that type");
+      return static_cast<T>(value);
+    }
+  }
+
+  /// Members of an object: an absent one is added (null becomes an object); of a constant one it has to be there.
+  Json& operator[](std::string_view key);
+  const Json& operator[](std::string_view key) const;
+  Json& operator[](const char* key) { return (*this)[std::string_view(key)]; }
+  const Json& operator[](const char* key) const { return (*this)[std::string_view(key)]; }
+  bool contains(std::string_view key) const;
+  const Object& items() const;
+
+  /// Elements of a list; null becomes one.
+  void push_back(Json element);
+  Json& back();
+  const Json& operator[](std::size_t element) const;
+  const Json& front() const { return (*this)[std::size_t{0}]; }
+  Array::const_iterator begin() const { return elements().begin(); }
+  Array::const_iterator end() const { return elements().end(); }
+  /// Elements or members; 0 of null.
+  std::size_t size() const;
+  bool empty() const { return size() == 0; }
+
+  friend bool operator==(const Json& a, const Json& b);
+
+  /// As text, on one line or by `indent` blanks a level. Bytes that are no UTF-8 are replaced, numbers that are not
+  /// finite are null. `signed_zero`: whether -0 keeps its sign.
+  std::string dump(int indent = -1, bool signed_zero = true) const;
+
+ private:
+  friend struct Writer;
+  const Array& elements() const;
+  bool truth() const;
+  const std::string& text() const;
+  double number() const;
+  std::int64_t whole() const;
+  [[noreturn]] static void refuse(const char* what);
+
+  std::variant<std::nullptr_t, bool, std::int64_t, std::uint64_t, double, std::string, Array, Object> value_ = nullptr;
+};
+
+}  // namespace eomgen::cli
