@@ -81,7 +81,7 @@ TEST_CASE("names that are not there: the nearest one is told") {
       {{"emit", P2, "-o", "out", "--form", "multiplier"},
        "there is no form 'multiplier'",
        "choose auto, multipliers, nullspace or chaplygin"},
-      {{"emit", P2, "-o", "out", "--form", "routh"}, "form 'routh' is not supported yet", "choose auto"},
+      {{"emit", P2, "-o", "out", "--form", "routh"}, "there is no form 'routh'", "choose auto"},
       {{"emit", P2, "-o", "out", "--form", "nullspace"},
        "form 'nullspace' is one of constraints that keep multipliers, and this model has none",
        "leave --form out"},

@@ -10,7 +10,7 @@ refuse() {
 }
 if ! command -v dpkg-deb >/dev/null; then
   echo "skipped: dpkg-deb is not installed"
-  exit 0
+  exit 77
 fi
 
 rm -rf -- "$scratch"
@@ -28,8 +28,8 @@ for needed in libginac libcln libfmt libc6; do
 done
 
 echo "-- the installed program works, and finds its models and documents"
-dpkg-deb -x "${package[0]}" "$scratch/root"
-prefix=$scratch/root/usr
+dpkg-deb -x "${package[0]}" "$scratch/unpacked"
+prefix=$scratch/unpacked/usr
 cd "$scratch" # outside the source tree, whose models would be found
 "$prefix/bin/eomgen" check P7_moving_sphere >checked.txt || refuse "check of an installed model, by its name"
 for file in share/doc/eomgen/copyright share/doc/eomgen/commands.md include/eom/ode.hpp share/man/man1/eomgen.1 \
