@@ -9,12 +9,12 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
-#include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
-#include "cli/command.hpp"
+#include "cli/declaration.hpp"
 #include "error.hpp"
 #include "mutate.hpp"
 #include "support/folders.hpp"
@@ -85,16 +85,13 @@ struct Result {
 
 Result call(const Words& words) {
   Caught out(stdout), err(stderr);
-  CLI::App app{"", "eomgen"};
-  cli::Common common;
-  std::map<const CLI::App*, std::function<int(const cli::Common&)>> actions;
-  for (const cli::Command& command : cli::commands()) {
-    CLI::App* sub = app.add_subcommand(command.name, command.summary);
-    sub->add_flag("--json", common.json);
-    actions[sub] = command.declare(*sub);
-  }
-  app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
-  const int code = actions.at(app.get_subcommands().front())(common);
+  cli::Declaration declared("eomgen", cli::commands());
+  std::vector<std::string> typed{"eomgen"};
+  typed.insert(typed.end(), words.begin(), words.end());
+  std::vector<char*> pointers;
+  for (std::string& word : typed) pointers.push_back(word.data());
+  const std::optional<int> printed = declared.read(pointers);
+  const int code = printed ? *printed : declared.execute();
   return {code, out.text()};
 }
 
