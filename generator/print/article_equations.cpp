@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the energies to the equations by both approaches, and what the constraints exert.
+// Lagrange's equations by both approaches, and what decouples.
 #include <algorithm>
 #include <map>
 
 #include "print/article_parts.hpp"
-#include "reading/partials.hpp"
 
 namespace eomgen::print {
 
-using reading::arrange;
 using reading::Equation;
-using reading::Form;
 using reading::Formula;
-using reading::Layout;
-using reading::mark;
-using reading::Partials;
-using reading::ReadingForm;
 using symbolic::SymbolKind;
 
 namespace {
@@ -23,10 +16,6 @@ namespace {
 constexpr std::size_t half_width = 33, whole_width = 66;  // printed characters of a cell
 constexpr std::size_t tallest_beside = 5;                 // lines of a cell that has another one beside it
 constexpr std::size_t tallest_row = 30;  // lines that still fit on a page: a row cannot be continued on the next
-
-Formula symbol_of(std::uint32_t coordinate, std::uint8_t order) {
-  return reading::symbol({SymbolKind::coordinate, coordinate, order});
-}
 
 /// Multipliers or friction in a sum.
 bool has_forces_of_constraints(const reading::Sum& sum) {
@@ -49,17 +38,18 @@ class Equations {
   explicit Equations(Article& a) : a_(a), m_(a.m), out_(a.out) {}
 
   void write() {
-    law();
+    std::vector<reading::Partials> first;
+    write_law(a_);
     if (a_.builds_in()) {
       out_.subsection("Approach I: all coordinates, constraints imposed afterwards");
-      steps(a_.one);
+      write_partials(a_, a_.one, first);
       out_.subsection("Approach II: constraints that fix a coordinate are built in");
-      steps(a_.two);
+      write_partials(a_, a_.two, first);
       out_.subsection("The equations by both approaches");
       imposed();
     } else {
       out_.subsection("Partial derivatives");
-      steps(a_.one);
+      write_partials(a_, a_.one, first);
       out_.subsection("The equations");
       if (!m_.constraints.empty())
         out_.paragraph("No constraint fixes a coordinate, so Approach I and Approach II are one.");
@@ -74,107 +64,6 @@ class Equations {
   }
 
  private:
-  void law() {
-    const Letters letters(a_.model, false);
-    const Formula q = mark("q"), rate = dotted(q);
-    std::vector<Formula> left{reading::wrap(Form::rate, {reading::wrap(Form::partial, {mark(letters.T), rate})}),
-                              reading::negative(reading::wrap(Form::partial, {mark(letters.T), q})),
-                              reading::wrap(Form::partial, {mark(letters.U), q})};
-    const bool constrained = !a_.one.constraints.empty();
-    out_.paragraph(std::string("Of every coordinate $q$, with its generalised force $Q_q$ beyond the potential") +
-                   (constrained ? " and the forces of the constraints on the right side," : ","));
-    out_.raw("\\[\n" + plain(reading::sum(std::move(left))) + " = Q_q" +
-             (constrained ? " + \\sum_k " + multiplier() + " f_{k q}" : "") + "\n\\]\n");
-    if (!constrained) return;
-    const bool holonomic =
-        std::any_of(a_.one.constraints.begin(), a_.one.constraints.end(), [](const auto& c) { return c.holonomic; });
-    const bool velocities =
-        std::any_of(a_.one.constraints.begin(), a_.one.constraints.end(), [](const auto& c) { return !c.holonomic; });
-    std::string text = "Here $f_{kq}$ is ";
-    if (holonomic)
-      text += "$\\partial\\" + std::string(letters.psi == "psi" ? "psi" : "Psi") +
-              "_k/\\partial q$ of a holonomic constraint";
-    if (velocities)
-      text += std::string(holonomic ? ", and " : "") + "the factor of $\\dot{q}$ in a constraint on velocities";
-    out_.paragraph(text + ".");
-  }
-  std::string plain(const Formula& f) const {
-    const std::string text = out_.math(f);
-    return text.substr(1, text.size() - 2);
-  }
-  std::string multiplier() const { return std::string("\\") + free_letter(a_.model, "lambda", "mu") + "_{k}"; }
-  static Formula dotted(Formula f) {
-    Formula result = reading::wrap(Form::dot, {std::move(f)});
-    result.order = 1;
-    return result;
-  }
-
-  static bool equal(const Partials& a, const Partials& b) {
-    return a.coordinate == b.coordinate && a.left_out.empty() && b.left_out.empty() && a.momentum == b.momentum &&
-           a.rate == b.rate && a.kinetic == b.kinetic && a.potential == b.potential && a.force == b.force;
-  }
-
-  /// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate.
-  void steps(const ReadingForm& form) {
-    if (form.by_parts) {
-      out_.paragraph("The partial derivatives are too large to be written out (" + words(form.why_by_parts) + ").");
-      return;
-    }
-    const bool two = form.approach == system::Approach::two;
-    const Letters letters(a_.model, two);
-    std::vector<std::string> unchanged;
-    std::vector<Partials> all = reading::partial_derivatives(m_, form);
-    if (two) {
-      const auto as_before = [&](const Partials& p) {
-        return std::any_of(first_.begin(), first_.end(), [&](const Partials& f) { return equal(f, p); });
-      };
-      for (const Partials& p : all) {
-        if (as_before(p)) unchanged.push_back(a_.name_of(p.coordinate));
-      }
-      std::erase_if(all, as_before);
-    } else {
-      first_ = all;
-    }
-    out_.paragraph(two ? all.empty() ? "The derivatives are those of Approach I."
-                                     : "Of the energies with constraints built in:"
-                       : "Of the energies above:");
-    if (!unchanged.empty() && !all.empty())
-      out_.paragraph("Those by " + enumeration(unchanged) + " are as before. The others are");
-    for (const Partials& p : all) {
-      if (!p.left_out.empty()) {
-        a_.left_out.push_back(
-            {std::string("partial derivatives by ") + a_.model.coordinates[p.coordinate].name, p.left_out});
-        continue;
-      }
-      std::vector<Formula> shown;
-      const auto partial = [&](const std::string& letter, std::uint8_t order) {
-        return reading::wrap(Form::partial, {mark(letter), symbol_of(p.coordinate, order)});
-      };
-      const auto add = [&](std::vector<Formula> formulas) {  // on one line where there is room
-        Formula together = reading::wrap(Form::list, formulas);
-        if (formulas.size() > 1 && out_.fits_on_a_line(together))
-          shown.push_back(std::move(together));
-        else
-          shown.insert(shown.end(), formulas.begin(), formulas.end());
-      };
-      std::vector<Formula> momentum{reading::relation({partial(letters.T, 1), arrange(p.momentum)})};
-      if (!p.rate.is_zero())
-        momentum.push_back(
-            reading::relation({reading::wrap(Form::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
-      add(std::move(momentum));
-      add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
-           reading::relation({partial(letters.U, 0), arrange(p.potential)}),
-           reading::relation({mark("Q", {symbol_of(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
-      std::string why;
-      for (const Formula& f : shown) why = why.empty() ? out_.too_long(f) : why;
-      if (why.empty())
-        out_.display(shown);
-      else
-        a_.left_out.push_back(
-            {std::string("partial derivatives by ") + a_.model.coordinates[p.coordinate].name, "one of them " + why});
-    }
-  }
-
   /// What the equations below have been given.
   void imposed() {
     std::vector<std::string> names;
@@ -338,71 +227,14 @@ class Equations {
   Article& a_;
   const mechanics::Mechanics& m_;
   LatexText& out_;
-  std::vector<Partials> first_;                   // of Approach I
   std::map<std::uint32_t, std::string> numbers_;  // of the first equation of each coordinate
 };
 
 }  // namespace
 
-void write_energies(Article& a) {
-  a.out.section("Energies");
-  const auto show = [&](const ReadingForm& form) {
-    std::vector<Statement> all;
-    if (!form.by_parts) add_angular_velocities(form, all);
-    add_energies(a.m, form, all);
-    a.out.display(a.formulas(all));
-    if (!form.no_spins.empty()) a.left_out.push_back({"angular velocities", form.no_spins});
-  };
-  const bool spins = !a.one.spins.empty();
-  if (spins)
-    a.out.paragraph(
-        "The components $\\omega$ are those of the angular velocities, along the axes about which the moments of "
-        "inertia are taken.");
-  show(a.one);
-  if (!a.builds_in()) return;
-  a.out.paragraph("With the constraints built in these are");
-  show(a.two);
-}
-
 void write_equations(Article& a) {
   a.out.section("Lagrange's equations");
   Equations(a).write();
-}
-
-void write_constraint_forces(Article& a) {
-  std::vector<Statement> all;
-  add_reactions(a.one, all);
-  add_constraint_forces(a.m, a.one, all);
-  if (all.empty()) return;
-  a.out.section("Constraint forces");
-  a.out.display(a.formulas(all));
-}
-
-void write_contacts(Article& a) {
-  std::vector<Statement> all;
-  add_contacts(a.m, all);
-  if (all.empty()) return;
-  const bool rubs =
-      std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.dimensions() > 0; });
-  const bool opens = std::any_of(a.m.contacts.begin(), a.m.contacts.end(), [](const auto& c) { return c.unilateral; });
-  a.out.section(rubs && opens ? "Contacts and friction" : rubs ? "Friction" : "Contacts that can be left");
-  std::string name;
-  for (std::size_t i = 0; i < all.size(); ++i) {
-    const Statement& s = all[i];
-    if (!s.left_out.empty()) {
-      a.left_out.push_back({s.name + ", " + s.role, s.left_out});
-      continue;
-    }
-    if (s.name != name) {
-      if (!name.empty()) a.out.raw("\\end{longtable}\n");
-      a.out.paragraph("\\textbf{" + words(s.name) + "}:");
-      a.out.raw("\\begin{longtable}{@{}p{0.18\\linewidth}p{0.76\\linewidth}@{}}\n");
-      name = s.name;
-    }
-    const bool again = i > 0 && all[i - 1].name == s.name && all[i - 1].role == s.role;
-    a.out.raw((again ? "" : words(s.role)) + " & " + a.out.cell(s.formula, 58) + " \\\\[4pt]\n");
-  }
-  if (!name.empty()) a.out.raw("\\end{longtable}\n");
 }
 
 }  // namespace eomgen::print

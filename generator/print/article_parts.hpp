@@ -7,6 +7,7 @@
 #include "print/formulas.hpp"
 #include "print/latex_text.hpp"
 #include "print/letters.hpp"
+#include "reading/partials.hpp"
 
 namespace eomgen::print {
 
@@ -25,9 +26,17 @@ struct Article {
   std::vector<reading::Formula> formulas(const std::vector<Statement>& statements);
 };
 
+/// \textbf{..}
+std::string bold(const std::string& name);
+
 void write_system(Article& article);
 void write_coordinates(Article& article);
 void write_energies(Article& article);
+/// d/dt dT/dqdot - dT/dq + dU/dq = Q_q + ..
+void write_law(Article& article);
+/// dT/dqdot, its rate, dT/dq, dU/dq, Q of each coordinate. Approach I gives `first`; approach II shows those that are
+/// not among them.
+void write_partials(Article& article, const reading::ReadingForm& form, std::vector<reading::Partials>& first);
 void write_equations(Article& article);
 void write_constraint_forces(Article& article);
 void write_contacts(Article& article);

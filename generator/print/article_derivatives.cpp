@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The energies, and what Lagrange's equations take of them: the law and its partial derivatives, by both approaches.
+#include <algorithm>
+
+#include "print/article_parts.hpp"
+#include "reading/partials.hpp"
+
+namespace eomgen::print {
+
+using reading::arrange;
+using reading::Form;
+using reading::Formula;
+using reading::Layout;
+using reading::mark;
+using reading::Partials;
+using reading::ReadingForm;
+using symbolic::SymbolKind;
+
+namespace {
+
+Formula symbol_of(std::uint32_t coordinate, std::uint8_t order) {
+  return reading::symbol({SymbolKind::coordinate, coordinate, order});
+}
+
+Formula dotted(Formula f) {
+  Formula result = reading::wrap(Form::dot, {std::move(f)});
+  result.order = 1;
+  return result;
+}
+
+bool equal(const Partials& a, const Partials& b) {
+  return a.coordinate == b.coordinate && a.left_out.empty() && b.left_out.empty() && a.momentum == b.momentum &&
+         a.rate == b.rate && a.kinetic == b.kinetic && a.potential == b.potential && a.force == b.force;
+}
+
+}  // namespace
+
+void write_energies(Article& a) {
+  a.out.section("Energies");
+  const auto show = [&](const ReadingForm& form) {
+    std::vector<Statement> all;
+    if (!form.by_parts) add_angular_velocities(form, all);
+    add_energies(a.m, form, all);
+    a.out.display(a.formulas(all));
+    if (!form.no_spins.empty()) a.left_out.push_back({"angular velocities", form.no_spins});
+  };
+  const bool spins = !a.one.spins.empty();
+  if (spins)
+    a.out.paragraph(
+        "The components $\\omega$ are those of the angular velocities, along the axes about which the moments of "
+        "inertia are taken.");
+  show(a.one);
+  if (!a.builds_in()) return;
+  a.out.paragraph("With the constraints built in these are");
+  show(a.two);
+}
+
+void write_law(Article& a) {
+  const Letters letters(a.model, false);
+  const Formula q = mark("q"), rate = dotted(q);
+  std::vector<Formula> left{reading::wrap(Form::rate, {reading::wrap(Form::partial, {mark(letters.T), rate})}),
+                            reading::negative(reading::wrap(Form::partial, {mark(letters.T), q})),
+                            reading::wrap(Form::partial, {mark(letters.U), q})};
+  const std::string equation = a.out.math(reading::sum(std::move(left)));  // between $ and $
+  const bool constrained = !a.one.constraints.empty();
+  a.out.paragraph(std::string("Of every coordinate $q$, with its generalised force $Q_q$ beyond the potential") +
+                  (constrained ? " and the forces of the constraints on the right side," : ","));
+  a.out.raw("\\[\n" + equation.substr(1, equation.size() - 2) + " = Q_q" +
+            (constrained ? " + \\sum_k \\" + free_letter(a.model, "lambda", "mu") + "_{k} f_{k q}" : "") + "\n\\]\n");
+  if (!constrained) return;
+  const bool holonomic =
+      std::any_of(a.one.constraints.begin(), a.one.constraints.end(), [](const auto& c) { return c.holonomic; });
+  const bool velocities =
+      std::any_of(a.one.constraints.begin(), a.one.constraints.end(), [](const auto& c) { return !c.holonomic; });
+  std::string text = "Here $f_{kq}$ is ";
+  if (holonomic)
+    text += "$\\partial\\" + std::string(letters.psi == "psi" ? "psi" : "Psi") +
+            "_k/\\partial q$ of a holonomic constraint";
+  if (velocities)
+    text += std::string(holonomic ? ", and " : "") + "the factor of $\\dot{q}$ in a constraint on velocities";
+  a.out.paragraph(text + ".");
+}
+
+void write_partials(Article& a, const ReadingForm& form, std::vector<Partials>& first) {
+  if (form.by_parts) {
+    a.out.paragraph("The partial derivatives are too large to be written out (" + words(form.why_by_parts) + ").");
+    return;
+  }
+  const bool two = form.approach == system::Approach::two;
+  const Letters letters(a.model, two);
+  std::vector<std::string> unchanged;
+  std::vector<Partials> all = reading::partial_derivatives(a.m, form);
+  if (two) {
+    const auto as_before = [&](const Partials& p) {
+      return std::any_of(first.begin(), first.end(), [&](const Partials& f) { return equal(f, p); });
+    };
+    for (const Partials& p : all) {
+      if (as_before(p)) unchanged.push_back(a.name_of(p.coordinate));
+    }
+    std::erase_if(all, as_before);
+  } else {
+    first = all;
+  }
+  a.out.paragraph(two ? all.empty() ? "The derivatives are those of Approach I."
+                                    : "Of the energies with constraints built in:"
+                      : "Of the energies above:");
+  if (!unchanged.empty() && !all.empty())
+    a.out.paragraph("Those by " + enumeration(unchanged) + " are as before. The others are");
+  for (const Partials& p : all) {
+    if (!p.left_out.empty()) {
+      a.left_out.push_back(
+          {std::string("partial derivatives by ") + a.model.coordinates[p.coordinate].name, p.left_out});
+      continue;
+    }
+    std::vector<Formula> shown;
+    const auto partial = [&](const std::string& letter, std::uint8_t order) {
+      return reading::wrap(Form::partial, {mark(letter), symbol_of(p.coordinate, order)});
+    };
+    const auto add = [&](std::vector<Formula> formulas) {  // on one line where there is room
+      Formula together = reading::wrap(Form::list, formulas);
+      if (formulas.size() > 1 && a.out.fits_on_a_line(together))
+        shown.push_back(std::move(together));
+      else
+        shown.insert(shown.end(), formulas.begin(), formulas.end());
+    };
+    std::vector<Formula> momentum{reading::relation({partial(letters.T, 1), arrange(p.momentum)})};
+    if (!p.rate.is_zero())
+      momentum.push_back(
+          reading::relation({reading::wrap(Form::rate, {partial(letters.T, 1)}), arrange(p.rate, Layout::terms)}));
+    add(std::move(momentum));
+    add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
+         reading::relation({partial(letters.U, 0), arrange(p.potential)}),
+         reading::relation({mark("Q", {symbol_of(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
+    std::string why;
+    for (const Formula& f : shown) why = why.empty() ? a.out.too_long(f) : why;
+    if (why.empty())
+      a.out.display(shown);
+    else
+      a.left_out.push_back(
+          {std::string("partial derivatives by ") + a.model.coordinates[p.coordinate].name, "one of them " + why});
+  }
+}
+
+}  // namespace eomgen::print
