@@ -160,4 +160,11 @@ Mechanics build_mechanics(std::shared_ptr<const model::Model> model) {
 Ref lower_scalar(Mechanics& mechanics, model::NodeId expression) { return Lowering(mechanics).scalar(expression); }
 Vec3 lower_vector(Mechanics& mechanics, model::NodeId expression) { return Lowering(mechanics).vector(expression); }
 
+Mechanics::Mechanics() = default;
+Mechanics::Mechanics(const Mechanics&) = default;
+Mechanics::Mechanics(Mechanics&&) noexcept = default;
+Mechanics& Mechanics::operator=(const Mechanics&) = default;
+Mechanics& Mechanics::operator=(Mechanics&&) noexcept = default;
+Mechanics::~Mechanics() = default;
+
 }  // namespace eomgen::mechanics

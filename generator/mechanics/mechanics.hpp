@@ -131,6 +131,14 @@ struct JointReaction {
 };
 
 struct Mechanics {
+  // Defined once: every file that holds one would compile them anew.
+  Mechanics();
+  Mechanics(const Mechanics&);
+  Mechanics(Mechanics&&) noexcept;
+  Mechanics& operator=(const Mechanics&);
+  Mechanics& operator=(Mechanics&&) noexcept;
+  ~Mechanics();
+
   std::shared_ptr<const model::Model> model;
   std::shared_ptr<Dag> dag;  // later stages add nodes to it
 

@@ -265,6 +265,14 @@ struct Named {
   Span span;
 };
 struct Scene {
+  // Defined once: every file that holds one would compile them anew.
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   std::string name;
   NodeId t0 = no_node, t1 = no_node;
   std::vector<InitialValue> initial, guess;
@@ -280,6 +288,14 @@ struct Scene {
 };
 
 struct Model {
+  // Defined once: every file that holds one would compile them anew.
+  Model();
+  Model(const Model&);
+  Model(Model&&) noexcept;
+  Model& operator=(const Model&);
+  Model& operator=(Model&&) noexcept;
+  ~Model();
+
   std::string file;  // as given
   std::string id;    // file name without .toml
   std::string title, notes;

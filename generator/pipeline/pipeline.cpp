@@ -143,6 +143,9 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
 
 }  // namespace
 
+Derived::Derived(std::shared_ptr<const model::Model> read) : shared(std::move(read)), model(*shared) {}
+Derived::~Derived() = default;
+
 std::vector<std::string> approach_words() { return {"auto", "I", "II"}; }
 
 ApproachChoice approach_choice(const std::string& text) {

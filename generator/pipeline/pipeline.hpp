@@ -34,7 +34,8 @@ FormChoice form_choice(const std::string& text);  // "auto", "multipliers", "nul
 
 /// A model and its equations. It stays where it is: what is made from it refers to it.
 struct Derived {
-  explicit Derived(std::shared_ptr<const model::Model> read) : shared(std::move(read)), model(*shared) {}
+  explicit Derived(std::shared_ptr<const model::Model> read);
+  ~Derived();
   Derived(const Derived&) = delete;
   Derived& operator=(const Derived&) = delete;
 

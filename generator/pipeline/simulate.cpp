@@ -283,4 +283,11 @@ run::RunResult run_again(const Simulation& simulation, const run::Overrides& ove
   return run::integrate_scene(run);
 }
 
+SimulationRequest::SimulationRequest() = default;
+SimulationRequest::SimulationRequest(const SimulationRequest&) = default;
+SimulationRequest::SimulationRequest(SimulationRequest&&) noexcept = default;
+SimulationRequest& SimulationRequest::operator=(const SimulationRequest&) = default;
+SimulationRequest& SimulationRequest::operator=(SimulationRequest&&) noexcept = default;
+SimulationRequest::~SimulationRequest() = default;
+
 }  // namespace eomgen::pipeline

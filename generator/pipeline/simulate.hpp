@@ -16,6 +16,14 @@
 namespace eomgen::pipeline {
 
 struct SimulationRequest {
+  // Defined once: every file that holds one would compile them anew.
+  SimulationRequest();
+  SimulationRequest(const SimulationRequest&);
+  SimulationRequest(SimulationRequest&&) noexcept;
+  SimulationRequest& operator=(const SimulationRequest&);
+  SimulationRequest& operator=(SimulationRequest&&) noexcept;
+  ~SimulationRequest();
+
   std::shared_ptr<const model::Model> model;
   std::string scene = "default";
   run::Overrides overrides;

@@ -109,6 +109,14 @@ struct ChartInfo {
 };
 
 struct Program {
+  // Defined once: every file that holds one would compile them anew.
+  Program();
+  Program(const Program&);
+  Program(Program&&) noexcept;
+  Program& operator=(const Program&);
+  Program& operator=(Program&&) noexcept;
+  ~Program();
+
   std::vector<std::uint32_t> free;       // coordinates of the model; state x = (q_free, qdot_free, integrals)
   std::vector<std::uint32_t> integrals;  // of the model
   /// Entries of the first result of a function; 0: there is no such function.

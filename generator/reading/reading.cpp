@@ -182,4 +182,11 @@ Sum read(const Mechanics& m, symbolic::Ref expression) {
   return bridge.sum(expression);
 }
 
+ReadingForm::ReadingForm() = default;
+ReadingForm::ReadingForm(const ReadingForm&) = default;
+ReadingForm::ReadingForm(ReadingForm&&) noexcept = default;
+ReadingForm& ReadingForm::operator=(const ReadingForm&) = default;
+ReadingForm& ReadingForm::operator=(ReadingForm&&) noexcept = default;
+ReadingForm::~ReadingForm() = default;
+
 }  // namespace eomgen::reading

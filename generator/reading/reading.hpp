@@ -76,6 +76,14 @@ struct ReadSpin {
 };
 
 struct ReadingForm {
+  // Defined once: every file that holds one would compile them anew.
+  ReadingForm();
+  ReadingForm(const ReadingForm&);
+  ReadingForm(ReadingForm&&) noexcept;
+  ReadingForm& operator=(const ReadingForm&);
+  ReadingForm& operator=(ReadingForm&&) noexcept;
+  ~ReadingForm();
+
   system::Approach approach = system::Approach::one;
   bool by_parts = false;  // too large to be multiplied out: m r_ddot . dr/dq in place of the equations written out
   std::string why_by_parts;

@@ -47,6 +47,14 @@ struct SolverChange {
 };
 
 struct RunResult {
+  // Defined once: every file that holds one would compile them anew.
+  RunResult();
+  RunResult(const RunResult&);
+  RunResult(RunResult&&) noexcept;
+  RunResult& operator=(const RunResult&);
+  RunResult& operator=(RunResult&&) noexcept;
+  ~RunResult();
+
   std::string solver, reason;  // the method that ended the run, and why it was taken
   std::vector<SolverChange> solver_changes;
   eom::Outcome outcome = eom::Outcome::done;

@@ -286,4 +286,11 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
               "choose parameters from which its start can be computed");
 }
 
+Scene::Scene() = default;
+Scene::Scene(const Scene&) = default;
+Scene::Scene(Scene&&) noexcept = default;
+Scene& Scene::operator=(const Scene&) = default;
+Scene& Scene::operator=(Scene&&) noexcept = default;
+Scene::~Scene() = default;
+
 }  // namespace eomgen::run

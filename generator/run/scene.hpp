@@ -31,6 +31,14 @@ struct Overrides {
 };
 
 struct Scene {
+  // Defined once: every file that holds one would compile them anew.
+  Scene();
+  Scene(const Scene&);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(const Scene&);
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
   std::string name;
   std::vector<double> parameters;  // all of the model, in order; dependent ones computed
   double t0 = 0, t1 = 0;

@@ -14,4 +14,11 @@ const char* name(Form form) {
   return "multipliers";
 }
 
+EquationSystem::EquationSystem() = default;
+EquationSystem::EquationSystem(const EquationSystem&) = default;
+EquationSystem::EquationSystem(EquationSystem&&) noexcept = default;
+EquationSystem& EquationSystem::operator=(const EquationSystem&) = default;
+EquationSystem& EquationSystem::operator=(EquationSystem&&) noexcept = default;
+EquationSystem::~EquationSystem() = default;
+
 }  // namespace eomgen::system

@@ -100,6 +100,14 @@ struct Watched {
 };
 
 struct EquationSystem {
+  // Defined once: every file that holds one would compile them anew.
+  EquationSystem();
+  EquationSystem(const EquationSystem&);
+  EquationSystem(EquationSystem&&) noexcept;
+  EquationSystem& operator=(const EquationSystem&);
+  EquationSystem& operator=(EquationSystem&&) noexcept;
+  ~EquationSystem();
+
   std::shared_ptr<Dag> dag;
   std::string route;  // "lagrange", "jacobian"
   Approach approach = Approach::two;

@@ -160,4 +160,11 @@ Certificate verify(mechanics::Mechanics& mechanics, const Options& options) {
   return certify(mechanics, subjects, options);
 }
 
+Certificate::Certificate() = default;
+Certificate::Certificate(const Certificate&) = default;
+Certificate::Certificate(Certificate&&) noexcept = default;
+Certificate& Certificate::operator=(const Certificate&) = default;
+Certificate& Certificate::operator=(Certificate&&) noexcept = default;
+Certificate::~Certificate() = default;
+
 }  // namespace eomgen::verify

@@ -92,6 +92,14 @@ struct Comparison {
 };
 
 struct Certificate {
+  // Defined once: every file that holds one would compile them anew.
+  Certificate();
+  Certificate(const Certificate&);
+  Certificate(Certificate&&) noexcept;
+  Certificate& operator=(const Certificate&);
+  Certificate& operator=(Certificate&&) noexcept;
+  ~Certificate();
+
   Options options;
   std::vector<Comparison> comparisons;
   std::size_t points = 0;

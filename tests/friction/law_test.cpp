@@ -8,6 +8,7 @@
 
 #include "friction/compiled.hpp"
 #include "friction/rough_models.hpp"
+#include "program/build.hpp"
 #include "verify/certificate.hpp"
 
 using namespace eomgen;

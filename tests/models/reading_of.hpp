@@ -2,7 +2,6 @@
 // The reading form of a shipped model in a test: equations and tables by the names of coordinates.
 #pragma once
 
-#include <stdexcept>
 #include <string>
 
 #include "reading/by_name.hpp"
@@ -10,28 +9,18 @@
 namespace eomgen::test {
 
 struct Read {
-  explicit Read(const std::string& name) : s(model::read_model(shipped(name))) {}
+  explicit Read(const std::string& name);
 
   Sum operator()(const std::string& name) { return s.symbol(name); }
-  reading::ReadingForm form(system::Approach approach) { return reading::derive_reading(s.mechanics, approach); }
-  const reading::Equation& equation(const reading::ReadingForm& form, const std::string& coordinate) const {
-    for (const reading::Equation& e : form.equations) {
-      if (s.model.coordinates[e.coordinate].name == coordinate) return e;
-    }
-    throw std::logic_error("no equation of " + coordinate);
-  }
+  reading::ReadingForm form(system::Approach approach);
+  const reading::Equation& equation(const reading::ReadingForm& form, const std::string& coordinate) const;
   /// The equation as left-hand side minus applied forces; multipliers left out.
-  Sum motion(const reading::ReadingForm& form, const std::string& coordinate) const {
-    const reading::Equation& e = equation(form, coordinate);
-    return e.expanded - e.force;
-  }
+  Sum motion(const reading::ReadingForm& form, const std::string& coordinate) const;
 
   System s;
 };
 
 /// Components along E1, E2, E3.
-inline bool same(const reading::Components& v, const Sum& x, const Sum& y, const Sum& z) {
-  return same(v[0], x) && same(v[1], y) && same(v[2], z);
-}
+bool same(const reading::Components& v, const Sum& x, const Sum& y, const Sum& z);
 
 }  // namespace eomgen::test

@@ -3,15 +3,13 @@
 // run.
 #pragma once
 
-#include <doctest/doctest.h>
-
 #include <cmath>
 #include <functional>
+#include <map>
 #include <random>
 #include <string>
 #include <vector>
 
-#include "eom/ode.hpp"
 #include "friction/compiled.hpp"
 #include "support/simulation.hpp"
 
@@ -22,26 +20,14 @@ constexpr double by_hand = 1e-10;
 /// Some hundred operations in binary64.
 constexpr double rounding = 1e-12;
 
-inline Finished run_rough(const std::string& model, const std::string& scene = "default",
-                          const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
-  return run_model(model, [&](pipeline::SimulationRequest& request) {
-    request.scene = scene;
-    request.overrides.rtol = 1e-12;
-    request.overrides.atol = 1e-13;
-    request.overrides.every = 0.02;
-    if (adjust) adjust(request);
-  });
-}
+Finished run_rough(const std::string& model, const std::string& scene = "default",
+                   const std::function<void(pipeline::SimulationRequest&)>& adjust = {});
 
 /// Other values of parameters, exactly.
-inline std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters) {
-  return [parameters](pipeline::SimulationRequest& request) {
-    for (const auto& [name, value] : parameters) request.overrides.parameters[name] = cln::rational(cln::cl_R(value));
-  };
-}
+std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters);
 
 /// "slip", "stick", ... of each event in order, with the time.
-inline std::vector<run::RunEvent> events_of(const Finished& run) { return run.simulation.result.events; }
+std::vector<run::RunEvent> events_of(const Finished& run);
 
 /// Equations by hand, from one time to another.
 class Hand {
@@ -49,16 +35,7 @@ class Hand {
   using Rates = std::function<void(double t, const double* x, double* dx)>;
   Hand(Rates rates, double t, std::vector<double> start) : x(std::move(start)), t_(t), rates_(std::move(rates)) {}
 
-  void to(double t) {
-    eom::Options options;
-    options.rtol = 1e-12;
-    options.atol = 1e-14;
-    const auto f = [this](double at, const double* state, double* dx) { return rates_(at, state, dx), 0; };
-    const eom::Result end = eom::integrate("dop853", f, t_, x, t, options);
-    REQUIRE(end.outcome == eom::Outcome::done);
-    x = end.x;
-    t_ = t;
-  }
+  void to(double t);
   std::vector<double> x;
 
  private:
@@ -69,31 +46,10 @@ class Hand {
 /// Derived equations of a shipped model at chosen states; its contacts slide as the velocities say.
 class AtState {
  public:
-  explicit AtState(const Finished& run, const std::string& model)
-      : rough_(read_text(model_path(model)), run.simulation.scene.parameters) {}
+  explicit AtState(const Finished& run, const std::string& model);
 
   /// False where the law has no single solution with |N| pressing as one of the modes says.
-  bool slide(double t, std::vector<double> x) {
-    t_ = t, x_ = std::move(x);
-    dx.assign(x_.size(), 0);
-    const std::vector<eom::Contact> contacts = rough_.contact_list();
-    std::vector<double> g(eom::contact_values * contacts.size());
-    for (int high = 0; high < 2; ++high) {
-      mode_ = 0;
-      rough_.contacts(t, x_.data(), 0, g.data());
-      for (std::size_t j = 0; j < contacts.size(); ++j) {
-        const bool back = contacts[j].dimensions == 1 && g[eom::contact_values * j] < 0;
-        const bool pulls = high == 1 && contacts[j].surface && !contacts[j].unilateral;
-        mode_ = eom::with_contact_digit(mode_, j, (pulls ? 3 : 0) + (back ? 2 : 1));
-      }
-      if (rough_.rhs(t, x_.data(), mode_, dx.data()) != 0) continue;
-      rough_.contacts(t, x_.data(), mode_, g.data());
-      bool holds = true;
-      for (std::size_t j = 0; j < contacts.size(); ++j) holds = holds && g[eom::contact_values * j + 3] >= 0;
-      if (holds) return true;
-    }
-    return false;
-  }
+  bool slide(double t, std::vector<double> x);
   double output(const std::string& name) const { return rough_.output(name, t_, x_.data(), mode_); }
 
   std::vector<double> dx;
@@ -117,18 +73,9 @@ class Draw {
 };
 
 /// Composite Simpson of a smooth function.
-inline double simpson(const std::function<double(double)>& f, double a, double b, int intervals = 4000) {
-  const double h = (b - a) / intervals;
-  double sum = f(a) + f(b);
-  for (int i = 1; i < intervals; ++i) sum += (i % 2 == 1 ? 4 : 2) * f(a + i * h);
-  return sum * h / 3;
-}
+double simpson(const std::function<double(double)>& f, double a, double b, int intervals = 4000);
 
 /// A root between a and b, where f changes its sign.
-inline double root_between(const std::function<double(double)>& f, double a, double b) {
-  const bool rises = f(a) < 0;
-  for (int i = 0; i < 200; ++i) (f((a + b) / 2) < 0) == rises ? a = (a + b) / 2 : b = (a + b) / 2;
-  return (a + b) / 2;
-}
+double root_between(const std::function<double(double)>& f, double a, double b);
 
 }  // namespace eomgen::test

@@ -2,13 +2,12 @@
 // Closed forms typed in as they stand in books: symbols of a model by name, joined with + - * and sin, cos.
 #pragma once
 
-#include <stdexcept>
 #include <string>
 
+#include "mechanics/mechanics.hpp"
 #include "reading/alphabet.hpp"
 #include "reading/reading.hpp"
 #include "reading/zero_test.hpp"
-#include "support/folders.hpp"
 
 namespace eomgen::test {
 
@@ -18,31 +17,7 @@ class ByName {
  public:
   explicit ByName(const mechanics::Mechanics& m) : m_(m), alphabet_(*m.model) {}
 
-  Sum operator()(const std::string& name) {
-    std::string base = name;
-    std::uint8_t order = 0;
-    if (name.ends_with("_ddot")) {
-      base = name.substr(0, name.size() - 5);
-      order = 2;
-    } else if (name.ends_with("_dot")) {
-      base = name.substr(0, name.size() - 4);
-      order = 1;
-    }
-    using symbolic::SymbolKind;
-    if (name == "t") return alphabet_({SymbolKind::time, 0, 0});
-    const auto in = [&](const auto& list, SymbolKind kind) -> std::optional<Sum> {
-      for (std::uint32_t i = 0; i < list.size(); ++i) {
-        if (list[i].name == base) return alphabet_({kind, i, order});
-      }
-      return std::nullopt;
-    };
-    const model::Model& model = *m_.model;
-    if (const auto found = in(model.parameters, SymbolKind::parameter)) return *found;
-    if (const auto found = in(model.coordinates, SymbolKind::coordinate)) return *found;
-    if (const auto found = in(model.functions, SymbolKind::function)) return *found;
-    if (const auto found = in(model.inputs, SymbolKind::input)) return *found;
-    throw std::logic_error("no symbol " + name);
-  }
+  Sum operator()(const std::string& name);
   Sum multiplier(std::uint32_t constraint) { return alphabet_({symbolic::SymbolKind::multiplier, constraint, 0}); }
 
  private:
@@ -50,21 +25,20 @@ class ByName {
   reading::Alphabet alphabet_;
 };
 
-inline Sum sin(const Sum& x) { return reading::call(symbolic::Op::sin, {x}); }
-inline Sum cos(const Sum& x) { return reading::call(symbolic::Op::cos, {x}); }
-inline Sum sqrt(const Sum& x) { return reading::power(x, reading::Rational(1) / 2); }
-inline Sum square(const Sum& x) { return x * x; }
-inline Sum half(const Sum& x) { return reading::Rational(1) / 2 * x; }
-inline Sum over(const Sum& a, const Sum& b) { return a * reading::power(b, -1); }
+Sum sin(const Sum& x);
+Sum cos(const Sum& x);
+Sum sqrt(const Sum& x);
+Sum square(const Sum& x);
+Sum half(const Sum& x);
+Sum over(const Sum& a, const Sum& b);
 /// Equal for all values of the symbols, by proof.
-inline bool same(const Sum& a, const Sum& b) { return reading::zero_test(a - b) == reading::Zero::proven; }
+bool same(const Sum& a, const Sum& b);
 
-inline std::string shipped(const std::string& name) { return test::source_folder() + "/models/" + name + ".toml"; }
+std::string shipped(const std::string& name);
 
 /// A model that outlives its mechanics.
 struct System {
-  explicit System(const model::Model& read)
-      : model(read), mechanics(mechanics::build_mechanics(model)), symbol(mechanics) {}
+  explicit System(const model::Model& read);
   model::Model model;
   mechanics::Mechanics mechanics;
   ByName symbol;
