@@ -100,6 +100,48 @@ TEST_CASE(
   CHECK(highest == 1);
 }
 
+TEST_CASE("report: what a scene asks for in J and is no energy has a panel of its own beside that of the energies") {
+  const Folder folder;
+  folder.write("pushed.toml", R"toml(format = 1
+[parameters]
+k = "5 N/m"
+F = "3 N"
+[[particle]]
+name = "P"
+mass = "1 kg"
+position = { cartesian = ["x", 0] }
+[[force]]
+on = "P"
+force = "F*E1"
+[[force]]
+spring = { between = ["origin", "P"], stiffness = "k" }
+[definitions]
+work = "F*x"
+stored = "k*x^2/2"
+[scene.default]
+t = [0, 1]
+initial = { x = 1 }
+outputs = ["work", "energy"]
+[scene.both]
+from = "default"
+outputs = ["work", "kinetic", "stored"]
+)toml");
+  for (const auto& [scene, own] :
+       {std::pair{"default", "work in J: work"}, std::pair{"both", "outputs in J: work stored"}}) {
+    expect(0, folder, {"report", "pushed.toml", "--scene", scene, "-o", "page.html"});
+    const std::string page = folder.read("page.html");
+    const Json moving = motion(page);
+    Words panels;
+    for (const Json& panel : moving["panels"]) {
+      const std::string title = panel["title"].get<std::string>();
+      CHECK(count(page, ">" + title + "<") == 1);  // at the axis of its plot
+      panels.push_back(title + ":");
+      for (const Json& curve : panel["of"]) panels.back() += " " + curve["name"].get<std::string>();
+    }
+    CHECK(panels == Words{"x in m: x", own, "energies in J: energy kinetic potential"});
+  }
+}
+
 TEST_CASE("report: springs, dampers, struts, actuators and bushings are drawn between their points") {
   const Folder folder;
   folder.write("mount.toml", R"toml(format = 1
