@@ -7,20 +7,31 @@
 #include "eomgen/model.hpp"
 
 namespace eomgen {
+namespace {
+
+/// What both are asked for: the scene, the solvers, how long, and what the Task hears and stops.
+template <class Request, class Options>
+Request request_of(const std::shared_ptr<const model::Model>& model, const Options& options, const Task& task,
+                   const Call& call) {
+  Request request;
+  request.model = model;
+  request.scene = options.scene;
+  request.overrides.parameters = exact(options.parameters);
+  request.overrides.t_end = options.t_end;
+  request.solvers = options.solvers;
+  request.seconds = options.seconds;
+  request.seed = options.seed;
+  request.progress = task.begins;
+  request.interrupt = call.stopped();
+  return request;
+}
+
+}  // namespace
 
 Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) const {
   return called(task, [&](Call& call) {
-    analysis::BenchmarkRequest request;
-    request.model = read_;
-    request.scene = options.scene;
-    request.overrides.parameters = exact(options.parameters);
-    request.overrides.t_end = options.t_end;
-    request.solvers = options.solvers;
-    request.seconds = options.seconds;
+    auto request = request_of<analysis::BenchmarkRequest>(read_, options, task, call);
     request.libraries = options.libraries;
-    request.seed = options.seed;
-    request.progress = task.begins;
-    request.interrupt = call.stopped();
     const analysis::Benchmark found = analysis::benchmark(request);
     Benchmark result;
     for (const bench::Row& row : found.rows)
@@ -36,18 +47,9 @@ Benchmark Model::benchmark(const BenchmarkOptions& options, const Task& task) co
 
 StressTest Model::stress_test(const StressOptions& options, const Task& task) const {
   return called(task, [&](Call& call) {
-    analysis::StressRequest request;
-    request.model = read_;
-    request.scene = options.scene;
-    request.overrides.parameters = exact(options.parameters);
-    request.overrides.t_end = options.t_end;
-    request.solvers = options.solvers;
-    request.seconds = options.seconds;
+    auto request = request_of<analysis::StressRequest>(read_, options, task, call);
     request.steps = options.steps;
     request.quick = options.quick;
-    request.seed = options.seed;
-    request.progress = task.begins;
-    request.interrupt = call.stopped();
     const analysis::StressFindings found = analysis::stress_test(request);
     StressTest result;
     for (const stress::Row& row : found.rows)
