@@ -12,20 +12,28 @@
 namespace eomgen {
 namespace {
 
+/// What a run and the forces of a prescribed motion may change of a scene alike.
+template <class Options>
+run::Overrides overrides_of(const Options& options) {
+  run::Overrides overrides;
+  overrides.parameters = exact(options.parameters);
+  overrides.t_end = options.t_end;
+  overrides.every = options.every;
+  overrides.rtol = options.rtol;
+  overrides.atol = options.atol;
+  overrides.at_start = true;
+  return overrides;
+}
+
 pipeline::SimulationRequest request_of(std::shared_ptr<const model::Model> model, const RunOptions& options) {
   pipeline::SimulationRequest request;
   request.model = std::move(model);
   request.scene = options.scene;
-  request.overrides.parameters = exact(options.parameters);
-  request.overrides.t_end = options.t_end;
-  request.overrides.rtol = options.rtol;
-  request.overrides.atol = options.atol;
+  request.overrides = overrides_of(options);
   request.overrides.step = options.step;
   request.overrides.max_step = options.max_step;
-  request.overrides.every = options.every;
   request.overrides.solver = options.solver;
   request.overrides.outputs = options.outputs;
-  request.overrides.at_start = true;
   request.approach = choice_of(options.approach);
   request.form = pipeline::form_choice(options.form);
   request.estimate = options.error_estimate;
@@ -107,12 +115,7 @@ InverseDynamics Model::inverse_dynamics(const InverseOptions& options, const Tas
     analysis::InverseRequest request;
     request.model = read_;
     request.scene = options.scene;
-    request.overrides.parameters = exact(options.parameters);
-    request.overrides.t_end = options.t_end;
-    request.overrides.every = options.every;
-    request.overrides.rtol = options.rtol;
-    request.overrides.atol = options.atol;
-    request.overrides.at_start = true;
+    request.overrides = overrides_of(options);
     request.constraints = options.constraints;
     request.seed = options.seed;
     request.interrupt = call.stopped();
