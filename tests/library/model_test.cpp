@@ -48,6 +48,10 @@ TEST_CASE("library: the spherical pendulum, examined, derived, as data") {
   CHECK(equations.latex().find("\\dot{\\theta}") != std::string::npos);
   CHECK(equations.text("reactions").find("lambda") != std::string::npos);
 
+  const std::string article = model.article();
+  CHECK(article.starts_with("\\documentclass"));
+  CHECK(article.find("\\dot{\\theta}") != std::string::npos);
+
   const Derivation d = model.derivation();
   CHECK(d.coordinates == std::vector<std::string>{"phi", "theta"});
   REQUIRE(d.M.size() == 4);
@@ -122,6 +126,7 @@ TEST_CASE("library: linearised, steady motions, inverse dynamics, error against 
   CHECK(measured.conclusive);
   CHECK(measured.reference_digits >= 20);
   const StressTest stressed = model.stress_test({.solvers = {"dop853"}, .quick = true});
+  CHECK_FALSE(stressed.rows.empty());
   CHECK(stressed.silent == 0);
   CHECK(stressed.kept + stressed.told == stressed.rows.size());
 
