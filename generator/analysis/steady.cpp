@@ -191,6 +191,17 @@ Source without_slope(const SteadyProblem& p, const linear::State<Precise>& z) {
   return {model.where(model.scene(p.scene.name).span), "the equations of motion have"};
 }
 
+linear::Linearisation linearised(const SteadyProblem& p, std::uint64_t seed) {
+  const work::Stage stage("linearising");
+  try {
+    return linear::linearise(*p.flow, p.z, p.setting, p.neighbours, seed);
+  } catch (const std::domain_error& error) {
+    const Source source = without_slope(p, p.z);
+    throw Error("linearize", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
+                "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
+  }
+}
+
 double shown(const Precise& x) {
   constexpr int nothing = 40;  // no model has lengths or rates of this size
   return linear::magnitude(x) < linear::tiny<Precise>(nothing) ? 0.0 : linear::to_double(x);

@@ -39,6 +39,9 @@ struct Source {
 };
 Source without_slope(const SteadyProblem& problem, const linear::State<linear::Precise>& z);
 
+/// At the state of the problem. Throws Error{stage "linearize"} where something has no slope there.
+linear::Linearisation linearised(const SteadyProblem& problem, std::uint64_t seed);
+
 /// For results: 0 has no sign, and what many digits left of it is 0.
 double shown(const linear::Precise& x);
 

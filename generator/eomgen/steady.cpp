@@ -40,21 +40,13 @@ Linearisation Model::linearise(const LineariseOptions& options, const Task& task
     const analysis::SteadyProblem problem =
         analysis::steady_problem("linearize", read_, options.scene, overrides, options.at, options.seed);
     Linearisation result;
-    try {
-      const work::Stage stage("linearising");
-      const linear::Linearisation l =
-          linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, options.seed);
-      result.kind = linear::name(l.kind);
-      for (const std::size_t i : l.symmetry.chart.independent) result.states.push_back(problem.flow->names()[i]);
-      result.A = entries(l.A);
-      result.B = entries(l.B);
-      result.eigenvalues = eigenvalues(l.spectrum);
-      result.structural_zeros = l.structural_zeros;
-    } catch (const std::domain_error& error) {
-      const analysis::Source source = analysis::without_slope(problem, problem.z);
-      throw Error("linearize", source.where, source.what + " no slope at this state: " + error.what(),
-                  "choose another state, or put a smooth law in its place");
-    }
+    const linear::Linearisation l = analysis::linearised(problem, options.seed);
+    result.kind = linear::name(l.kind);
+    for (const std::size_t i : l.symmetry.chart.independent) result.states.push_back(problem.flow->names()[i]);
+    result.A = entries(l.A);
+    result.B = entries(l.B);
+    result.eigenvalues = eigenvalues(l.spectrum);
+    result.structural_zeros = l.structural_zeros;
     result.inputs = inputs();
     result.certificate = problem.certificate;
     return result;

@@ -12,7 +12,6 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/usage.hpp"
-#include "work.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -136,20 +135,12 @@ int execute(const Options& options, const Common& common) {
   overrides.parameters = parse_assignments("linearize", options.set);
   const analysis::SteadyProblem problem = analysis::steady_problem("linearize", load_model(options.model),
                                                                    options.scene, overrides, options.at, common.seed);
-  try {
-    const work::Stage stage("linearising");
-    const linear::Linearisation l =
-        linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, common.seed);
-    const Answer answer{problem, l};
-    if (common.json) {
-      print_document(to_json(answer));
-    } else {
-      fmt::print("{}", text(answer));
-    }
-  } catch (const std::domain_error& error) {
-    const analysis::Source source = analysis::without_slope(problem, problem.z);
-    throw Error("linearize", source.where, fmt::format("{} no slope at this state: {}", source.what, error.what()),
-                "linearise at another state, or put a smooth law in place of the one that has a kink or a root there");
+  const linear::Linearisation l = analysis::linearised(problem, common.seed);
+  const Answer answer{problem, l};
+  if (common.json) {
+    print_document(to_json(answer));
+  } else {
+    fmt::print("{}", text(answer));
   }
   return 0;
 }
