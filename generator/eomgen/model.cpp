@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "analysis/shortest_decimal.hpp"
 #include "eomgen/call.hpp"
 #include "model/model.hpp"
-#include "symbolic/decimal.hpp"
 
 namespace eomgen {
 namespace {
@@ -40,7 +40,7 @@ std::map<std::string, symbolic::Rational> exact(const std::map<std::string, doub
   for (const auto& [name, value] : values) {
     if (!std::isfinite(value))
       throw Error("library", {}, fmt::format("the value of '{}' is not finite", name), "give a finite number");
-    result[name] = symbolic::parse_decimal(fmt::format("{}", value), name);
+    result[name] = analysis::shortest_decimal(value, name);
   }
   return result;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/sweep/ensemble.hpp"
+#include "pipeline/ensemble.hpp"
 
 #include <fmt/format.h>
 
@@ -10,29 +10,28 @@
 #include <mutex>
 #include <optional>
 
-#include "cli/interrupt.hpp"
-#include "cli/sweep/tidy_graph.hpp"
 #include "emit/targets.hpp"
 #include "error.hpp"
-#include "model/names.hpp"
+#include "pipeline/tidy_graph.hpp"
+#include "work.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::pipeline {
 namespace {
 
 // What a run without an error estimate may lose of its energy is ten times this (run/balance.cpp): nearer to that it is
 // made alone, where the energy is looked at after every step.
 constexpr double doubtful_energy = 1e-2;
 
-emit::LoadedBatch compile_batch(const pipeline::Simulation& first) {
-  pipeline::Derived& derived = *first.derived;
+emit::LoadedBatch compile_batch(const Simulation& first) {
+  Derived& derived = *first.derived;
   const run::Scene defaults =
       run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene("default"), {});
-  const emit::EmissionContext context = pipeline::emission_context(derived, first.program, defaults, first.certificate);
+  const emit::EmissionContext context = emission_context(derived, first.program, defaults, first.certificate);
   std::vector<std::pair<std::string, std::string>> files;
   for (const emit::EmittedFile& file : emit::emit(first.program, context, "batch"))
     files.emplace_back(file.name, file.text);
-  const Interrupt heeded;  // by what waits for the compiler
-  return emit::compile_and_load_batch(files, emit::mangled_id(context.id), &Interrupt::flag());
+  const work::Kept heeded;  // by what waits for the compiler
+  return emit::compile_and_load_batch(files, emit::mangled_id(context.id), &work::stop_flag());
 }
 
 bool stands_still(const run::Scene& scene) {
@@ -43,7 +42,7 @@ bool stands_still(const run::Scene& scene) {
 
 /// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands
 /// still.
-std::string ranged(const pipeline::Simulation& first, const run::Code& code) {
+std::string ranged(const Simulation& first, const run::Code& code) {
   const run::Scene& scene = first.scene;
   const std::size_t n = code.free.size();
   std::vector<double> u;
@@ -67,7 +66,7 @@ std::string ranged(const pipeline::Simulation& first, const run::Code& code) {
 
 class Runs {
  public:
-  Runs(const pipeline::Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
+  Runs(const Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
       : first_(first),
         asked_(asked),
         graph_(first),
@@ -126,7 +125,7 @@ class Runs {
     std::fill(start.p.begin(), start.p.end(), 0.0);
     if (asked_.interrupt != nullptr && *asked_.interrupt) return;
     graph_.tidy();
-    pipeline::Derived& derived = *first_.derived;
+    Derived& derived = *first_.derived;
     std::optional<run::Scene> scene;
     try {
       scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
@@ -182,11 +181,11 @@ class Runs {
     }
     const std::lock_guard<std::mutex> guard(lock_);
     graph_.tidy();
-    result = pipeline::run_again(first_, asked_.values(run), false);
+    result = run_again(first_, asked_.values(run), false);
     if (asked_.interrupt == nullptr || !*asked_.interrupt) asked_.done(run, result);
   }
 
-  const pipeline::Simulation& first_;
+  const Simulation& first_;
   const EnsembleRuns& asked_;
   TidyGraph graph_;
   run::Code code_;
@@ -206,49 +205,35 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
   return overrides.step ? "rk4" : "dop853";
 }
 
-/// The solvers that integrate many runs at once.
-static std::vector<std::string> side_by_side() {
-  std::vector<std::string> names;
+std::vector<const eom::MethodInfo*> ensemble_solvers() {
+  std::vector<const eom::MethodInfo*> result;
   for (const eom::MethodInfo& method : eom::methods()) {
-    if (method.ensemble) names.push_back(fmt::format("{}{}", method.name, method.adaptive ? "" : " with --step"));
+    if (method.ensemble) result.push_back(&method);
   }
-  return names;
+  return result;
 }
 
-void require_plain(const pipeline::Simulation& first) {
+std::string ensemble_obstacle(const Simulation& first) {
   const run::Code code = first.code.for_run();
-  const eom::MethodInfo& method = run::method_named(first.scene.solver);
-  std::string why;
-  if (!method.ensemble) {
-    why = fmt::format("solver '{}' is no explicit Runge-Kutta method", first.scene.solver);
-  } else if (!code.contacts.empty()) {
-    why = "the model has contacts with friction, or that can be left";
-  } else if (!first.derived->model.events.empty()) {
-    why = "the model has events";
-  } else if (!code.kinks.empty()) {
-    why = "the equations have kinks (abs, sign, min, max, if), which are located";
-  } else if (code.active_constraints > 0) {
-    why = "constraints keep multipliers, and each step is projected onto them";
-  } else if (first.charts != nullptr) {
-    why = "coordinates that fail are exchanged for second charts";
-  } else if (code.integrals > 0) {
-    why = "an integral over time is a state of the model";
-  } else if (const std::string name = ranged(first, code); !name.empty()) {
-    why = fmt::format("'{}' has a range, which is looked at after every step", name);
-  } else if (run::NarrowForces(first.derived->candidates.front(), first.scene.parameters).any()) {
-    why =
-        "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in "
-        "every step";
-  } else if (!stands_still(first.scene)) {
-    why = "inputs or functions of time move, whose jumps and pulses are located";
-  }
-  if (why.empty()) return;
-  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why,
-              fmt::format("leave --ensemble out; with it take --solver {}", fmt::join(side_by_side(), ", ")));
+  if (!run::method_named(first.scene.solver).ensemble)
+    return fmt::format("solver '{}' is no explicit Runge-Kutta method", first.scene.solver);
+  if (!code.contacts.empty()) return "the model has contacts with friction, or that can be left";
+  if (!first.derived->model.events.empty()) return "the model has events";
+  if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if), which are located";
+  if (code.active_constraints > 0) return "constraints keep multipliers, and each step is projected onto them";
+  if (first.charts != nullptr) return "coordinates that fail are exchanged for second charts";
+  if (code.integrals > 0) return "an integral over time is a state of the model";
+  if (const std::string name = ranged(first, code); !name.empty())
+    return fmt::format("'{}' has a range, which is looked at after every step", name);
+  if (run::NarrowForces(first.derived->candidates.front(), first.scene.parameters).any())
+    return "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in "
+           "every step";
+  if (!stands_still(first.scene)) return "inputs or functions of time move, whose jumps and pulses are located";
+  return "";
 }
 
-Ensemble::Ensemble(const pipeline::Simulation& first) : first_(first), batch_(compile_batch(first)) {}
+Ensemble::Ensemble(const Simulation& first) : first_(first), batch_(compile_batch(first)) {}
 
 void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_, asked).run(); }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::pipeline

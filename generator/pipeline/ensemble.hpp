@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs of a sweep side by side in the lanes of vector registers (eom/ensemble), by threads. In: a run that has been
-// made, values for the others. Out: their results, to the last bit those that they have alone.
+// Many runs of a scene side by side in the lanes of vector registers (eom/ensemble), by threads. In: a run that has
+// been made, values for the others. Out: their results, to the last bit those that they have alone.
 #pragma once
 
 #include <atomic>
@@ -11,7 +11,7 @@
 #include "emit/shared_library/loaded_batch.hpp"
 #include "pipeline/simulate.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::pipeline {
 
 struct EnsembleRuns {
   std::vector<std::size_t> runs;
@@ -26,22 +26,25 @@ struct EnsembleRuns {
 /// Where nothing is said an ensemble is integrated by this: no method that could change on the way.
 std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides);
 
-/// Throws Error{stage "sweep"} where the scene has what only a run alone looks after: contacts, events, kinks,
-/// constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals, a solver that is not
-/// explicit.
-void require_plain(const pipeline::Simulation& first);
+/// Why the runs of this scene cannot be made side by side; empty where they can. Only a run alone looks after contacts,
+/// events, kinks, constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals, narrow
+/// forces, and solvers that are not explicit.
+std::string ensemble_obstacle(const Simulation& first);
+
+/// The solvers that integrate many runs at once.
+std::vector<const eom::MethodInfo*> ensemble_solvers();
 
 /// The code of a scene for many states, compiled once.
 class Ensemble {
  public:
   /// `first` has to live as long.
-  explicit Ensemble(const pipeline::Simulation& first);
+  explicit Ensemble(const Simulation& first);
   /// Runs that do not end as planned, and those in which time alone does something, are made once more alone.
   void run(const EnsembleRuns& asked);
 
  private:
-  const pipeline::Simulation& first_;
+  const Simulation& first_;
   emit::LoadedBatch batch_;
 };
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::pipeline

@@ -3,7 +3,7 @@
 
 #include "pipeline/simulate.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::pipeline {
 
 /// Every run puts the values of its parameters into the graph of the model, where nothing is ever taken out. Nothing
 /// that a run leaves refers to them: now and then the graph becomes what it was, so that the memory of a sweep does not
@@ -11,7 +11,7 @@ namespace eomgen::cli {
 class TidyGraph {
  public:
   /// Where charts may be exchanged second ones stay in the graph, and it is left alone.
-  explicit TidyGraph(const pipeline::Simulation& first)
+  explicit TidyGraph(const Simulation& first)
       : graph_(*first.derived->mechanics.dag),
         was_(graph_),
         most_(2 * graph_.size() + room),
@@ -29,4 +29,4 @@ class TidyGraph {
   bool kept_;
 };
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::pipeline

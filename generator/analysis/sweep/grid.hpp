@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters on a grid: --grid k=1:1e6:log:13 --grid m=0.5,1,2.
+// Values of parameters on a grid.
 #pragma once
 
-#include <cstdint>
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "symbolic/dag.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::analysis {
 
 /// More than any sweep makes; products of two stay exact.
 inline constexpr std::size_t most_points = 1'000'000'000'000;
@@ -18,18 +18,19 @@ inline constexpr std::size_t most_points = 1'000'000'000'000;
 struct Axis {
   std::string parameter;
   std::vector<symbolic::Rational> listed;
-  symbolic::Rational from, to;
+  symbolic::Rational from, to;  // of a range
   bool logarithmic = false;
-  std::size_t count = 0;
+  std::size_t count = 0;  // at least 2 of a range
 
   symbolic::Rational value(std::size_t i) const;
+  /// Why a value of the range would not exist; empty where all do.
+  std::string obstacle() const;
 };
 
 class Grid {
  public:
-  /// Each of `axes` is NAME=FROM:TO:COUNT, NAME=FROM:TO:lin:COUNT, NAME=FROM:TO:log:COUNT or NAME=a,b,c. Throws Error
-  /// for anything else, for a name that comes twice, and for more than most_points.
-  explicit Grid(const std::vector<std::string>& axes);
+  /// Each axis has a parameter of its own. Throws Error{stage "sweep"} for more than most_points.
+  explicit Grid(std::vector<Axis> axes);
 
   const std::vector<Axis>& axes() const { return axes_; }
   std::size_t size() const { return size_; }
@@ -41,4 +42,4 @@ class Grid {
   std::size_t size_ = 1;
 };
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::analysis

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/sweep/sampling.hpp"
+#include "analysis/sweep/sampling.hpp"
 
 #include <cln/float.h>
 #include <cln/real.h>
@@ -10,22 +10,17 @@
 #include <numbers>
 #include <numeric>
 
-#include "cli/assignments.hpp"
-#include "cli/output.hpp"
+#include "analysis/shortest_decimal.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::analysis {
 namespace {
 
 constexpr std::size_t most_samples = 1'000'000'000'000, most_latin = 10'000'000,
                       most_sobol = 1ULL << 32;  // latin keeps 4 bytes of each
 
-[[noreturn]] void fail(const std::string& what) {
-  throw Error(
-      "sweep", {}, what,
-      "write --sample NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal in SI units, with --samples N");
-}
+[[noreturn]] void fail(const std::string& what, const std::string& remedy) { throw Error("sweep", {}, what, remedy); }
 
 // Steele, Lea and Flood's SplitMix64: a bijection of 64 bits that mixes them well.
 std::uint64_t mixed(std::uint64_t z) {
@@ -76,10 +71,6 @@ std::uint32_t sobol(std::size_t dimension, std::uint64_t index) {
   return x;
 }
 
-double number(const std::string& text, const std::string& shown) {
-  return cln::double_approx(parse_decimal(text, shown));
-}
-
 }  // namespace
 
 double normal_quantile(double part) {
@@ -97,30 +88,34 @@ double normal_quantile(double part) {
   return part < 0.5 ? -x : x;
 }
 
-Sampling::Sampling(const std::vector<std::string>& axes, std::size_t count, const std::string& design,
-                   std::uint64_t seed)
-    : count_(count), seed_(seed) {
-  if (axes.empty()) fail("--samples says how many, and no --sample says of what");
-  if (count == 0) fail("--sample says of what, and --samples does not say how many");
-  if (count > most_samples) fail(fmt::format("more than {} samples are asked for", most_samples));
-  if (design == "latin")
-    design_ = Design::latin;
-  else if (design == "sobol")
-    design_ = Design::sobol;
-  else if (design != "random")
-    throw Error("sweep", {}, fmt::format("there is no design {}", model::quote(design)),
-                "choose random, latin or sobol");
-  const std::size_t most = design_ == Design::latin ? most_latin : most_sobol;
-  if (design_ != Design::random && count > most) {
-    throw Error("sweep", {}, fmt::format("--design {} makes at most {} samples", design, most), "take --design random");
+const char* name(Design design) {
+  switch (design) {
+    case Design::random: return "random";
+    case Design::latin: return "latin";
+    case Design::sobol: break;
   }
-  for (const std::string& text : axes) read(text);
-  if (design_ == Design::sobol && axes_.size() > most_dimensions) {
-    throw Error("sweep", {}, fmt::format("a Sobol' sequence is made for at most {} parameters", most_dimensions),
-                "take --design latin or random");
-  }
-  for (std::size_t a = 0; a < axes_.size() && design_ == Design::latin; ++a) {
-    std::vector<std::uint32_t>& order = axes_[a].order;
+  return "sobol";
+}
+
+std::string SampledAxis::obstacle() const {
+  if (kind == Kind::logarithmic && !(a * b > 0)) return "goes through 0 or changes its sign, which log cannot";
+  if (kind == Kind::normal && !(b > 0)) return "has a deviation that is not above 0";
+  return "";
+}
+
+Sampling::Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed)
+    : axes_(std::move(axes)), count_(count), design_(design), seed_(seed) {
+  if (count > most_samples) fail(fmt::format("more than {} samples are asked for", most_samples), "take fewer");
+  const std::size_t most = design == Design::latin ? most_latin : most_sobol;
+  if (design != Design::random && count > most)
+    fail(fmt::format("the design {} makes at most {} samples", name(design), most), "take the design random");
+  if (design == Design::sobol && axes_.size() > most_dimensions)
+    fail(fmt::format("a Sobol' sequence is made for at most {} parameters", most_dimensions),
+         "take the design latin or random");
+  if (design != Design::latin) return;
+  orders_.resize(axes_.size());
+  for (std::size_t a = 0; a < axes_.size(); ++a) {
+    std::vector<std::uint32_t>& order = orders_[a];
     order.resize(count_);
     std::iota(order.begin(), order.end(), 0U);
     for (std::size_t i = count_; i-- > 1;) {
@@ -130,35 +125,6 @@ Sampling::Sampling(const std::vector<std::string>& axes, std::size_t count, cons
   }
 }
 
-void Sampling::read(const std::string& text) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0) fail(fmt::format("{} names no parameter", model::quote(text)));
-  std::vector<std::string> fields{""};
-  for (const char c : text.substr(equals + 1)) {
-    if (c == ':')
-      fields.emplace_back();
-    else
-      fields.back() += c;
-  }
-  if (fields.size() < 2 || fields.size() > 3) fail(fmt::format("{} is no range of samples", model::quote(text)));
-  Axis axis{text.substr(0, equals), number(fields[0], text), number(fields[1], text)};
-  const std::string kind = fields.size() == 3 ? fields[2] : "lin";
-  if (kind == "log")
-    axis.kind = Kind::logarithmic;
-  else if (kind == "normal")
-    axis.kind = Kind::normal;
-  else if (kind != "lin")
-    fail(fmt::format("{} has {} where lin, log or normal is asked", model::quote(text), model::quote(kind)));
-  if (axis.kind == Kind::logarithmic && !(axis.a * axis.b > 0))
-    fail(fmt::format("{} goes through 0 or changes its sign, which log cannot", model::quote(text)));
-  if (axis.kind == Kind::normal && !(axis.b > 0))
-    fail(fmt::format("the deviation in {} is not above 0", model::quote(text)));
-  for (const Axis& other : axes_) {
-    if (other.name == axis.name) fail(fmt::format("{} is sampled twice", model::quote(axis.name)));
-  }
-  axes_.push_back(std::move(axis));
-}
-
 double Sampling::random(std::size_t axis, std::uint64_t index) const {
   return static_cast<double>(mixed(mixed(mixed(seed_) ^ axis) ^ index) >> 11) * 0x1p-53;
 }
@@ -166,7 +132,7 @@ double Sampling::random(std::size_t axis, std::uint64_t index) const {
 double Sampling::place(std::size_t axis, std::size_t index) const {
   switch (design_) {
     case Design::random: return random(axis, index);
-    case Design::latin: return (axes_[axis].order[index] + random(axis, index)) / static_cast<double>(count_);
+    case Design::latin: return (orders_[axis][index] + random(axis, index)) / static_cast<double>(count_);
     case Design::sobol: break;
   }
   const auto shift = static_cast<std::uint32_t>(mixed(mixed(seed_) ^ axis) >> 32);
@@ -175,23 +141,23 @@ double Sampling::place(std::size_t axis, std::size_t index) const {
 
 std::vector<std::string> Sampling::names() const {
   std::vector<std::string> result;
-  for (const Axis& axis : axes_) result.push_back(axis.name);
+  for (const SampledAxis& axis : axes_) result.push_back(axis.parameter);
   return result;
 }
 
 std::vector<symbolic::Rational> Sampling::point(std::size_t index) const {
   std::vector<symbolic::Rational> result;
   for (std::size_t k = 0; k < axes_.size(); ++k) {
-    const Axis& axis = axes_[k];
+    const SampledAxis& axis = axes_[k];
     const double u = place(k, index);
     double value = axis.a + (axis.b - axis.a) * u;
-    if (axis.kind == Kind::logarithmic) value = axis.a * std::pow(axis.b / axis.a, u);
-    if (axis.kind == Kind::normal) value = axis.a + axis.b * normal_quantile(std::max(u, 0x1p-54));
-    if (!std::isfinite(value)) fail(fmt::format("{} leaves the range of binary64", model::quote(axis.name)));
-    result.push_back(
-        parse_decimal(shortest(value), axis.name));  // the decimal that is this binary64, which the table shows
+    if (axis.kind == SampledAxis::Kind::logarithmic) value = axis.a * std::pow(axis.b / axis.a, u);
+    if (axis.kind == SampledAxis::Kind::normal) value = axis.a + axis.b * normal_quantile(std::max(u, 0x1p-54));
+    if (!std::isfinite(value))
+      fail(fmt::format("{} leaves the range of binary64", model::quote(axis.parameter)), "sample a narrower range");
+    result.push_back(shortest_decimal(value, axis.parameter));
   }
   return result;
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::analysis

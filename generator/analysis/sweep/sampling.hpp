@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values of parameters at samples: --sample k=1:100 --sample m=1:0.1:normal --samples 1000 --design sobol. Each point
-// follows from its number, the seed and what was asked alone, so that any process makes any of them.
+// Values of parameters at samples. Each point follows from its number, the seed and what was asked alone, so that any
+// process makes any of them.
 #pragma once
 
 #include <cstdint>
@@ -9,42 +9,47 @@
 
 #include "symbolic/dag.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::analysis {
+
+/// Latin (hypercube): each axis in as many equal parts as there are samples, one sample in each. Sobol: a digitally
+/// shifted Sobol' sequence.
+enum class Design : std::uint8_t { random, latin, sobol };
+const char* name(Design design);
+
+/// A parameter between a and b, evenly or evenly in its logarithm; or normal, of mean a and deviation b.
+struct SampledAxis {
+  enum class Kind : std::uint8_t { even, logarithmic, normal };
+  std::string parameter;
+  double a = 0, b = 0;
+  Kind kind = Kind::even;
+
+  /// Why samples would not exist; empty where all do.
+  std::string obstacle() const;
+};
 
 class Sampling {
  public:
-  Sampling() = default;
-  /// Each of `axes` is NAME=FROM:TO, NAME=FROM:TO:log or NAME=MEAN:DEVIATION:normal. `design`: random; latin
-  /// (hypercube: each axis in as many equal parts as there are samples, one sample in each); sobol (a digitally shifted
-  /// Sobol' sequence, of at most 10 axes). Throws Error.
-  Sampling(const std::vector<std::string>& axes, std::size_t count, const std::string& design, std::uint64_t seed);
+  /// Each axis has a parameter of its own. Throws Error{stage "sweep"} for more samples or axes than the design has.
+  Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed);
 
   std::vector<std::string> names() const;
   std::size_t size() const { return count_; }
   /// In the order of the names.
   std::vector<symbolic::Rational> point(std::size_t index) const;
+
+ private:
+  double random(std::size_t axis, std::uint64_t index) const;
   /// Where a sample lies in [0, 1) along an axis.
   double place(std::size_t axis, std::size_t index) const;
 
- private:
-  enum class Kind : std::uint8_t { even, logarithmic, normal };
-  enum class Design : std::uint8_t { random, latin, sobol };
-  struct Axis {
-    std::string name;
-    double a = 0, b = 0;
-    Kind kind = Kind::even;
-    std::vector<std::uint32_t> order = {};  // of a Latin hypercube: the part that each sample lies in
-  };
-  void read(const std::string& text);
-  double random(std::size_t axis, std::uint64_t index) const;
-
-  std::vector<Axis> axes_;
-  std::size_t count_ = 1;
-  Design design_ = Design::random;
-  std::uint64_t seed_ = 1;
+  std::vector<SampledAxis> axes_;
+  std::vector<std::vector<std::uint32_t>> orders_;  // of a Latin hypercube: the part of each axis that a sample lies in
+  std::size_t count_;
+  Design design_;
+  std::uint64_t seed_;
 };
 
 /// The value below which a normal distribution of mean 0 and deviation 1 has this part of itself; to 1e-15 of itself.
 double normal_quantile(double part);
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::analysis

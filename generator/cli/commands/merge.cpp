@@ -117,7 +117,7 @@ class Tables {
 
   std::size_t runs() const { return rows_.size(); }
   std::size_t shards() const { return tables_.size(); }
-  std::vector<ColumnStatistics> statistics() const {
+  std::vector<analysis::ColumnStatistics> statistics() const {
     return statistics_of_table(header_, rows_.size(), [this](const auto& take) {
       rows_.each(0, rows_.size(), [&take](std::size_t, std::string_view line) { take(line); });
     });
@@ -140,7 +140,7 @@ class Tables {
            "name each shard once");
     return *note;
   }
-  void take(const std::string& path, std::string_view line, const Shard& shard, std::uint32_t file,
+  void take(const std::string& path, std::string_view line, const analysis::Shard& shard, std::uint32_t file,
             std::uint64_t offset) {
     std::size_t run = 0;
     if (!reads_as_row(line, header_, run) || run >= note_.runs || !shard.has(run)) {

@@ -56,7 +56,7 @@ Execute declare_sweep(Arguments& app) {
   app.add_list("--sample", options->sample,
                "PARAMETER=FROM:TO, PARAMETER=FROM:TO:log or PARAMETER=MEAN:DEVIATION:normal; may be repeated", '\0');
   app.add_option("--samples", options->samples, "how many, at every point of the grid")
-      .check(whole_number(1, most_points));
+      .check(whole_number(1, analysis::most_points));
   app.add_option("--design", options->design,
                  "of samples: random, latin (hypercube) or sobol; without it random. All follow from --seed");
   app.add_option("--points", options->points,

@@ -6,11 +6,15 @@
 #include <algorithm>
 #include <charconv>
 
+#include "cli/sweep/axes.hpp"
+#include "cli/sweep/points_file.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
 namespace {
+
+using analysis::Shard;
 
 constexpr const char* note = " shard ";
 
@@ -31,51 +35,41 @@ std::optional<Shard> shard_of(const std::string& text) {
 
 }  // namespace
 
-Points::Points(const std::vector<std::string>& grid, std::optional<Sampling> samples, std::optional<PointsFile> file)
-    : samples_(std::move(samples)), file_(std::move(file)) {
-  if (samples_ && file_)
+analysis::Points points_of(const SweepOptions& options, std::uint64_t seed, std::string& file_hash) {
+  const bool sampled = !options.sample.empty() || options.samples > 0, listed = !options.points.empty();
+  if (options.design && !sampled)
+    throw Error("sweep", {}, "--design is of samples, and there are none",
+                "add --sample NAME=FROM:TO and --samples N, or leave it out");
+  std::optional<analysis::Sampling> samples;
+  std::optional<analysis::ListedPoints> list;
+  std::optional<analysis::Grid> grid;
+  if (sampled) samples = parse_sampling(options.sample, options.samples, options.design.value_or("random"), seed);
+  if (listed) {
+    PointsFile file = read_points(options.points);
+    file_hash = file.content_hash;
+    list = std::move(file.points);
+  }
+  if (sampled && listed)
     throw Error("sweep", {}, "--sample and --points both say what changes fastest", "leave one of them out");
-  if (!grid.empty() || (!samples_ && !file_)) grid_.emplace(grid);
-  if (grid_) {
-    size_ = grid_->size();
-    for (const Axis& axis : grid_->axes()) names_.push_back(axis.parameter);
+  if (!options.grid.empty() || (!sampled && !listed)) grid = parse_grid(options.grid);
+  for (const std::string& name : samples ? samples->names() : list ? list->names : std::vector<std::string>{}) {
+    const auto named = [&name](const analysis::Axis& axis) { return axis.parameter == name; };
+    if (!grid || std::none_of(grid->axes().begin(), grid->axes().end(), named)) continue;
+    throw Error(
+        "sweep", {},
+        fmt::format("{} has a grid and is {}", model::quote(name), sampled ? "sampled" : "a column of --points"),
+        "leave one of them out");
   }
-  if (!samples_ && !file_) return;
-  for (const std::string& name : samples_ ? samples_->names() : file_->names()) {
-    if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
-      throw Error(
-          "sweep", {},
-          fmt::format("{} has a grid and is {}", model::quote(name), samples_ ? "sampled" : "a column of --points"),
-          "leave one of them out");
-    }
-    names_.push_back(name);
-  }
-  const std::size_t each = samples_ ? samples_->size() : file_->size();
-  if (each > most_points / size_) {
-    throw Error("sweep", {}, fmt::format("the grid with its samples has more than {} points", most_points),
-                "take fewer");
-  }
-  size_ *= each;
+  return {std::move(grid), std::move(samples), std::move(list)};
 }
 
-std::map<std::string, symbolic::Rational> Points::point(std::size_t index) const {
-  std::map<std::string, symbolic::Rational> result;
-  const std::size_t each = samples_ ? samples_->size() : file_ ? file_->size() : 1;
-  if (grid_) result = grid_->point(index / each);
-  if (!samples_ && !file_) return result;
-  const std::vector<symbolic::Rational> values = samples_ ? samples_->point(index % each) : file_->point(index % each);
-  const std::size_t first = names_.size() - values.size();
-  for (std::size_t i = 0; i < values.size(); ++i) result[names_[first + i]] = values[i];
-  return result;
-}
-
-Shard parse_shard(const std::string& text) {
+analysis::Shard parse_shard(const std::string& text) {
   if (const auto shard = shard_of(text)) return *shard;
   throw Error("sweep", {}, fmt::format("{} is no shard", model::quote(text)),
               "write --shard NUMBER/COUNT, such as 2/8; numbers begin with 1");
 }
 
-std::string shard_note(const Shard& shard, std::size_t runs) {
+std::string shard_note(const analysis::Shard& shard, std::size_t runs) {
   return fmt::format("{}{}/{} of {}", note, shard.number, shard.count, runs);
 }
 

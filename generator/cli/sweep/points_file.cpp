@@ -13,7 +13,6 @@
 #include <string_view>
 
 #include "cli/assignments.hpp"
-#include "cli/output.hpp"
 #include "error.hpp"
 #include "model/content_hash.hpp"
 #include "model/names.hpp"
@@ -58,9 +57,10 @@ std::vector<std::string> fields_of(std::string_view line) {
 
 }  // namespace
 
-PointsFile::PointsFile(const std::string& path) {
+PointsFile read_points(const std::string& path) {
   const std::string text = text_of(path);
-  hash_ = model::content_hash(text);
+  PointsFile file{{}, model::content_hash(text)};
+  auto& [names, values] = file.points;
   std::size_t number = 0;
   for (std::string_view rest = text; !rest.empty();) {
     const std::size_t end = rest.find('\n');
@@ -68,19 +68,19 @@ PointsFile::PointsFile(const std::string& path) {
     rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
     const std::string place = fmt::format("--points {}, line {}", path, ++number);
     if ((fields.size() == 1 && fields[0].empty()) || fields[0].starts_with('#')) continue;
-    if (names_.empty()) {
-      names_ = fields;
-      for (std::size_t i = 0; i < names_.size(); ++i) {
-        if (names_[i].empty()) fail(place + ": a column has no name", "name a parameter in each");
-        if (std::find(names_.begin(), names_.begin() + static_cast<std::ptrdiff_t>(i), names_[i]) !=
-            names_.begin() + static_cast<std::ptrdiff_t>(i)) {
-          fail(fmt::format("{}: {} comes twice", place, model::quote(names_[i])), "name each parameter once");
+    if (names.empty()) {
+      names = fields;
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        if (names[i].empty()) fail(place + ": a column has no name", "name a parameter in each");
+        if (std::find(names.begin(), names.begin() + static_cast<std::ptrdiff_t>(i), names[i]) !=
+            names.begin() + static_cast<std::ptrdiff_t>(i)) {
+          fail(fmt::format("{}: {} comes twice", place, model::quote(names[i])), "name each parameter once");
         }
       }
       continue;
     }
-    if (fields.size() != names_.size()) {
-      fail(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names_.size()),
+    if (fields.size() != names.size()) {
+      fail(fmt::format("{}: {} values, and {} parameters are named", place, fields.size(), names.size()),
            "give a value for each, with commas between them");
     }
     for (const std::string& field : fields) {
@@ -88,19 +88,13 @@ PointsFile::PointsFile(const std::string& path) {
       if (!std::isfinite(value))
         fail(fmt::format("{}: {} leaves the range of binary64", place, model::quote(field)),
              "use units in which it is nearer to 1");
-      values_.push_back(value);
+      values.push_back(value);
     }
   }
-  if (names_.empty() || values_.empty())
+  if (names.empty() || values.empty())
     fail(fmt::format("--points {}: no line has values", model::quote(path)),
          "write a line of parameters, then lines of values");
-}
-
-std::vector<symbolic::Rational> PointsFile::point(std::size_t index) const {
-  std::vector<symbolic::Rational> result;
-  for (std::size_t k = 0; k < names_.size(); ++k)
-    result.push_back(parse_decimal(shortest(values_[index * names_.size() + k]), names_[k]));
-  return result;
+  return file;
 }
 
 }  // namespace eomgen::cli

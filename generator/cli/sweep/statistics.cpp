@@ -9,21 +9,11 @@
 #include <eom/outcome.hpp>
 
 namespace eomgen::cli {
+
+using analysis::ColumnStatistics;
+using analysis::quantile_parts;
+
 namespace {
-
-/// Neumaier's sum.
-class Sum {
- public:
-  void add(double value) {
-    const double sum = sum_ + value;
-    rest_ += std::abs(sum_) >= std::abs(value) ? (sum_ - sum) + value : (value - sum) + sum_;
-    sum_ = sum;
-  }
-  double value() const { return sum_ + rest_; }
-
- private:
-  double sum_ = 0, rest_ = 0;
-};
 
 constexpr std::size_t most_values = 16'000'000;  // in memory at a time
 
@@ -39,36 +29,6 @@ void each_field(std::string_view line, std::size_t most, Take&& take) {
 }
 
 }  // namespace
-
-ColumnStatistics statistics_of(const std::string& name, std::vector<double>& values) {
-  std::sort(values.begin(), values.end());
-  ColumnStatistics result;
-  result.name = name;
-  result.count = values.size();
-  if (values.empty()) return result;
-  const auto count = static_cast<double>(values.size());
-  Sum sum, squares;
-  for (const double value : values) sum.add(value);
-  result.mean = sum.value() / count;
-  for (const double value : values) squares.add((value - result.mean) * (value - result.mean));
-  result.deviation = values.size() > 1 ? std::sqrt(squares.value() / (count - 1)) : 0;
-  result.least = values.front();
-  result.greatest = values.back();
-  result.histogram.resize(result.least < result.greatest ? histogram_parts : 1);
-  for (const double value : values) {
-    const double place = value / 2 - result.least / 2,
-                 width = result.greatest / 2 - result.least / 2;  // halves: no range is infinite
-    const std::size_t part = width > 0 ? static_cast<std::size_t>(place / width * histogram_parts) : 0;
-    ++result.histogram[std::min(part, result.histogram.size() - 1)];
-  }
-  for (const double part : quantile_parts) {
-    const double place = part * (count - 1);
-    const auto below = static_cast<std::size_t>(place);
-    const std::size_t above = std::min(below + 1, values.size() - 1);
-    result.quantiles.push_back(values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]));
-  }
-  return result;
-}
 
 bool ended_well(std::string_view outcome) {
   return outcome == eom::name(eom::Outcome::done) || outcome == eom::name(eom::Outcome::stopped_by_event);
@@ -97,7 +57,7 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
       });
     });
     for (std::size_t k = first; k < last; ++k) {
-      if (!values[k - first].empty()) result.push_back(statistics_of(names[k], values[k - first]));
+      if (!values[k - first].empty()) result.push_back(analysis::statistics_of(names[k], values[k - first]));
     }
   }
   return result;

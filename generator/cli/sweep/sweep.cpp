@@ -5,95 +5,25 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <eom/outcome.hpp>
 #include <thread>
 
-#include "cli/assignments.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/sweep/npz.hpp"
-#include "cli/sweep/tidy_graph.hpp"
 #include "cli/sweep/workers.hpp"
 #include "cli/usage.hpp"
-#include "model/content_hash.hpp"
 #include "model/names.hpp"
+#include "pipeline/beginnings.hpp"
+#include "pipeline/tidy_graph.hpp"
 
 namespace eomgen::cli {
 namespace {
 
-constexpr const char* refused = "refused";     // in place of an outcome, where a run could not begin
 constexpr std::size_t most_runs = 10'000'000;  // of one process; each takes some 40 bytes of memory
 
-run::Overrides overrides_of(const SweepOptions& options) {
-  run::Overrides o;
-  o.parameters = parse_assignments("sweep", options.set);
-  o.rtol = options.rtol;
-  o.atol = options.atol;
-  o.step = options.step;
-  o.t_end = options.t_end;
-  o.at_start = true;
-  o.solver = options.solver;
-  o.outputs = options.outputs;
-  return o;
-}
-
-std::optional<Sampling> samples_of(const SweepOptions& options, std::uint64_t seed) {
-  if (options.sample.empty() && options.samples == 0) {
-    if (options.design)
-      throw Error("sweep", {}, "--design is of samples, and there are none",
-                  "add --sample NAME=FROM:TO and --samples N, or leave it out");
-    return std::nullopt;
-  }
-  return Sampling(options.sample, options.samples, options.design.value_or("random"), seed);
-}
-
-std::optional<PointsFile> file_of(const SweepOptions& options, std::string& hash) {
-  if (options.points.empty()) return std::nullopt;
-  PointsFile file(options.points);
-  hash = file.content_hash();
-  return file;
-}
-
-/// What makes two sweeps the same: the model's bytes and all that was asked.
-std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
-                   const std::string& points_hash) {
-  std::string text = model.content_hash + '\n' + options.scene + '\n' +
-                     (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
-  for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
-    text += '\n';
-    for (const std::string& entry : *list) text += entry + '\x1f';
-  }
-  for (const auto& value : {options.rtol, options.atol, options.step, options.t_end})
-    text += '\n' + (value ? shortest(*value) : "");
-  if (options.ensemble) text += "\nensemble";
-  if (!options.sample.empty()) {
-    text += fmt::format("\n{} {} {}", options.samples, options.design.value_or("random"), seed);
-    for (const std::string& entry : options.sample) text += '\x1f' + entry;
-  }
-  if (!points_hash.empty()) text += "\npoints " + points_hash;
-  return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
-}
-
-// A comma, a quotation mark or a line break inside of a field would be read as the end of it.
-std::string field(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  if (text.find_first_of(",\"") == std::string::npos) return text;
-  std::string quoted = "\"";
-  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
-  return quoted + "\"";
-}
-
-std::string number(double value) {
-  return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value))
-         : std::isnan(value)  ? "nan"
-         : value > 0          ? "inf"
-                              : "-inf";
-}
-
-Shard shard_of(const SweepOptions& options, const Points& points, std::size_t processes) {
-  const Shard shard = options.shard ? parse_shard(*options.shard) : Shard{};
+analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& points, std::size_t processes) {
+  const analysis::Shard shard = options.shard ? parse_shard(*options.shard) : analysis::Shard{};
   if (shard.size(points.size()) == 0) {
     throw Error("sweep", {},
                 fmt::format("shard {}/{} has no runs: there are {} in all", shard.number, shard.count, points.size()),
@@ -108,7 +38,7 @@ Shard shard_of(const SweepOptions& options, const Points& points, std::size_t pr
   return shard;
 }
 
-void require_names(const Points& points, const SweepOptions& options, const model::Model& model) {
+void require_names(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
   const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
@@ -124,8 +54,18 @@ void require_names(const Points& points, const SweepOptions& options, const mode
 }
 
 std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
-                         const std::string& points_hash, const Shard& shard, const Points& points) {
+                         const std::string& points_hash, const analysis::Shard& shard, const analysis::Points& points) {
   return key_of(options, model, seed, points_hash) + (options.shard ? shard_note(shard, points.size()) : "");
+}
+
+void require_side_by_side(const pipeline::Simulation& first) {
+  const std::string why = pipeline::ensemble_obstacle(first);
+  if (why.empty()) return;
+  std::vector<std::string> solvers;
+  for (const eom::MethodInfo* method : pipeline::ensemble_solvers())
+    solvers.push_back(method->name + std::string(method->adaptive ? "" : " with --step"));
+  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why,
+              fmt::format("leave --ensemble out; with it take --solver {}", fmt::join(solvers, ", ")));
 }
 
 std::size_t threads_of(const SweepOptions& options) {
@@ -137,7 +77,7 @@ std::size_t threads_of(const SweepOptions& options) {
 Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Model& model)
     : options_(options),
       seed_(common.seed),
-      points_(options.grid, samples_of(options, common.seed), file_of(options, points_hash_)),
+      points_(points_of(options, common.seed, points_hash_)),
       shard_(shard_of(options, points_, common.team != nullptr ? common.team->workers() : 1)),
       file_(options.out.empty() ? model.id + "_sweep.csv" : options.out),
       ledger_((require_names(points_, options, model),
@@ -152,7 +92,7 @@ Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Mod
                 fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
                 "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
   }
-  if (options.ensemble) solver_ = ensemble_solver(model.scene(options.scene), overrides_of(options));
+  if (options.ensemble) solver_ = pipeline::ensemble_solver(model.scene(options.scene), overrides_of(options));
 }
 
 bool Sweep::run_alone() {
@@ -180,7 +120,7 @@ std::vector<Stretch> Sweep::open_runs() const {
   std::vector<Stretch> open;
   std::size_t next = 0;  // of the runs
   for (std::size_t i = 0; i <= ledger_.rows().size(); ++i) {
-    const std::size_t there = i < ledger_.rows().size() ? ledger_.rows().run(i) / shard_.count : runs();
+    const std::size_t there = i < ledger_.rows().size() ? shard_.place(ledger_.rows().run(i)) : runs();
     if (there > next) open.push_back({next, there - next});
     next = there + 1;
   }
@@ -204,7 +144,7 @@ void Sweep::count() {
   });
 }
 
-std::vector<ColumnStatistics> Sweep::statistics() const {
+std::vector<analysis::ColumnStatistics> Sweep::statistics() const {
   if (team_ != nullptr) {  // others have rows too, and the table has all
     if (counts_.done + counts_.failed < runs()) return {};
     const OpenFile table(::open(ledger_.place().c_str(), O_RDONLY | O_CLOEXEC));
@@ -245,43 +185,29 @@ bool Sweep::simulate_first(std::size_t run, bool integrate) {
     if (Interrupt::flag()) return false;
     throw;
   }
-  if (options_.ensemble) require_plain(*first_);
-  columns(first_->scene);
+  if (options_.ensemble) require_side_by_side(*first_);
+  text_ = RowText(points_.names(), first_->derived->model, first_->scene);
+  const std::size_t there = ledger_.rows().size();
+  ledger_.set_header(text_.header());
+  if (ledger_.rows().size() < there) resumed_ = 0;
   return true;
 }
 
 /// One of the open runs; where none of these can begin, another one, which tells the columns.
 std::size_t Sweep::first_that_begins(const std::vector<Stretch>& open) {
-  const std::unique_ptr<pipeline::Derived> derived =
-      pipeline::derive_model(load_model(options_.model), pipeline::ApproachChoice::automatic);
-  const symbolic::Dag was = *derived->mechanics.dag;
-  const bool charts = !pipeline::exchangeable(pipeline::charts_of(derived->mechanics)).empty();
-  std::string why, remedy;
-  const auto begins = [&](std::size_t run) {
-    *derived->mechanics.dag = was;
-    run::Overrides overrides = at(run);
-    overrides.exchanges_charts = charts;
-    try {
-      run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene(options_.scene),
-                         overrides);
-      return true;
-    } catch (const Error& error) {
-      if (error.stage() != "scene") throw;
-      if (why.empty()) why = error.message(), remedy = error.remedy();
-    }
-    return false;
-  };
+  pipeline::Beginnings beginnings(load_model(options_.model), options_.scene);
   std::size_t tries = 0;
   for (const Stretch& stretch : open) {
     for (std::size_t i = 0; i < stretch.count && tries < most_runs; ++i, ++tries) {
-      if (begins(shard_.run(stretch.first + i))) return shard_.run(stretch.first + i);
+      const std::size_t run = shard_.run(stretch.first + i);
+      if (beginnings.can_begin(at(run))) return run;
     }
   }
   for (std::size_t run = 0; run < points_.size() && tries < most_runs; ++run, ++tries) {
-    if (!is_open(open, run) && begins(run)) return run;
+    if (!is_open(open, run) && beginnings.can_begin(at(run))) return run;
   }
-  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", why),
-              "change the grid or the scene: " + remedy);
+  throw Error("sweep", {}, fmt::format("no run of the grid can begin: {}", beginnings.refusal()->message()),
+              "change the grid or the scene: " + beginnings.refusal()->remedy());
 }
 
 std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
@@ -299,7 +225,7 @@ std::optional<std::size_t> Sweep::prepare(const std::vector<Stretch>& open) {
 
 bool Sweep::is_open(const std::vector<Stretch>& open, std::size_t run) const {
   if (!shard_.has(run)) return false;
-  const std::size_t place = run / shard_.count;
+  const std::size_t place = shard_.place(run);
   const auto after = std::upper_bound(open.begin(), open.end(), place,
                                       [](std::size_t p, const Stretch& stretch) { return p < stretch.first; });
   return after != open.begin() && place - std::prev(after)->first < std::prev(after)->count;
@@ -307,8 +233,8 @@ bool Sweep::is_open(const std::vector<Stretch>& open, std::size_t run) const {
 
 void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
   if (!is_open(open, run) || first_->result.outcome == eom::Outcome::interrupted) return;
-  ledger_.add(run, row(run, first_->result));
-  const std::size_t place = run / shard_.count;
+  ledger_.add(run, text_.of(run, points_.point(run), first_->result));
+  const std::size_t place = shard_.place(run);
   const auto holds = std::find_if(open.begin(), open.end(),
                                   [place](const Stretch& stretch) { return place - stretch.first < stretch.count; });
   const Stretch behind{place + 1, holds->first + holds->count - place - 1};
@@ -320,10 +246,10 @@ void Sweep::take_first(std::size_t run, std::vector<Stretch>& open) {
 std::string Sweep::made(std::size_t run) const {
   try {
     const run::RunResult result = pipeline::run_again(*first_, at(run), !options_.no_error_estimate);
-    return Interrupt::flag() ? std::string() : row(run, result);
+    return Interrupt::flag() ? std::string() : text_.of(run, points_.point(run), result);
   } catch (const Error& error) {
     if (error.stage() != "scene") throw;
-    return refusal(run, error.message());
+    return text_.refused(run, points_.point(run), error.message());
   }
 }
 
@@ -331,12 +257,16 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
   if (options_.ensemble) {
     if (!ensemble_) ensemble_.emplace(*first_);
     ensemble_->run({runs, threads, [this](std::size_t run) { return at(run); },
-                    [this](std::size_t run, const run::RunResult& result) { ledger_.add(run, row(run, result)); },
-                    [this](std::size_t run, const std::string& why) { ledger_.add(run, refusal(run, why)); },
+                    [this](std::size_t run, const run::RunResult& result) {
+                      ledger_.add(run, text_.of(run, points_.point(run), result));
+                    },
+                    [this](std::size_t run, const std::string& why) {
+                      ledger_.add(run, text_.refused(run, points_.point(run), why));
+                    },
                     &Interrupt::flag()});
     return;
   }
-  TidyGraph graph(*first_);
+  pipeline::TidyGraph graph(*first_);
   const auto line = [&](std::size_t run) {
     graph.tidy();
     return made(run);
@@ -348,54 +278,13 @@ void Sweep::compute(const std::vector<std::size_t>& runs, std::size_t threads) {
 
 /// In this process alone, which MPI does not want to be forked.
 void Sweep::compute_here(const std::vector<std::size_t>& runs) {
-  TidyGraph graph(*first_);
+  pipeline::TidyGraph graph(*first_);
   for (const std::size_t run : runs) {
     graph.tidy();
     const std::string line = made(run);
     if (line.empty()) return;
     ledger_.add(run, line);
   }
-}
-
-void Sweep::columns(const run::Scene& scene) {
-  names_ = scene.outputs;
-  std::string header = "run";
-  for (const std::string& name : points_.names()) header += "," + name;
-  header += ",outcome,t,steps,rhs_evaluations";
-  std::vector<std::string> all;
-  for (const model::Coordinate& c : first_->derived->model.coordinates) {
-    all.push_back(c.name);
-    all.push_back(c.name + "_dot");
-  }
-  if (std::find(names_.begin(), names_.end(), "energy") == names_.end()) all.emplace_back("energy");
-  names_.insert(names_.begin(), all.begin(), all.end());
-  for (const std::string& name : names_) header += "," + name;
-  const std::size_t there = ledger_.rows().size();
-  ledger_.set_header(header + ",error_estimate,detail");
-  if (ledger_.rows().size() < there) resumed_ = 0;
-}
-
-std::string Sweep::beginning(std::size_t run) const {
-  std::string text = std::to_string(run);
-  const std::map<std::string, symbolic::Rational> point = points_.point(run);
-  for (const std::string& name : points_.names()) text += "," + number(cln::double_approx(point.at(name)));
-  return text;
-}
-
-std::string Sweep::refusal(std::size_t run, const std::string& why) const {
-  return beginning(run) + "," + refused + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
-}
-
-std::string Sweep::row(std::size_t run, const run::RunResult& result) const {
-  std::string text = beginning(run) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
-                                                  result.statistics.steps, result.statistics.rhs_evaluations);
-  for (const std::string& name : names_) {
-    const auto found =
-        std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
-    text += "," + (found == result.final.end() ? "" : number(found->second));
-  }
-  const auto& estimate = result.error_estimate;
-  return text + "," + (estimate.empty() ? "" : number(estimate.back().second)) + "," + field(result.detail);
 }
 
 }  // namespace eomgen::cli

@@ -9,12 +9,13 @@
 
 #include "cli/command.hpp"
 #include "cli/interrupt.hpp"
-#include "cli/sweep/ensemble.hpp"
 #include "cli/sweep/ledger.hpp"
 #include "cli/sweep/options.hpp"
 #include "cli/sweep/points.hpp"
+#include "cli/sweep/row_text.hpp"
 #include "cli/sweep/statistics.hpp"
 #include "cli/sweep/team.hpp"
+#include "pipeline/ensemble.hpp"
 #include "pipeline/simulate.hpp"
 
 namespace eomgen::cli {
@@ -38,7 +39,7 @@ class Sweep {
   /// After run(); of a team those of the first are of all.
   const Counts& counts() const { return counts_; }
   /// Of the rows that are there; of a team of all or none.
-  std::vector<ColumnStatistics> statistics() const;
+  std::vector<analysis::ColumnStatistics> statistics() const;
 
  private:
   bool run_alone();
@@ -61,27 +62,23 @@ class Sweep {
   void count();
 
   run::Overrides at(std::size_t run) const;
-  void columns(const run::Scene& scene);
-  std::string beginning(std::size_t run) const;
-  std::string refusal(std::size_t run, const std::string& why) const;
-  std::string row(std::size_t run, const run::RunResult& result) const;
   std::string made(std::size_t run) const;
 
   const SweepOptions& options_;
   std::uint64_t seed_;
   std::string points_hash_;  // of the file that gives them
-  Points points_;
-  Shard shard_;
+  analysis::Points points_;
+  analysis::Shard shard_;
   std::string file_;
   Ledger ledger_;
   std::size_t resumed_;
   Counts counts_;
   Team* team_;
-  std::vector<std::string> names_;
+  RowText text_;
   std::string solver_;  // of an ensemble
   std::optional<Interrupt> interrupt_;
   std::optional<pipeline::Simulation> first_;
-  std::optional<Ensemble> ensemble_;
+  std::optional<pipeline::Ensemble> ensemble_;
 };
 
 }  // namespace eomgen::cli

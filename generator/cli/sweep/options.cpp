@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/options.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/assignments.hpp"
+#include "cli/output.hpp"
+#include "model/content_hash.hpp"
+
+namespace eomgen::cli {
+
+run::Overrides overrides_of(const SweepOptions& options) {
+  run::Overrides o;
+  o.parameters = parse_assignments("sweep", options.set);
+  o.rtol = options.rtol;
+  o.atol = options.atol;
+  o.step = options.step;
+  o.t_end = options.t_end;
+  o.at_start = true;
+  o.solver = options.solver;
+  o.outputs = options.outputs;
+  return o;
+}
+
+std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
+                   const std::string& points_hash) {
+  std::string text = model.content_hash + '\n' + options.scene + '\n' +
+                     (options.no_error_estimate || options.ensemble ? "plain" : "estimate");
+  for (const auto* list : {&options.grid, &options.set, &options.outputs}) {
+    text += '\n';
+    for (const std::string& entry : *list) text += entry + '\x1f';
+  }
+  for (const auto& value : {options.rtol, options.atol, options.step, options.t_end})
+    text += '\n' + (value ? shortest(*value) : "");
+  if (options.ensemble) text += "\nensemble";
+  if (!options.sample.empty()) {
+    text += fmt::format("\n{} {} {}", options.samples, options.design.value_or("random"), seed);
+    for (const std::string& entry : options.sample) text += '\x1f' + entry;
+  }
+  if (!points_hash.empty()) text += "\npoints " + points_hash;
+  return model.id + " " + model::content_hash(text + '\n' + options.solver.value_or("")).substr(0, 16);
+}
+
+}  // namespace eomgen::cli

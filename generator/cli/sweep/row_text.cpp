@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/sweep/row_text.hpp"
+
+#include <cln/float.h>
+#include <cln/real.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <eom/outcome.hpp>
+
+#include "cli/output.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr const char* refused_outcome = "refused";
+
+// A comma, a quotation mark or a line break inside of a field would be read as the end of it.
+std::string field(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
+  if (text.find_first_of(",\"") == std::string::npos) return text;
+  std::string quoted = "\"";
+  for (const char c : text) quoted += c == '"' ? "\"\"" : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.17g}", unsigned_zero(value))
+         : std::isnan(value)  ? "nan"
+         : value > 0          ? "inf"
+                              : "-inf";
+}
+
+}  // namespace
+
+RowText::RowText(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene)
+    : varied_(std::move(varied)) {
+  for (const model::Coordinate& c : model.coordinates) {
+    names_.push_back(c.name);
+    names_.push_back(c.name + "_dot");
+  }
+  if (std::find(scene.outputs.begin(), scene.outputs.end(), "energy") == scene.outputs.end())
+    names_.emplace_back("energy");
+  names_.insert(names_.end(), scene.outputs.begin(), scene.outputs.end());
+}
+
+std::string RowText::header() const {
+  std::string text = "run";
+  for (const std::string& name : varied_) text += "," + name;
+  text += ",outcome,t,steps,rhs_evaluations";
+  for (const std::string& name : names_) text += "," + name;
+  return text + ",error_estimate,detail";
+}
+
+std::string RowText::beginning(std::size_t run, const Point& point) const {
+  std::string text = std::to_string(run);
+  for (const std::string& name : varied_) text += "," + number(cln::double_approx(point.at(name)));
+  return text;
+}
+
+std::string RowText::refused(std::size_t run, const Point& point, const std::string& why) const {
+  return beginning(run, point) + "," + refused_outcome + ",,," + std::string(names_.size() + 1, ',') + "," + field(why);
+}
+
+std::string RowText::of(std::size_t run, const Point& point, const run::RunResult& result) const {
+  std::string text = beginning(run, point) + fmt::format(",{},{},{},{}", eom::name(result.outcome), number(result.t),
+                                                         result.statistics.steps, result.statistics.rhs_evaluations);
+  for (const std::string& name : names_) {
+    const auto found =
+        std::find_if(result.final.begin(), result.final.end(), [&](const auto& entry) { return entry.first == name; });
+    text += "," + (found == result.final.end() ? "" : number(found->second));
+  }
+  const auto& estimate = result.error_estimate;
+  return text + "," + (estimate.empty() ? "" : number(estimate.back().second)) + "," + field(result.detail);
+}
+
+}  // namespace eomgen::cli
