@@ -110,18 +110,23 @@ void add_linear(const mechanics::Mechanics& mechanics, const std::vector<std::st
 
 }  // namespace
 
+reading::ReadingForm form_to_show(const mechanics::Mechanics& m) {
+  const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
+  return reading::derive_reading(m, one ? system::Approach::one : system::Approach::two);
+}
+
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request) {
   using pipeline::ApproachChoice;
   require_keys(request.show);
   const work::Stage stage("deriving the equations");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
-  // Approach I shows the constraint forces too, so it is what `automatic` means wherever something is eliminated.
-  const bool one = request.approach == ApproachChoice::one ||
-                   (request.approach == ApproachChoice::automatic &&
-                    !(mechanics::impose_dependent(mechanics).fixed.empty() && mechanics.contacts.empty()));
+  const reading::ReadingForm form =
+      request.approach == ApproachChoice::automatic
+          ? form_to_show(mechanics)
+          : reading::derive_reading(
+                mechanics, request.approach == ApproachChoice::one ? system::Approach::one : system::Approach::two);
   Equations result;
-  result.approach = one ? system::Approach::one : system::Approach::two;
-  const reading::ReadingForm form = reading::derive_reading(mechanics, result.approach);
+  result.approach = form.approach;
   result.items = print::render(mechanics, form, request.show, &result.interrupted);
   try {
     if (!result.interrupted) {

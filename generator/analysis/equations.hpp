@@ -36,6 +36,10 @@ struct Equations {
   bool interrupted = false;
 };
 
+/// The equations as they are shown where no approach is asked for: those of approach I show the constraint forces too,
+/// and stand wherever something is eliminated or a contact has a force.
+reading::ReadingForm form_to_show(const mechanics::Mechanics& mechanics);
+
 /// Throws Error{stage "derive"}: an unknown key. Where it is interrupted it says so, and gives what is there.
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request);
 

@@ -7,18 +7,17 @@
 #include <optional>
 #include <set>
 
+#include "analysis/equations.hpp"
+#include "analysis/page/live_model.hpp"
 #include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
-#include "cli/report/drawing.hpp"
 #include "cli/report/html.hpp"
-#include "cli/report/live_model.hpp"
 #include "cli/report/recorded_motion.hpp"
 #include "cli/run_report.hpp"
 #include "cli/usage.hpp"
-#include "mechanics/dependent.hpp"
 #include "pipeline/simulate.hpp"
 #include "print/render.hpp"
 
@@ -80,10 +79,8 @@ void add_formula(Html& html, const std::string& mathml, std::size_t& room) {
 }
 
 void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved) {
-  const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
-  const system::Approach approach = one ? system::Approach::one : system::Approach::two;
-  const reading::ReadingForm form = reading::derive_reading(m, approach);
-  html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(approach)));
+  const reading::ReadingForm form = analysis::form_to_show(m);
+  html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
   std::size_t room = longest_formulas;
   const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},
                                                                   {"energies", "Energies"},
@@ -177,7 +174,7 @@ int execute(const Options& options, const Common& common) {
   request.overrides.solver = options.solver;
   request.rows = rows_of_a_page;
   request.with = {"mass"};  // a point that is dragged moves the lightest most
-  std::optional<Drawing> drawing;
+  std::optional<analysis::Drawing> drawing;
   std::vector<std::string> outputs;  // what the page draws and plots beside the state
   std::vector<Panel> curves;
   request.prepare = [&](pipeline::Derived& derived) {
@@ -202,7 +199,7 @@ int execute(const Options& options, const Common& common) {
   const Json run = RunReport{simulation, true}.json();
   std::set<std::string> set;
   for (const auto& [name, value] : request.overrides.parameters) set.insert(name);
-  const LiveModel live = live_model(simulation, *drawing, outputs, set);
+  const analysis::LiveModel live = analysis::live_model(simulation, *drawing, outputs, set);
   const Json moving = recorded.json(simulation, *drawing, live, outputs, curves);
   Html html;
   add_head(html, model, !moving.is_null());

@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <eom/output/svg_plot.hpp>
 
-#include "symbolic/evaluate.hpp"
+#include "cli/report/page_json.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -19,25 +19,6 @@ constexpr int digits_of_states = 10, digits_of_screens = 6;
 // As many digits as are needed; fewer bytes.
 double shortened(double x, int digits) {
   return std::isfinite(x) ? std::strtod(fmt::format("{:.{}g}", x, digits).c_str(), nullptr) : 0;
-}
-
-/// Sizes of the drawing at the parameters of the run.
-Json values(const std::vector<symbolic::Ref>& sizes, const pipeline::Simulation& simulation) {
-  constexpr int digits = 20;
-  Json result = Json::array();
-  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R {
-    return cln::cl_R(simulation.scene.parameters[s.index]);
-  };
-  for (const symbolic::Ref size : sizes) {
-    try {
-      result.push_back(shortened(
-          cln::double_approx(symbolic::evaluate(*simulation.derived->mechanics.dag, {size}, lookup, digits)[0]),
-          digits_of_states));
-    } catch (const std::exception&) {
-      result.push_back(-1);  // unknown, as where it depends on more than parameters
-    }
-  }
-  return result;
 }
 
 }  // namespace
@@ -81,12 +62,13 @@ Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) con
   return result;
 }
 
-Json RecordedMotion::json(const pipeline::Simulation& simulation, const Drawing& drawing, const LiveModel& live,
-                          const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const {
+Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
+                          const analysis::LiveModel& live, const std::vector<std::string>& outputs,
+                          const std::vector<Panel>& panels) const {
   if (t_.size() < 2) return nullptr;
   const model::Model& model = simulation.derived->model;
   const std::vector<std::string> states = pipeline::state_names(*simulation.derived);
-  Json times = Json::array(), curves = Json::array(), events = Json::array();
+  Json times = Json::array(), curves = Json::array(), events = Json::array(), sizes = Json::array();
   for (const double t : t_) times.push_back(shortened(t, digits_of_states));
   for (const Panel& panel : panels) {
     Json of = Json::array();
@@ -100,8 +82,9 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const Drawing&
     curves.push_back({{"title", panel.title}, {"of", of}});
   }
   for (const run::RunEvent& event : simulation.result.events) events.push_back({{"t", event.t}, {"name", event.name}});
+  for (const double size : analysis::sizes_of(drawing, simulation)) sizes.push_back(shortened(size, digits_of_states));
   const double span = t_.back() - t_.front();
-  const auto down = falling(*simulation.derived, simulation.scene.parameters);
+  const auto down = analysis::falling(*simulation.derived, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
   return {{"t", times},
           {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},
@@ -110,11 +93,11 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const Drawing&
           {"t1", simulation.scene.t1},
           {"speed", span / std::clamp(span, least_seconds, most_seconds)},
           {"down", down ? Json(*down) : Json(nullptr)},
-          {"parts", drawing.parts()},
-          {"sizes", values(drawing.sizes(), simulation)},
+          {"parts", to_json(drawing.parts())},
+          {"sizes", sizes},
           {"panels", curves},
           {"events", events},
-          {"live", is_live ? live.start : Json(nullptr)},
+          {"live", is_live ? to_json(live.start) : Json(nullptr)},
           {"reason", live.reason},
           {"model", model.id}};
 }

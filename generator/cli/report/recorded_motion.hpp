@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "analysis/page/live_model.hpp"
 #include "cli/json.hpp"
 #include "cli/panels.hpp"
-#include "cli/report/drawing.hpp"
-#include "cli/report/live_model.hpp"
 
 namespace eomgen::cli {
 
@@ -23,7 +22,7 @@ class RecordedMotion {
 
   /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
   /// which the script computes the rest; else all `outputs`.
-  Json json(const pipeline::Simulation& simulation, const Drawing& drawing, const LiveModel& live,
+  Json json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing, const analysis::LiveModel& live,
             const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
 
  private:

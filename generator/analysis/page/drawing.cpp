@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/report/drawing.hpp"
+#include "analysis/page/drawing.hpp"
 
 #include <cln/exception.h>
 
@@ -10,11 +10,17 @@
 #include "mechanics/imposition.hpp"
 #include "symbolic/evaluate.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::analysis {
 
 using symbolic::Ref;
 using symbolic::SymbolKind;
 using symbolic::Vec3;
+
+namespace {
+
+constexpr int digits = 20;
+
+}  // namespace
 
 bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
   const std::vector<symbolic::Symbol> symbols = dag.symbols({expression});
@@ -49,6 +55,10 @@ std::size_t Drawing::vector(pipeline::Derived& derived, const Vec3& value) {
   return vector_of(base);
 }
 
+std::size_t Drawing::vector(pipeline::Derived& derived, model::NodeId value) {
+  return vector(derived, mechanics::lower_vector(derived.mechanics, value));
+}
+
 std::size_t Drawing::size(pipeline::Derived& derived, model::NodeId value) {
   symbolic::Dag& dag = *derived.mechanics.dag;
   Ref lowered = value == model::no_node ? dag.integer(-1) : mechanics::lower_scalar(derived.mechanics, value);
@@ -58,7 +68,6 @@ std::size_t Drawing::size(pipeline::Derived& derived, model::NodeId value) {
 }
 
 void Drawing::places(const model::Model& model) {
-  parts_["places"] = Json::array();
   const auto massive = [](std::uint32_t i, const auto& list) {
     return std::any_of(list.begin(), list.end(), [i](const auto& heavy) { return heavy.place == i; });
   };
@@ -67,67 +76,53 @@ void Drawing::places(const model::Model& model) {
     // What a position is measured from is a rod or a thread as often as not; free coordinates of space are no line to
     // the origin.
     const bool linked = place.chart && (place.from > 0 || place.chart->system != "cartesian");
-    parts_["places"].push_back({{"name", place.name},
-                                {"kind", massive(i, model.particles) ? "particle"
-                                         : massive(i, model.bodies)  ? "body"
-                                                                     : "point"},
-                                {"from", linked ? Json(static_cast<int>(place.from) - 1) : Json(nullptr)},
-                                {"at", vector_of(place.name + ".position")}});
+    const char* const kind = massive(i, model.particles) ? "particle" : massive(i, model.bodies) ? "body" : "point";
+    parts_.places.push_back({place.name, kind, linked ? std::optional(static_cast<long>(place.from) - 1) : std::nullopt,
+                             vector_of(place.name + ".position")});
   }
 }
 
 void Drawing::bodies(pipeline::Derived& derived) {
-  parts_["bodies"] = Json::array();
   for (const model::Body& body : derived.model.bodies) {
     const model::Frame& frame = derived.model.frames[body.frame];
     if (frame.stages.empty()) continue;
-    Json axes = Json::array();
-    for (std::size_t k = 0; k < 2; ++k)
-      axes.push_back(vector(derived, mechanics::lower_vector(derived.mechanics, frame.stages.back().e[k])));
-    Json inertia = Json::array();
-    for (std::size_t i = 0; i < 3; ++i) {
-      for (std::size_t k = 0; k < 3; ++k) inertia.push_back(size(derived, body.inertia[i][k]));
-    }
-    parts_["bodies"].push_back(
-        {{"place", body.place - 1}, {"axes", axes}, {"mass", size(derived, body.mass)}, {"inertia", inertia}});
+    DrawnBody drawn{};
+    drawn.place = body.place - 1;
+    for (std::size_t k = 0; k < 2; ++k) drawn.axes[k] = vector(derived, frame.stages.back().e[k]);
+    for (std::size_t i = 0; i < 9; ++i) drawn.inertia[i] = size(derived, body.inertia[i / 3][i % 3]);
+    drawn.mass = size(derived, body.mass);
+    parts_.bodies.push_back(drawn);
   }
 }
 
 void Drawing::forces(pipeline::Derived& derived) {
-  parts_["springs"] = parts_["dampers"] = Json::array();
   for (const model::Force& force : derived.model.forces) {
-    const auto add = [&](const char* list, const forces::Line& line) {
+    const auto add = [&](std::vector<DrawnLine>& list, const forces::Line& line) {
       if (line.from.empty()) return;
-      const auto end = [&](const std::string& name) {
-        return vector(derived, mechanics::lower_vector(derived.mechanics, force.value(name)));
-      };
-      const std::size_t a = end(line.from), b = end(line.to);
-      parts_[list].push_back({{"a", a}, {"b", b}});
+      const std::size_t a = vector(derived, force.value(line.from)), b = vector(derived, force.value(line.to));
+      list.push_back({a, b});
     };
     const forces::Kind& kind = *forces::find(force.kind);
-    add("springs", kind.spring);
-    add("dampers", kind.damper);
+    add(parts_.springs, kind.spring);
+    add(parts_.dampers, kind.damper);
   }
 }
 
 void Drawing::joints(pipeline::Derived& derived) {
-  parts_["joints"] = Json::array();
-  const auto place_of = [&](std::uint32_t frame) -> Json {
+  const auto place_of = [&](std::uint32_t frame) -> std::optional<std::size_t> {
     for (const model::Body& body : derived.model.bodies) {
       if (body.frame == frame) return body.place - 1;
     }
-    return nullptr;
+    return std::nullopt;
   };
   for (const model::Joint& joint : derived.model.joints) {
     if (joint.points[1] == model::no_node) continue;
-    parts_["joints"].push_back({{"name", joint.name},
-                                {"at", vector(derived, mechanics::lower_vector(derived.mechanics, joint.points[1]))},
-                                {"of", {place_of(joint.frames[0]), place_of(joint.frames[1])}}});
+    parts_.joints.push_back(
+        {joint.name, vector(derived, joint.points[1]), {place_of(joint.frames[0]), place_of(joint.frames[1])}});
   }
 }
 
 void Drawing::contacts(pipeline::Derived& derived) {
-  parts_["contacts"] = Json::array();
   mechanics::Mechanics& m = derived.mechanics;
   for (const model::Constraint& constraint : derived.model.constraints) {
     if (!constraint.contact || constraint.contact->arm == model::no_node) continue;
@@ -135,28 +130,41 @@ void Drawing::contacts(pipeline::Derived& derived) {
     Vec3 at = *m.place_position[contact.place];
     const Vec3 arm = mechanics::lower_vector(m, contact.arm);
     for (std::size_t k = 0; k < 3; ++k) at[k] = m.dag->add(at[k], arm[k]);
-    Json tangents = nullptr;
+    std::optional<std::array<std::size_t, 2>> tangents;
     if (contact.other_place == 0 && contact.tangents[0] != model::no_node && contact.tangents[1] != model::no_node) {
-      tangents = {vector(derived, mechanics::lower_vector(m, contact.tangents[0])),
-                  vector(derived, mechanics::lower_vector(m, contact.tangents[1]))};
+      const std::size_t t1 = vector(derived, contact.tangents[0]), t2 = vector(derived, contact.tangents[1]);
+      tangents = {t1, t2};
     }
-    parts_["contacts"].push_back({{"name", constraint.name}, {"at", vector(derived, at)}, {"tangents", tangents}});
+    parts_.contacts.push_back({constraint.name, vector(derived, at), tangents});
   }
 }
 
 void Drawing::shapes(pipeline::Derived& derived) {
-  parts_["shapes"] = Json::array();
   for (const model::Drawn& drawn : derived.model.drawn) {
-    Json lengths = Json::array(), at = Json::array();
-    for (const model::NodeId length : drawn.lengths) lengths.push_back(size(derived, length));
-    for (const model::NodeId x : drawn.at) at.push_back(size(derived, x));
-    parts_["shapes"].push_back(
-        {{"place", drawn.place - 1}, {"kind", drawn.kind}, {"lengths", lengths}, {"axis", drawn.axis}, {"at", at}});
+    DrawnShape shape{drawn.place - 1, drawn.kind, {}, drawn.axis, {}};
+    for (const model::NodeId length : drawn.lengths) shape.lengths.push_back(size(derived, length));
+    for (const model::NodeId x : drawn.at) shape.at.push_back(size(derived, x));
+    parts_.shapes.push_back(std::move(shape));
   }
 }
 
+std::vector<double> sizes_of(const Drawing& drawing, const pipeline::Simulation& simulation) {
+  std::vector<double> result;
+  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R {
+    return cln::cl_R(simulation.scene.parameters[s.index]);
+  };
+  for (const Ref size : drawing.sizes()) {
+    try {
+      result.push_back(
+          cln::double_approx(symbolic::evaluate(*simulation.derived->mechanics.dag, {size}, lookup, digits)[0]));
+    } catch (const std::exception&) {
+      result.push_back(-1);  // unknown, as where it depends on more than parameters
+    }
+  }
+  return result;
+}
+
 std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const std::vector<double>& parameters) {
-  constexpr int digits = 20;
   for (const model::Force& force : derived.model.forces) {
     const model::NodeId gravity = force.acceleration();
     if (gravity == model::no_node) continue;
@@ -178,4 +186,4 @@ std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const s
   return std::nullopt;
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::analysis

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cli/report/live_model.hpp"
+#include "analysis/page/live_model.hpp"
 
 #include <cln/dfloat.h>
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
 #include "program/from_dag.hpp"
 #include "program/restrict.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::analysis {
 namespace {
 
 using symbolic::Ref;
@@ -164,59 +163,43 @@ class Live {
     return function("signals", {{"u_now", u}});
   }
 
-  Json start() const {
+  LiveStart start() const {
     const model::Model& model = derived_.model;
+    const model::Scene& scene = model_scene();
     const std::size_t n = m_.free.size();
-    Json given = Json::array(), parameters = Json::array(), starts = Json::array(), events = Json::array(),
-         states = Json::array();
+    LiveStart start;
+    start.coordinates = n;
     for (std::size_t k = 0; k < 2 * n; ++k) {
       const std::uint32_t c = m_.free[k % n];
       const std::uint8_t order = k < n ? 0 : 1;
       const auto same = [&](const auto& key) { return key.first == c && key.second == order; };
-      const model::Scene& scene = model_scene();
       const bool stated = std::any_of(scene.initial.begin(), scene.initial.end(),
                                       [&](const auto& v) { return v.coordinate == c && v.order == order; });
-      if (stated && std::none_of(scene.solve.begin(), scene.solve.end(), same)) given.push_back(k);
+      if (stated && std::none_of(scene.solve.begin(), scene.solve.end(), same)) start.given.push_back(k);
       const std::string& unit = model.coordinates[c].unit.text;
-      states.push_back({{"name", model.coordinates[c].name + (k < n ? "" : "_dot")},
-                        {"unit", k < n          ? unit
-                                 : unit.empty() ? ""
-                                 : unit == "1"  ? "1/s"
-                                                : unit + "/s"}});
+      start.states.push_back({model.coordinates[c].name + (k < n ? "" : "_dot"), k < n          ? unit
+                                                                                 : unit.empty() ? ""
+                                                                                 : unit == "1"  ? "1/s"
+                                                                                                : unit + "/s"});
     }
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const model::Parameter& p = model.parameters[i];
-      parameters.push_back({{"name", p.name},
-                            {"unit", p.unit.text},
-                            {"note", p.note},
-                            {"value", s_.scene.parameters[i]},
-                            {"positive", p.positive},
-                            {"moved", !is_dependent(i) && !p.start_of && model.start_time != i}});
+      start.parameters.push_back({p.name, p.unit.text, p.note, s_.scene.parameters[i], p.positive,
+                                  !is_dependent(i) && !p.start_of && model.start_time != i});
       const auto place = p.start_of ? std::find(m_.free.begin(), m_.free.end(), *p.start_of) : m_.free.end();
-      if (place != m_.free.end()) starts.push_back({i, static_cast<std::size_t>(place - m_.free.begin())});
+      if (place != m_.free.end()) start.starts.emplace_back(i, static_cast<std::size_t>(place - m_.free.begin()));
     }
-    for (std::size_t i = 0; i < model.events.size(); ++i) {
-      events.push_back({{"name", model.events[i].name},
-                        {"stop", bool(s_.scene.stops[i])},
-                        {"direction", model::name(model.events[i].direction)}});
-    }
-    Json lower = Json::array(), upper = Json::array();
+    for (std::size_t i = 0; i < model.events.size(); ++i)
+      start.events.push_back({model.events[i].name, bool(s_.scene.stops[i]), model::name(model.events[i].direction)});
     for (const std::uint32_t c : m_.free) {
-      lower.push_back(std::isfinite(s_.scene.lower[c]) ? Json(s_.scene.lower[c]) : Json(nullptr));
-      upper.push_back(std::isfinite(s_.scene.upper[c]) ? Json(s_.scene.upper[c]) : Json(nullptr));
+      start.lower.push_back(s_.scene.lower[c]);
+      start.upper.push_back(s_.scene.upper[c]);
     }
-    return {{"n", n},
-            {"states", states},
-            {"lower", lower},
-            {"upper", upper},
-            {"given", given},
-            {"parameters", parameters},
-            {"starts", starts},
-            {"inputs", model.inputs.size()},
-            {"events", events},
-            {"constraints", s_.program.active_constraints},
-            {"event_count", s_.program.event_count()},
-            {"size_count", drawing_.sizes().size()}};
+    start.inputs = model.inputs.size();
+    start.constraints = s_.program.active_constraints;
+    start.event_functions = s_.program.event_count();
+    start.sizes = drawing_.sizes().size();
+    return start;
   }
 
   const pipeline::Simulation& s_;
@@ -235,4 +218,4 @@ LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& draw
   return Live(simulation, drawing, outputs, set).run();
 }
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::analysis

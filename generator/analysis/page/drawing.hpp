@@ -4,14 +4,57 @@
 // among them.
 #pragma once
 
+#include <array>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/json.hpp"
-#include "pipeline/pipeline.hpp"
+#include "pipeline/simulate.hpp"
 
-namespace eomgen::cli {
+namespace eomgen::analysis {
+
+/// Parts of a drawing. A vector is where its first component is among the outputs, a length where it is among the
+/// sizes, a place counts the places.
+struct DrawnPlace {
+  std::string name;
+  const char* kind;          // "particle", "body", "point"
+  std::optional<long> from;  // the place that a line leads to it from, -1: the origin; none: no line
+  std::size_t at;
+};
+struct DrawnBody {
+  std::size_t place;
+  std::array<std::size_t, 2> axes;  // the first two
+  std::size_t mass;
+  std::array<std::size_t, 9> inertia;  // by rows
+};
+struct DrawnLine {
+  std::size_t a, b;  // its ends
+};
+struct DrawnJoint {
+  std::string name;
+  std::size_t at;
+  std::array<std::optional<std::size_t>, 2> of;  // places of its bodies; none: the ground
+};
+struct DrawnContact {
+  std::string name;
+  std::size_t at;
+  std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
+};
+struct DrawnShape {
+  std::size_t place;
+  std::string kind;                  // as [draw] has it
+  std::vector<std::size_t> lengths;  // sizes
+  std::size_t axis;
+  std::vector<std::size_t> at;  // sizes; none: the middle of the body
+};
+struct DrawnParts {
+  std::vector<DrawnPlace> places;
+  std::vector<DrawnBody> bodies;
+  std::vector<DrawnLine> springs, dampers;
+  std::vector<DrawnJoint> joints;
+  std::vector<DrawnContact> contacts;
+  std::vector<DrawnShape> shapes;
+};
 
 class Drawing {
  public:
@@ -23,12 +66,12 @@ class Drawing {
   /// Sizes that depend on parameters only: masses and inertias of bodies, lengths of shapes. What depends on more is a
   /// negative number: unknown.
   const std::vector<symbolic::Ref>& sizes() const { return sizes_; }
-  /// The parts: places, bodies, springs, dampers, joints, contacts, by indices into the outputs and the sizes.
-  const Json& parts() const { return parts_; }
+  const DrawnParts& parts() const { return parts_; }
 
  private:
   std::size_t vector_of(const std::string& base);  // of outputs that are there: base1 .. base3
   std::size_t vector(pipeline::Derived& derived, const symbolic::Vec3& value);  // of new ones
+  std::size_t vector(pipeline::Derived& derived, model::NodeId value);
   std::size_t size(pipeline::Derived& derived, model::NodeId value);
   void places(const model::Model& model);
   void bodies(pipeline::Derived& derived);
@@ -39,8 +82,11 @@ class Drawing {
 
   std::vector<std::string> outputs_;
   std::vector<symbolic::Ref> sizes_;
-  Json parts_;
+  DrawnParts parts_;
 };
+
+/// The sizes of a drawing at the parameters of a run; -1 where one has no value.
+std::vector<double> sizes_of(const Drawing& drawing, const pipeline::Simulation& simulation);
 
 /// The direction in which things fall, where gravity is uniform; nothing where there is none.
 std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const std::vector<double>& parameters);
@@ -48,4 +94,4 @@ std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const s
 /// Whether parameters are all that an expression depends on.
 bool is_of_parameters(const symbolic::Dag& dag, symbolic::Ref expression);
 
-}  // namespace eomgen::cli
+}  // namespace eomgen::analysis

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/report/page_json.hpp"
+
+#include <cmath>
+
+namespace eomgen::cli {
+namespace {
+
+template <class T>
+Json or_null(const std::optional<T>& value) {
+  return value ? Json(*value) : Json(nullptr);
+}
+/// null where there is none.
+Json bounds(const std::vector<double>& list) {
+  Json result = Json::array();
+  for (const double bound : list) result.push_back(std::isfinite(bound) ? Json(bound) : Json(nullptr));
+  return result;
+}
+
+template <class T, class Write>
+Json list_of(const std::vector<T>& list, Write&& write) {
+  Json result = Json::array();
+  for (const T& entry : list) result.push_back(write(entry));
+  return result;
+}
+
+Json line(const analysis::DrawnLine& l) { return {{"a", l.a}, {"b", l.b}}; }
+
+}  // namespace
+
+Json to_json(const analysis::DrawnParts& parts) {
+  Json result;
+  result["places"] = list_of(parts.places, [](const analysis::DrawnPlace& p) -> Json {
+    return {{"name", p.name}, {"kind", p.kind}, {"from", or_null(p.from)}, {"at", p.at}};
+  });
+  result["bodies"] = list_of(parts.bodies, [](const analysis::DrawnBody& b) -> Json {
+    return {{"place", b.place}, {"axes", b.axes}, {"mass", b.mass}, {"inertia", b.inertia}};
+  });
+  result["dampers"] = list_of(parts.dampers, line);
+  result["springs"] = list_of(parts.springs, line);
+  result["joints"] = list_of(parts.joints, [](const analysis::DrawnJoint& j) -> Json {
+    return {{"name", j.name}, {"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
+  });
+  result["contacts"] = list_of(parts.contacts, [](const analysis::DrawnContact& c) -> Json {
+    return {{"name", c.name}, {"at", c.at}, {"tangents", or_null(c.tangents)}};
+  });
+  result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) -> Json {
+    return {{"place", s.place}, {"kind", s.kind}, {"lengths", s.lengths}, {"axis", s.axis}, {"at", s.at}};
+  });
+  return result;
+}
+
+Json to_json(const analysis::LiveStart& start) {
+  return {{"n", start.coordinates},
+          {"states", list_of(start.states,
+                             [](const analysis::LiveState& s) -> Json {
+                               return {{"name", s.name}, {"unit", s.unit}};
+                             })},
+          {"lower", bounds(start.lower)},
+          {"upper", bounds(start.upper)},
+          {"given", start.given},
+          {"parameters", list_of(start.parameters,
+                                 [](const analysis::LiveParameter& p) -> Json {
+                                   return {{"name", p.name},   {"unit", p.unit},         {"note", p.note},
+                                           {"value", p.value}, {"positive", p.positive}, {"moved", p.moved}};
+                                 })},
+          {"starts", list_of(start.starts,
+                             [](const auto& s) {
+                               return Json::array({s.first, s.second});
+                             })},
+          {"inputs", start.inputs},
+          {"events", list_of(start.events,
+                             [](const analysis::LiveEvent& e) -> Json {
+                               return {{"name", e.name}, {"stop", e.stops}, {"direction", e.direction}};
+                             })},
+          {"constraints", start.constraints},
+          {"event_count", start.event_functions},
+          {"size_count", start.sizes}};
+}
+
+}  // namespace eomgen::cli
