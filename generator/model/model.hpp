@@ -181,6 +181,13 @@ struct BodyContact {
   bool rolling = false;     // written as rolling
 };
 
+/// Two bodies that turn together: gear = { .. } between bodies.
+struct Coupled {
+  std::array<std::uint32_t, 3> frames{};         // of A and B, and on which both turn; 0: the ground
+  std::array<NodeId, 2> axes{no_node, no_node};  // unit vectors
+  NodeId ratio = no_node;                        // of the speed of A to that of B
+};
+
 inline constexpr std::size_t joint_components = 6;  // of reactions: three of the force on B, three of the moment
 
 struct Constraint {
@@ -195,6 +202,7 @@ struct Constraint {
   std::optional<Friction> friction;
   std::optional<std::uint32_t> joint;  // whose equations these are
   bool unit = false;                   // the length of Euler parameters
+  std::optional<Coupled> coupled;
   Span span;
 
   bool binds_velocities(std::size_t equation) const { return velocity || (rolling && equation < 2); }

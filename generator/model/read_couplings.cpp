@@ -29,13 +29,15 @@ Typed CouplingsReader::turning(std::uint32_t frame, Span span) {
   return resolver_.meet(resolver_.number(0, span), span, {"the ground", 0, Shape::vector, std::nullopt, ""});
 }
 
-void CouplingsReader::between_bodies(const Value& table, const std::string& what, std::map<std::string, Typed>& local) {
+Coupled CouplingsReader::between_bodies(const Value& table, const std::string& what,
+                                        std::map<std::string, Typed>& local) {
   const Value& bodies = *table.find("bodies");
   const std::string remedy = "write bodies = [\"A\", \"B\"]; one of them may be \"ground\"";
   as(Value::Kind::array, bodies, fmt::format("'bodies' of {}", what), remedy);
   if (bodies.items.size() != 2)
     source_.fail(bodies.span, fmt::format("{} is between {} bodies", what, bodies.items.size()), remedy);
-  std::array<std::uint32_t, 3> frames{};  // A, B, carrier
+  Coupled coupled;
+  std::array<std::uint32_t, 3>& frames = coupled.frames;  // A, B, carrier
   for (std::size_t k = 0; k < 2; ++k) frames[k] = frame_named(bodies.items[k], fmt::format("'bodies' of {}", what));
   const Value* carrier = table.find("carrier");
   if (carrier != nullptr) frames[2] = frame_named(*carrier, fmt::format("'carrier' of {}", what));
@@ -62,7 +64,9 @@ void CouplingsReader::between_bodies(const Value& table, const std::string& what
     const std::map<std::string, Typed> speeds{{"w", turning(frames[k], span)}, {"c", turning(frames[2], span)}};
     local[k == 0 ? "wA" : "wB"] =
         resolver_.text("w - c", speeds, span, {what, on_anything, Shape::vector, std::nullopt, ""});
+    coupled.axes[k] = local[k == 0 ? "a" : "b"].node;
   }
+  return coupled;
 }
 
 void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
@@ -79,7 +83,7 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
                  "keep the angles, or bodies and axes");
   }
   std::map<std::string, Typed> local;
-  if (bodies != nullptr) between_bodies(table, what, local);
+  if (bodies != nullptr) constraint.coupled = between_bodies(table, what, local);
   if (angles != nullptr) {
     const std::string remedy = "write angles = [\"phi\", \"psi\"], two expressions of coordinates";
     as(Value::Kind::array, *angles, fmt::format("'angles' of {}", what), remedy);
@@ -96,6 +100,7 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
   const Context number{fmt::format("the ratio of {}", what), on_motion, Shape::scalar, dimension_of("1"),
                        "a ratio is made of numbers, parameters, coordinates and t"};
   local["ratio"] = resolver_.value(ratio, number);
+  if (constraint.coupled) constraint.coupled->ratio = local["ratio"].node;
   const auto& constant = local["ratio"].constant;
   if (constant && cln::zerop(*constant))
     source_.fail(ratio.span,

@@ -18,7 +18,7 @@ class CouplingsReader : private SectionReader {
   void read(Constraint& constraint, const Entry& entry);
 
  private:
-  void between_bodies(const Value& table, const std::string& what, std::map<std::string, Typed>& local);
+  Coupled between_bodies(const Value& table, const std::string& what, std::map<std::string, Typed>& local);
   Typed turning(std::uint32_t frame, Span span);
 };
 

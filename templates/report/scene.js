@@ -79,6 +79,7 @@ class Scene {
       const inertia = body.inertia.map((i) => sizes[i]), shape = shapeOfInertia(sizes[body.mass], inertia) || barOfInertia(sizes[body.mass], inertia, this.attached(body, rows[0]));
       return shape ? [shape] : [];
     });
+    this.sizes = sizes;
     // A spring between the same ends stands for the line of what is measured from one of them.
     const near = (a, b) => Math.hypot(...minus(a, b)) < 1e-9 * (1 + Math.hypot(...a)), first = rows[0];
     this.sprung = parts.places.map((place) => place.from !== null && parts.springs.some((spring) => {
@@ -184,6 +185,32 @@ class Scene {
     this.line([at(0.65, wide), at(0.4, wide), at(0.4, -wide), at(0.65, -wide)], this.quiet, 2);
     this.line([at(0.55, wide - 2), at(0.55, 2 - wide)], this.quiet, 2);
     this.line([at(0.55, 0), q], this.quiet, 2);
+  }
+
+  // Two wheels that turn together: kind, centres, radii, the common axis, the direction from one to the other across it; null where the axes are not parallel.
+  wheels(coupling, y) {
+    const {parts, sizes} = this, [a, b] = coupling.of.map((place) => this.position(y, parts.places[place].at)), [n, m] = coupling.axes.map((axis) => unit(this.position(y, axis)));
+    if (![...a, ...b, ...n, ...m].every(Number.isFinite) || Math.hypot(...cross(n, m)) > 1e-6) return null;
+    const across = minus(minus(b, a), scaled(n, dot(n, minus(b, a)))), distance = Math.hypot(...across), round = (shape) => shape.kind === "disk" || shape.kind === "cylinder";
+    const drawn = coupling.of.map((place) => parts.shapes.filter((shape) => shape.place === place && round(shape)).map((shape) => sizes[shape.lengths[0]]));
+    const found = wheelsOf(sizes[coupling.ratio] * Math.sign(dot(n, m)), coupling.carried, distance, drawn);
+    return found ? {...found, centres: [a, b], axis: n, along: scaled(across, 1 / distance), distance} : null;
+  }
+  // Pitch circles, each with a spoke that turns with its body, and the belt.
+  coupled(coupling, y) {
+    const found = this.wheels(coupling, y);
+    if (!found) return;
+    const {kind, centres, radii, axis, along, distance} = found, side = cross(axis, along);
+    centres.forEach((centre, k) => {
+      const ring = [], body = this.parts.bodies.find((other) => other.place === coupling.of[k]);
+      for (let s = 0; s <= 64; ++s) ring.push(plus(centre, plus(scaled(along, radii[k] * Math.cos(Math.PI * s / 32)), scaled(side, radii[k] * Math.sin(Math.PI * s / 32)))));
+      this.line(ring, this.quiet, 1.6);
+      if (!body) return;
+      const e = this.axesOf(body, y).map((r) => minus(r, scaled(axis, dot(axis, r)))).find((r) => Math.hypot(...r) > 0.5);
+      this.line([centre, plus(centre, scaled(unit(e), radii[k]))], this.quiet, 1.2);
+    });
+    if (kind !== "belt") return;
+    for (const [p, q] of beltLines(radii, distance, along, side)) this.line([plus(centres[0], p), plus(centres[1], q)], this.quiet, 2);
   }
 
   // The plane that something touches, under the path of the contact.
@@ -310,6 +337,7 @@ class Scene {
     }
     for (const spring of parts.springs) items.push({depth: camera.depth(this.position(y, spring.a)), paint: () => this.coil(this.position(y, spring.a), this.position(y, spring.b))});
     for (const damper of parts.dampers) items.push({depth: camera.depth(this.position(y, damper.a)), paint: () => this.damper(this.position(y, damper.a), this.position(y, damper.b))});
+    for (const coupling of parts.couplings) items.push({depth: Infinity, paint: () => this.coupled(coupling, y)});
     for (const contact of parts.contacts) items.push({depth: Infinity, paint: () => this.dot(this.position(y, contact.at), 3, this.ink)});
     items.sort((a, b) => (a.depth < b.depth ? -1 : a.depth > b.depth ? 1 : 0));
     for (const item of items) item.paint();

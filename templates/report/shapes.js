@@ -69,3 +69,22 @@ function shapeOfModel(drawn, sizes) {
   return null;
 }
 
+// Radii of two wheels that turn together about parallel axes, so far apart; `ratio` is the speed of the first over that of the second. Gears that mesh outside turn
+// against one another and touch between the centres; a gear in a ring, both on a carrier, beyond them. Pulleys of a belt have any size: that of a pair of disks drawn
+// on the two bodies (their radii are `drawn`), else one that leaves the belt to be seen.
+function wheelsOf(ratio, carried, distance, drawn) {
+  const size = Math.abs(ratio);
+  if (!(distance > 0) || !(size > 0) || !Number.isFinite(size)) return null;
+  if (ratio < 0) return {kind: "mesh", radii: [distance / (1 + size), distance * size / (1 + size)]};
+  if (carried) return size === 1 ? null : {kind: "ring", radii: [distance / Math.abs(size - 1), distance * size / Math.abs(size - 1)]};
+  for (const a of drawn[0]) for (const b of drawn[1]) if (Math.abs(b - size * a) < 1e-6 * b) return {kind: "belt", radii: [a, b]};
+  const larger = 0.3 * distance;
+  return {kind: "belt", radii: size > 1 ? [larger / size, larger] : [larger, larger * size]};
+}
+
+// The two straight parts of a belt in the plane of `u` (from one centre to the other) and `v`: its ends on the first and on the second wheel.
+function beltLines([r1, r2], distance, u, v) {
+  const c = (r1 - r2) / distance;
+  if (Math.abs(c) >= 1) return [];
+  return [1, -1].map((side) => { const e = plus(scaled(u, c), scaled(v, side * Math.sqrt(1 - c * c))); return [scaled(e, r1), scaled(e, r2)]; });
+}

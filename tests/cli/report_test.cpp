@@ -4,9 +4,12 @@
 
 #include <cctype>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 #include <vector>
 
 #include "program.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen::test;
 
@@ -166,6 +169,46 @@ initial = { x = 1 }
   REQUIRE(parts["springs"].size() == 2);
   REQUIRE(parts["dampers"].size() == 3);
   CHECK(parts["springs"][0]["a"] != parts["springs"][0]["b"]);
+}
+
+TEST_CASE(
+    "report: gears that mesh touch between their centres with radii as their teeth, a belt runs over its pulleys") {
+  const Folder folder;
+  expect(0, folder, {"report", "geared_hoist", "-o", "page.html", "--t-end", "0.1"});
+  const Json moving = motion(folder.read("page.html")), couplings = moving["parts"]["couplings"];
+  REQUIRE(couplings.size() == 2);
+  CHECK(couplings[0]["of"] == Json::array({0, 1}));
+  CHECK(couplings[1]["of"] == Json::array({1, 2}));
+  CHECK(moving["sizes"][couplings[0]["ratio"].get<std::size_t>()] == -4);
+  CHECK(moving["sizes"][couplings[1]["ratio"].get<std::size_t>()] == 2);
+  CHECK(couplings[0]["axes"][0] != couplings[0]["axes"][1]);
+  // What the page's script makes of them, by Node.
+  std::string script;
+  for (const char* part : {"linear.js", "shapes.js"}) {
+    std::ifstream file(source_folder() + "/templates/report/" + part);
+    script.append(std::istreambuf_iterator<char>(file), {});
+  }
+  folder.write("wheels.js", script + R"(
+const [belt] = beltLines([0.1, 0.2], 1, [1, 0, 0], [0, 1, 0]), ends = [belt[0], plus([1, 0, 0], belt[1])], along = minus(ends[1], ends[0]);
+console.log(JSON.stringify({mesh: wheelsOf(-4, false, 0.25, [[], []]), ring: wheelsOf(0.25, true, 0.3, [[], []]), drawn: wheelsOf(2, false, 1, [[0.2, 0.1], [0.2, 0.15]]),
+  belt: wheelsOf(2, false, 1, [[], []]), none: [wheelsOf(-4, false, 0, [[], []]), wheelsOf(1, true, 1, [[], []]), beltLines([2, 0.5], 1, [1, 0, 0], [0, 1, 0])],
+  tangent: [dot(along, belt[0]), dot(along, belt[1])]}));)");
+  try {
+    const ChildResult result = run_child({{"node", "wheels.js"}, folder.path()});
+    CAPTURE(result.err);
+    REQUIRE(result.status == 0);
+    const Json found = Json::parse(result.out);
+    CHECK(found["mesh"] == Json::parse(R"({"kind": "mesh", "radii": [0.05, 0.2]})"));
+    CHECK(found["ring"]["kind"] == "ring");
+    CHECK(found["ring"]["radii"][0].get<double>() == doctest::Approx(0.4));
+    CHECK(found["ring"]["radii"][1].get<double>() == doctest::Approx(0.1));
+    CHECK(found["drawn"] == Json::parse(R"({"kind": "belt", "radii": [0.1, 0.2]})"));
+    CHECK(found["belt"]["radii"][1].get<double>() == doctest::Approx(2 * found["belt"]["radii"][0].get<double>()));
+    CHECK(found["none"] == Json::parse("[null, null, []]"));
+    for (const Json& product : found["tangent"]) CHECK(std::abs(product.get<double>()) < 1e-15);
+  } catch (const std::runtime_error&) {
+    MESSAGE("skipped: there is no node");
+  }
 }
 
 TEST_CASE(

@@ -20,6 +20,14 @@ namespace {
 
 constexpr int digits = 20;
 
+/// Where the body of this frame is among the places.
+std::optional<std::size_t> place_of(const model::Model& model, std::uint32_t frame) {
+  for (const model::Body& body : model.bodies) {
+    if (body.frame == frame) return body.place - 1;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool is_of_parameters(const symbolic::Dag& dag, Ref expression) {
@@ -34,6 +42,7 @@ Drawing::Drawing(pipeline::Derived& derived) {
   forces(derived);
   joints(derived);
   contacts(derived);
+  couplings(derived);
   shapes(derived);
 }
 
@@ -109,16 +118,11 @@ void Drawing::forces(pipeline::Derived& derived) {
 }
 
 void Drawing::joints(pipeline::Derived& derived) {
-  const auto place_of = [&](std::uint32_t frame) -> std::optional<std::size_t> {
-    for (const model::Body& body : derived.model.bodies) {
-      if (body.frame == frame) return body.place - 1;
-    }
-    return std::nullopt;
-  };
   for (const model::Joint& joint : derived.model.joints) {
     if (joint.points[1] == model::no_node) continue;
-    parts_.joints.push_back(
-        {joint.name, vector(derived, joint.points[1]), {place_of(joint.frames[0]), place_of(joint.frames[1])}});
+    parts_.joints.push_back({joint.name,
+                             vector(derived, joint.points[1]),
+                             {place_of(derived.model, joint.frames[0]), place_of(derived.model, joint.frames[1])}});
   }
 }
 
@@ -136,6 +140,19 @@ void Drawing::contacts(pipeline::Derived& derived) {
       tangents = {t1, t2};
     }
     parts_.contacts.push_back({constraint.name, vector(derived, at), tangents});
+  }
+}
+
+void Drawing::couplings(pipeline::Derived& derived) {
+  for (const model::Constraint& constraint : derived.model.constraints) {
+    if (!constraint.coupled) continue;
+    const model::Coupled& coupled = *constraint.coupled;
+    const auto a = place_of(derived.model, coupled.frames[0]), b = place_of(derived.model, coupled.frames[1]);
+    const Ref ratio = mechanics::lower_scalar(derived.mechanics, coupled.ratio);
+    if (!a || !b || !is_of_parameters(*derived.mechanics.dag, ratio)) continue;
+    const std::size_t n = vector(derived, coupled.axes[0]), m = vector(derived, coupled.axes[1]);
+    parts_.couplings.push_back(
+        {constraint.name, {*a, *b}, {n, m}, size(derived, coupled.ratio), coupled.frames[2] > 0});
   }
 }
 

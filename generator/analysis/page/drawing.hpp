@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a page draws of a model. In: the model and its mechanics. Out: outputs that the code is to have (positions, axes
-// of bodies, ends of springs, points of joints and contacts), and where each part of the drawing finds its numbers
-// among them.
+// of bodies, ends of springs, points of joints and contacts, axes of gears), and where each part of the drawing finds
+// its numbers among them.
 #pragma once
 
 #include <array>
@@ -40,6 +40,14 @@ struct DrawnContact {
   std::size_t at;
   std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
 };
+/// Two bodies that turn together, about axes of their own.
+struct DrawnCoupling {
+  std::string name;
+  std::array<std::size_t, 2> of;    // places
+  std::array<std::size_t, 2> axes;  // unit vectors
+  std::size_t ratio;                // a size: the first speed over the second
+  bool carried = false;             // both turn on a third body
+};
 struct DrawnShape {
   std::size_t place;
   std::string kind;                  // as [draw] has it
@@ -53,6 +61,7 @@ struct DrawnParts {
   std::vector<DrawnLine> springs, dampers;
   std::vector<DrawnJoint> joints;
   std::vector<DrawnContact> contacts;
+  std::vector<DrawnCoupling> couplings;
   std::vector<DrawnShape> shapes;
 };
 
@@ -78,6 +87,7 @@ class Drawing {
   void forces(pipeline::Derived& derived);
   void joints(pipeline::Derived& derived);
   void contacts(pipeline::Derived& derived);
+  void couplings(pipeline::Derived& derived);
   void shapes(pipeline::Derived& derived);
 
   std::vector<std::string> outputs_;

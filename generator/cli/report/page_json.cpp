@@ -44,6 +44,9 @@ Json to_json(const analysis::DrawnParts& parts) {
   result["contacts"] = list_of(parts.contacts, [](const analysis::DrawnContact& c) -> Json {
     return {{"name", c.name}, {"at", c.at}, {"tangents", or_null(c.tangents)}};
   });
+  result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) -> Json {
+    return {{"name", c.name}, {"of", c.of}, {"axes", c.axes}, {"ratio", c.ratio}, {"carried", c.carried}};
+  });
   result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) -> Json {
     return {{"place", s.place}, {"kind", s.kind}, {"lengths", s.lengths}, {"axis", s.axis}, {"at", s.at}};
   });
