@@ -207,6 +207,30 @@ TEST_CASE("the runtime and emitted code include neither the generator nor comput
   CHECK(seen > 20);
 }
 
+TEST_CASE("the command line knows no formula: of the stages that compute it includes registries and values alone") {
+  const std::set<std::string> stages = {"cli",      "abi",   "analysis", "emit",  "model",
+                                        "pipeline", "print", "run",      "system"};
+  const std::set<std::string> headers = {"error.hpp",
+                                         "work.hpp",
+                                         "symbolic/dag.hpp",
+                                         "symbolic/decimal.hpp",
+                                         "program/program.hpp",
+                                         "coordinates/coordinate_system.hpp",
+                                         "couplings/coupling.hpp",
+                                         "derive/routes.hpp",
+                                         "forces/kind.hpp",
+                                         "joints/joint.hpp",
+                                         "rotations/rotation.hpp"};
+  for (const fs::path& file : files_below(root / "generator" / "cli", {".cpp", ".hpp"})) {
+    for (const Include& include : parse_includes(read_text(file))) {
+      const std::string first = first_part(include.path);
+      if (!include.quoted || first == "eom") continue;
+      INFO(place(file, include));
+      CHECK((stages.count(first) == 1 || headers.count(include.path) == 1));
+    }
+  }
+}
+
 TEST_CASE("no file names a folder of the machine that it was written or built on") {
   // Spelt in two halves, since this file is looked at too.
   const std::vector<std::string> never = {
