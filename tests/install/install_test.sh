@@ -25,7 +25,7 @@ if grep -rIlF -e "$source" -e "$build" -e "$scratch/first" -- "$prefix"; then re
 echo "-- a stranger's program is built with it and links neither GiNaC nor CLN"
 cp -R "$source/tests/install/consumer" "$scratch/source"
 cp "$source/examples/hybrid/rough_sphere.cpp" "$scratch/source/"
-"$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
+"$cmake" -S "$scratch/source" -B "$scratch/consumer" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O0 \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/configure.log" 2>&1 ||
   { cat "$scratch/configure.log"; refuse "find_package(eomgen)"; }
 grep -q "^eomgen_DIR:PATH=$prefix/" "$scratch/consumer/CMakeCache.txt" || refuse "another eomgen was found than the one installed here"
@@ -44,7 +44,7 @@ if grep -rIlE '#include *<(ginac|cln)/' -- "$prefix/include"; then refuse "these
 
 echo "-- a stranger's program makes a model in code with the library, prints its LaTeX, emits C and runs it"
 cp -R "$source/examples/library" "$scratch/library"
-"$cmake" -S "$scratch/library" -B "$scratch/library/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O1 \
+"$cmake" -S "$scratch/library" -B "$scratch/library/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DCMAKE_CXX_FLAGS_RELEASE=-O0 \
   -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_FIND_USE_PACKAGE_REGISTRY=OFF >"$scratch/library.log" 2>&1 ||
   { cat "$scratch/library.log"; refuse "find_package(eomgen) for the library"; }
 "$cmake" --build "$scratch/library/build"

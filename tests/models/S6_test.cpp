@@ -2,9 +2,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <eom/ode.hpp>
 
 #include "handwritten_chain.hpp"
+#include "support/by_hand.hpp"
 #include "support/elliptic.hpp"
 #include "support/simulation.hpp"
 
@@ -28,14 +28,12 @@ template <int N>
 std::vector<double> by_hand(const test::Finished& run) {
   std::vector<double> x = run.simulation.scene.q;
   x.insert(x.end(), run.simulation.scene.qdot.begin(), run.simulation.scene.qdot.end());
-  eom::Options options;
-  options.rtol = options.atol = 1e-12;
   const double L = run.parameter("L"), g = run.parameter("g");
   const auto rhs = [&](double, const double* state, double* dx) {
     bench::handwritten_chain<N>(state, L, g, dx);
     return 0;
   };
-  return eom::integrate("dop853", rhs, 0, x, span, options).x;
+  return test::integrate_by_hand(rhs, 0, x, span, 1e-12, 1e-12);
 }
 
 template <int N>

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "models/rough.hpp"
 
-#include <doctest/doctest.h>
-
 #include <utility>
 
-#include "eom/ode.hpp"
+#include "support/by_hand.hpp"
 
 namespace eomgen::test {
 
@@ -29,13 +27,8 @@ std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, dou
 std::vector<run::RunEvent> events_of(const Finished& run) { return run.simulation.result.events; }
 
 void Hand::to(double t) {
-  eom::Options options;
-  options.rtol = 1e-12;
-  options.atol = 1e-14;
   const auto f = [this](double at, const double* state, double* dx) { return rates_(at, state, dx), 0; };
-  const eom::Result end = eom::integrate("dop853", f, t_, x, t, options);
-  REQUIRE(end.outcome == eom::Outcome::done);
-  x = end.x;
+  x = integrate_by_hand(f, t_, x, t, 1e-12, 1e-14);
   t_ = t;
 }
 

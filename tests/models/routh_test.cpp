@@ -5,11 +5,11 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <eom/ode.hpp>
 
 #include "conservation/conserved.hpp"
 #include "derive/routes/lagrange.hpp"
 #include "models/reading_of.hpp"
+#include "support/by_hand.hpp"
 #include "support/simulation.hpp"
 #include "support/sum_values.hpp"
 #include "verify/certificate.hpp"
@@ -109,11 +109,7 @@ TEST_CASE("routh: integrated by itself P9's single equation moves as the full sy
     dx[1] = -at_rest / (residual(1) - at_rest);
     return 0;
   };
-  eom::Options options;
-  options.rtol = 1e-12;
-  options.atol = 1e-13;
-  const eom::Result end = eom::integrate("dop853", f, 0.0, std::vector<double>{1, 0.4}, 10.0, options);
-  REQUIRE(end.outcome == eom::Outcome::done);
-  CHECK(end.x[0] == doctest::Approx(run.final("u")).epsilon(tolerance));
-  CHECK(end.x[1] == doctest::Approx(run.final("u_dot")).epsilon(tolerance).scale(1));
+  const std::vector<double> end = test::integrate_by_hand(f, 0, {1, 0.4}, 10, 1e-12, 1e-13);
+  CHECK(end[0] == doctest::Approx(run.final("u")).epsilon(tolerance));
+  CHECK(end[1] == doctest::Approx(run.final("u_dot")).epsilon(tolerance).scale(1));
 }
