@@ -6,12 +6,15 @@
 #include <eom/modes/contact_state.hpp>
 #include <stdexcept>
 
+#include "abi/functions.hpp"
 #include "program/kinks.hpp"
 
 namespace eomgen::emit {
+namespace {
 
 using program::Slot;
 
+/// The value of a leaf, from the arguments of one state. `takes_inputs`: else inputs are at their defaults.
 std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot,
                        std::uint32_t i, bool takes_inputs) {
   switch (slot) {
@@ -41,6 +44,7 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
   throw std::logic_error("this operand is no leaf");
 }
 
+/// The same for the lanes of `block`.
 std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block, Slot slot,
                           std::uint32_t i, bool takes_inputs) {
   const auto entry = [&](int array) {
@@ -63,6 +67,32 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
     default: break;
   }
   throw std::logic_error("this operand is no leaf");
+}
+
+/// Functions of the state that the ABI gives no inputs see the defaults.
+bool takes_inputs(const std::string& function) {
+  const abi::Function* found = abi::find(function);
+  return found == nullptr || found->takes(abi::Input::inputs) || !found->takes(abi::Input::state);
+}
+
+}  // namespace
+
+std::vector<Loaded> loaded(const std::string& function, const Leaves& leaves, const ModelNames& names,
+                           const EmissionContext& context, const Dialect& dialect, const std::string& block) {
+  const bool lanes = !dialect.lanes.empty(), inputs = takes_inputs(function);
+  std::vector<Loaded> result;
+  for (const Slot slot :
+       {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
+    if ((slot == Slot::time || slot == Slot::prepared) && !lanes) continue;
+    Loaded of{slot, {}};
+    for (const auto& [leaf_slot, i] : leaves) {
+      if (leaf_slot != slot) continue;
+      of.values.emplace_back(i, lanes ? leaf_of_lanes(dialect, context, block, slot, i, inputs)
+                                      : leaf_value(dialect, names, context, slot, i, inputs));
+    }
+    if (!of.values.empty()) result.push_back(std::move(of));
+  }
+  return result;
 }
 
 }  // namespace eomgen::emit

@@ -4,17 +4,23 @@
 
 #include <cstdint>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "emit/straight_line.hpp"
+#include "emit/uses.hpp"
 
 namespace eomgen::emit {
 
-/// The value of a leaf, from the arguments of one state. `takes_inputs`: else inputs are at their defaults.
-std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context,
-                       program::Slot slot, std::uint32_t index, bool takes_inputs);
+/// The leaves of one kind, and their values.
+struct Loaded {
+  program::Slot slot;
+  std::vector<std::pair<std::uint32_t, std::string>> values;  // never empty
+};
 
-/// The same for the lanes of `block` (templates/batch).
-std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context, const std::string& block,
-                          program::Slot slot, std::uint32_t index, bool takes_inputs);
+/// The leaves of a function that need a name of their own, and what they are loaded from: the arguments of one state,
+/// or the lanes of `block` (templates/batch) where the dialect has lanes.
+std::vector<Loaded> loaded(const std::string& function, const Leaves& leaves, const ModelNames& names,
+                           const EmissionContext& context, const Dialect& dialect, const std::string& block);
 
 }  // namespace eomgen::emit

@@ -3,6 +3,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "abi/functions.hpp"
 #include "emit/text.hpp"
 
@@ -88,6 +90,29 @@ std::string argument_names(const program::Function& function, const FunctionText
     list += fmt::format("{}{}", list.empty() ? "" : ", ", argument.name);
   }
   return list;
+}
+
+std::vector<std::string> unused(const program::Function& function, const FunctionText& text, const ModelNames& names,
+                                const Leaves& leaves) {
+  const auto is_read = [&](Slot slot) {
+    return slot != Slot::constant &&
+           std::any_of(leaves.begin(), leaves.end(), [slot](const auto& leaf) { return leaf.first == slot; });
+  };
+  std::vector<std::string> result;
+  for (const Argument& argument : arguments(function.name, text, names)) {
+    const bool read = is_read(argument.slot) || (argument.kind == Argument::Kind::mode && is_read(Slot::contact));
+    if (argument.kind != Argument::Kind::result && !read) result.push_back(argument.name);
+  }
+  for (std::size_t r = 0; r < text.results.size(); ++r) {
+    if (function.results[r].entries.empty()) result.push_back(text.results[r]);
+  }
+  return result;
+}
+
+std::string ignored(const std::vector<std::string>& names) {
+  std::string result;
+  for (const std::string& name : names) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", name);
+  return result.empty() ? "" : result + "\n";
 }
 
 }  // namespace eomgen::emit

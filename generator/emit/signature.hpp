@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "emit/straight_line.hpp"
+#include "emit/uses.hpp"
 
 namespace eomgen::emit {
 
@@ -33,5 +34,12 @@ std::string function_head(const std::string& name, const program::Function& func
 
 /// "t, x, p, u, mode, dx": to hand them on.
 std::string argument_names(const program::Function& function, const FunctionText& text, const ModelNames& names);
+
+/// Arguments of a function that is printed whole which it does not read, and results without entries.
+std::vector<std::string> unused(const program::Function& function, const FunctionText& text, const ModelNames& names,
+                                const Leaves& leaves);
+
+/// "  (void)x; (void)p;", a line; nothing where there are no names.
+std::string ignored(const std::vector<std::string>& names);
 
 }  // namespace eomgen::emit

@@ -4,15 +4,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
 
 #include "abi/functions.hpp"
 #include "emit/expressions.hpp"
 #include "emit/leaves.hpp"
 #include "emit/names.hpp"
-#include "emit/parts.hpp"
 #include "emit/signature.hpp"
 #include "emit/text.hpp"
+#include "emit/uses.hpp"
 #include "emit/value_names.hpp"
 
 namespace eomgen::emit {
@@ -38,27 +37,26 @@ class Printer {
         names_(names),
         context_(context),
         dialect_(dialect),
-        expressions_(function, names, dialect) {}
+        expressions_(function, names, dialect),
+        uses_(uses_of(function)) {}
 
   FunctionText run() {
     const auto& code = function_.code;
     const bool packs = std::any_of(code.begin(), code.end(), [](const Instruction& i) { return i.pack > 0; });
     text_.near_first = packs && dialect_.near_first && is_rhs();
     declare_names();
-    divide();
-    count_uses();
+    declare_work();
     test_ready(-1);
     for (std::size_t i = 0; i < function_.code.size(); ++i) {
-      if (i > 0 && part_[i] != part_[i - 1]) close_part(part_[i - 1]);
+      if (i > 0 && uses_.part[i] != uses_.part[i - 1]) close_part(uses_.part[i - 1]);
       statement(i);
       test_ready(static_cast<std::ptrdiff_t>(i));
     }
     write_results();
-    if (leaves_.size() == 1)
-      text_.body =
-          (in_lanes() ? left_begins(0) : unused_arguments() + using_declarations()) + loads(leaves_[0]) + body_;
+    if (parts() == 1)
+      text_.body = (in_lanes() ? left_begins(0) : unused_arguments() + using_declarations()) + loads(0) + body_;
     else
-      close_part(leaves_.size() - 1);
+      close_part(parts() - 1);
     if (in_lanes()) text_.library = expressions_.called();
     return std::move(text_);
   }
@@ -80,58 +78,25 @@ class Printer {
     }
   }
 
-  void divide() {
-    part_ = parts_of(function_);
-    leaves_.resize(part_.empty() ? 1 : part_.back() + 1);
-    kept_.assign(part_.size(), false);
-    if (leaves_.size() == 1) return;
+  void declare_work() {
+    if (parts() == 1) return;
     text_.work = table_.declare("work");
     if (in_lanes()) kept_count_ = 1;
     text_.code = table_.declare("code");
   }
   void close_part(std::size_t part) {
-    const bool last = part + 1 == leaves_.size();
+    const bool last = part + 1 == parts();
     if (in_lanes()) {  // which lanes are left is handed on in the first entry of the array
       const std::string hand_on =
           last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, left_);
       text_.parts.push_back(fmt::format("  (void){}; (void){};\n", text_.block, text_.work) + left_begins(part) +
-                            loads(leaves_[part]) + body_ + hand_on);
+                            loads(part) + body_ + hand_on);
     } else {
-      text_.parts.push_back(all_arguments() + using_declarations() + loads(leaves_[part]) + body_ +
+      text_.parts.push_back(all_arguments() + using_declarations() + loads(part) + body_ +
                             (last ? "" : "  return 0;\n"));
     }
     body_.clear();
     printed_section_.clear();
-  }
-
-  void use(const Operand& operand, bool repeated, std::size_t part) {
-    if (operand.slot == Slot::value) {
-      uses_[operand.index] += repeated ? 2 : 1;
-      if (part != part_[operand.index]) kept_[operand.index] = true;
-    } else {
-      leaves_[part].insert({operand.slot, operand.index});
-    }
-  }
-  std::size_t part_of(const program::PivotTest& test) const {
-    std::size_t part = 0;
-    for (const Operand* operand : {&test.pivot, &test.scale})
-      if (operand->slot == Slot::value) part = std::max(part, part_[operand->index]);
-    return part;
-  }
-  void count_uses() {
-    uses_.assign(function_.code.size(), 0);
-    for (std::size_t i = 0; i < function_.code.size(); ++i) {
-      const Instruction& instruction = function_.code[i];
-      const bool same_angle = instruction.pack != 0 && i > 0 && function_.code[i - 1].pack == instruction.pack &&
-                              function_.code[i - 1].lane == instruction.lane;
-      if (same_angle) continue;  // the pack names it once
-      for (const Operand& operand : instruction.operands) use(operand, repeats_operands(instruction.op), part_[i]);
-    }
-    for (const program::Result& result : function_.results) {
-      for (const Operand& operand : result.entries) use(operand, false, leaves_.size() - 1);
-    }
-    for (const auto& test : function_.pivots)
-      use(test.pivot, true, part_of(test)), use(test.scale, true, part_of(test));
   }
 
   void statement(std::size_t index) {
@@ -139,7 +104,7 @@ class Printer {
     if (!instruction.section.empty()) section_ = instruction.section;
     if (instruction.pack > text_.packs) open_pack(index);
     const Expression e = instruction.pack == 0 ? expressions_.of(instruction) : from_pack(instruction);
-    if (kept_[index]) {
+    if (uses_.kept[index]) {
       const std::string place = fmt::format("{}[{}]", text_.work, kept_count_++);
       text_.work_size = kept_count_;
       line(fmt::format("{} = {};", place, e.text));
@@ -149,12 +114,12 @@ class Printer {
     std::string name = suggested_name(instruction.name, names_);
     const bool trig = instruction.op == Op::sin || instruction.op == Op::cos;
     if (name.empty() && trig) name = trig_name(function_, instruction, expressions_);
-    if (name.empty() && !trig && uses_[index] <= 1 && e.text.size() <= longest_inline) {
+    if (name.empty() && !trig && uses_.count[index] <= 1 && e.text.size() <= longest_inline) {
       expressions_.set(index, e);
       return;
     }
     name = name.empty() ? fmt::format("v{}", ++temporaries_) : table_.declare(name);
-    line(fmt::format("{} {} = {};", constant(), name, e.text));
+    line(fmt::format("{} {} = {};", dialect_.declares(), name, e.text));
     expressions_.set(index, {name, Expression::atom});
   }
 
@@ -277,7 +242,7 @@ class Printer {
     for (std::size_t i = n + 1; i < names_.state.size(); ++i) sum += fmt::format(" + {}[{}]", dx, i);
     // inf - inf and nan - nan are nan, which equals nothing
     const std::string finite = table_.declare("finite");
-    line(fmt::format("{} {} = {};", constant(), finite, sum));
+    line(fmt::format("{} {} = {};", dialect_.declares(), finite, sum));
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
@@ -341,44 +306,23 @@ class Printer {
     return dialect_.line_comments ? fmt::format("  // {}", text) : fmt::format("  /* {} */", text);
   }
 
-  /// What a declaration begins with.
-  std::string constant() const { return dialect_.typed ? "const " + dialect_.real : "const"; }
   bool in_lanes() const { return !dialect_.lanes.empty(); }
   bool is_rhs() const { return function_.name == "rhs" || function_.name == "rhs_prepared"; }
-  bool is_used(Slot slot) const {
-    return std::any_of(leaves_[0].begin(), leaves_[0].end(),
-                       [slot](const auto& leaf) { return leaf.first == slot && slot != Slot::constant; });
-  }
   /// Of a part, which has all arguments of the function whether it needs them or not.
   std::string all_arguments() const {
     if (!dialect_.typed) return "";
-    std::string result = text_.near_first ? fmt::format("  (void){};", guarded_) : "";
-    for (const Argument& argument : arguments(function_.name, text_, names_))
-      result += fmt::format("{}(void){};", result.empty() ? "  " : " ", argument.name);
-    return result + fmt::format(" (void){};\n", text_.work);
-  }
-  /// Functions of the state that the ABI gives no inputs see the defaults.
-  bool takes_inputs() const {
-    const abi::Function* found = abi::find(function_.name);
-    return found == nullptr || found->takes(abi::Input::inputs) || !found->takes(abi::Input::state);
+    std::vector<std::string> names;
+    if (text_.near_first) names.push_back(guarded_);
+    for (const Argument& argument : arguments(function_.name, text_, names_)) names.push_back(argument.name);
+    names.push_back(text_.work);
+    return ignored(names);
   }
   bool may_be_null(std::size_t result) const {
     const abi::Function* found = abi::find(function_.name);
     return found != nullptr && result < found->results.size() && found->results[result].may_be_null;
   }
   std::string unused_arguments() const {
-    if (!dialect_.typed) return "";
-    std::vector<std::string> unused;
-    for (const Argument& argument : arguments(function_.name, text_, names_)) {
-      const bool used = is_used(argument.slot) || (argument.kind == Argument::Kind::mode && is_used(Slot::contact));
-      if (argument.kind != Argument::Kind::result && !used) unused.push_back(argument.name);
-    }
-    for (std::size_t r = 0; r < text_.results.size(); ++r) {
-      if (function_.results[r].entries.empty()) unused.push_back(text_.results[r]);
-    }
-    std::string result;
-    for (const std::string& name : unused) result += fmt::format("{}(void){};", result.empty() ? "  " : " ", name);
-    return result.empty() ? "" : result + "\n";
+    return dialect_.typed ? ignored(unused(function_, text_, names_, uses_.leaves[0])) : "";
   }
   std::string using_declarations() const {
     if (!dialect_.using_std) return "";
@@ -388,25 +332,16 @@ class Printer {
     return result.empty() ? "" : wrapped(result, "  ") + "\n";
   }
 
-  using Leaves = std::set<std::pair<Slot, std::uint32_t>>;
-  std::string loads(const Leaves& leaves) const {
+  std::size_t parts() const { return uses_.leaves.size(); }
+  std::string loads(std::size_t part) const {
     std::string result;
-    const auto load = [&](Slot slot, auto&& value) {
+    for (const auto& [slot, values] :
+         loaded(function_.name, uses_.leaves[part], names_, context_, dialect_, text_.block)) {
       std::string list;
-      for (const auto& [leaf_slot, index] : leaves) {
-        if (leaf_slot != slot) continue;
-        list += fmt::format("{} {} = {}", list.empty() ? "  " + constant() : ",",
-                            expressions_.size_of({slot, index, false}).text, value(index));
-      }
-      if (!list.empty()) result += wrapped(list + ";", "      ") + "\n";
-    };
-    for (const Slot slot :
-         {Slot::time, Slot::prepared, Slot::state, Slot::parameter, Slot::contact, Slot::input, Slot::side}) {
-      if ((slot == Slot::time || slot == Slot::prepared) && !in_lanes()) continue;
-      load(slot, [&](std::uint32_t i) {
-        return in_lanes() ? leaf_of_lanes(dialect_, context_, text_.block, slot, i, takes_inputs())
-                          : leaf_value(dialect_, names_, context_, slot, i, takes_inputs());
-      });
+      for (const auto& [index, value] : values)
+        list += fmt::format("{} {} = {}", list.empty() ? "  " + dialect_.declares() : ",",
+                            expressions_.size_of({slot, index, false}).text, value);
+      result += wrapped(list + ";", "      ") + "\n";
     }
     return result;
   }
@@ -418,11 +353,8 @@ class Printer {
   Expressions expressions_;
   NameTable table_;
   FunctionText text_;
-  std::vector<std::uint32_t> uses_;
-  std::vector<std::size_t> part_;  // of each instruction
-  std::vector<bool> kept_;         // values that a later part needs
+  Uses uses_;
   std::size_t kept_count_ = 0;
-  std::vector<Leaves> leaves_;  // of each part
   std::string body_, section_, printed_section_, sine_, cosine_, guarded_, left_;
   std::size_t temporaries_ = 0;
 };

@@ -28,6 +28,9 @@ struct Dialect {
   bool using_std = false;  // `using std::sin;` before calls
   bool typed = true;       // false: JavaScript, where constants are declared without a type
   std::string lanes;       // several states side by side: the prefix of the functions of templates/batch
+
+  /// What the declaration of a value begins with.
+  std::string declares() const { return typed ? "const " + real : "const"; }
 };
 
 /// Identifiers of one model: the same in all its functions.
