@@ -19,6 +19,20 @@ struct Operations {
   std::size_t flops() const { return add + mul; }
   /// Stated cost by which routes are ranked: add + mul + 8 div + 12 sqrt + 25 trig + 20 other.
   std::size_t cost() const { return add + mul + 8 * div + 12 * sqrt + 25 * trig + 20 * other; }
+  /// An instruction of so many operands.
+  void count(symbolic::Op op, std::size_t operands) {
+    using symbolic::Op;
+    switch (op) {
+      case Op::add: add += operands - 1; break;
+      case Op::mul: mul += operands - 1; break;
+      case Op::div: ++div; break;
+      case Op::sqrt: ++sqrt; break;
+      case Op::sin:
+      case Op::cos:
+      case Op::tan: ++trig; break;
+      default: ++other; break;
+    }
+  }
 };
 
 /// Where an operand comes from; side: of a kink, contact: of friction, both decoded from `mode`.

@@ -38,17 +38,6 @@ void count_term(const Term& term, const std::vector<std::uint32_t>& divides, Ope
   operations.div += below > 0 ? 1 : 0;
 }
 
-void count_call(Op op, Operations& operations) {
-  switch (op) {
-    case Op::div: ++operations.div; break;
-    case Op::sqrt: ++operations.sqrt; break;
-    case Op::sin:
-    case Op::cos:
-    case Op::tan: ++operations.trig; break;
-    default: ++operations.other; break;
-  }
-}
-
 }  // namespace
 
 Operations count_operations(const Polynomials& graph) {
@@ -58,7 +47,7 @@ Operations count_operations(const Polynomials& graph) {
   for (const NodeId id : order) {
     const Node& node = graph[id];
     if (divides[id] > 1) ++operations.div;
-    if (node.kind == Node::Kind::call) count_call(node.op, operations);
+    if (node.kind == Node::Kind::call) operations.count(node.op, 1);
     if (node.kind != Node::Kind::sum) continue;
     operations.add += node.terms.size() - 1;
     for (const Term& term : node.terms) count_term(term, divides, operations);
@@ -187,20 +176,9 @@ class Schedule {
     for (const Operand& operand : instruction.operands) {
       function_.uses_input = function_.uses_input || operand.slot == Slot::input;
     }
-    count(instruction);
+    function_.operations.count(instruction.op, instruction.operands.size());
     function_.code.push_back(std::move(instruction));
     return {Slot::value, static_cast<std::uint32_t>(function_.code.size() - 1), false};
-  }
-
-  void count(const Instruction& instruction) {
-    Operations& operations = function_.operations;
-    if (instruction.op == Op::add) {
-      operations.add += instruction.operands.size() - 1;
-    } else if (instruction.op == Op::mul) {
-      operations.mul += instruction.operands.size() - 1;
-    } else {
-      count_call(instruction.op, operations);
-    }
   }
 
   Operand product(std::vector<Operand> factors, const std::string& name = "") {

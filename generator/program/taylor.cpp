@@ -7,30 +7,23 @@
 #include <array>
 #include <map>
 #include <stdexcept>
-#include <tuple>
 
 #include "error.hpp"
-#include "program/series_parts.hpp"
+#include "program/series_code.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::program {
 namespace {
 
 using symbolic::Op;
 using symbolic::Rational;
+using symbolic::Slope;
 
 constexpr std::size_t stack_budget = std::size_t{1} << 21;  // bytes of the series of all products
 
-// Operands of `next` whose place in w is known at the end: sum i is {input, i}, these are {side, 0}, {side, 1}.
-constexpr Operand time_rate{Slot::side, 0}, one_over_k{Slot::side, 1}, order_k{Slot::time, 0};
-
-class Recurrences {
+class Recurrences : private SeriesCode {
  public:
-  explicit Recurrences(const Function& rhs) : rhs_(rhs) {
-    start_.name = "taylor_start";
-    next_.name = "taylor_next";
-    start_.constants = rhs.constants;
-    start_.uses_input = rhs.uses_input;
-  }
+  explicit Recurrences(const Function& rhs) : SeriesCode(rhs), rhs_(rhs) {}
 
   Taylor run() {
     for (const Instruction& instruction : rhs_.code) {
@@ -39,60 +32,10 @@ class Recurrences {
       values_.push_back(of(instruction));
       if (first < start_.code.size()) start_.code[first].section = instruction.section;
     }
-    return finished();
+    return finished(rhs_);
   }
 
  private:
-  Series read(const Operand& operand) const {
-    Series series;
-    switch (operand.slot) {
-      case Slot::value: series = values_[operand.index]; break;
-      case Slot::state: series = {true, {Slot::state, operand.index}, {Slot::state, operand.index}}; break;
-      case Slot::time: series = {true, {Slot::time, 0}, time_rate}; break;
-      default: series.zero = {operand.slot, operand.index};
-    }
-    return operand.negated ? minus(series) : series;
-  }
-
-  Operand at_start(Op op, std::vector<Operand> operands, const std::string& name = {}) {
-    return push(start_, op, std::move(operands), name);
-  }
-  Operand at_next(Op op, std::vector<Operand> operands) { return push(next_, op, std::move(operands)); }
-  Operand one() { return constant(start_, 1); }
-
-  /// What `start` computed, in `next`.
-  Operand kept(const Operand& value) {
-    Operand result = value;
-    if (value.slot == Slot::constant) {
-      result = constant(next_, start_.constants[value.index]);
-    } else if (value.slot != Slot::pi) {
-      const auto [at, anew] = kept_.try_emplace({value.slot, value.index}, static_cast<std::uint32_t>(zeros_.size()));
-      if (anew) zeros_.push_back({value.slot, value.index});
-      result = {Slot::prepared, at->second};
-    }
-    result.negated = value.negated;
-    return result;
-  }
-
-  /// sum over 0 < j < k of a_j b_(k-j); the second factor may follow with `close`.
-  Operand open(const Operand& a) {
-    factors_.push_back({a, {}});
-    return {Slot::input, static_cast<std::uint32_t>(factors_.size() - 1)};
-  }
-  void close(const Operand& sum, const Operand& b) { factors_[sum.index][1] = b; }
-  Operand sum(const Operand& a, const Operand& b) {
-    const Operand result = open(a);
-    close(result, b);
-    return result;
-  }
-
-  /// k a_k: of the derivative.
-  Operand weighted(const Series& a) {
-    const auto [at, anew] = weighted_.try_emplace(key(a.next));
-    if (anew) at->second = at_next(Op::mul, {order_k, a.next});
-    return at->second;
-  }
-
   Series copied(const Instruction& instruction) {
     Instruction copy = instruction;
     for (Operand& operand : copy.operands) operand = read(operand).zero;
@@ -109,7 +52,7 @@ class Recurrences {
     }
     if (!moves) return copied(instruction);
     const std::string& name = instruction.name;
-    switch (instruction.op) {
+    switch (instruction.op) {  // what the derivative of a function of one argument does not say
       case Op::add: return total(a, name);
       case Op::mul: return product(a, name);
       case Op::div: return quotient(a[0], a[1], name);
@@ -189,7 +132,7 @@ class Recurrences {
     const Operand inverse = at_start(Op::div, {constant(start_, Rational(1) / 2), c.zero});
     const Operand s = open({});
     c.next = at_next(Op::mul, {kept(inverse), at_next(Op::add, {a.next, minus(s)})});
-    factors_[s.index] = {c.next, c.next};
+    close(s, c.next, c.next);
     return c;
   }
 
@@ -212,9 +155,8 @@ class Recurrences {
   void pair(const Series& a, Series& s, Series& c, bool turns) {
     const Operand w = weighted(a), of_c = open(w), of_s = open(w);
     const auto signed_by = [turns](const Operand& o) { return turns ? minus(o) : o; };
-    s.next = at_next(Op::mul, {one_over_k, at_next(Op::add, {of_c, at_next(Op::mul, {w, kept(c.zero)})})});
-    c.next = at_next(Op::mul,
-                     {one_over_k, at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, kept(s.zero)}))})});
+    s.next = unweighted(at_next(Op::add, {of_c, at_next(Op::mul, {w, kept(c.zero)})}));
+    c.next = unweighted(at_next(Op::add, {signed_by(of_s), signed_by(at_next(Op::mul, {w, kept(s.zero)}))}));
     close(of_c, c.next);
     close(of_s, s.next);
   }
@@ -222,7 +164,7 @@ class Recurrences {
   /// c of c' = b a', where the k-th coefficient of b may be known only afterwards: close(result.second, b.next).
   std::pair<Operand, Operand> integrated(const Series& a, const Operand& b_zero) {
     const Operand w = weighted(a), s = open(w);
-    return {at_next(Op::mul, {one_over_k, at_next(Op::add, {s, at_next(Op::mul, {w, kept(b_zero)})})}), s};
+    return {unweighted(at_next(Op::add, {s, at_next(Op::mul, {w, kept(b_zero)})})), s};
   }
 
   /// c_k of b c' = n', given k n_k.
@@ -232,8 +174,8 @@ class Recurrences {
     std::vector<Operand> rest = n;
     rest.push_back(minus(s));
     const Operand w = at_next(Op::mul, {kept(inverse), at_next(Op::add, rest)});
-    factors_[s.index] = {w, b.next};
-    return at_next(Op::mul, {one_over_k, w});
+    close(s, w, b.next);
+    return unweighted(w);
   }
 
   /// 1 + sign a^2.
@@ -242,18 +184,25 @@ class Recurrences {
     return total({Series{false, one(), {}}, plus ? square : minus(square)});
   }
 
+  /// By the derivative that the table of functions has of it.
   Series function(const std::vector<Series>& a, const Instruction& instruction) {
     Series c{true, copied(instruction).zero, {}};
-    switch (instruction.op) {
-      case Op::exp: {
+    if (instruction.op == Op::atan2) {
+      c.next = angle(a[0], a[1]);
+      return c;
+    }
+    const symbolic::Function& f = symbolic::function_of(instruction.op);
+    const auto fall = [&f](const Operand& o) { return f.falls ? minus(o) : o; };
+    switch (f.slope) {
+      case Slope::self: {
         const auto [next, s] = integrated(a[0], c.zero);
         c.next = next;
         close(s, next);
         return c;
       }
-      case Op::tan:
-      case Op::tanh: {
-        const bool plus = instruction.op == Op::tan;
+      case Slope::one_plus_v2:
+      case Slope::one_minus_v2: {
+        const bool plus = f.slope == Slope::one_plus_v2;
         const Operand square = at_start(Op::mul, {c.zero, c.zero});
         const Operand slope = at_start(Op::add, {one(), plus ? square : minus(square)});
         const auto [next, s] = integrated(a[0], slope);
@@ -261,18 +210,15 @@ class Recurrences {
         close(s, one_and_square(c, plus).next);
         return c;
       }
-      case Op::sinh:
-      case Op::cosh: {
-        const bool odd = instruction.op == Op::sinh;
-        Series other{true, at_start(odd ? Op::cosh : Op::sinh, {a[0].zero}), {}};
-        pair(a[0], odd ? c : other, odd ? other : c, false);
+      case Slope::other: {
+        const bool odd = f.parity == symbolic::Parity::odd;
+        Series other{true, at_start(f.other, {a[0].zero}), {}};
+        pair(a[0], odd ? c : other, odd ? other : c, f.falls || symbolic::function_of(f.other).falls);
         return c;
       }
-      case Op::log: c.next = divided({weighted(a[0])}, a[0]); return c;
-      case Op::atan: c.next = divided({weighted(a[0])}, one_and_square(a[0], true)); return c;
-      case Op::asin: c.next = divided({weighted(a[0])}, root(one_and_square(a[0], false))); return c;
-      case Op::acos: c.next = divided({minus(weighted(a[0]))}, root(one_and_square(a[0], false))); return c;
-      case Op::atan2: c.next = angle(a[0], a[1]); return c;
+      case Slope::over_x: c.next = divided({weighted(a[0])}, a[0]); return c;
+      case Slope::over_one_plus_x2: c.next = divided({weighted(a[0])}, one_and_square(a[0], true)); return c;
+      case Slope::over_root: c.next = divided({fall(weighted(a[0]))}, root(one_and_square(a[0], false))); return c;
       default: throw std::logic_error("an operation without a recurrence");
     }
   }
@@ -341,90 +287,8 @@ class Recurrences {
     return c;
   }
 
-  void write_results() {
-    for (const Result& result : rhs_.results) {
-      std::vector<Operand> zero, next;
-      for (const Operand& entry : result.entries) {
-        const Series series = read(entry);
-        zero.push_back(series.zero);
-        next.push_back(series.moves ? series.next : constant(next_, 0));
-      }
-      start_.results.push_back({result.name, zero, result.code});
-      if (!result.is_test()) next_.results.push_back({result.name, next});
-    }
-    for (const PivotTest& test : rhs_.pivots) start_.pivots.push_back({read(test.pivot).zero, read(test.scale).zero});
-    const Operand none = constant(next_, 0);
-    while (factors_.empty() || factors_.size() % taylor_lanes != 0) factors_.push_back({none, none});
-    std::array<std::vector<Operand>, 2> columns;
-    for (const std::array<Operand, 2>& pair : factors_) {
-      columns[0].push_back(pair[0]);
-      columns[1].push_back(pair[1]);
-    }
-    next_.results.insert(next_.results.begin(), {{"a", columns[0]}, {"b", columns[1]}});
-    start_.results.insert(start_.results.begin(), {"z", zeros_});
-  }
-
-  /// Operands of `next` that were named before the length of w was known.
-  void place(Operand& o) const {
-    const auto zeros = static_cast<std::uint32_t>(zeros_.size()), sums = static_cast<std::uint32_t>(factors_.size());
-    if (o.slot == Slot::input) o = {Slot::prepared, zeros + o.index, o.negated};
-    if (o.slot == Slot::side) o = {Slot::prepared, zeros + sums + o.index, o.negated};
-  }
-
-  /// A partner that was added has its angle in another pack, perhaps: packs and lanes anew, by what comes one after
-  /// another.
-  void number_packs() {
-    std::uint32_t packs = 0, before = 0;
-    std::vector<Operand> angles;
-    for (Instruction& instruction : start_.code) {
-      const std::uint32_t pack = instruction.pack;
-      if (pack != 0) {
-        if (pack != before) angles.clear(), ++packs;
-        const auto at = std::find(angles.begin(), angles.end(), instruction.operands[0]);
-        instruction.pack = packs;
-        instruction.lane = static_cast<std::uint32_t>(at - angles.begin());
-        if (at == angles.end()) angles.push_back(instruction.operands[0]);
-      }
-      before = pack;
-    }
-  }
-
-  Taylor finished() {
-    write_results();
-    number_packs();
-    for (Instruction& instruction : next_.code)
-      std::for_each(instruction.operands.begin(), instruction.operands.end(), [this](Operand& o) { place(o); });
-    for (Result& result : next_.results)
-      std::for_each(result.entries.begin(), result.entries.end(), [this](Operand& o) { place(o); });
-    for (Function* function : {&start_, &next_}) count(*function);
-    return {std::move(start_), std::move(next_), zeros_.size(), factors_.size()};
-  }
-
-  static void count(Function& function) {
-    Operations& o = function.operations;
-    for (const Instruction& instruction : function.code) {
-      const std::size_t n = instruction.operands.size();
-      switch (instruction.op) {
-        case Op::add: o.add += n - 1; break;
-        case Op::mul: o.mul += n - 1; break;
-        case Op::div: ++o.div; break;
-        case Op::sqrt: ++o.sqrt; break;
-        case Op::sin:
-        case Op::cos:
-        case Op::tan: ++o.trig; break;
-        default: ++o.other;
-      }
-    }
-  }
-
   const Function& rhs_;
-  Function start_, next_;
   std::string section_;
-  std::vector<Series> values_;                   // per instruction of rhs
-  std::vector<std::array<Operand, 2>> factors_;  // of the sums
-  std::vector<Operand> zeros_;
-  std::map<std::pair<Slot, std::uint32_t>, std::uint32_t> kept_;
-  std::map<Key, Operand> weighted_;
   std::map<std::pair<Keys, Keys>, Series> products_;
   std::map<Keys, std::array<Series, 2>> trig_;
 };
