@@ -117,15 +117,15 @@ Json RunReport::json() const {
     if (e.kind == "impulse") events.back()["work"] = number(e.work);
   }
   Json changes = Json::array();
-  for (const run::SolverChange& c : result.solver_changes)
-    changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", c.reason}});
+  for (const eom::MethodChange& c : result.reason.changes)
+    changes.push_back({{"t", c.t}, {"from", c.from}, {"to", c.to}, {"reason", eom::to_text(c)}});
   for (const run::KinkCrossings& k : result.kinks) kinks.push_back({{"of", k.of}, {"crossings", k.count}});
   Json document{
       {"format", 1},
       {"model", derived.model.id},
       {"scene", scene.name},
       {"solver", result.solver},
-      {"solver_reason", result.reason},
+      {"solver_reason", run::to_text(result.reason)},
       {"solver_changes", changes},
       {"outcome", eom::name(result.outcome)},
       {"detail", result.detail},
@@ -196,16 +196,16 @@ std::string RunReport::text() const {
                                           program.route, system::name(program.approach)));
   const std::string accuracy =
       scene.step > 0 ? fmt::format("step {}", scene.step) : fmt::format("rtol {}, atol {}", scene.rtol, scene.atol);
-  out += line("solver", fmt::format("{} ({}), {}", result.solver, result.reason, accuracy));
+  out += line("solver", fmt::format("{} ({}), {}", result.solver, run::to_text(result.reason), accuracy));
   out += line("outcome", fmt::format("{} at t = {}{}{}", eom::name(result.outcome), result.t,
                                      result.detail.empty() ? "" : ": ", result.detail));
-  for (std::size_t k = 0; k < result.solver_changes.size(); ++k) {
-    const run::SolverChange& c = result.solver_changes[k];
+  for (std::size_t k = 0; k < result.reason.changes.size(); ++k) {
+    const eom::MethodChange& c = result.reason.changes[k];
     if (k == most_changes_told) {
-      out += line("solver change", fmt::format("and {} more", result.solver_changes.size() - k));
+      out += line("solver change", fmt::format("and {} more", result.reason.changes.size() - k));
       break;
     }
-    out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, c.reason));
+    out += line("solver change", fmt::format("t = {:.6g}: {} to {}: {}", c.t, c.from, c.to, eom::to_text(c)));
   }
   for (const run::RunEvent& e : result.events) {
     out += line("event", fmt::format("{} at t = {}: {}{}", e.kind, e.t, e.name,

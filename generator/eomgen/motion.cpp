@@ -58,7 +58,7 @@ void take_result(const run::RunResult& from, Motion& to) {
   to.outcome = eom::name(from.outcome);
   to.detail = from.detail;
   to.solver = from.solver;
-  to.reason = from.reason;
+  to.reason = run::to_text(from.reason);
   to.t = from.t;
   to.final = from.final;
   to.error_estimate = from.error_estimate;

@@ -262,9 +262,10 @@ Simulation simulate(const SimulationRequest& request) {
   run.interrupt = request.interrupt;
   run.max_steps = request.max_steps;
   run::RunResult result = request.integrate ? run::integrate_scene(run) : run::RunResult{};
-  if (possible && !exchanges)
-    result.reason += fmt::format("; the model's own coordinates are kept where they fail, since {}",
-                                 keeps_charts != nullptr ? keeps_charts->why : "something may jump at a given time");
+  if (possible && !exchanges) {
+    result.reason.charts_refused = keeps_charts;
+    result.reason.charts_kept_for_jumps = keeps_charts == nullptr;
+  }
   if (charts) result.seconds_integrate = std::max(0.0, result.seconds_integrate - charts->seconds());
   return {std::move(derived), std::move(scene),  std::move(program), std::move(certificate),
           std::move(code),    std::move(result), std::move(charts)};

@@ -114,7 +114,7 @@ class Search {
     roots.resize(moving);
     find_bounds(roots);
     std::erase_if(cuts_, [&](const Break& b) { return b.before == b.after; });
-    return {std::move(cuts_), std::move(bounds_), std::move(incomplete_)};
+    return {std::move(cuts_), std::move(bounds_), unfollowed_from_};
   }
 
  private:
@@ -259,8 +259,7 @@ class Search {
   }
 
   void tell(double t) {
-    if (incomplete_.empty())
-      incomplete_ = fmt::format("a condition on time changes too often to be followed beyond t = {:.6g}", t);
+    if (!unfollowed_from_) unfollowed_from_ = t;
   }
 
   /// The largest expressions of time alone that something else uses, or that are part of the equations themselves.
@@ -382,7 +381,7 @@ class Search {
   std::vector<std::vector<Ref>> surfaces_;
   std::set<std::uint32_t> seen_terms_;
   std::vector<eom::StepBound> bounds_;
-  std::string incomplete_;
+  std::optional<double> unfollowed_from_;
   std::vector<double> at_;
   std::vector<Sloped> box_;
 };

@@ -18,9 +18,9 @@ namespace eomgen::run {
 using eom::hybrid::Break;
 
 struct Clock {
-  std::vector<Break> breaks;           // inside the span, ascending; without the jumps of tables
-  std::vector<eom::StepBound> bounds;  // none: nothing is narrow beside the span
-  std::string incomplete;              // what could not be looked at to its end, as a sentence, or ""
+  std::vector<Break> breaks;                   // inside the span, ascending; without the jumps of tables
+  std::vector<eom::StepBound> bounds;          // none: nothing is narrow beside the span
+  std::optional<double> unfollowed_from = {};  // a condition on time changes too often to be followed from there on
 };
 
 /// An input of the scene: what it is as an expression, where it is one.

@@ -12,36 +12,45 @@
 #include "run/integration.hpp"
 
 namespace eomgen::run {
-std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene) {
+
+static SolverReason::Slopes slopes_of(const Code& code) {
+  return code.jac != nullptr ? SolverReason::Slopes::compiled : SolverReason::Slopes::differences;
+}
+
+std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene) {
+  using Basis = SolverReason::Basis;
   if (asked != eom::Automatic::name) {
     solvers_among("run", {asked});
     if (!method_named(asked).adaptive && scene.step <= 0) {
       throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
                   "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
     }
-    return {asked, "as asked for"};
+    return {asked, Basis::asked};
   }
-  if (scene.step > 0) return {"rk4", "a fixed step is given"};
-  return {eom::Automatic::name, scene.rtol > 1e-6
-                                    ? "rtol is above 1e-6, where order 5 needs the fewest evaluations"
-                                    : "rtol is 1e-6 or below, where order 8 needs the fewest evaluations"};
+  if (scene.step > 0) return {"rk4", Basis::fixed_step};
+  return {eom::Automatic::name, scene.rtol > 1e-6 ? Basis::loose_tolerance : Basis::tight_tolerance};
+}
+
+/// Before it runs: what the solver takes of the code.
+static SolverReason reason_of(const RunRequest& request, const std::string& solver, SolverReason::Basis basis) {
+  SolverReason reason;
+  reason.basis = basis;
+  const eom::MethodInfo& method = method_named(solver);
+  if (uses_jacobian(method)) reason.slopes = slopes_of(request.code);
+  reason.series = method.needs.required.has(eom::Feature::series);
+  reason.keeps_constraints = method.needs.required.has(eom::Feature::constraints);
+  reason.momenta = method.needs.required.has(eom::Feature::momenta);
+  reason.discrete_forces = reason.momenta && request.watch_power;
+  reason.time_unfollowed_from = request.scene.clock.unfollowed_from;
+  return reason;
 }
 
 /// What `auto` did: the method that it ended with, the changes, where df/dx came from.
-static void tell_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
+static void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
   if (choice.method != nullptr) result.solver = choice.method;
-  for (const eom::MethodChange& change : choice.changes) {
-    result.solver_changes.push_back({change.t, change.from, change.to, change.why});
-  }
-  if (choice.changes.empty()) return;
-  const eom::MethodChange& first = choice.changes.front();
-  result.reason = fmt::format("{} until t = {:.6g}, since {}; then {}: {}", first.from, first.t, result.reason,
-                              first.to, first.why);
-  if (choice.changes.size() > 1) result.reason += fmt::format("; {} changes in all", choice.changes.size());
-  if (result.statistics.jacobians == 0) return;
-  result.reason += request.code.jac != nullptr
-                       ? "; df/dx from the equations"
-                       : "; df/dx by differences, since it was not compiled (solver radau5 has it compiled)";
+  result.reason.changes = choice.changes;
+  if (!choice.changes.empty() && result.statistics.jacobians > 0)
+    result.reason.slopes_after_change = slopes_of(request.code);
 }
 
 /// Why the run ended, in the words of the command line.
@@ -83,30 +92,17 @@ static void tell_error(const RunRequest& request, const eom::hybrid::RunResult& 
 
 RunResult integrate_scene(const RunRequest& request) {
   RunResult result;
-  std::tie(result.solver, result.reason) = choose_solver(request.scene.solver, request.scene);
-  require_eligible(result.solver, features_of(request.scene) | features_of(request.code));
-  const eom::Needs& needs = method_named(result.solver).needs;
-  if (uses_jacobian(method_named(result.solver)))
-    result.reason += request.code.jac != nullptr ? ", df/dx from the equations"
-                                                 : ", df/dx by differences, since it was not compiled";
-  if (needs.required.has(eom::Feature::series)) result.reason += ", series from the equations";
-  if (needs.required.has(eom::Feature::constraints))
-    result.reason +=
-        "; constraints on positions and velocities are equations of each step, so that nothing is projected";
-  if (needs.required.has(eom::Feature::momenta)) {
-    result.reason += ", momenta from the equations";
-    if (request.watch_power)
-      result.reason += "; forces that change the energy enter by d'Alembert's principle in discrete form";
-  }
-  const eom::hybrid::Problem problem = problem_of(request, result.solver);
+  const auto [solver, basis] = choose_solver(request.scene.solver, request.scene);
+  result.solver = solver;
+  require_eligible(solver, features_of(request.scene) | features_of(request.code));
+  result.reason = reason_of(request, solver, basis);
+  const eom::hybrid::Problem problem = problem_of(request, solver);
   if (const std::vector<eom::hybrid::FinerSteps> finer = eom::hybrid::finer_steps(problem); !finer.empty())
-    result.reason += fmt::format("; shorter steps from t = {:.6g} on where a function of time changes within one",
-                                 finer.front().begin);
-  if (!request.scene.clock.incomplete.empty()) result.reason += "; " + request.scene.clock.incomplete;
+    result.reason.shorter_steps_from = finer.front().begin;
   const eom::hybrid::RunResult run = run_problem(problem);
   if (request.scene.t1 == request.scene.t0 && result.solver == eom::Automatic::name) {
     result.solver = "dop853";
-    result.reason = "nothing moves from the start to the start";
+    result.reason = {SolverReason::Basis::nothing_moves};
   }
   result.outcome = run.outcome;
   result.detail = told_end(request, run);
@@ -114,7 +110,7 @@ RunResult integrate_scene(const RunRequest& request) {
   result.statistics = run.statistics;
   result.seconds_integrate = run.seconds;
   result.seconds_estimate = run.error.seconds;
-  tell_choice(request, run.choice, result);
+  take_choice(request, run.choice, result);
   for (std::size_t k = 0; k < request.code.kinks.size(); ++k)
     result.kinks.push_back({request.code.kinks[k], run.kink_crossings[k]});
   for (std::size_t i = 0; i < problem.invariants.size(); ++i)
@@ -134,12 +130,7 @@ RunResult integrate_scene(const RunRequest& request) {
     if (!size) result.final.emplace_back(name, run.outputs[i]);
   }
   result.state = run.state;
-  if (run.unsure_from) {
-    result.reason += fmt::format(
-        "; whether a force that is narrow in the state lies in a step could not be told from t = {:.6g} on (--max-step "
-        "makes steps shorter)",
-        *run.unsure_from);
-  }
+  result.reason.narrow_unsure_from = run.unsure_from;
   tell_error(request, run, result);
   return result;
 }

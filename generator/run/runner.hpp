@@ -16,6 +16,7 @@
 #include "run/event_ranges.hpp"
 #include "run/narrow_forces.hpp"
 #include "run/scene.hpp"
+#include "run/solver_reason.hpp"
 
 namespace eomgen::run {
 
@@ -40,12 +41,6 @@ struct KinkCrossings {
   std::size_t count = 0;
 };
 
-/// One change of method on the way (of `auto` only).
-struct SolverChange {
-  double t;
-  std::string from, to, reason;
-};
-
 struct RunResult {
   // Defined once: every file that holds one would compile them anew.
   RunResult();
@@ -55,8 +50,8 @@ struct RunResult {
   RunResult& operator=(RunResult&&) noexcept;
   ~RunResult();
 
-  std::string solver, reason;  // the method that ended the run, and why it was taken
-  std::vector<SolverChange> solver_changes;
+  std::string solver;   // the method that ended the run
+  SolverReason reason;  // why it was taken
   eom::Outcome outcome = eom::Outcome::done;
   std::string detail;
   double t = 0;
@@ -135,6 +130,6 @@ RunResult integrate_scene(const RunRequest& request);
 
 /// The solver for what was asked for, and why; auto where steps are chosen, and stiffness may change the method on the
 /// way.
-std::pair<std::string, std::string> choose_solver(const std::string& asked, const Scene& scene);
+std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene);
 
 }  // namespace eomgen::run

@@ -14,10 +14,9 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <span>
-#include <string>
+#include <string_view>
 #include <vector>
 
 #include "eom/explicit_rk/dop853.hpp"
@@ -168,23 +167,16 @@ class Automatic {
     const double limit = fifth ? limit_of_dopri5 : limit_of_dop853;
     if (value > limit) {
       calm_ = 0;
-      if (++stiff_ >= choice_.patience)
-        plan(Active::radau5, "|h lambda| was beyond %.1f in %.0f steps, the limit of stability of %s: stiff", limit,
-             stiff_, choice_.method);
+      if (++stiff_ >= choice_.patience) plan(Active::radau5, ChangeReason::beyond_stability, limit, stiff_);
     } else if (++calm_ == calm) {
       stiff_ = 0;
     }
     far_ = !fifth && value > far_beyond() ? far_ + 1 : 0;
     if (far_ >= in_a_row * choice_.patience / patience && !next_.has_value())
-      plan(Active::radau5,
-           "|h lambda| was above %.1f in %.0f steps in a row, which a motion that fast would not allow %s for its "
-           "accuracy: stiff",
-           far_beyond(), far_, choice_.method);
+      plan(Active::radau5, ChangeReason::beyond_accuracy, far_beyond(), far_);
     vibrates_ = fifth && value > vibrates_beyond() ? vibrates_ + 1 : 0;
     if (vibrates_ >= in_a_row && !next_.has_value())
-      plan(Active::dop853,
-           "|h lambda| was above %.1f in %.0f steps in a row, near the limit of stability of %s along vibrations",
-           vibrates_beyond(), vibrates_, choice_.method);
+      plan(Active::dop853, ChangeReason::vibrations, vibrates_beyond(), vibrates_);
   }
 
   void look_back() {
@@ -193,9 +185,8 @@ class Automatic {
     calm_ = value < explicit_limit() ? calm_ + 1 : 0;
     if (calm_ < patience) return;
     choice_.patience = implicit_steps_ < soon ? 2 * choice_.patience : patience;
-    plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853,
-         "h rho(df/dx) was below %.1f for %.0f steps in a row, which %s can take: no longer stiff", explicit_limit(),
-         calm_, explicit_name());
+    plan(options_.rtol > rtol_of_dopri5 ? Active::dopri5 : Active::dop853, ChangeReason::no_longer_stiff,
+         explicit_limit(), calm_);
   }
 
   /// sqrt(|J J v| / |v|), which is right at once where J J v = -omega^2 v; v turns towards the fastest motion from step
@@ -231,17 +222,14 @@ class Automatic {
       direction_[i] = (1 + 0.5 * static_cast<double>(i % 3)) / std::sqrt(static_cast<double>(m));
   }
 
-  void plan(Active next, const char* why, double limit, int steps, const char* method) {
-    char text[200];
-    std::snprintf(text, sizeof text, why, limit, static_cast<double>(steps), method);
-    why_ = text;
+  void plan(Active next, ChangeReason why, double limit, int steps) {
+    planned_ = {t1_, choice_.method, choice_.method, why, limit, steps};
     next_ = next;
   }
 
   void change() {
     past_ = statistics();
     const std::vector<double> x(x0(), x0() + size()), f(derivative0(), derivative0() + size());
-    const char* const before = choice_.method;
     active_ = *next_;
     next_.reset();
     choice_.method = active_ == Active::radau5   ? implicit::Radau5::name
@@ -249,7 +237,9 @@ class Automatic {
                                                  : explicit_rk::Dop853::name;
     make(x);
     with([&](auto& m) { m.start_with_derivative(f.data()); });
-    choice_.changes.push_back({t1_, before, choice_.method, why_});
+    planned_.t = t1_;
+    planned_.to = choice_.method;
+    choice_.changes.push_back(planned_);
     stiff_ = far_ = calm_ = vibrates_ = implicit_steps_ = 0;
     level_ = 0;
     start_direction();
@@ -265,7 +255,7 @@ class Automatic {
   std::optional<Dop853> dop853_;
   std::optional<implicit::Radau5> radau5_;
   std::optional<Active> next_;
-  std::string why_;
+  MethodChange planned_{};
   Statistics past_;
   double t1_ = 0, h_ = 0, level_ = 0;
   int stiff_ = 0, far_ = 0, calm_ = 0, vibrates_ = 0, implicit_steps_ = 0;

@@ -5,6 +5,8 @@
 
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
+#include <cstdio>
 #include <functional>
 #include <limits>
 #include <span>
@@ -19,12 +21,46 @@ namespace eom {
 /// dx = f(t, x), returning a code of the C ABI (0: fine). The convenience form; integrate() takes any such callable.
 using Rhs = std::function<int(double t, const double* x, double* dx)>;
 
+/// Why `auto` changes its method.
+enum class ChangeReason : std::uint8_t {
+  beyond_stability,  // |h lambda| was beyond the limit of stability: stiff
+  beyond_accuracy,   // |h lambda| was above what a motion that fast would allow for its accuracy: stiff
+  vibrations,        // |h lambda| was near the limit of stability along vibrations
+  no_longer_stiff    // h rho(df/dx) was low
+};
+
 /// One change of method by `auto`.
 struct MethodChange {
   double t;
   const char *from, *to;
-  std::string why;
+  ChangeReason why;
+  double limit;  // of |h lambda|, or of h rho(df/dx)
+  int steps;     // so many were beyond it
 };
+
+/// Why, as a clause.
+inline std::string to_text(const MethodChange& change) {
+  const auto text = [&change](const char* words, const char* method) {
+    char buffer[200];
+    std::snprintf(buffer, sizeof buffer, words, change.limit, change.steps, method);
+    return std::string(buffer);
+  };
+  switch (change.why) {
+    case ChangeReason::beyond_stability:
+      return text("|h lambda| was beyond %.1f in %d steps, the limit of stability of %s: stiff", change.from);
+    case ChangeReason::beyond_accuracy:
+      return text(
+          "|h lambda| was above %.1f in %d steps in a row, which a motion that fast would not allow %s for its "
+          "accuracy: stiff",
+          change.from);
+    case ChangeReason::vibrations:
+      return text("|h lambda| was above %.1f in %d steps in a row, near the limit of stability of %s along vibrations",
+                  change.from);
+    case ChangeReason::no_longer_stiff:
+      return text("h rho(df/dx) was below %.1f for %d steps in a row, which %s can take: no longer stiff", change.to);
+  }
+  return "";
+}
 
 /// What `auto` (automatic.hpp) integrates with, and how it came to that.
 struct Choice {

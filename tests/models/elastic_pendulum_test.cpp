@@ -43,7 +43,7 @@ TEST_CASE(
     const run::RunResult& result = stiff.simulation.result;
     CHECK(result.outcome == eom::Outcome::done);
     CHECK(result.solver == solver);
-    CHECK(result.reason == "as asked for, df/dx from the equations");
+    CHECK(run::to_text(result.reason) == "as asked for, df/dx from the equations");
     CHECK(result.statistics.steps < 2000);
     CHECK(result.statistics.difference_evaluations == 0);
     CHECK(difference(stiff, resolved, false) < 1e-8);

@@ -89,7 +89,7 @@ TEST_CASE("clock: kinks of time are found however near to one another, each to t
     return dag.select(number(dag, 9999, 10000), dag.call(Op::sin, dag.mul(number(dag, 20), t)), dag.one(), dag.zero());
   });
   CHECK(periodic.breaks.size() == 64);  // 32 maxima in 200 rad
-  CHECK(periodic.incomplete.empty());
+  CHECK(!periodic.unfollowed_from);
   const run::Clock touches =
       clock_of([](Dag& dag, Ref t) { return dag.call(Op::abs, dag.power(dag.sub(t, number(dag, 3)), 2)); });
   CHECK(touches.breaks.empty());

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/solver_reason.hpp"
+
+#include <fmt/format.h>
+
+namespace eomgen::run {
+namespace {
+
+using Basis = SolverReason::Basis;
+using Slopes = SolverReason::Slopes;
+
+const char* words(Basis basis) {
+  switch (basis) {
+    case Basis::asked: return "as asked for";
+    case Basis::fixed_step: return "a fixed step is given";
+    case Basis::loose_tolerance: return "rtol is above 1e-6, where order 5 needs the fewest evaluations";
+    case Basis::tight_tolerance: return "rtol is 1e-6 or below, where order 8 needs the fewest evaluations";
+    case Basis::nothing_moves: return "nothing moves from the start to the start";
+  }
+  return "";
+}
+
+/// Of the solver that was taken first.
+std::string first(const SolverReason& reason) {
+  std::string text = words(reason.basis);
+  if (reason.slopes == Slopes::compiled) text += ", df/dx from the equations";
+  if (reason.slopes == Slopes::differences) text += ", df/dx by differences, since it was not compiled";
+  if (reason.series) text += ", series from the equations";
+  if (reason.keeps_constraints)
+    text += "; constraints on positions and velocities are equations of each step, so that nothing is projected";
+  if (reason.momenta) text += ", momenta from the equations";
+  if (reason.discrete_forces)
+    text += "; forces that change the energy enter by d'Alembert's principle in discrete form";
+  if (reason.shorter_steps_from)
+    text += fmt::format("; shorter steps from t = {:.6g} on where a function of time changes within one",
+                        *reason.shorter_steps_from);
+  if (reason.time_unfollowed_from)
+    text += fmt::format("; a condition on time changes too often to be followed beyond t = {:.6g}",
+                        *reason.time_unfollowed_from);
+  return text;
+}
+
+}  // namespace
+
+std::string to_text(const SolverReason& reason) {
+  std::string text = first(reason);
+  if (!reason.changes.empty()) {
+    const eom::MethodChange& change = reason.changes.front();
+    text = fmt::format("{} until t = {:.6g}, since {}; then {}: {}", change.from, change.t, text, change.to,
+                       eom::to_text(change));
+    if (reason.changes.size() > 1) text += fmt::format("; {} changes in all", reason.changes.size());
+    if (reason.slopes_after_change == Slopes::compiled) text += "; df/dx from the equations";
+    if (reason.slopes_after_change == Slopes::differences)
+      text += "; df/dx by differences, since it was not compiled (solver radau5 has it compiled)";
+  }
+  if (reason.narrow_unsure_from)
+    text += fmt::format(
+        "; whether a force that is narrow in the state lies in a step could not be told from t = {:.6g} on (--max-step "
+        "makes steps shorter)",
+        *reason.narrow_unsure_from);
+  if (reason.charts_refused != nullptr || reason.charts_kept_for_jumps)
+    text += fmt::format(
+        "; the model's own coordinates are kept where they fail, since {}",
+        reason.charts_refused != nullptr ? reason.charts_refused->why : "something may jump at a given time");
+  return text;
+}
+
+}  // namespace eomgen::run
