@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// emit --with run: a default scene that emitted code and the runtime can run, or why they cannot.
+#include <doctest/doctest.h>
+
+#include "program.hpp"
+
+using namespace eomgen::test;
+
+namespace {
+
+/// x'' = F/m, or what `more` makes of it.
+std::string particle(const std::string& scene, const std::string& more = "") {
+  return "format = 1\n[parameters]\nm = \"1 kg\"\n[inputs]\nF = { unit = \"N\", default = 0 }\n[[particle]]\nname = "
+         "\"P\"\nmass = \"m\"\n"
+         "position = [\"x\", 0, 0]\n[coordinates]\nx = \"m\"\n[[force]]\non = \"P\"\nforce = \"F*E1\"\n" +
+         more + "[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n" + scene;
+}
+
+const std::string jumping_support =
+    "format = 1\n[parameters]\nm = 1\nl = 1\ng = 9.81\n[coordinates]\nth = \"1\"\n[functions]\ns = \"abs(t - 1)\"\n"
+    "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"s + l*sin(th)\", \"-l*cos(th)\", 0]\n[[force]]\n"
+    "gravity = \"-g*E2\"\n[scene.default]\nt = [0, 3]\ninitial = { th = 0.1 }\n";
+
+std::string pendulum(const std::string& solver) {
+  return pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 0.6, y = -0.8 }\nsolver = \"" + solver + "\"\n");
+}
+
+struct Case {
+  const char* what;
+  std::string text;
+  std::vector<std::string> told;
+};
+
+}  // namespace
+
+TEST_CASE("emit --with run: a solver that the default scene names and the model is not eligible for is refused") {
+  const std::string clipped = "[[force]]\non = \"P\"\nforce = \"-max(x, 0)*1[N/m]*E1\"\n";
+  const std::vector<Case> cases{
+      {"no constraints",
+       particle("solver = \"ggl\"\n"),
+       {"solver 'ggl' cannot integrate this model", "no constraints with multipliers", "dop853 or auto"}},
+      {"kinks",
+       particle("solver = \"variational4\"\nstep = 0.01\n", clipped),
+       {"solver 'variational4' cannot integrate this model", "the equations have kinks"}},
+      {"moving inputs",
+       particle("solver = \"taylor\"\ninputs = { F = \"3*sin(2*t)\" }\n"),
+       {"solver 'taylor' cannot integrate this scene", "an input is an expression of t"}}};
+  for (const Case& c : cases) {
+    CAPTURE(std::string(c.what));
+    const Folder folder;
+    folder.write("model.toml", c.text);
+    const ChildResult refused = expect(2, folder, {"emit", "model.toml", "-o", "code", "--with", "run"});
+    for (const std::string& part : c.told) {
+      CAPTURE(part);
+      CHECK(contains(refused.err, part));
+    }
+    CHECK_FALSE(folder.has("code"));
+    // It is the scene's run that asks for the solver: without it the model is emitted.
+    expect(0, folder, {"emit", "model.toml", "-o", "code"});
+  }
+}
+
+TEST_CASE("emit --with run: a solver that the model is eligible for comes with the functions that it needs") {
+  struct Needs {
+    const char *solver, *function;
+  };
+  for (const Needs& needs : {Needs{"ggl", "jac"}, {"taylor", "taylor"}, {"radau5", "jac"}, {"dop853", nullptr}}) {
+    CAPTURE(std::string(needs.solver));
+    const Folder folder;
+    folder.write("model.toml", pendulum(needs.solver));
+    expect(0, folder, {"emit", "model.toml", "-o", ".", "--target", "c", "--with", "run"});
+    const std::string header = folder.read("model_run.hpp");
+    CHECK(contains(header, "problem.solver = \"" + std::string(needs.solver) + "\";"));
+    for (const std::string function : {"jac", "taylor"}) {
+      CAPTURE(function);
+      const bool wanted = needs.function != nullptr && function == needs.function;
+      CHECK(contains(header, "code." + function + " = model_" + function + ";") == wanted);
+    }
+  }
+}
+
+TEST_CASE("emit --with run: what emitted code does not know is refused with its reason") {
+  const std::vector<Case> cases{
+      {"a support", jumping_support, {"needs to know what jumps (a support, a potential)", "leave run out of --with"}},
+      {"an input",
+       particle("inputs = { F = \"3*sin(2*t)\" }\n"),
+       {"an input of the default scene is an expression of t", "give it as a table"}}};
+  for (const Case& c : cases) {
+    CAPTURE(std::string(c.what));
+    const Folder folder;
+    folder.write("model.toml", c.text);
+    const ChildResult refused = expect(2, folder, {"emit", "model.toml", "-o", "code", "--with", "run"});
+    for (const std::string& part : c.told) {
+      CAPTURE(part);
+      CHECK(contains(refused.err, part));
+    }
+    CHECK_FALSE(folder.has("code"));
+    expect(0, folder, {"emit", "model.toml", "-o", "code"});
+  }
+  // An input that jumps is a table, which the header has.
+  const Folder folder;
+  folder.write("model.toml", particle("inputs = { F = { t = [0, 0.7], value = [5, -3] } }\n"));
+  expect(0, folder, {"emit", "model.toml", "-o", ".", "--target", "c", "--with", "run"});
+  CHECK(contains(folder.read("model_run.hpp"), "problem.inputs = {{{}, {0.0, 0.7}, {5.0, -3.0}}};"));
+}
