@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Target python: its C in the hands of compilers, its module in those of Python where there is one. What the module
-// computes is compared with `eomgen run` by examples/python and examples/scipy.
+// computes is compared with `eomgen run` by examples/python, examples/python_run and examples/scipy.
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"

@@ -8,6 +8,7 @@
 #include "emit/metadata.hpp"
 #include "error.hpp"
 #include "skeletons/python_model_py.hpp"
+#include "skeletons/python_run_cpp.hpp"
 #include "skeletons/python_simulate_c.hpp"
 
 namespace eomgen::emit {
@@ -34,9 +35,6 @@ std::string functions_of_c() {
 }  // namespace
 
 std::vector<EmittedFile> emit_python(const program::Program& program, const EmissionContext& context) {
-  if (!program.contacts.empty()) {
-    throw Error("emit", {}, "the Python target does not know modes of friction yet", "use the target c or cpp");
-  }
   if (!program.charts.empty()) {
     throw Error("emit", {}, "the Python target does not know charts yet",
                 "use the target c or cpp, or leave --with charts out");
@@ -49,6 +47,11 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
                                                               {"name", name},
                                                               {"functions_of_c", functions_of_c()}},
                                                              {})});
+  if (context.run) {
+    files.push_back(
+        {name + "_run.cpp", rendered(skeleton::python_run_cpp,
+                                     {{"banner", banner(program, context, "// ", "// ", "")}, {"name", name}}, {})});
+  }
   return files;
 }
 
