@@ -314,23 +314,12 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
       const auto expected = program::interpret(function, arguments, 50).results;
       std::vector<std::vector<double>> got;
       for (const auto& list : expected) got.emplace_back(list.size() + 1);
-      const double *x = test.x.data(), *p = test.p.data();
-      int code = 0;
-      if (function.name == "rhs") code = m.rhs(test.t, x, p, u, 0, got[0].data());
       std::vector<double> w(e.program.prepared_count() + 1);
-      if (function.name == "prepare") code = m.prepare(p, got[0].data());
-      if (function.name == "rhs_prepared") {
-        CHECK(m.prepare(p, w.data()) == 0);
-        code = m.rhs_prepared(test.t, x, p, w.data(), u, 0, got[0].data());
-      }
-      if (function.name == "jac") code = m.jac(test.t, x, p, u, 0, got[0].data(), got[1].data());
-      if (function.name == "jac_p") code = m.jac_p(test.t, x, p, u, 0, got[0].data());
-      if (function.name == "mass") code = m.mass(test.t, x, p, got[0].data(), got[1].data());
-      if (function.name == "constraints")
-        code = m.constraints(test.t, x, p, got[0].data(), got[1].data(), got[2].data());
-      if (function.name == "reactions") code = m.reactions(test.t, x, p, u, 0, got[0].data());
-      if (function.name == "outputs") code = m.outputs(test.t, x, p, u, 0, got[0].data());
-      CHECK(code == 0);
+      abi::Given given;
+      given.t = test.t, given.x = test.x.data(), given.p = test.p.data(), given.u = u, given.w = w.data();
+      for (std::size_t r = 0; r < got.size(); ++r) given.results[r] = got[r].data();
+      if (function.name == "rhs_prepared") CHECK(m.prepare(given.p, w.data()) == 0);
+      CHECK(m.call(function.name, given) == 0);
       for (std::size_t r = 0; r < expected.size(); ++r) {
         for (std::size_t i = 0; i < expected[r].size(); ++i) {
           const double value = cln::double_approx(expected[r][i]);
