@@ -62,25 +62,75 @@ inline void require_eligible(const MethodInfo& method, const System& system, std
   if (!found) throw_ineligible("eom::integrate", method, found, "right-hand side", "eom/system.hpp");
 }
 
-/// Explicit methods are compiled for each right-hand side, which may then be inlined into the stages; the others once
-/// for all.
-template <class T, class F, class Observer, class AfterStep>
-Result run_method(F& rhs, double t0, std::span<const double> x0, double t1, const Options& options, Observer& observer,
-                  AfterStep& after_step) {
-  if constexpr (explicit_rk::Tableau<T>) {
-    return Run<explicit_rk::Method<T, F>, Observer, AfterStep>(rhs, t0, x0, t1, options, observer, after_step).run();
-  } else {
-    System system = system_of(rhs);
-    require_eligible(info_of<T>, system, x0.size() - options.quadratures);
-    if constexpr (requires { T::check(system, t0, x0, options); }) T::check(system, t0, x0, options);
-    ObserverOf see = observer_of(observer);
-    if constexpr (std::is_same_v<std::remove_cv_t<AfterStep>, NoProjection>) {
-      return Run<T, ObserverOf, AfterStep>(system, t0, x0, t1, options, see, after_step).run();
+/// What a run is asked for beside its method and its right-hand side.
+struct InitialValues {
+  double t0;
+  std::span<const double> x0;
+  double t1;
+  const Options& options;
+};
+
+/// Whether T is the method of this name; throws std::invalid_argument where it is, and needs a step that is not given.
+template <class T>
+bool is_method(std::string_view method, const Options& options) {
+  if (method != T::name) return false;
+  if (!is_adaptive<T>() && options.fixed_step <= 0)
+    throw std::invalid_argument("eom::integrate: " + std::string(method) + " needs Options::fixed_step");
+  return true;
+}
+
+/// by(T*) for the methods of the registry, until one says that it is the one.
+template <class By>
+bool any_method(By by) {
+  return [&]<class... T>(std::tuple<T...>*) {
+    return (by(static_cast<T*>(nullptr)) || ...);
+  }(static_cast<Registry*>(nullptr));
+}
+
+/// AfterStep: NoProjection or AfterStepOf, here and below.
+template <class Method, class Problem, class AfterStep>
+Result run(Problem& problem, const InitialValues& values, ObserverOf observer, AfterStep after_step) {
+  return Run<Method, ObserverOf, AfterStep>(problem, values.t0, values.x0, values.t1, values.options, observer,
+                                            after_step)
+      .run();
+}
+
+/// By the methods that are compiled once for all right-hand sides.
+template <class AfterStep>
+Result integrate_system(std::string_view method, System system, const InitialValues& values, ObserverOf observer,
+                        AfterStep after_step) {
+  Result result;
+  const auto by = [&]<class T>(T*) {
+    if constexpr (explicit_rk::Tableau<T>) {
+      return false;
     } else {
-      AfterStepOf move = after_step_of(after_step);
-      return Run<T, ObserverOf, AfterStepOf>(system, t0, x0, t1, options, see, move).run();
+      if (!is_method<T>(method, values.options)) return false;
+      require_eligible(info_of<T>, system, values.x0.size() - values.options.quadratures);
+      if constexpr (requires { T::check(system, values.t0, values.x0, values.options); })
+        T::check(system, values.t0, values.x0, values.options);
+      result = run<T>(system, values, observer, after_step);
+      return true;
     }
-  }
+  };
+  if (!by(static_cast<Automatic*>(nullptr)) && !any_method(by)) throw_unknown(method);
+  return result;
+}
+
+/// Explicit methods are compiled for each right-hand side, which may then be inlined into the stages.
+template <class F, class AfterStep>
+Result integrate_by_name(std::string_view method, F& rhs, const InitialValues& values, ObserverOf observer,
+                         AfterStep after_step) {
+  Result result;
+  const auto by = [&]<class T>(T*) {
+    if constexpr (explicit_rk::Tableau<T>) {
+      if (!is_method<T>(method, values.options)) return false;
+      result = run<explicit_rk::Method<T, F>>(rhs, values, observer, after_step);
+      return true;
+    } else {
+      return false;
+    }
+  };
+  return any_method(by) ? result : integrate_system(method, system_of(rhs), values, observer, after_step);
 }
 
 }  // namespace detail
@@ -95,19 +145,12 @@ template <class F, class Observer = NoObserver, class AfterStep = NoProjection>
 Result integrate(std::string_view method, F&& rhs, double t0, std::span<const double> x0, double t1,
                  const Options& options = {}, Observer&& observer = {}, AfterStep&& after_step = {}) {
   detail::check_problem(t0, x0, t1, options);
-  Result result;
-  const auto run = [&]<class T>(T*) {
-    if (method != T::name) return false;
-    if (!detail::is_adaptive<T>() && options.fixed_step <= 0)
-      throw std::invalid_argument("eom::integrate: " + std::string(method) + " needs Options::fixed_step");
-    result = detail::run_method<T>(rhs, t0, x0, t1, options, observer, after_step);
-    return true;
-  };
-  const bool known = run(static_cast<Automatic*>(nullptr)) || [&]<class... T>(std::tuple<T...>*) {
-    return (run(static_cast<T*>(nullptr)) || ...);
-  }(static_cast<Registry*>(nullptr));
-  if (!known) detail::throw_unknown(method);
-  return result;
+  const detail::InitialValues values{t0, x0, t1, options};
+  const detail::ObserverOf see = detail::observer_of(observer);
+  if constexpr (std::is_same_v<std::remove_cvref_t<AfterStep>, NoProjection>)
+    return detail::integrate_by_name(method, rhs, values, see, NoProjection{});
+  else
+    return detail::integrate_by_name(method, rhs, values, see, detail::after_step_of(after_step));
 }
 
 }  // namespace eom

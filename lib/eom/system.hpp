@@ -21,6 +21,7 @@
 #pragma once
 
 #include <cstddef>
+#include <type_traits>
 
 #include "eom/by_reference.hpp"
 #include "eom/features.hpp"
@@ -54,9 +55,10 @@ struct System {
   }
 };
 
-/// rhs: a function or an object, which has to stay.
+/// rhs: a function or an object, which has to stay. A System is its own.
 template <class F>
 System system_of(F& rhs) {
+  if constexpr (std::is_same_v<std::remove_const_t<F>, System>) return rhs;
   using detail::at_address;
   System system;
   system.self = detail::address_of(rhs);
