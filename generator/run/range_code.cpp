@@ -63,6 +63,10 @@ void RangeCode::add(const Dag& dag, const std::vector<Ref>& roots, const Lookup&
   }
 }
 
+bool RangeCode::constant() const {
+  return std::none_of(code_.begin(), code_.end(), [](const Step& step) { return step.op == Op::symbol; });
+}
+
 void RangeCode::values(std::span<const double> variables, std::span<double> out) const {
   for (std::size_t i = 0; i < code_.size(); ++i) {
     const Step& step = code_[i];

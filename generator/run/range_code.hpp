@@ -35,6 +35,8 @@ class RangeCode {
   /// False where a symbol could not be evaluated: nothing else may be asked then.
   bool complete() const { return complete_; }
   std::size_t roots() const { return roots_.size(); }
+  /// Whether nothing depends on a variable.
+  bool constant() const;
   /// Kinks, in the order in which they are met: their surfaces are two operands that are compared.
   std::size_t kinks() const { return kinks_.size(); }
   /// Whether a function jumps there (sign, if), and not its slope alone.

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-#include "symbolic/dag.hpp"
+#include "run/range_code.hpp"
 
 namespace eomgen::run {
 
@@ -24,15 +24,7 @@ class Signal {
   const std::vector<double>& values() const { return value_; }  // from each jump on
 
  private:
-  struct Step {
-    symbolic::Op op;
-    std::int32_t payload;
-    std::array<std::uint32_t, 4> args;
-  };
-  double evaluate(double t) const;
-  std::vector<Step> code_;
-  std::vector<double> constants_;
-  mutable std::vector<double> work_;
+  RangeCode code_;  // of t; without a root where there is no expression
   std::vector<double> time_, value_;
 };
 
