@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "eom/run_types.hpp"
-#include "eom/system.hpp"
+#include "eom/step_ends.hpp"
 #include "eom/taylor/quadrature.hpp"
 
 namespace eom::taylor {
@@ -28,7 +28,7 @@ inline constexpr Refusal refusals[] = {
     {Feature::moving_inputs, ", and its series knows inputs that stand still or jump"},
     {Feature::charts, "its series is that of the model's own coordinates"}};
 
-class Series {
+class Series : public StepEnds {
  public:
   static constexpr const char* name = "taylor";
   static constexpr int order = 20;  // typical
@@ -47,38 +47,20 @@ class Series {
   }
 
   Series(System& system, std::span<const double> x, const Options& options)
-      : system_(system),
-        n_(x.size()),
+      : StepEnds(system, x, options),
         s_(system.taylor_states),
         error_(std::min(s_, n_ - options.quadratures)),
         rtol_(options.rtol),
         atol_(options.atol),
-        fixed_(options.fixed_step > 0),
         highest_(system.taylor_order),
         order_(options.series_order > 0 ? std::min(options.series_order, highest_) : first_order(x)),
         order_is_given_(options.series_order > 0),
-        work_(9 * n_ + 2 * s_ * (static_cast<std::size_t>(highest_) + 1)) {
+        work_(2 * n_ + 2 * s_ * (static_cast<std::size_t>(highest_) + 1)) {
     double* next = work_.data();
-    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_, &node_, &weight_})
-      *vector = std::exchange(next, next + n_);
+    for (double** vector : {&node_, &weight_}) *vector = std::exchange(next, next + n_);
     for (At* at : {&here_, &there_}) at->c = std::exchange(next, next + s_ * (static_cast<std::size_t>(highest_) + 1));
-    std::copy(x.begin(), x.end(), x0_);
   }
-  Series(const Series&) = delete;
-  Series& operator=(const Series&) = delete;
 
-  std::size_t size() const { return n_; }
-  double* x0() { return x0_; }
-  double* x1() { return x1_; }
-  const double* derivative0() const { return f0_; }
-  const double* derivative1() const { return f1_; }
-  double* scratch() { return scratch_; }
-  const Statistics& statistics() const { return counts_; }
-
-  int evaluate(double t, const double* x, double* dx) {
-    ++counts_.rhs_evaluations;
-    return system_.f(system_.self, t, x, dx);
-  }
   int evaluate_start(double t) {
     if (fixed_) return evaluate(t, x0_, f0_);
     const int code = expand(t, x0_, f0_, here_, order_);
@@ -96,9 +78,7 @@ class Series {
 
   /// Trial state at t1; a code of the right-hand side.
   int attempt(double t0, double t1) {
-    t0_ = t0;
-    h_ = t1 - t0;
-    t1_ = t1;
+    open(t0, t1);
     for (int terms = order_;
          here_.order == 0 || (fixed_ && !order_is_given_ && here_.order < highest_ && error_norm(0, 0) > 1);
          terms = std::min(terms + 4, highest_)) {
@@ -126,14 +106,9 @@ class Series {
   double after_failed(double h) { return 0.25 * h; }
 
   void accept(bool moved) {
-    std::swap(x0_, x1_);
-    std::swap(f0_, f1_);
+    swap_ends(moved);
     std::swap(here_, there_);
     if (fixed_) here_.order = 0;
-    if (moved)
-      std::fill_n(carry_, n_, 0.0);
-    else
-      std::swap(carry_, new_carry_);
   }
 
   static void interpolate(const void* method, double t, double* x) {
@@ -274,13 +249,6 @@ class Series {
     std::copy(x0_ + s_, x0_ + n_, x + s_);
   }
 
-  void advance(std::size_t i, double step) {
-    step += carry_[i];
-    const double sum = x0_[i] + step, taken = sum - x0_[i];  // Knuth's two-sum, as in explicit_rk/step.hpp
-    new_carry_[i] = (x0_[i] - (sum - taken)) + (step - taken);
-    x1_[i] = sum;
-  }
-
   /// What has no series: integrated along the one that the others have.
   int quadratures() {
     std::fill(scratch_ + s_, scratch_ + n_, 0.0);
@@ -295,19 +263,15 @@ class Series {
   }
   double* x1_node() { return f1_; }  // free until the end is evaluated
 
-  System& system_;
-  std::size_t n_, s_, error_;
+  std::size_t s_, error_;
   double rtol_, atol_;
-  bool fixed_;
   int highest_, order_;
   bool order_is_given_;
   int trend_ = 0;
-  Statistics counts_;
   std::vector<double> work_;
-  double *x0_, *x1_, *f0_, *f1_, *scratch_, *carry_, *new_carry_, *node_, *weight_;
+  double *node_, *weight_;
   At here_, there_;
   Gauss gauss_;
-  double t0_ = 0, t1_ = 0, h_ = 0;
 };
 
 }  // namespace eom::taylor

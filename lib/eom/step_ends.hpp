@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// The state at both ends of a step and its derivatives, for methods on a System; what was counted; the sum x0 +
+// increment with its remainder carried along (compensated summation).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/run_types.hpp"
+#include "eom/system.hpp"
+
+namespace eom {
+
+class StepEnds {
+ public:
+  StepEnds(System& system, std::span<const double> x, const Options& options)
+      : system_(system), n_(x.size()), fixed_(options.fixed_step > 0), ends_(7 * n_) {
+    double* next = ends_.data();
+    for (double** vector : {&x0_, &x1_, &f0_, &f1_, &scratch_, &carry_, &new_carry_})
+      *vector = std::exchange(next, next + n_);
+    std::copy(x.begin(), x.end(), x0_);
+  }
+  StepEnds(const StepEnds&) = delete;
+  StepEnds& operator=(const StepEnds&) = delete;
+
+  std::size_t size() const { return n_; }
+  double* x0() { return x0_; }
+  double* x1() { return x1_; }
+  const double* derivative0() const { return f0_; }
+  const double* derivative1() const { return f1_; }
+  double* scratch() { return scratch_; }
+  const Statistics& statistics() const { return counts_; }
+
+  int evaluate(double t, const double* x, double* dx) {
+    ++counts_.rhs_evaluations;
+    return system_.f(system_.self, t, x, dx);
+  }
+  int evaluate_start(double t) { return evaluate(t, x0_, f0_); }
+  int evaluate_end() { return evaluate(t1_, x1_, f1_); }
+
+ protected:
+  void open(double t0, double t1) {
+    t0_ = t0;
+    t1_ = t1;
+    h_ = t1 - t0;
+  }
+
+  /// x1 = x0 + increment in component i.
+  void advance(std::size_t i, double increment) {
+    increment += carry_[i];
+    const double sum = x0_[i] + increment;
+    const double taken = sum - x0_[i];  // Knuth's two-sum, as in explicit_rk/step.hpp
+    new_carry_[i] = (x0_[i] - (sum - taken)) + (increment - taken);
+    x1_[i] = sum;
+  }
+
+  void swap_ends(bool moved) {
+    std::swap(x0_, x1_);
+    std::swap(f0_, f1_);
+    if (moved)
+      std::fill_n(carry_, n_, 0.0);
+    else
+      std::swap(carry_, new_carry_);
+  }
+
+  System& system_;
+  std::size_t n_;
+  bool fixed_;
+  Statistics counts_;
+  std::vector<double> ends_;
+  double *x0_, *x1_, *f0_, *f1_, *scratch_, *carry_, *new_carry_;
+  double t0_ = 0, t1_ = 0, h_ = 0;
+};
+
+}  // namespace eom
