@@ -17,6 +17,7 @@
 #include "emit/write_files.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace test_systems {
 
@@ -71,20 +72,7 @@ inline std::vector<Example> examples() {
           example("massless", massless(), {"x", "y", "z"}, {"m", "k"})};
 }
 
-/// A folder that is gone at the end.
-struct Folder {
-  std::string path;
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "eomgen-test-XXXXXX").string();
-    path = ::mkdtemp(pattern.data());
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-};
+using Folder = eomgen::test::TemporaryFolder;
 
 /// Sets an environment variable for a while.
 struct Setting {

@@ -3,14 +3,13 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdlib>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "emit/shared_library/process.hpp"
 #include "emit/write_files.hpp"
 #include "support/simulation.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -20,21 +19,6 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr double allowed = 1e-12;  // of the largest entry of an array
-
-/// A folder that is gone at the end.
-struct TemporaryFolder {
-  std::string path;
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "eomgen-test-XXXXXX").string();
-    path = ::mkdtemp(pattern.data());
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-};
 
 /// Of every function the values that the compiled C has at the points of the self test.
 Json values_of_c(const emit::LoadedModel& c, const program::Program& program, const emit::EmissionContext& context) {

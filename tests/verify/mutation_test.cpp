@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <filesystem>
 #include <fstream>
 #include <map>
 #include <random>
@@ -20,6 +19,7 @@
 #include "pipeline/code.hpp"
 #include "pipeline/pipeline.hpp"
 #include "program/abi_values.hpp"
+#include "support/temporary_folder.hpp"
 
 using namespace eomgen;
 
@@ -172,20 +172,6 @@ class Mutator {
   std::vector<std::pair<std::size_t, std::size_t>> functions_;
 };
 
-struct Folder {
-  std::filesystem::path path;
-  Folder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "eomgen-test-XXXXXX").string();
-    path = ::mkdtemp(pattern.data());
-  }
-  ~Folder() {
-    std::error_code ignored;
-    std::filesystem::remove_all(path, ignored);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-};
-
 struct Subject {
   std::unique_ptr<pipeline::Derived> derived;
   program::Program program;
@@ -217,15 +203,15 @@ Subject subject(const std::string& model) {
 }
 
 /// The library with the file as it is (NAME_m) and all changed ones (NAME_m0, NAME_m1, ..).
-std::string library(const Folder& folder, const Subject& s, const Mutator& mutator,
+std::string library(const test::TemporaryFolder& folder, const Subject& s, const Mutator& mutator,
                     const std::vector<Change>& changes) {
-  std::ofstream out(folder.path / (s.name + ".c"));
+  std::ofstream out(folder.path + "/" + s.name + ".c");
   out << mutator.changed({0, 0, "", ""}, s.name + "_m");
   for (std::size_t k = 0; k < changes.size(); ++k) out << mutator.changed(changes[k], fmt::format("{}_m{}", s.name, k));
   out.close();
-  const std::string library = (folder.path / (s.name + ".so")).string();
+  const std::string library = folder.path + "/" + s.name + ".so";
   const emit::Finished finished = emit::run_process({EOMGEN_TEST_CC, "-std=c11", "-O0", "-w", "-fPIC", "-shared", "-o",
-                                                     library, (folder.path / (s.name + ".c")).string(), "-lm"});
+                                                     library, folder.path + "/" + s.name + ".c", "-lm"});
   INFO(finished.output);
   REQUIRE(finished.status == 0);
   return library;
@@ -278,7 +264,7 @@ bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const 
 TEST_CASE(
     "small changes to emitted code: at least 98 % of those that change a value are noticed by the self test or by "
     "verify") {
-  const Folder folder;
+  const test::TemporaryFolder folder;
   std::size_t changing = 0, by_self_test = 0, noticed = 0;
   std::string missed;
   for (const char* model : {"cart_pendulum", "P7_moving_sphere", "S5_double_pendulum_cartesian", "leaving_sphere",
