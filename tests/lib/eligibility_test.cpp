@@ -12,7 +12,7 @@
 
 #include "eom/ensemble/integrate.hpp"
 #include "eom/modes/machine.hpp"
-#include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 
 namespace {
 
@@ -71,7 +71,8 @@ template <unsigned Parts>
 double end_of(const eom::MethodInfo& method, Features further) {
   eom::Options options;
   if (!method.adaptive) options.fixed_step = 1e-3;
-  const eom::Result result = eom::integrate(method.name, Slider<Parts>{further}, 0, start, 1, options);
+  Slider<Parts> slider{further};
+  const eom::Result result = eom::integrate(method.name, eom::system_of(slider), 0, start, 1, options);
   CHECK(result.outcome == eom::Outcome::done);
   return result.x[0];
 }

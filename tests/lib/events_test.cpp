@@ -46,8 +46,8 @@ std::vector<Seen> crossings(const eom::MethodInfo& method, double t1, G g, std::
     seen.push_back({point.t, point.crossing.function, point.crossing.up, {point.x.begin(), point.x.end()}});
     return AtEvent::go_on;
   };
-  const eom::Result result = eom::integrate_events(method.name, oscillator, 0, oscillator.start, t1, options, g,
-                                                   std::move(functions), handler);
+  const eom::Result result = eom::integrate_events(method.name, eom::system_of(oscillator), 0, oscillator.start, t1,
+                                                   options, g, std::move(functions), handler);
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(result.t == t1);
   CHECK(problems::largest_difference(result.x, oscillator.exact(t1)) <
@@ -108,7 +108,7 @@ TEST_CASE("all methods: several functions in one step come in the order of the r
         return AtEvent::go_on;
       };
       const std::vector<double> start{0};
-      const eom::Result r = eom::integrate_events(method.name, f, 0, start, 1, options, levels,
+      const eom::Result r = eom::integrate_events(method.name, eom::system_of(f), 0, start, 1, options, levels,
                                                   std::vector<EventFunction>(4, {Direction::any, watch}), handler);
       CHECK(r.outcome == eom::Outcome::done);
       CHECK(order == std::vector<std::size_t>{3, 2, 1, 0});
@@ -204,8 +204,8 @@ TEST_CASE("the observer sees steps that join, the last before an event ending th
       CHECK(point.x[1] == doctest::Approx(-1));
       return AtEvent::stop;
     };
-    const eom::Result r = eom::integrate_events(method.name, oscillator, 0, oscillator.start, 7, tight(method),
-                                                position, {EventFunction{}}, handler, observer);
+    const eom::Result r = eom::integrate_events(method.name, eom::system_of(oscillator), 0, oscillator.start, 7,
+                                                tight(method), position, {EventFunction{}}, handler, observer);
     CHECK(r.outcome == eom::Outcome::stopped_by_event);
     CHECK(r.t == reached);
     CHECK(r.statistics.steps == ends.size());
@@ -221,8 +221,8 @@ TEST_CASE("a motion that would slide along the surface ends told, not in an endl
     return AtEvent::go_on;
   };
   const std::vector<double> start{1};
-  const eom::Result r =
-      eom::integrate_events("dopri5", f, 0, start, 7, eom::Options{}, position, {EventFunction{}}, handler);
+  const eom::Result r = eom::integrate_events("dopri5", eom::system_of(f), 0, start, 7, eom::Options{}, position,
+                                              {EventFunction{}}, handler);
   CHECK(r.outcome == eom::Outcome::step_too_small);
   CHECK(std::abs(r.t - 1) < tolerances::event_time);
   CHECK(r.detail.find("without time going on") != std::string::npos);
@@ -236,12 +236,14 @@ TEST_CASE("an event function without a value is no event; one that fails at the 
   const auto handler = [&](const EventPoint& point) { return times.push_back(point.t), AtEvent::go_on; };
   eom::Options options;
   options.fixed_step = 0.25;
-  const eom::Result r = eom::integrate_events("rk4", f, 0, start, 4, options, root, {EventFunction{}}, handler);
+  const eom::Result r =
+      eom::integrate_events("rk4", eom::system_of(f), 0, start, 4, options, root, {EventFunction{}}, handler);
   CHECK(r.outcome == eom::Outcome::done);
   REQUIRE(times.size() == 1);
   CHECK(std::abs(times[0] - 2) < tolerances::event_time);
   const auto refuses = [](double, const double*, double*) { return 2; };
-  const eom::Result none = eom::integrate_events("rk4", f, 0, start, 4, options, refuses, {EventFunction{}}, handler);
+  const eom::Result none =
+      eom::integrate_events("rk4", eom::system_of(f), 0, start, 4, options, refuses, {EventFunction{}}, handler);
   CHECK(none.outcome == eom::Outcome::chart_left);
 }
 
@@ -256,8 +258,9 @@ TEST_CASE(
     const auto handler = [&](const EventPoint& point) {
       return events.emplace_back(point.crossing.function, point.t), AtEvent::go_on;
     };
-    CHECK(eom::integrate_events("rk4", f, 0, start, 1, options, g, std::vector<EventFunction>(2), handler).outcome ==
-          eom::Outcome::done);
+    CHECK(
+        eom::integrate_events("rk4", eom::system_of(f), 0, start, 1, options, g, std::vector<EventFunction>(2), handler)
+            .outcome == eom::Outcome::done);
     return events;
   };
   // As a friction limit about N = 0: the parabola through three of the nine samples stays above zero.
@@ -288,8 +291,9 @@ TEST_CASE("a function that has another meaning after an event is watched from wh
   const std::vector<double> start{0};
   eom::Options options;
   options.fixed_step = 0.3;
-  CHECK(eom::integrate_events("rk4", f, 0, start, 4, options, g, {{Direction::down}}, handler).outcome ==
-        eom::Outcome::done);
+  CHECK(
+      eom::integrate_events("rk4", eom::system_of(f), 0, start, 4, options, g, {{Direction::down}}, handler).outcome ==
+      eom::Outcome::done);
   REQUIRE(times.size() == 2);
   CHECK(std::abs(times[0] - 1) < tolerances::event_time);
   CHECK(std::abs(times[1] - 3) < tolerances::event_time);
@@ -314,8 +318,8 @@ TEST_CASE("estimate: sees the error of a way to an event that is shorter than an
       const auto observer = [&](const eom::StepView& view) {
         return joined = joined && view.t0 == ends.back(), ends.push_back(view.t1), true;
       };
-      const eom::Result end =
-          eom::integrate_events(method.name, f, 0, start, 8, options, speed, {{Direction::down}}, handler, observer);
+      const eom::Result end = eom::integrate_events(method.name, eom::system_of(f), 0, start, 8, options, speed,
+                                                    {{Direction::down}}, handler, observer);
       CHECK(joined);
       CHECK(ends.back() == 8);
       return end;

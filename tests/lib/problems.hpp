@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 
 namespace problems {
 

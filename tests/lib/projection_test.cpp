@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "eom/constraints/projection.hpp"
-#include "eom/ode.hpp"
+#include "lib/compiled.hpp"
 #include "support/tolerances.hpp"
 
 namespace {

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "lib/compiled.hpp"
+
+namespace eom::detail {
+
+template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, NoProjection);
+template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, AfterStepOf);
+template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, NoProjection);
+template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, AfterStepOf);
+
+}  // namespace eom::detail

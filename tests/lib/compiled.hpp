@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// integrate() of a System, compiled once for all tests of this folder (compiled.cpp) and not in each file anew.
+#pragma once
+
+#include "eom/ode.hpp"
+
+namespace eom::detail {
+
+extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, NoProjection);
+extern template Result integrate_system(std::string_view, System, const InitialValues&, ObserverOf, AfterStepOf);
+extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, NoProjection);
+extern template Result integrate_by_name(std::string_view, System&, const InitialValues&, ObserverOf, AfterStepOf);
+
+}  // namespace eom::detail
