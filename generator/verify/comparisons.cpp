@@ -1,20 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/comparisons.hpp"
 
-#include <cln/dfloat.h>
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <stdexcept>
 
 #include "derive/imposition.hpp"
 #include "symbolic/evaluate.hpp"
+#include "verify/code_comparisons.hpp"
 #include "verify/friction_law.hpp"
-#include "verify/functions.hpp"
 #include "verify/motion.hpp"
 #include "verify/plain_forces.hpp"
 #include "verify/system_values.hpp"
@@ -27,10 +24,6 @@ using system::EquationSystem;
 
 // Points are rejected where the solve loses more than 8 digits; the guard digits and these make up for it.
 constexpr int digits_given_up = 5;
-// Binary64 has 16 digits; some thousand operations and terms that cancel leave 11 of them, relative to the terms.
-constexpr double tolerance_binary64 = 1e-11;
-
-std::string name_of(const EquationSystem& s) { return s.route + " " + system::name(s.approach); }
 
 double worst(const std::vector<double>& values) {
   double largest = 0;
@@ -266,117 +259,6 @@ double reading_residual(const ReadingForm& form, const mechanics::Mechanics& mec
     if (!noticed && has_inertia(judge, lookup.state, lookup.lambda, i, wrong)) return 1;
   }
   return largest;
-}
-
-/// Relative differences of dx = (qdot, qddot): the velocities as they stand, the accelerations by their scale; all of
-/// them by what rounding may do, where that is known.
-double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, const EquationSystem& s,
-                      const SystemValues& v, const std::vector<Real>& rounding = {}) {
-  const std::size_t n = s.free.size();
-  if (a.size() != 2 * n + s.integrals.size() || b.size() != a.size()) return 1;
-  double largest = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    Real size = i < n || i >= 2 * n ? cln::abs(b[i]) : v.scale[s.free[i - n]];
-    if (!rounding.empty()) size = size + rounding[i];
-    largest = std::max(largest, relative(a[i] - b[i], size));
-  }
-  return largest;
-}
-
-constexpr const char* beyond_binary64 = "a value beyond what binary64 holds";
-
-double to_binary64(const Real& value) {
-  if (cln::abs(value) > cln::rational(Real(cln::cl_DF(std::numeric_limits<double>::max()))))
-    throw std::domain_error(beyond_binary64);
-  return cln::double_approx(value);
-}
-
-std::vector<double> rounded(const std::vector<Real>& values) {
-  std::vector<double> result;
-  for (const Real& value : values) result.push_back(to_binary64(value));
-  return result;
-}
-
-/// The state as binary64 has it.
-State in_binary64(const State& state, const Judge& judge) {
-  const auto exactly = [&](const Real& value) {
-    return judge.precision().round(cln::rational(Real(cln::cl_DF(to_binary64(value)))));
-  };
-  State at = state;
-  at.t = exactly(at.t);
-  for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
-    for (Real& value : *part) value = exactly(value);
-  return at;
-}
-
-/// What rounding may change in dx at a state, as sizes; none where it is not known.
-std::vector<Real> rounding_of_rhs(const ProgramForm& program, const At& at, const Judge& judge) {
-  std::vector<Real> sizes;
-  if (!program.bounds) return sizes;
-  constexpr double least_number = 1e-290;  // smaller numbers have fewer digits
-  const std::vector<std::vector<double>> bounds = program.bounds("rhs", at);
-  for (const double bound : bounds[0]) {
-    if (!std::isfinite(bound)) return {};
-    sizes.push_back(size_of_rounding(std::max(bound, least_number), judge.precision()));
-  }
-  return sizes;
-}
-
-bool overflows(const Subjects& subjects, const At& at) {
-  if (subjects.programs.empty() || !subjects.programs.front().bounds) return false;
-  const std::vector<std::vector<double>> bounds = subjects.programs.front().bounds("rhs", at);
-  return std::any_of(bounds[0].begin(), bounds[0].end(), [](double bound) { return !std::isfinite(bound); });
-}
-
-/// Code in binary64 against the system at the same binary64 numbers.
-double compiled_difference(const CompiledForm& form, const Subjects& subjects, State at, const SystemValues& v,
-                           const Judge& judge, int mode) {
-  const EquationSystem& s = subjects.systems.front();
-  if (!s.contacts.empty()) at.phi = lawful_friction(s, judge, at);
-  const std::vector<Real> reference = right_hand_side(s, judge, at);
-  const At arguments = arguments_at(s, at, mode);
-  const auto dx =
-      form.rhs(cln::double_approx(at.t), rounded(arguments.x), rounded(at.parameters), rounded(at.inputs), mode);
-  const std::vector<Real> rounding =
-      subjects.programs.empty() ? std::vector<Real>{} : rounding_of_rhs(subjects.programs.front(), arguments, judge);
-  const bool finite = dx && std::all_of(dx->begin(), dx->end(), [](double value) { return std::isfinite(value); });
-  if (!finite) {
-    // Where its bounds are not finite either, it is a value on the way that is too large.
-    if (rounding.empty() && overflows(subjects, arguments)) throw std::domain_error(beyond_binary64);
-    return 1;
-  }
-  std::vector<Real> precise;
-  for (const double value : *dx) precise.push_back(cln::rational(Real(cln::cl_DF(value))));
-  const double difference = rhs_difference(precise, reference, s, v, rounding);
-  // Beside times of 1e300 a sine is what rounding makes of it, whatever the code: nothing can be compared.
-  if (difference > tolerance_binary64 && rounding.empty() && overflows(subjects, arguments))
-    throw std::domain_error("what rounding does in binary64 has no bound");
-  return difference;
-}
-
-/// Programs and compiled code against the first system, whose friction forces are those of the law in `mode`.
-void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally) {
-  const EquationSystem& first = subjects.systems.front();
-  bool told = false;  // that the law has no solution here, or several
-  for (const ProgramForm& form : subjects.programs) {
-    const At arguments = arguments_at(first, v.state, mode);
-    const std::vector<Real> dx = form.rhs(v.state.t, arguments.x, v.state.parameters, v.state.inputs, mode);
-    told = told || (dx.empty() && !first.contacts.empty());
-    if (told) continue;
-    // An acceleration may be 0 because the terms of its form cancel: they are what it is compared with.
-    const std::vector<Real> rounding = rounding_of_rhs(form, arguments, judge);
-    tally.note(form.name, name_of(first), true,
-               rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));
-  }
-  if (told) return;
-  compare_functions(subjects, v, judge, mode, tally);
-  if (subjects.compiled.empty()) return;
-  const State at = in_binary64(v.state, judge);
-  for (const CompiledForm& form : subjects.compiled) {
-    tally.note(form.name, name_of(first), true, compiled_difference(form, subjects, at, v, judge, mode),
-               Kind::binary64);
-  }
-  compare_compiled_functions(subjects, at, judge, mode, tally);
 }
 
 /// Friction forces of sizes that no law gives: the equations must hold with them all the same.

@@ -14,6 +14,9 @@ enum class Kind { precise, binary64 };
 
 inline constexpr const char* judge_name = "d'Alembert";
 
+/// Binary64 has 16 digits; some thousand operations and terms that cancel leave 11 of them, relative to the terms.
+inline constexpr double tolerance_binary64 = 1e-11;
+
 /// The largest difference of each pair so far.
 class Tally {
  public:

@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "symbolic/evaluate.hpp"
+#include "verify/differences.hpp"
 #include "verify/plain_forces.hpp"
 
 namespace eomgen::verify {
@@ -20,31 +21,6 @@ namespace {
 
 using symbolic::Ref;
 using system::EquationSystem;
-
-Real ten_to(int exponent) { return cln::expt(cln::cl_RA(10), cln::cl_I(exponent)); }
-
-/// The same numbers with more digits: a sum of floats has those of the shorter one.
-At with_digits(const At& at, const Precision& precision) {
-  At result = at;
-  result.t = precision.round(at.t);
-  for (auto* part : {&result.x, &result.p, &result.u})
-    for (Real& value : *part) value = precision.round(value);
-  return result;
-}
-
-/// In sums of more digits a float of fewer takes them away. What is as faint as exp(-1e11) has no fraction, and digits
-/// enough.
-Real exactly(const Real& value) {
-  constexpr std::intptr_t faint = 1 << 20;
-  constexpr int plenty = 1500;  // digits, more than any sum here has
-  if (cln::zerop(value)) return 0;
-  const std::intptr_t exponent = cln::float_exponent(cln::cl_float(value, cln::float_format(20)));
-  return std::abs(exponent) < faint ? Real(cln::rational(value))
-                                    : Real(cln::cl_float(value, cln::float_format(plenty)));
-}
-
-/// A direction without zeros, the same everywhere.
-Real component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
 
 class Functions {
  public:
@@ -152,33 +128,10 @@ class Functions {
     return largest;
   }
 
-  /// [f(at + h) - f(at - h)]/2h, and what it may be off by: h times the curvature [f(at + h) - 2 f(at) + f(at -
-  /// h)]/h^2, which is all there is of a body that is held fast. `shift` moves the arguments by a multiple of the
-  /// direction.
-  struct Slope {
-    Arrays values, errors;
-  };
-  template <class Shift>
+  /// Steps of differences are small beside 1/range: beside rates of 1e300 a time of 1e-50 is long.
+  int step_digits() const { return judge_.digits() - guard_digits; }
   std::optional<Slope> slope(const std::string& function, const Shift& shift) const {
-    const int digits = step_digits(), more = 3 * digits + 10;
-    const Precision precision(more);
-    const Real h = precision.round(ten_to(-digits));
-    const At here = with_digits(at_, precision);
-    At above = here, below = here;
-    shift(above, h);
-    shift(below, -h);
-    const std::optional<Arrays> high = program_.call(function, above, more), low = program_.call(function, below, more),
-                                middle = program_.call(function, here, more);
-    if (!high || !low || !middle) return std::nullopt;
-    Slope result{*high, *high};
-    for (std::size_t r = 0; r < high->size(); ++r) {
-      for (std::size_t i = 0; i < (*high)[r].size(); ++i) {
-        const Real &a = (*high)[r][i], &b = (*low)[r][i];
-        result.values[r][i] = (a - b) / (2 * h);
-        result.errors[r][i] = cln::abs(a + b - 2 * (*middle)[r][i]) / h;
-      }
-    }
-    return result;
+    return verify::slope(program_, function, at_, shift, step_digits());
   }
   /// The sizes of the right-hand side, as far as its differences lose digits of them.
   std::vector<Real> noise(const std::string& function) const {
@@ -252,7 +205,7 @@ class Functions {
     std::vector<Ref> h;
     for (const Ref f : s_.f) h.push_back(s_.dag->neg(f));
     const Lookup lookup = without_mode();
-    note("mass", name(), std::max(against(values, 0, M, lookup), against(values, 1, h, lookup)));
+    note("mass", name_of(s_), std::max(against(values, 0, M, lookup), against(values, 1, h, lookup)));
   }
 
   void constraints(const Arrays& values) {
@@ -261,7 +214,7 @@ class Functions {
     for (std::size_t j = 0; j < n; ++j)
       for (std::size_t k = 0; k < m; ++k) A.push_back(s_.A[k * n + j]);
     const Lookup lookup = without_mode();
-    note("constraints", name(),
+    note("constraints", name_of(s_),
          std::max(
              {against(values, 0, s_.psi, lookup), against(values, 1, A, lookup), against(values, 2, s_.b, lookup)}));
   }
@@ -269,7 +222,7 @@ class Functions {
   void reactions(const Arrays& values) {
     std::vector<Ref> roots;
     for (const system::Reaction& reaction : s_.reactions) roots.push_back(reaction.value);
-    note("reactions", name(), against(values, 0, roots, lookup_));
+    note("reactions", name_of(s_), against(values, 0, roots, lookup_));
   }
 
   /// Those that the system has; what is conserved is offered by the program's own one only.
@@ -289,13 +242,13 @@ class Functions {
       largest = std::max(
           largest, relative(values[0].at(places[i]) - expected.values[i], sizes_[0].at(places[i]) + expected.sizes[i]));
     }
-    if (!roots.empty()) note("outputs", name(), largest);
+    if (!roots.empty()) note("outputs", name_of(s_), largest);
   }
 
   void events(const Arrays& values) {
     std::vector<Ref> roots;
     for (const system::Event& event : s_.events) roots.push_back(event.value);
-    if (!roots.empty()) note("events", name(), against(values, 0, roots, lookup_));
+    if (!roots.empty()) note("events", name_of(s_), against(values, 0, roots, lookup_));
   }
 
   /// dL/dqdot along a direction of the rates; and their rates along the path, where the constraints and friction have
@@ -319,7 +272,8 @@ class Functions {
       sum = sum + values[0][i] * component(i);
       size = size + sizes_[0][i] * cln::abs(component(i));
     }
-    note("momenta", "the Lagrangian of " + name(), relative(sum - (lagrangian(h) - lagrangian(-h)) / (2 * h), size));
+    note("momenta", "the Lagrangian of " + name_of(s_),
+         relative(sum - (lagrangian(h) - lagrangian(-h)) / (2 * h), size));
 
     const std::optional<Arrays> rhs = program_.call("rhs", at_, judge_.digits());
     if (!rhs) return;
@@ -392,10 +346,6 @@ class Functions {
     note("taylor", "dx along the series", largest);
   }
 
-  /// Steps of differences are small beside 1/range: beside rates of 1e300 a time of 1e-50 is long.
-  int step_digits() const { return judge_.digits() - guard_digits; }
-  std::string name() const { return s_.route + " " + system::name(s_.approach); }
-
   const ProgramForm& program_;
   const SystemValues& v_;
   const Judge& judge_;
@@ -424,41 +374,6 @@ void compare_functions(const Subjects& subjects, const SystemValues& values, con
                        Tally& tally) {
   if (subjects.programs.empty() || !subjects.programs.front().call) return;
   Functions(subjects, values, judge, mode, tally)();
-}
-
-void compare_compiled_functions(const Subjects& subjects, const State& rounded, const Judge& judge, int mode,
-                                Tally& tally) {
-  if (subjects.programs.empty() || !subjects.programs.front().call) return;
-  const ProgramForm& program = subjects.programs.front();
-  const At at = arguments_at(subjects.systems.front(), rounded, mode);
-  constexpr double largest_number = 1e300, least_number = 1e-290;
-  for (const CompiledForm& form : subjects.compiled) {
-    if (!form.call) continue;
-    for (const std::string& function : program.functions) {
-      const std::optional<Arrays> expected = program.call(function, at, judge.digits());
-      if (!expected) continue;
-      const std::vector<std::vector<double>> bounds = program.bounds(function, at);
-      const std::optional<std::vector<std::vector<double>>> got = form.call(function, at);
-      double largest = got ? 0 : 1;
-      bool known = true;  // what binary64 cannot hold has no code that is wrong
-      for (std::size_t r = 0; r < expected->size() && known; ++r) {
-        for (std::size_t i = 0; i < (*expected)[r].size() && known; ++i) {
-          const Real& value = (*expected)[r][i];
-          known = std::isfinite(bounds[r][i]) && cln::abs(value) < cln::rational(Real(cln::cl_DF(largest_number)));
-          if (!known || !got) continue;
-          const double entry = (*got)[r][i];
-          if (!std::isfinite(entry)) {
-            largest = 1;
-            continue;
-          }
-          const Real size = cln::abs(value) + size_of_rounding(std::max(bounds[r][i], least_number), judge.precision());
-          largest = std::max(largest, relative(cln::rational(Real(cln::cl_DF(entry))) - value, size));
-        }
-      }
-      if (known)
-        tally.note(function + " of " + form.name, function + " of " + program.name, true, largest, Kind::binary64);
-    }
-  }
 }
 
 }  // namespace eomgen::verify

@@ -271,6 +271,8 @@ SystemValues values_of(const EquationSystem& s, const mechanics::Mechanics& mech
   return v;
 }
 
+std::string name_of(const EquationSystem& s) { return s.route + " " + system::name(s.approach); }
+
 std::vector<Real> right_hand_side(const EquationSystem& s, const Judge& judge, const State& state) {
   const Lookup lookup(judge, state);
   const Solved solved = solve_system(s, lookup, judge.digits(), false);

@@ -3,6 +3,7 @@
 // [M A^T; A 0][qddot; -lambda] = [f; -gamma], reactions, energies, power, outputs.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
@@ -33,6 +34,9 @@ struct SystemValues {
   std::vector<Real> scale;       // of qddot (all coordinates), then of lambda: what an error of size 1 relative to the
                                  // terms of every equation can change in them
 };
+
+/// "lagrange II"
+std::string name_of(const system::EquationSystem& system);
 
 /// Throws std::domain_error where there is no value, Singular where the system cannot be solved well.
 SystemValues values_of(const system::EquationSystem& system, const mechanics::Mechanics& mechanics, const Judge& judge,

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "verify/differences.hpp"
+
+#include <cln/integer.h>
+#include <cln/rational.h>
+#include <cln/real.h>
+
+#include <cmath>
+
+namespace eomgen::verify {
+
+Real ten_to(int exponent) { return cln::expt(cln::cl_RA(10), cln::cl_I(exponent)); }
+
+At with_digits(const At& at, const Precision& precision) {
+  At result = at;
+  result.t = precision.round(at.t);
+  for (auto* part : {&result.x, &result.p, &result.u})
+    for (Real& value : *part) value = precision.round(value);
+  return result;
+}
+
+// What is as faint as exp(-1e11) has no fraction, and digits enough.
+Real exactly(const Real& value) {
+  constexpr std::intptr_t faint = 1 << 20;
+  constexpr int plenty = 1500;  // digits, more than any sum here has
+  if (cln::zerop(value)) return 0;
+  const std::intptr_t exponent = cln::float_exponent(cln::cl_float(value, cln::float_format(20)));
+  return std::abs(exponent) < faint ? Real(cln::rational(value))
+                                    : Real(cln::cl_float(value, cln::float_format(plenty)));
+}
+
+Real component(std::size_t j) { return cln::cl_RA(static_cast<long>(16 + (7 * j + 3) % 11)) / (j % 2 == 0 ? 16 : -16); }
+
+std::optional<Slope> slope(const ProgramForm& program, const std::string& function, const At& at, const Shift& shift,
+                           int digits) {
+  const int more = 3 * digits + 10;
+  const Precision precision(more);
+  const Real h = precision.round(ten_to(-digits));
+  const At here = with_digits(at, precision);
+  At above = here, below = here;
+  shift(above, h);
+  shift(below, -h);
+  const std::optional<Arrays> high = program.call(function, above, more), low = program.call(function, below, more),
+                              middle = program.call(function, here, more);
+  if (!high || !low || !middle) return std::nullopt;
+  Slope result{*high, *high};
+  for (std::size_t r = 0; r < high->size(); ++r) {
+    for (std::size_t i = 0; i < (*high)[r].size(); ++i) {
+      const Real &a = (*high)[r][i], &b = (*low)[r][i];
+      result.values[r][i] = (a - b) / (2 * h);
+      result.errors[r][i] = cln::abs(a + b - 2 * (*middle)[r][i]) / h;
+    }
+  }
+  return result;
+}
+
+}  // namespace eomgen::verify
