@@ -13,6 +13,7 @@
 #include <stdexcept>
 
 #include "support/folders.hpp"
+#include "support/particles.hpp"
 #include "support/schema.hpp"
 
 namespace eomgen::test {
@@ -95,13 +96,8 @@ title = "A pendulum by its position"
 m = "1 kg"
 g = "9.81 m/s^2"
 L = "1 m"
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y"] }
-[[force]]
-gravity = "-g*E2"
-[[constraint]]
+)" + heavy_in_plane +
+         R"([[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
 )" + scene;

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "program.hpp"
+#include "support/particles.hpp"
 
 using namespace eomgen::test;
 
@@ -110,13 +111,7 @@ TEST_CASE("run: what falls into a corner of two walls comes to rest there, whate
 [parameters]
 m = 1
 g = 9.81
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y"] }
-[[force]]
-gravity = "-g*E2"
-[[constraint]]
+)toml" + heavy_in_plane + R"toml([[constraint]]
 name = "right"
 holonomic = "y - 0.3*x"
 holds = "unilateral"

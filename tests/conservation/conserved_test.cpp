@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "derive/routes/lagrange.hpp"
+#include "support/particles.hpp"
 
 using namespace eomgen;
 
@@ -27,13 +28,7 @@ g = 9.81
 L0 = 1
 [functions]
 L = "L0 LENGTH"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-[[constraint]]
+)toml" + test::heavy_in_space + R"toml([[constraint]]
 name = "rod"
 holonomic = "R - L"
 )toml";
@@ -59,13 +54,7 @@ m = 1
 g = 9.81
 L = 1
 W = 3
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-[[constraint]]
+)toml" + test::heavy_in_space + R"toml([[constraint]]
 name = "hoop"
 holonomic = "R - L"
 [[constraint]]

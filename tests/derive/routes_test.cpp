@@ -10,6 +10,7 @@
 #include <string>
 
 #include "support/numbers.hpp"
+#include "support/particles.hpp"
 #include "support/tolerances.hpp"
 
 using namespace eomgen;
@@ -47,13 +48,7 @@ a = 0.1
 w = 2
 [functions]
 d = "d0 + a*sin(w*t)"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-[[force]]
+)toml" + test::heavy_in_space + R"toml([[force]]
 on = "P"
 force = "D*R*P.e_theta"
 [[constraint]]
@@ -157,13 +152,7 @@ TEST_CASE("routes: a rod between a particle and the origin as a quadratic constr
 m = 1.5
 g = 9.81
 L = 2
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y"] }
-[[force]]
-gravity = "-g*E2"
-[[constraint]]
+)toml" + test::heavy_in_plane + R"toml([[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
 )toml",

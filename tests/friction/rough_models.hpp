@@ -4,6 +4,8 @@
 
 #include <string>
 
+#include "support/particles.hpp"
+
 namespace eomgen::test {
 
 // A block on a belt, held by a spring: sticks for 5 and slips for 2(pi - atan 2.5) with these numbers, again and again.
@@ -92,13 +94,7 @@ g = 9.81
 w = 2
 [functions]
 d = "R0 + R0/10*sin(w*t)"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-[[constraint]]
+)toml" + heavy_in_space + R"toml([[constraint]]
 name = "sphere"
 holonomic = "R - d"
 friction = { static = "mu_s", dynamic = "mu_d" }
@@ -156,13 +152,7 @@ title = "Bouncing ball"
 m = "1 kg"
 g = "9.81 m/s^2"
 e = 0.5
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y"] }
-[[force]]
-gravity = "-g*E2"
-[[constraint]]
+)toml" + heavy_in_plane + R"toml([[constraint]]
 name = "floor"
 holonomic = "y"
 holds = "unilateral"

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "model/model.hpp"
+#include "support/particles.hpp"
 
 namespace eomgen::model {
 
@@ -29,13 +30,8 @@ m = "1 kg"
 g = "9.81 m/s^2"
 L = "1 m"
 k = "30 N/m"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-)" + more;
+)" + test::heavy_in_space +
+         more;
 }
 
 /// The first line and the remedy of the refusal of a text; "accepted" if it is none.

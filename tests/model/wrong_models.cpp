@@ -3,6 +3,8 @@
 
 #include <doctest/doctest.h>
 
+#include "support/particles.hpp"
+
 namespace eomgen::model {
 
 std::string pendulum(const std::vector<std::pair<std::string, std::string>>& edits, const std::string& more) {
@@ -11,13 +13,7 @@ std::string pendulum(const std::vector<std::pair<std::string, std::string>>& edi
 m = "1 kg"
 g = "9.81 m/s^2"
 L = "1 m"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-)";
+)" + test::heavy_in_space;
   for (const auto& [from, to] : edits) {
     const std::size_t at = text.find(from);
     REQUIRE(at != std::string::npos);

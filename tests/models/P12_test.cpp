@@ -5,6 +5,7 @@
 
 #include "print/render.hpp"
 #include "support/folders.hpp"
+#include "support/particles.hpp"
 #include "support/simulation.hpp"
 
 using namespace eomgen;
@@ -52,13 +53,8 @@ g = 9.81
 D = 0.3
 [functions]
 d = "1 + sin(2*t)/10"
-[[particle]]
-name = "P"
-mass = "m"
-position = { spherical = ["R", "phi", "theta"] }
-[[force]]
-gravity = "-g*E3"
-[[force]]
+)toml" + test::heavy_in_space +
+        R"toml([[force]]
 on = "P"
 force = "D*R*P.e_theta"
 [[constraint]]

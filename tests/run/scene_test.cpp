@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "derive/routes/lagrange.hpp"
+#include "support/particles.hpp"
 
 using namespace eomgen;
 
@@ -17,13 +18,8 @@ const std::string rod = R"toml(format = 1
 m = 1
 g = 9.81
 L = 2
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y"] }
-[[force]]
-gravity = "-g*E2"
-[[constraint]]
+)toml" + test::heavy_in_plane +
+                        R"toml([[constraint]]
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
 [scene.default]

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "error.hpp"
+#include "support/particles.hpp"
 #include "verify/certificate.hpp"
 
 using namespace eomgen;
@@ -31,13 +32,7 @@ std::string particle_above(const std::vector<std::string>& curves) {
 [parameters]
 m = 1
 g = 9.81
-[[particle]]
-name = "P"
-mass = "m"
-position = { cartesian = ["x", "y"] }
-[[force]]
-gravity = "-g*E2"
-)toml";
+)toml" + test::heavy_in_plane;
   for (std::size_t k = 0; k < curves.size(); ++k) {
     text += fmt::format("[[constraint]]\nname = \"c{}\"\nholonomic = \"{}\"\nholds = \"unilateral\"\n", k, curves[k]);
   }
