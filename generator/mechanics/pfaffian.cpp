@@ -46,7 +46,8 @@ symbolic::Substitution independent_parameters(const Mechanics& m) {
 
 }  // namespace
 
-bool solve_small(std::vector<std::vector<cln::cl_R>> A, std::vector<cln::cl_R> b, std::vector<cln::cl_R>& x) {
+bool solve_small(const std::vector<std::vector<cln::cl_R>>& A, const std::vector<cln::cl_R>& b,
+                 std::vector<cln::cl_R>& x) {
   const std::size_t n = b.size();
   numeric::Matrix<cln::cl_R> matrix(n, n), side(n, 1);
   for (std::size_t i = 0; i < n; ++i) {

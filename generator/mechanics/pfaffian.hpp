@@ -78,6 +78,7 @@ class FormSpace {
 };
 
 /// x of A x = b in the sense of elimination with complete pivots, for a matrix of few rows; false where it is singular.
-bool solve_small(std::vector<std::vector<cln::cl_R>> A, std::vector<cln::cl_R> b, std::vector<cln::cl_R>& x);
+bool solve_small(const std::vector<std::vector<cln::cl_R>>& A, const std::vector<cln::cl_R>& b,
+                 std::vector<cln::cl_R>& x);
 
 }  // namespace eomgen::mechanics

@@ -23,22 +23,12 @@ class Elimination {
  public:
   /// Rows and then columns are scaled to a largest entry of 1, pivots are complete. Pivots up to `cutoff` count as 0;
   /// so do rows up to `floor` of the largest row, and columns of scaled rows up to `floor`.
-  Elimination(Matrix<T> A, const T& cutoff, const T& floor = T(0))
-      : a_(std::move(A)), row_(a_.rows), col_(a_.cols), floor_(floor) {
-    std::iota(row_.begin(), row_.end(), std::size_t{0});
-    std::iota(col_.begin(), col_.end(), std::size_t{0});
-    scale();
+  Elimination(Matrix<T> A, const T& cutoff, const T& floor = T(0)) : Elimination(std::move(A), Pivots::complete) {
+    scale(floor);
     reduce(cutoff);
   }
   /// Of the matrix as it is. Diagonal pivots need a square matrix.
-  Elimination(Matrix<T> A, const T& cutoff, Pivots pivots)
-      : a_(std::move(A)), row_(a_.rows), col_(a_.cols), floor_(0), pivots_(pivots) {
-    std::iota(row_.begin(), row_.end(), std::size_t{0});
-    std::iota(col_.begin(), col_.end(), std::size_t{0});
-    row_scale_.assign(a_.rows, T(1));
-    column_scale_.assign(a_.cols, T(1));
-    reduce(cutoff);
-  }
+  Elimination(Matrix<T> A, const T& cutoff, Pivots pivots) : Elimination(std::move(A), pivots) { reduce(cutoff); }
 
   std::size_t rank() const { return rank_; }
   /// The last pivot that counts, the first being 1 or so; 1 where there is none.
@@ -77,12 +67,21 @@ class Elimination {
   }
 
  private:
+  Elimination(Matrix<T> A, Pivots pivots)
+      : a_(std::move(A)),
+        row_(a_.rows),
+        col_(a_.cols),
+        row_scale_(a_.rows, T(1)),
+        column_scale_(a_.cols, T(1)),
+        pivots_(pivots) {
+    std::iota(row_.begin(), row_.end(), std::size_t{0});
+    std::iota(col_.begin(), col_.end(), std::size_t{0});
+  }
+
   T& at(std::size_t i, std::size_t j) { return a_(row_[i], col_[j]); }
   const T& at(std::size_t i, std::size_t j) const { return a_(row_[i], col_[j]); }
 
-  void scale() {
-    row_scale_.assign(a_.rows, T(1));
-    column_scale_.assign(a_.cols, T(1));
+  void scale(const T& floor) {
     std::vector<T> size(a_.rows, T(0));
     T whole(0);
     for (std::size_t i = 0; i < a_.rows; ++i) {
@@ -90,7 +89,7 @@ class Elimination {
       whole = std::max(whole, size[i]);
     }
     for (std::size_t i = 0; i < a_.rows; ++i) {
-      const bool nothing = !(size[i] > floor_ * whole);
+      const bool nothing = !(size[i] > floor * whole);
       row_scale_[i] = nothing ? T(0) : T(1) / size[i];
       for (std::size_t j = 0; j < a_.cols; ++j) a_(i, j) = a_(i, j) * row_scale_[i];
     }
@@ -98,7 +97,7 @@ class Elimination {
       T largest(0);
       for (std::size_t i = 0; i < a_.rows; ++i) largest = std::max(largest, magnitude(a_(i, j)));
       if (is_zero(largest)) continue;
-      const T factor = largest > floor_ ? T(1) / largest : T(0);
+      const T factor = largest > floor ? T(1) / largest : T(0);
       for (std::size_t i = 0; i < a_.rows; ++i) a_(i, j) = a_(i, j) * factor;
       if (!is_zero(factor)) column_scale_[j] = factor;
     }
@@ -151,8 +150,7 @@ class Elimination {
   Matrix<T> a_;
   std::vector<std::size_t> row_, col_;
   std::vector<T> row_scale_, column_scale_;
-  T floor_;
-  Pivots pivots_ = Pivots::complete;
+  Pivots pivots_;
   std::size_t rank_ = 0;
 };
 
