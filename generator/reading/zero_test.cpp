@@ -7,22 +7,13 @@
 #include "reading/rational_function.hpp"
 #include "reading/trig.hpp"
 #include "symbolic/evaluate.hpp"
+#include "symbolic/sample.hpp"
 
 namespace eomgen::reading {
 namespace {
 
-constexpr int digits = 50, agreed_digits = 40, points = 5;
-
-// Values in (0.15, 1.15) by symbol and point, so that positive parameters and angles below pi are met.
-cln::cl_R sample(const Symbol& symbol, int point) {
-  std::uint64_t x = static_cast<std::uint64_t>(point + 1) * 0x9e3779b97f4a7c15ull;
-  for (const std::uint64_t part :
-       {static_cast<std::uint64_t>(symbol.kind), std::uint64_t{symbol.index}, std::uint64_t{symbol.order}}) {
-    x = (x ^ (part + 0x632be59bd9b4e019ull)) * 0xbf58476d1ce4e5b9ull;
-    x ^= x >> 29;
-  }
-  return cln::cl_R(Rational(static_cast<long>(x % 1000000007)) / 1000000007 + Rational(3) / 20);
-}
+constexpr int digits = 50, agreed_digits = 40;
+constexpr std::uint64_t points = 5;
 
 Zero numerically(const Sum& sum) {
   symbolic::Dag dag;
@@ -30,11 +21,11 @@ Zero numerically(const Sum& sum) {
   for (const auto& [monomial, coefficient] : sum.terms()) terms.push_back(to_dag(dag, Sum(monomial, coefficient)));
   const cln::cl_R small = cln::cl_R(cln::expt(Rational(1) / 10, agreed_digits));
   bool evaluated = false;
-  for (int point = 0; point < points; ++point) {
+  for (std::uint64_t point = 0; point < points; ++point) {
     try {
       cln::cl_R total = 0, size = 0;
       for (const cln::cl_R& value : symbolic::evaluate(
-               dag, terms, [&](const Symbol& s) { return sample(s, point); }, digits)) {
+               dag, terms, [&](const Symbol& s) { return cln::cl_R(symbolic::sample(s, point)); }, digits)) {
         total = total + value;
         size = size + cln::abs(value);
       }
