@@ -31,9 +31,12 @@ std::vector<ReadReaction> solve_reactions(const mechanics::Mechanics& m, Bridge&
 
 }  // namespace
 
-void approach_one(const mechanics::Mechanics& m, Bridge& bridge, ReadingForm& form) {
+void approach_one(const mechanics::Mechanics& m, Bridge& bridge, const std::vector<ReadSpin>& spins,
+                  ReadingForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
-  form.kinetic = kinetic_energy(m, bridge);
+  const Sum translation = translational_energy(m, bridge);
+  if (!spins.empty()) form.translation = translation;
+  form.kinetic = kinetic_energy(translation, spins);
   form.potential = bridge.sum(m.potential);
   form.lagrangian = form.kinetic - form.potential;
   for (std::uint32_t i = 0; i < m.q.size(); ++i) {

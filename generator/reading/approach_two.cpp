@@ -6,9 +6,12 @@
 
 namespace eomgen::reading {
 
-void approach_two(const mechanics::Mechanics& m, Bridge& bridge, ReadingForm& form) {
+void approach_two(const mechanics::Mechanics& m, Bridge& bridge, const std::vector<ReadSpin>& spins,
+                  ReadingForm& form) {
   const std::map<Symbol, Sum> values = imposed_values(m, bridge);
-  form.kinetic = simplify(bridge.substitute(kinetic_energy(m, bridge), values));
+  const Sum translation = translational_energy(m, bridge);
+  if (!spins.empty()) form.translation = simplify(bridge.substitute(translation, values));
+  form.kinetic = simplify(bridge.substitute(kinetic_energy(translation, spins), values));
   form.potential = bridge.substitute(bridge.sum(m.potential), values);
   form.lagrangian = form.kinetic - form.potential;
   form.by_degree = split_by_degree(form.kinetic);

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The two approaches; neither calls the other. Both throw work::OverBudget.
+// The two approaches; neither calls the other. In: the rotations as they are. Both throw work::OverBudget.
 #pragma once
 
 #include "reading/lagrangian.hpp"
 
 namespace eomgen::reading {
 
-void approach_one(const mechanics::Mechanics& mechanics, Bridge& bridge, ReadingForm& form);
-void approach_two(const mechanics::Mechanics& mechanics, Bridge& bridge, ReadingForm& form);
+void approach_one(const mechanics::Mechanics& mechanics, Bridge& bridge, const std::vector<ReadSpin>& spins,
+                  ReadingForm& form);
+void approach_two(const mechanics::Mechanics& mechanics, Bridge& bridge, const std::vector<ReadSpin>& spins,
+                  ReadingForm& form);
 
 }  // namespace eomgen::reading

@@ -54,9 +54,9 @@ Sum translational_energy(const Mechanics& m, Bridge& bridge) {
   return simplify(result);
 }
 
-Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
-  Sum result = translational_energy(m, bridge);
-  for (const ReadSpin& spin : read_spins(m, bridge)) {
+Sum kinetic_energy(const Sum& translation, const std::vector<ReadSpin>& spins) {
+  Sum result = translation;
+  for (const ReadSpin& spin : spins) {
     Sum twice;
     for (std::size_t i = 0; i < 3; ++i) {
       // Over a sum, as with Euler parameters, products of components are no longer read by anybody.
@@ -69,6 +69,11 @@ Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
     if (result.size() > readable_terms) throw TermBudget();
   }
   return simplify(result);
+}
+
+Sum kinetic_energy(const Mechanics& m, Bridge& bridge) {
+  const Sum translation = translational_energy(m, bridge);
+  return kinetic_energy(translation, read_spins(m, bridge));
 }
 
 Sum generalized_force(const Mechanics& m, Bridge& bridge, std::uint32_t i) {

@@ -7,10 +7,12 @@
 
 namespace eomgen::reading {
 
-/// T = sum m/2 v.v + [energy], eq. (1.31), (3.20): velocities differentiated here, not taken from mechanics.
-/// Rotations, and the kinetic energy without them.
+/// Rotations.
 std::vector<ReadSpin> read_spins(const mechanics::Mechanics& mechanics, Bridge& bridge);
+/// The kinetic energy without them: sum m/2 v.v + [energy], velocities differentiated here, not taken from mechanics.
 Sum translational_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
+/// T, eq. (1.31), (3.20), of both.
+Sum kinetic_energy(const Sum& translation, const std::vector<ReadSpin>& spins);
 Sum kinetic_energy(const mechanics::Mechanics& mechanics, Bridge& bridge);
 
 /// Q_i of one coordinate, eq. (3.20).

@@ -85,29 +85,23 @@ void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
   }
 }
 
-void add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
-  if (m.spins.empty()) return;
-  const bool imposed = form.approach == system::Approach::two;
-  std::map<Symbol, Sum> values;
-  const auto read = [&](const Sum& sum) { return imposed ? simplify(bridge.substitute(sum, values)) : sum; };
+/// The rotations as they are; in the form with the constraints imposed by approach II. Throws work::OverBudget.
+std::vector<ReadSpin> add_spins(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+  std::vector<ReadSpin> spins;
   try {
-    const work::Budget budget(form_budget);
-    if (imposed) values = imposed_values(m, bridge);
-    form.spins = read_spins(m, bridge);
-    for (ReadSpin& spin : form.spins) {
-      for (Sum& w : spin.w) w = read(w);
+    spins = form.spins = read_spins(m, bridge);
+    if (form.approach == system::Approach::two && !spins.empty()) {
+      const std::map<Symbol, Sum> values = imposed_values(m, bridge);
+      for (ReadSpin& spin : form.spins) {
+        for (Sum& w : spin.w) w = simplify(bridge.substitute(w, values));
+      }
     }
   } catch (const work::OverBudget& over) {  // angular velocities along a long chain of relative rotations
     form.spins.clear();
     form.no_spins = over.what();
+    if (spins.empty()) throw;
   }
-  if (form.by_parts) return;
-  try {
-    const work::Budget budget(form_budget);
-    form.translation = read(translational_energy(m, bridge));
-  } catch (const work::OverBudget& over) {
-    leave_by_parts(m, form, over.what());
-  }
+  return spins;
 }
 
 /// At most so many terms has what is written out; sines that combine make fewer of them.
@@ -138,19 +132,17 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
   const bool grows = !m.spins.empty() || !m.dag->is_zero(m.kinetic_given);
   const double terms = grows ? most_terms(*m.dag, m.kinetic) : 0;
   try {
-    const work::Budget budget(form_budget);
+    const work::Budget budget(form_budget);  // for all of it, so that no part is waited for anew
+    if (terms > longest_of_spins) form.no_spins = TermBudget().what();
+    const std::vector<ReadSpin> spins = form.no_spins.empty() ? add_spins(m, bridge, form) : std::vector<ReadSpin>{};
     if (terms > longest) throw TermBudget();
     if (approach == system::Approach::one)
-      approach_one(m, bridge, form);
+      approach_one(m, bridge, spins, form);
     else
-      approach_two(m, bridge, form);
+      approach_two(m, bridge, spins, form);
   } catch (const work::OverBudget& over) {
     leave_by_parts(m, form, over.what());
   }
-  if (terms <= longest_of_spins)
-    add_spins(m, bridge, form);
-  else
-    form.no_spins = TermBudget().what();
   add_constraints(m, bridge, form);
   return form;
 }

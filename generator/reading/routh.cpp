@@ -49,7 +49,7 @@ bool solve_rates(Bridge& bridge, RouthForm& form) {
 void reduce(const Mechanics& m, Bridge& bridge, RouthForm& form) {
   ReadingForm whole;
   whole.approach = system::Approach::two;
-  approach_two(m, bridge, whole);
+  approach_two(m, bridge, read_spins(m, bridge), whole);
   for (const std::uint32_t c : form.cyclic) {
     form.momenta.push_back(simplify(bridge.derivative(whole.lagrangian, coordinate_symbol(c, 1))));
   }
