@@ -2,6 +2,7 @@
 #include "mechanics/lowering.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "symbolic/polynomial.hpp"
 
@@ -15,7 +16,9 @@ namespace sym = symbolic;
 // Deeper than any expression that a person writes; keeps the recursion away from the end of the stack.
 constexpr int depth_limit = 5000;
 
-sym::Op unary(model::Fn fn) {
+}  // namespace
+
+sym::Op op_of(model::Fn fn) {
   switch (fn) {
     case model::Fn::sin: return sym::Op::sin;
     case model::Fn::cos: return sym::Op::cos;
@@ -35,10 +38,8 @@ sym::Op unary(model::Fn fn) {
     case model::Fn::min: return sym::Op::min;
     case model::Fn::max: return sym::Op::max;
   }
-  return sym::Op::sin;
+  throw std::logic_error("no function of the model language");
 }
-
-}  // namespace
 
 Lowering::Lowering(Mechanics& mechanics)
     : m_(mechanics),
@@ -217,7 +218,7 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
     case Op::norm: return of(norm(arg(0).components));
     default: break;
   }
-  const sym::Op op = unary(node.fn);
+  const sym::Op op = op_of(node.fn);
   if (op == sym::Op::atan2 || op == sym::Op::min || op == sym::Op::max) {
     return of(dag_.call(op, arg(0).scalar, arg(1).scalar));
   }

@@ -10,6 +10,9 @@ namespace eomgen::mechanics {
 
 using symbolic::Scalar;
 
+/// The row of symbolic/functions.hpp that a function of the model language is.
+symbolic::Op op_of(model::Fn fn);
+
 /// Interprets model expressions on the Dag of `mechanics`; memoised, so that sharing in the model is sharing here.
 class Lowering {
  public:

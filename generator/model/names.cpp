@@ -11,6 +11,8 @@ namespace eomgen::model {
 namespace {
 
 constexpr std::size_t many = 64;
+// Names and numbers of arguments are those of symbolic/functions.hpp, which this stage and the judge, which reads Fn,
+// do not know; tests/mechanics holds one against the other. min and max take more than two here, as nested calls.
 constexpr std::array<FunctionName, 17> scalar_functions{{
     {"sin", Fn::sin, 1, 1},
     {"cos", Fn::cos, 1, 1},

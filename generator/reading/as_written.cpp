@@ -5,6 +5,7 @@
 
 #include <sstream>
 
+#include "mechanics/lowering.hpp"
 #include "reading/reading.hpp"
 
 namespace eomgen::reading {
@@ -14,29 +15,6 @@ constexpr int deepest = 200;
 
 // No value: a vector is in it, or it is too deep; such an expression is shown multiplied out.
 using Written = std::optional<Formula>;
-
-Op function_of(model::Fn fn) {
-  switch (fn) {
-    case model::Fn::sin: return Op::sin;
-    case model::Fn::cos: return Op::cos;
-    case model::Fn::tan: return Op::tan;
-    case model::Fn::asin: return Op::asin;
-    case model::Fn::acos: return Op::acos;
-    case model::Fn::atan: return Op::atan;
-    case model::Fn::atan2: return Op::atan2;
-    case model::Fn::sinh: return Op::sinh;
-    case model::Fn::cosh: return Op::cosh;
-    case model::Fn::tanh: return Op::tanh;
-    case model::Fn::exp: return Op::exp;
-    case model::Fn::log: return Op::log;
-    case model::Fn::sqrt: return Op::sqrt;
-    case model::Fn::abs: return Op::abs;
-    case model::Fn::sign: return Op::sign;
-    case model::Fn::min: return Op::min;
-    case model::Fn::max: return Op::max;
-  }
-  return Op::sin;
-}
 
 // 981/100 -> 9.81: numbers of a model are decimals, kept exactly.
 Formula decimal(const Rational& value) {
@@ -112,7 +90,7 @@ class Writer {
       case Op::power: return wrap(Form::power, std::move(args));
       case Op::call: {
         Formula call = wrap(Form::call, std::move(args));
-        call.op = function_of(node.fn);
+        call.op = mechanics::op_of(node.fn);
         return call;
       }
       case Op::conditional: {

@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "symbolic/arithmetic.hpp"
 #include "work.hpp"
 
 namespace eomgen::reading {
@@ -71,20 +72,9 @@ double Evaluator::value(const Flat& sum) const {
 double Evaluator::function(const Item& item) const {
   const auto arg = [&](std::size_t i) { return value(item.args[i]); };
   switch (item.op) {
-    case Op::pi: return std::acos(-1.0);
-    case Op::add: return arg(0);
-    case Op::pow: return std::pow(arg(0), arg(1));
-    case Op::sqrt: return std::sqrt(arg(0));
-    case Op::sin: return std::sin(arg(0));
-    case Op::cos: return std::cos(arg(0));
-    case Op::tan: return std::tan(arg(0));
-    case Op::sinh: return std::sinh(arg(0));
-    case Op::cosh: return std::cosh(arg(0));
-    case Op::tanh: return std::tanh(arg(0));
-    case Op::exp: return std::exp(arg(0));
-    case Op::log: return std::log(arg(0));
-    case Op::abs: return std::abs(arg(0));
-    default: return std::nan("");
+    case Op::pi: return symbolic::Binary64::pi();
+    case Op::add: return arg(0);  // a sum under a power
+    default: return symbolic::value_of(item.op, 0, arg, symbolic::Binary64{});
   }
 }
 

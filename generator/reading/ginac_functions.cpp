@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// GiNaC's functions beside those of symbolic/functions.hpp. GiNaC differentiates its own by rules of its own.
 #include "reading/ginac_bridge.hpp"
 
 namespace eomgen::reading {
@@ -51,53 +52,48 @@ unsigned select_serial() {
   return serial;
 }
 
+/// Both ways. pow and sqrt are no functions to GiNaC, but powers.
+struct Known {
+  Op op;
+  unsigned serial;
+};
+
+const std::vector<Known>& known() {
+  static const std::vector<Known> functions{{Op::sin, GiNaC::sin_SERIAL::serial},
+                                            {Op::cos, GiNaC::cos_SERIAL::serial},
+                                            {Op::tan, GiNaC::tan_SERIAL::serial},
+                                            {Op::asin, GiNaC::asin_SERIAL::serial},
+                                            {Op::acos, GiNaC::acos_SERIAL::serial},
+                                            {Op::atan, GiNaC::atan_SERIAL::serial},
+                                            {Op::sinh, GiNaC::sinh_SERIAL::serial},
+                                            {Op::cosh, GiNaC::cosh_SERIAL::serial},
+                                            {Op::tanh, GiNaC::tanh_SERIAL::serial},
+                                            {Op::exp, GiNaC::exp_SERIAL::serial},
+                                            {Op::log, GiNaC::log_SERIAL::serial},
+                                            {Op::atan2, GiNaC::atan2_SERIAL::serial},
+                                            {Op::abs, abs_serial()},
+                                            {Op::sign, sign_serial()},
+                                            {Op::min, min_serial()},
+                                            {Op::max, max_serial()},
+                                            {Op::select, select_serial()}};
+  return functions;
+}
+
 }  // namespace
 
 ex ginac_call(Op op, const std::vector<ex>& args) {
-  const ex& x = args[0];
-  switch (op) {
-    case Op::sqrt: return GiNaC::sqrt(x);
-    case Op::sin: return GiNaC::sin(x);
-    case Op::cos: return GiNaC::cos(x);
-    case Op::tan: return GiNaC::tan(x);
-    case Op::asin: return GiNaC::asin(x);
-    case Op::acos: return GiNaC::acos(x);
-    case Op::atan: return GiNaC::atan(x);
-    case Op::sinh: return GiNaC::sinh(x);
-    case Op::cosh: return GiNaC::cosh(x);
-    case Op::tanh: return GiNaC::tanh(x);
-    case Op::exp: return GiNaC::exp(x);
-    case Op::log: return GiNaC::log(x);
-    case Op::atan2: return GiNaC::atan2(x, args[1]);
-    case Op::pow: return GiNaC::pow(x, args[1]);
-    case Op::abs: return call(abs_serial(), args);
-    case Op::sign: return call(sign_serial(), args);
-    case Op::min: return call(min_serial(), args);
-    case Op::max: return call(max_serial(), args);
-    case Op::select: return call(select_serial(), args);
-    default: throw std::logic_error("not a function");
+  if (op == Op::sqrt) return GiNaC::sqrt(args[0]);
+  if (op == Op::pow) return GiNaC::pow(args[0], args[1]);
+  for (const Known& f : known()) {
+    if (f.op == op) return call(f.serial, args);
   }
+  throw std::logic_error("not a function");
 }
 
 Op function_of(const function& f) {
-  const unsigned serial = f.get_serial();
-  if (serial == abs_serial()) return Op::abs;
-  if (serial == sign_serial()) return Op::sign;
-  if (serial == min_serial()) return Op::min;
-  if (serial == max_serial()) return Op::max;
-  if (serial == select_serial()) return Op::select;
-  if (serial == GiNaC::sin_SERIAL::serial) return Op::sin;
-  if (serial == GiNaC::cos_SERIAL::serial) return Op::cos;
-  if (serial == GiNaC::tan_SERIAL::serial) return Op::tan;
-  if (serial == GiNaC::asin_SERIAL::serial) return Op::asin;
-  if (serial == GiNaC::acos_SERIAL::serial) return Op::acos;
-  if (serial == GiNaC::atan_SERIAL::serial) return Op::atan;
-  if (serial == GiNaC::atan2_SERIAL::serial) return Op::atan2;
-  if (serial == GiNaC::sinh_SERIAL::serial) return Op::sinh;
-  if (serial == GiNaC::cosh_SERIAL::serial) return Op::cosh;
-  if (serial == GiNaC::tanh_SERIAL::serial) return Op::tanh;
-  if (serial == GiNaC::exp_SERIAL::serial) return Op::exp;
-  if (serial == GiNaC::log_SERIAL::serial) return Op::log;
+  for (const Known& k : known()) {
+    if (k.serial == f.get_serial()) return k.op;
+  }
   return Op::symbol;
 }
 

@@ -4,8 +4,15 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+
+#include "symbolic/arithmetic.hpp"
+#include "symbolic/functions.hpp"
 
 namespace eomgen::run {
+
+using symbolic::Op;
+
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -38,7 +45,52 @@ Interval sine(Interval a) {
   return {contains(-pi / 2) ? -1 : std::min(at_low, at_high), contains(pi / 2) ? 1 : std::max(at_low, at_high)};
 }
 
+Interval cosine(Interval a) {
+  constexpr double quarter = std::numbers::pi / 2;
+  return sine(a + Interval{quarter, quarter});
+}
+
 Interval square(Interval a) { return whole_power(a, 2); }
+
+bool has_pole_of_tan(Interval a) {
+  constexpr double pi = std::numbers::pi;
+  return !(a.width() < pi) || std::ceil((a.low - pi / 2) / pi) <= std::floor((a.high - pi / 2) / pi);
+}
+
+Interval within_one(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::clamp(a.high, -1.0, 1.0)}; }
+
+/// The values of a function of one argument; none where it has a pole or is not defined.
+std::optional<Interval> values(Op function, Interval a) {
+  const auto at = [function](double x) { return symbolic::Binary64::call(function, x); };
+  switch (function) {
+    case Op::sin: return sine(a);
+    case Op::cos: return cosine(a);
+    case Op::cosh: {
+      const double low = at(a.low), high = at(a.high);
+      return Interval{a.has(0) ? 1 : std::min(low, high), std::max(low, high)};
+    }
+    case Op::acos: return Interval{at(within_one(a).high), at(within_one(a).low)};
+    case Op::asin: return rising(at, within_one(a));
+    case Op::sqrt:
+      if (a.high < 0) return std::nullopt;
+      return Interval{at(std::max(0.0, a.low)), at(a.high)};
+    case Op::log:
+      if (!(a.high > 0)) return std::nullopt;
+      return Interval{a.low > 0 ? at(a.low) : -infinity, at(a.high)};
+    case Op::tan:
+      if (has_pole_of_tan(a)) return std::nullopt;
+      return rising(at, a);
+    default: return rising(at, a);
+  }
+}
+
+/// `numbers` of symbolic::slope_of.
+struct Numbers {
+  static Interval one() { return {1, 1}; }
+  static Interval two() { return {2, 2}; }
+  static Interval square(Interval a) { return run::square(a); }
+  static Interval call(Op function, Interval a) { return values(function, a).value_or(Interval::all()); }
+};
 
 }  // namespace
 
@@ -68,6 +120,14 @@ Sloped quotient(const Sloped& a, const Sloped& b) {
   return {value, (a.slope - value * b.slope) / b.value};
 }
 
+Sloped call(Op function, const Sloped& a) {
+  const std::optional<Interval> value = values(function, a.value);
+  if (!value) return {Interval::all(), Interval::all()};
+  const auto [size, divides, falls] = symbolic::slope_of(symbolic::function_of(function), a.value, *value, Numbers{});
+  const Interval slope = divides ? a.slope / size : size * a.slope;
+  return {*value, falls ? -slope : slope};
+}
+
 Sloped power(const Sloped& a, int n) {
   const double factor = n;
   return {whole_power(a.value, n), Interval{factor, factor} * whole_power(a.value, n - 1) * a.slope};
@@ -75,78 +135,7 @@ Sloped power(const Sloped& a, int n) {
 
 Sloped pow(const Sloped& a, const Sloped& b) {
   if (!(a.value.low > 0)) return {Interval::all(), Interval::all()};
-  return exp(product(b, log(a)));
-}
-
-Sloped sqrt(const Sloped& a) {
-  if (a.value.high < 0) return {Interval::all(), Interval::all()};
-  const Interval value{std::sqrt(std::max(0.0, a.value.low)), std::sqrt(a.value.high)};
-  return {value, a.slope / (Interval{2, 2} * value)};
-}
-
-Sloped sin(const Sloped& a) {
-  constexpr double quarter = std::numbers::pi / 2;
-  return {sine(a.value), sine(a.value + Interval{quarter, quarter}) * a.slope};
-}
-
-Sloped cos(const Sloped& a) {
-  constexpr double quarter = std::numbers::pi / 2;
-  return {sine(a.value + Interval{quarter, quarter}), -(sine(a.value) * a.slope)};
-}
-
-Sloped tan(const Sloped& a) {
-  constexpr double pi = std::numbers::pi;
-  const bool pole =
-      !(a.value.width() < pi) || std::ceil((a.value.low - pi / 2) / pi) <= std::floor((a.value.high - pi / 2) / pi);
-  if (pole) return {Interval::all(), Interval::all()};
-  const Interval value = rising([](double x) { return std::tan(x); }, a.value);
-  return {value, (Interval{1, 1} + square(value)) * a.slope};
-}
-
-namespace {
-
-Interval slope_of_arcs(const Sloped& a) {
-  const Interval rest = Interval{1, 1} - square(a.value);
-  if (rest.low <= 0) return Interval::all();
-  return a.slope / Interval{std::sqrt(rest.low), std::sqrt(rest.high)};
-}
-
-Interval within_one(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::clamp(a.high, -1.0, 1.0)}; }
-
-}  // namespace
-
-Sloped asin(const Sloped& a) {
-  return {rising([](double x) { return std::asin(x); }, within_one(a.value)), slope_of_arcs(a)};
-}
-Sloped acos(const Sloped& a) {
-  const Interval value = within_one(a.value);
-  return {{std::acos(value.high), std::acos(value.low)}, -slope_of_arcs(a)};
-}
-Sloped atan(const Sloped& a) {
-  return {rising([](double x) { return std::atan(x); }, a.value), a.slope / (Interval{1, 1} + square(a.value))};
-}
-Sloped exp(const Sloped& a) {
-  const Interval value = rising([](double x) { return std::exp(x); }, a.value);
-  return {value, value * a.slope};
-}
-Sloped log(const Sloped& a) {
-  if (!(a.value.high > 0)) return {Interval::all(), Interval::all()};
-  const double low = a.value.low > 0 ? std::log(a.value.low) : -infinity;
-  return {{low, std::log(a.value.high)}, a.slope / a.value};
-}
-Sloped sinh(const Sloped& a) {
-  const Interval value = rising([](double x) { return std::sinh(x); }, a.value);
-  const Interval even = square(value) + Interval{1, 1};
-  return {value, Interval{std::sqrt(even.low), std::sqrt(even.high)} * a.slope};
-}
-Sloped cosh(const Sloped& a) {
-  const double low = std::cosh(a.value.low), high = std::cosh(a.value.high);
-  return {{a.value.has(0) ? 1 : std::min(low, high), std::max(low, high)},
-          rising([](double x) { return std::sinh(x); }, a.value) * a.slope};
-}
-Sloped tanh(const Sloped& a) {
-  const Interval value = rising([](double x) { return std::tanh(x); }, a.value);
-  return {value, (Interval{1, 1} - square(value)) * a.slope};
+  return call(Op::exp, product(b, call(Op::log, a)));
 }
 
 Sloped atan2(const Sloped& y, const Sloped& x) {

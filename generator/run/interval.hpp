@@ -6,6 +6,8 @@
 
 #include <limits>
 
+#include "symbolic/dag.hpp"
+
 namespace eomgen::run {
 
 struct Interval {
@@ -39,18 +41,8 @@ Sloped product(const Sloped& a, const Sloped& b);
 Sloped quotient(const Sloped& a, const Sloped& b);
 Sloped power(const Sloped& a, int exponent);  // 2 and more
 Sloped pow(const Sloped& a, const Sloped& b);
-Sloped sqrt(const Sloped& a);
-Sloped sin(const Sloped& a);
-Sloped cos(const Sloped& a);
-Sloped tan(const Sloped& a);
-Sloped asin(const Sloped& a);
-Sloped acos(const Sloped& a);
-Sloped atan(const Sloped& a);
-Sloped sinh(const Sloped& a);
-Sloped cosh(const Sloped& a);
-Sloped tanh(const Sloped& a);
-Sloped exp(const Sloped& a);
-Sloped log(const Sloped& a);
+/// A function of one argument, its slope by symbolic/functions.hpp; not abs and sign, whose branch may be known.
+Sloped call(symbolic::Op function, const Sloped& a);
 Sloped atan2(const Sloped& y, const Sloped& x);
 
 }  // namespace sloped

@@ -155,18 +155,6 @@ Sloped RangeCode::range(std::span<const Sloped> variables, std::size_t root) con
       case Op::neg: result = {-arg(0).value, -arg(0).slope}; break;
       case Op::power: result = sloped::power(arg(0), step.payload); break;
       case Op::pow: result = sloped::pow(arg(0), arg(1)); break;
-      case Op::sqrt: result = sloped::sqrt(arg(0)); break;
-      case Op::sin: result = sloped::sin(arg(0)); break;
-      case Op::cos: result = sloped::cos(arg(0)); break;
-      case Op::tan: result = sloped::tan(arg(0)); break;
-      case Op::asin: result = sloped::asin(arg(0)); break;
-      case Op::acos: result = sloped::acos(arg(0)); break;
-      case Op::atan: result = sloped::atan(arg(0)); break;
-      case Op::sinh: result = sloped::sinh(arg(0)); break;
-      case Op::cosh: result = sloped::cosh(arg(0)); break;
-      case Op::tanh: result = sloped::tanh(arg(0)); break;
-      case Op::exp: result = sloped::exp(arg(0)); break;
-      case Op::log: result = sloped::log(arg(0)); break;
       case Op::atan2: result = sloped::atan2(arg(0), arg(1)); break;
       case Op::abs: {
         const Sloped negative{-arg(0).value, -arg(0).slope};
@@ -201,6 +189,7 @@ Sloped RangeCode::range(std::span<const Sloped> variables, std::size_t root) con
         result = side > 0 ? arg(3) : side < 0 ? arg(2) : either(arg(2), arg(3), true);
         break;
       }
+      default: result = sloped::call(step.op, arg(0));
     }
   }
   return ranges_[roots_[root]];
