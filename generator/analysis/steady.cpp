@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "derive/imposition.hpp"
+#include "numeric/numbers.hpp"
 #include "pipeline/simulate.hpp"
 #include "symbolic/calculus.hpp"
 
@@ -108,7 +109,8 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
   for (const run::Signal& signal : p.scene.inputs)
     setting.inputs.push_back(linear::number<Precise>(Precise(signal(p.t, p.t))));
   for (std::size_t i = 0; i < d.model.integrals.size(); ++i) {
-    setting.integrals.push_back(linear::number<Precise>(Precise(state.integrals.empty() ? 0.0 : state.integrals[i])));
+    setting.integrals.push_back(
+        linear::number<Precise>(numeric::exact(state.integrals.empty() ? 0.0 : state.integrals[i])));
   }
   return setting;
 }

@@ -8,6 +8,7 @@
 
 #include "derive/imposition.hpp"
 #include "model/names.hpp"
+#include "numeric/numbers.hpp"
 #include "symbolic/calculus.hpp"
 #include "work.hpp"
 
@@ -209,7 +210,7 @@ void require_ends(const SteadyMotions& result) {
   if (!search.points.empty() || search.refused == 0) return;
   const SteadyProblem& p = result.problem;
   linear::State<Precise> z;
-  for (const double x : search.refused_at) z.push_back(linear::number<Precise>(Precise(x)));
+  for (const double x : search.refused_at) z.push_back(linear::number<Precise>(numeric::exact(x)));
   const Source source = without_slope(p, z);
   throw Error(
       command, source.where,

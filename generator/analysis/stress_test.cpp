@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "error.hpp"
+#include "numeric/numbers.hpp"
 #include "run/integration.hpp"
 #include "stress/start.hpp"
 
@@ -20,13 +21,6 @@ using stress::Row;
 using stress::Verdict;
 using LeftOut = std::vector<std::pair<std::string, std::string>>;
 
-/// Denormal numbers too, which CLN's own conversion refuses.
-symbolic::Rational exactly(double value) {
-  if (std::abs(value) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(value));
-  constexpr int shift = 200;
-  return cln::rational(cln::cl_DF(std::ldexp(value, shift))) / cln::expt_pos(cln::cl_I(2), shift);
-}
-
 /// The scene of one case, made anew from the model where constants change.
 class Variation {
  public:
@@ -37,11 +31,11 @@ class Variation {
     pipeline::Derived& derived = *simulation_.derived;
     run::Overrides overrides = overrides_;
     for (const auto& [p, factor] : test.factor) {
-      overrides.parameters[derived.model.parameters[p].name] = exactly(simulation_.scene.parameters[p] * factor);
+      overrides.parameters[derived.model.parameters[p].name] = numeric::exact(simulation_.scene.parameters[p] * factor);
     }
     for (const auto& [p, value] :
          test.value) {  // what follows from them is computed anew, and a start that they break is refused
-      if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = exactly(value);
+      if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = numeric::exact(value);
     }
     if (test.rtol) {
       overrides.rtol = *test.rtol;

@@ -11,6 +11,7 @@
 
 #include "abi/functions.hpp"
 #include "emit/text.hpp"
+#include "numeric/numbers.hpp"
 #include "program/abi_values.hpp"
 
 namespace eomgen::emit {
@@ -25,23 +26,21 @@ constexpr int taylor_order = 4;
 // Values of one function; the first two vectors are always held where they fit, the second one alone where they do not.
 constexpr std::size_t most_values = 3000;
 
-cln::cl_R exactly(double value) { return cln::rational(cln::cl_DF(value)); }
-
-std::vector<cln::cl_R> exactly(const std::vector<double>& values) {
+std::vector<cln::cl_R> exact(const std::vector<double>& values) {
   std::vector<cln::cl_R> result;
-  for (const double value : values) result.push_back(exactly(value));
+  for (const double value : values) result.push_back(numeric::exact(value));
   return result;
 }
 
 program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& context) {
   program::AbiArguments arguments;
-  arguments.at.t = exactly(at.t);
-  arguments.at.x = exactly(at.x);
-  arguments.at.p = exactly(at.p);
-  arguments.at.u = exactly(at.u);
+  arguments.at.t = numeric::exact(at.t);
+  arguments.at.x = exact(at.x);
+  arguments.at.p = exact(at.p);
+  arguments.at.u = exact(at.u);
   arguments.at.mode = at.mode;
   arguments.order = taylor_order;
-  for (const Quantity& input : context.inputs) arguments.default_inputs.push_back(exactly(input.value));
+  for (const Quantity& input : context.inputs) arguments.default_inputs.push_back(numeric::exact(input.value));
   return arguments;
 }
 

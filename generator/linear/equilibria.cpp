@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "linear/newton.hpp"
+#include "numeric/numbers.hpp"
 #include "work.hpp"
 
 namespace eomgen::linear {
@@ -80,7 +81,7 @@ class Search {
       }
       if (!rough.found) continue;
       State<Precise> z;
-      for (const double x : rough.z) z.push_back(number<Precise>(Precise(x)));
+      for (const double x : rough.z) z.push_back(number<Precise>(numeric::exact(x)));
       wrap(z);
       const auto known = std::find_if(seen.begin(), seen.end(), [&](const End& s) { return is_same(s.z, z); });
       if (known != seen.end()) {

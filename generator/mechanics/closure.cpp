@@ -12,6 +12,7 @@
 
 #include "mechanics/imposition.hpp"
 #include "mechanics/pfaffian.hpp"
+#include "numeric/numbers.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::mechanics {
@@ -33,7 +34,7 @@ constexpr double plain_tolerance = 1e-10;     // of psi then
 constexpr double plainly_independent = 1e-7;  // a row's part outside the span of the others
 
 cl_R small(int exponent) { return cl_R(cln::expt(symbolic::Rational(1) / 10, exponent)); }
-cl_R exact(double value) { return cln::cl_float(cl_R(cln::rational(cl_R(value))), cln::float_format(digits)); }
+cl_R exact(double value) { return cln::cl_float(numeric::exact(value), cln::float_format(digits)); }
 
 cl_R dot(const Row& a, const Row& b) {
   cl_R sum = 0;
@@ -91,7 +92,6 @@ Selection select_independent(const std::vector<Row>& rows, const std::vector<Tur
 }
 
 Closure::Closure(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
-  cln::cl_inhibit_floating_point_underflow = true;  // of products of what Newton's last step left of zeros
   symbolic::Substitution written = write_out(m);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const Constraint& c = m.constraints[k];

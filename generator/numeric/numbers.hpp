@@ -2,10 +2,13 @@
 // What formulas ask of numbers of any kind: binary64, CLN's floats of any number of digits, exact rationals.
 #pragma once
 
+#include <cln/dfloat.h>
+#include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
 
 #include <cmath>
+#include <limits>
 
 namespace eomgen::numeric {
 
@@ -15,5 +18,14 @@ inline cln::cl_RA magnitude(const cln::cl_RA& x) { return cln::abs(x); }
 inline bool is_zero(double x) { return x == 0; }
 inline bool is_zero(const cln::cl_R& x) { return cln::zerop(x); }
 inline bool is_zero(const cln::cl_RA& x) { return cln::zerop(x); }
+
+/// What a binary64 is, exactly; of subnormal ones too, which CLN does not convert. CLN computes a float of binary64
+/// with one of many digits in binary64, so numbers enter as rationals.
+inline cln::cl_RA exact(double x) {
+  if (x == 0) return 0;
+  if (std::abs(x) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(x));
+  constexpr int shift = 200;
+  return cln::rational(cln::cl_DF(std::ldexp(x, shift))) / cln::expt_pos(cln::cl_I(2), shift);
+}
 
 }  // namespace eomgen::numeric

@@ -8,6 +8,7 @@
 #include "abi/functions.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
+#include "numeric/numbers.hpp"
 #include "pipeline/charts.hpp"
 #include "pipeline/run_text.hpp"
 #include "pipeline/simulate.hpp"
@@ -68,7 +69,7 @@ program::Request request_of(const EmissionRequest& options, Derived& derived, co
                   model::choice_of(name, names));
     }
     const auto index = static_cast<std::uint32_t>(found - parameters.begin());
-    request.fix[index] = cln::rational(cln::cl_R(scene.parameters[index]));
+    request.fix[index] = numeric::exact(scene.parameters[index]);
   }
   return request;
 }

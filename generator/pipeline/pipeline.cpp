@@ -11,6 +11,7 @@
 #include "derive/routes.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
+#include "numeric/numbers.hpp"
 #include "pipeline/kept_certificates.hpp"
 #include "pipeline/self_test_states.hpp"
 #include "print/notation.hpp"
@@ -249,7 +250,7 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   }
   std::vector<verify::Real> inputs(derived.model.inputs.size(), verify::Real(cln::cl_RA(1) / 3));
   for (std::size_t i = 0; i < options.default_inputs.size(); ++i)
-    inputs.at(i) = cln::rational(verify::Real(cln::cl_DF(options.default_inputs[i])));
+    inputs.at(i) = numeric::exact(options.default_inputs[i]);
   const int range = verify::digits_of_range(derived.mechanics), digits = options.digits + range;
   subjects.programs.push_back(with_functions(program_form(program, digits, inputs), program, inputs));
   const std::vector<program::Program> forms = other_forms(derived, program, options.fixed);

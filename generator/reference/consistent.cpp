@@ -28,7 +28,7 @@ class Start {
         n_(n),
         digits_(digits),
         format_(cln::float_format(static_cast<std::uintptr_t>(digits))) {
-    for (const double value : p) at_.p.emplace_back(cln::cl_DF(value));
+    for (const double value : p) at_.p.emplace_back(cln::cl_float(numeric::exact(value), format_));
     zero_ = cln::cl_float(0, format_);
   }
 

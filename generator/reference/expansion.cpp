@@ -5,6 +5,7 @@
 
 #include <stdexcept>
 
+#include "numeric/numbers.hpp"
 #include "program/interpret.hpp"
 
 namespace eomgen::reference {
@@ -52,7 +53,7 @@ Expansion::Place Expansion::place(const Operand& operand) const {
   }
 }
 
-Number Expansion::number(double value) const { return cln::cl_float(cln::cl_DF(value), format_); }
+Number Expansion::number(double value) const { return cln::cl_float(numeric::exact(value), format_); }
 
 void Expansion::run_next() {
   for (std::size_t i = 0; i < code_.size(); ++i) {
@@ -80,8 +81,8 @@ std::vector<std::vector<Number>> Expansion::operator()(const Number& t, const st
   program::Arguments<cln::cl_R> at;
   at.t = t;
   at.x.assign(x.begin(), x.end());
-  for (const double value : p) at.p.emplace_back(cln::cl_DF(value));
-  for (const double value : u) at.u.emplace_back(cln::cl_DF(value));
+  for (const double value : p) at.p.emplace_back(number(value));
+  for (const double value : u) at.u.emplace_back(number(value));
   const auto start = program::interpret(taylor_.start, at, digits_).results;
   const auto rounded = [this](const cln::cl_R& value) { return cln::cl_float(value, format_); };
   std::vector<std::vector<Number>> c{x, {}}, a(1), b(1);

@@ -10,6 +10,7 @@
 #include <limits>
 
 #include "derive/imposition.hpp"
+#include "numeric/numbers.hpp"
 #include "run/jumps.hpp"
 #include "run/parameters.hpp"
 #include "run/start.hpp"
@@ -32,18 +33,18 @@ class SceneEvaluator {
       : m_(m), parameters_(parameters), written_(derive::write_out(m)) {}
 
   double number(model::NodeId id, const char* what) { return number(mechanics::lower_scalar(m_, id), id, what); }
-  void set_start(double t0) { t0_ = cln::cl_R(t0); }
+  void set_start(double t0) { t0_ = numeric::exact(t0); }
   /// Closed forms divide by factors of t: where such a factor is 0 they have no value, and the run would have none.
   void require_integrals(double t) {
     const cln::cl_R start = t0_;
-    t0_ = cln::cl_R(t);
+    t0_ = numeric::exact(t);
     for (std::uint32_t i = 0; i < m_.model->integrals.size(); ++i) {
       number(m_.dag->symbol({SymbolKind::integral, i, 0}), m_.model->integrals[i].integrand, "the integral of this");
     }
     t0_ = start;
   }
   void give(std::uint32_t coordinate, std::uint8_t order, double value) {
-    given_[{SymbolKind::coordinate, coordinate, order}] = cln::cl_R(value);
+    given_[{SymbolKind::coordinate, coordinate, order}] = numeric::exact(value);
   }
 
  private:

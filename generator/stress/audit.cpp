@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "numeric/numbers.hpp"
 #include "program/interpret.hpp"
 #include "stress/denominators.hpp"
 
@@ -30,10 +31,9 @@ void raise(Extreme& extreme, double value, const std::string& at) {
   if (!std::isnan(value) && value > extreme.value) extreme = {value, at};
 }
 
-cln::cl_R exact(double x) { return cln::rational(cln::cl_DF(x)); }
 std::vector<cln::cl_R> exact(const std::vector<double>& list) {
   std::vector<cln::cl_R> result;
-  for (const double x : list) result.push_back(exact(x));
+  for (const double x : list) result.push_back(numeric::exact(x));
   return result;
 }
 
@@ -137,10 +137,11 @@ void Auditor::look_at_digits(const std::string& test, const run::Scene& scene, c
       continue;
     try {
       const program::Values<cln::cl_R> values = program::interpret(
-          rhs_, {exact(sample->t), exact(sample->x), exact(scene.parameters), exact(u), {}, {}, sample->mode}, digits);
+          rhs_, {numeric::exact(sample->t), exact(sample->x), exact(scene.parameters), exact(u), {}, {}, sample->mode},
+          digits);
       for (std::size_t i = 0; i < n; ++i) {
         const cln::cl_R& right = values.results.front().at(n + i);
-        off[i] = std::max(off[i], std::abs(cln::double_approx(right - exact(dx[n + i]))));
+        off[i] = std::max(off[i], std::abs(cln::double_approx(right - numeric::exact(dx[n + i]))));
         scale[i] = std::max(scale[i], std::abs(cln::double_approx(right)));
       }
     } catch (const std::domain_error&) {

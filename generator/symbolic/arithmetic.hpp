@@ -35,7 +35,7 @@ struct Precise {
   static cln::cl_R power(const cln::cl_R& a, long n) { return cln::expt(a, cln::cl_I(n)); }
   cln::cl_R pow(const cln::cl_R& a, const cln::cl_R& b) const {
     require(cln::plusp(a), "real power of a number that is not positive");
-    return cln::exp(b * cln::ln(round(a)));
+    return exp(round(b * cln::ln(round(a))));
   }
   cln::cl_R call(Op op, const cln::cl_R& argument) const {
     const cln::cl_F x = round(argument);
@@ -50,12 +50,18 @@ struct Precise {
       case Op::sinh: return cln::sinh(x);
       case Op::cosh: return cln::cosh(x);
       case Op::tanh: return cln::tanh(x);
-      case Op::exp: return cln::exp(x);
+      case Op::exp: return exp(x);
       case Op::log: require(cln::plusp(x), "log of a number that is not positive"); return cln::ln(x);
       case Op::abs: return cln::abs(x);
       case Op::sign: return cln::zerop(x) ? cln::cl_R(0) : cln::minusp(x) ? cln::cl_R(-1) : cln::cl_R(1);
       default: throw std::logic_error("not a function of one argument");
     }
+  }
+  /// 0 beyond the exponents that CLN's floats have.
+  static cln::cl_R exp(const cln::cl_F& x) {
+    static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
+    if (x < faintest) return 0;
+    return cln::exp(x);
   }
   cln::cl_R arcsine(const cln::cl_F& x) const {
     require(cln::abs(x) <= cln::cl_R(1), "asin or acos outside [-1, 1]");

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/code_comparisons.hpp"
 
-#include <cln/dfloat.h>
-#include <cln/rational.h>
 #include <cln/real.h>
 
 #include <algorithm>
@@ -37,8 +35,7 @@ double rhs_difference(const std::vector<Real>& a, const std::vector<Real>& b, co
 constexpr const char* beyond_binary64 = "a value beyond what binary64 holds";
 
 double to_binary64(const Real& value) {
-  if (cln::abs(value) > cln::rational(Real(cln::cl_DF(std::numeric_limits<double>::max()))))
-    throw std::domain_error(beyond_binary64);
+  if (cln::abs(value) > exact(std::numeric_limits<double>::max())) throw std::domain_error(beyond_binary64);
   return cln::double_approx(value);
 }
 
@@ -50,9 +47,7 @@ std::vector<double> rounded(const std::vector<Real>& values) {
 
 /// The state as binary64 has it.
 State in_binary64(const State& state, const Judge& judge) {
-  const auto exactly = [&](const Real& value) {
-    return judge.precision().round(cln::rational(Real(cln::cl_DF(to_binary64(value)))));
-  };
+  const auto exactly = [&](const Real& value) { return judge.precision().round(exact(to_binary64(value))); };
   State at = state;
   at.t = exactly(at.t);
   for (auto* part : {&at.q, &at.qdot, &at.parameters, &at.inputs, &at.integrals})
@@ -97,7 +92,7 @@ double compiled_difference(const CompiledForm& form, const Subjects& subjects, S
     return 1;
   }
   std::vector<Real> precise;
-  for (const double value : *dx) precise.push_back(cln::rational(Real(cln::cl_DF(value))));
+  for (const double value : *dx) precise.push_back(exact(value));
   const double difference = rhs_difference(precise, reference, s, v, rounding);
   // Beside times of 1e300 a sine is what rounding makes of it, whatever the code: nothing can be compared.
   if (difference > tolerance_binary64 && rounding.empty() && overflows(subjects, arguments))
@@ -124,7 +119,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
       for (std::size_t r = 0; r < expected->size() && known; ++r) {
         for (std::size_t i = 0; i < (*expected)[r].size() && known; ++i) {
           const Real& value = (*expected)[r][i];
-          known = std::isfinite(bounds[r][i]) && cln::abs(value) < cln::rational(Real(cln::cl_DF(largest_number)));
+          known = std::isfinite(bounds[r][i]) && cln::abs(value) < exact(largest_number);
           if (!known || !got) continue;
           const double entry = (*got)[r][i];
           if (!std::isfinite(entry)) {
@@ -132,7 +127,7 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
             continue;
           }
           const Real size = cln::abs(value) + size_of_rounding(std::max(bounds[r][i], least_number), judge.precision());
-          largest = std::max(largest, relative(cln::rational(Real(cln::cl_DF(entry))) - value, size));
+          largest = std::max(largest, relative(exact(entry) - value, size));
         }
       }
       if (known)

@@ -49,8 +49,6 @@ Judge::Judge(const model::Model& model, int digits) : model_(model), digits_(dig
     psi_.insert(psi_.end(), constraint.psi.begin(), constraint.psi.end());
     for (std::size_t k = 0; k < constraint.psi.size(); ++k) holonomic_.push_back(!constraint.binds_velocities(k));
   }
-  // Projected states have zeros that are what Newton's last step left: their products count as 0.
-  cln::cl_inhibit_floating_point_underflow = true;
   constexpr int rounding = 5;  // digits that sums of many terms may lose
   if (!model.integrals.empty()) quadrature_.emplace(digits - rounding, precision_);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/functions.hpp"
 
-#include <cln/dfloat.h>
 #include <cln/integer.h>
 #include <cln/rational.h>
 #include <cln/real.h>
@@ -359,7 +358,7 @@ class Functions {
 }  // namespace
 
 Real size_of_rounding(double bound, const Precision& precision) {
-  return precision.round(cln::rational(Real(cln::cl_DF(bound))) * cln::expt(cln::cl_RA(2), cln::cl_I(53)));
+  return precision.round(exact(bound) * cln::expt(cln::cl_RA(2), cln::cl_I(53)));
 }
 
 At arguments_at(const EquationSystem& s, const State& state, int mode) {

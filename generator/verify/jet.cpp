@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "verify/jet.hpp"
 
+#include <cln/dfloat.h>
 #include <cln/integer.h>
 #include <cln/integer_ring.h>
 #include <cln/rational.h>
 #include <cln/rational_ring.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 namespace eomgen::verify {
 
@@ -22,6 +25,12 @@ const Jet& zero_jet() {
   return zero;
 }
 
+/// exp of it is beyond the exponents that CLN's floats have: 0.
+bool is_faint(const Real& exponent) {
+  static const cln::cl_I faintest = -cln::expt_pos(cln::cl_I(10), 18);
+  return exponent < faintest;
+}
+
 bool is_integer(const Real& x) { return cln:: instanceof (x, cln::cl_I_ring); }
 
 void require(bool ok, const char* why) {
@@ -29,6 +38,13 @@ void require(bool ok, const char* why) {
 }
 
 }  // namespace
+
+Real exact(double value) {
+  if (value == 0) return 0;
+  if (std::abs(value) >= std::numeric_limits<double>::min()) return cln::rational(cln::cl_DF(value));
+  constexpr int shift = 200;
+  return cln::rational(cln::cl_DF(std::ldexp(value, shift))) / cln::expt(cln::cl_RA(2), cln::cl_I(shift));
+}
 
 Jet Jet::with(unsigned level, Jet value, Slopes slopes) {
   if (slopes.empty()) return value;
@@ -210,7 +226,7 @@ Jet tanh(const Jet& x, const Precision& p) {
 }
 
 Jet exp(const Jet& x, const Precision& p) {
-  if (x.level() == 0) return Jet(cln::exp(p.round(x.real())));
+  if (x.level() == 0) return is_faint(x.real()) ? Jet() : Jet(cln::exp(p.round(x.real())));
   const Jet e = exp(x.value(x.level()), p);
   return chain(x, e, e);
 }

@@ -32,6 +32,9 @@ struct Precision {
   cln::float_format_t format;
 };
 
+/// What a binary64 is, exactly; of subnormal ones too, which CLN does not convert.
+Real exact(double value);
+
 /// There is no (differentiable) value at this point: a division by zero, the root of a negative number, a kink.
 struct Singular : std::domain_error {
   using std::domain_error::domain_error;

@@ -186,7 +186,7 @@ std::optional<std::vector<Real>> refined(const std::vector<Real>& A, const std::
     for (std::size_t i = 0; i < n; ++i) {
       if (!std::isfinite(step[i])) return std::nullopt;
       if (step[i] == 0) continue;
-      const Real d = cln::cl_float(cln::rational(cln::cl_DF(step[i])), *format) / unit;
+      const Real d = cln::cl_float(exact(step[i]), *format) / unit;
       x[i] = x[i] + d;
       change = cln::max(change, cln::abs(d));
     }

@@ -54,7 +54,7 @@ Motion motion_at(const Judge& judge, const State& at) {
   for (std::size_t k = 0; k < m; ++k) motion.lambda[bound[k]] = solution.x()[n + k];
   for (std::size_t i = 0; i < size; ++i) {
     Real scale = 0;
-    for (std::size_t k = 0; k < size; ++k) scale = scale + cln::rational(Real(solution.inverse[k][i])) * row_scale[k];
+    for (std::size_t k = 0; k < size; ++k) scale = scale + exact(solution.inverse[k][i]) * row_scale[k];
     if (i < n) motion.scale.push_back(scale);
   }
   if (!judge.model().joints.empty()) {  // as of system_values

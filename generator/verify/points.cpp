@@ -51,7 +51,7 @@ Points::Points(const Judge& judge, std::uint64_t seed, std::size_t cap, std::map
 
 double Points::uniform() { return (static_cast<double>(engine_() >> 12) + 0.5) * 0x1p-52; }
 double Points::symmetric() { return 2 * uniform() - 1; }
-Real Points::exact(double value) const { return judge_.precision().round(cln::rational(Real(value))); }
+Real Points::exact(double value) const { return judge_.precision().round(verify::exact(value)); }
 
 // ---- what the file says about where the system lives
 
@@ -168,10 +168,10 @@ double Points::decades() const {
     largest = std::max(largest, decimals * std::fabs(static_cast<double>(exponent)));
   };
   for (const Real& value : defaults_) look_at(value);
-  for (const double value : {t0_, t1_}) look_at(Real(value));
+  for (const double value : {t0_, t1_}) look_at(verify::exact(value));
   for (const Choice& c : choices_)
-    for (const double value : {c.center, c.scale, c.rate_center, c.rate_scale}) look_at(Real(value));
-  for (const double value : input_defaults_) look_at(Real(value));
+    for (const double value : {c.center, c.scale, c.rate_center, c.rate_scale}) look_at(verify::exact(value));
+  for (const double value : input_defaults_) look_at(verify::exact(value));
   return largest;
 }
 

@@ -144,8 +144,7 @@ void complete_accelerations(const mechanics::Mechanics& mechanics, const Judge& 
 std::vector<Real> propagate(const Solved& solved, const std::vector<Real>& row_scale) {
   std::vector<Real> scale(row_scale.size(), Real(0));
   for (std::size_t k = 0; k < scale.size(); ++k)
-    for (std::size_t i = 0; i < scale.size(); ++i)
-      scale[i] = scale[i] + cln::rational(Real(solved.inverse[k][i])) * row_scale[k];
+    for (std::size_t i = 0; i < scale.size(); ++i) scale[i] = scale[i] + exact(solved.inverse[k][i]) * row_scale[k];
   return scale;
 }
 

@@ -5,6 +5,8 @@
 #include <cln/float.h>
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 using namespace eomgen::numeric;
 using cln::cl_R;
 using cln::cl_RA;
@@ -96,4 +98,12 @@ TEST_CASE("sixty digits less the condition of a matrix are left") {
     const cl_R off = distance(Elimination<cl_R>(A, 0, pivots).solve(A * x), x);
     CHECK(bool(off < cln::expt(cl_RA(1) / 10, 45)));
   }
+}
+
+TEST_CASE("a binary64 enters exactly, subnormal ones too") {
+  CHECK(exact(0.375) == cl_RA(3) / 8);
+  CHECK(exact(-0.0) == 0);
+  for (const double x : {-1e-310, 2.2250738585072014e-308, 1e100})
+    CHECK(exact(x) * cln::expt_pos(cln::cl_I(2), 300) == exact(std::ldexp(x, 300)));
+  CHECK(exact(5e-324) * cln::expt_pos(cln::cl_I(2), 1074) == 1);
 }

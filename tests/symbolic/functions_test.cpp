@@ -97,3 +97,8 @@ TEST_CASE("binary64 and many digits are the same functions") {
     CHECK(rough == doctest::Approx(cln::double_approx(fine)).epsilon(1e-15));
   }
 }
+
+TEST_CASE("what is fainter than any float of CLN is 0") {
+  CHECK(cln::zerop(precise.call(Op::exp, -cln::expt(Rational(10), 300))));
+  CHECK(cln::plusp(precise.call(Op::exp, -cln::expt(Rational(10), 17))));
+}

@@ -8,6 +8,7 @@
 
 #include "emit/targets.hpp"
 #include "mechanics/imposition.hpp"
+#include "numeric/numbers.hpp"
 #include "program/from_dag.hpp"
 #include "program/restrict.hpp"
 
@@ -20,7 +21,7 @@ using symbolic::SymbolKind;
 constexpr std::size_t largest_script =
     400000;  // bytes; what is longer takes a page longer to read than it is looked at
 
-Ref exact(symbolic::Dag& dag, double value) { return dag.constant(cln::rational(cln::cl_DF(value))); }
+Ref exact(symbolic::Dag& dag, double value) { return dag.constant(numeric::exact(value)); }
 
 class Live {
  public:
