@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "mechanics/vanishes.hpp"
 #include "symbolic/polynomial.hpp"
 
 namespace eomgen::mechanics {
@@ -204,9 +205,13 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
       if (!node.vector) return of(dag_.mul(arg(0).scalar, arg(1).scalar));
       return arg(0).vector ? of(scale(arg(1).scalar, arg(0).components)) : of(scale(arg(0).scalar, arg(1).components));
     case Op::divide:
+      require_divisor(arg(1).scalar, node);
       if (!node.vector) return of(dag_.div(arg(0).scalar, arg(1).scalar));
       return of(scale(dag_.div(dag_.one(), arg(1).scalar), arg(0).components));
-    case Op::power: return of(dag_.pow(arg(0).scalar, arg(1).scalar));
+    case Op::power:
+      if (dag_.is_constant(arg(1).scalar) && cln::minusp(dag_.value(arg(1).scalar)))
+        require_divisor(arg(0).scalar, node);
+      return of(dag_.pow(arg(0).scalar, arg(1).scalar));
     case Op::conditional:
       if (node.vector) {
         const Vec3 x = arg(2).components, y = arg(3).components;
@@ -223,6 +228,15 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
     return of(dag_.call(op, arg(0).scalar, arg(1).scalar));
   }
   return of(dag_.call(op, arg(0).scalar));
+}
+
+// What turns out to be 0 by itself, such as the distance of a mass at rest in the centre that attracts it.
+void Lowering::require_divisor(Ref divisor, const model::Node& node) const {
+  const sym::Op op = dag_[divisor].op;
+  const bool is_sum = op == sym::Op::add || op == sym::Op::sub || op == sym::Op::neg;  // a product would have shown it
+  if (!dag_.is_zero(divisor) && !(is_sum && vanishes(dag_, {divisor}))) return;
+  throw Error("mechanics", m_.model->where(node.span), "this divides by 0, whatever the state and the time",
+              "check the denominator; of a force between two points that these are not one and the same");
 }
 
 Lowering::Value Lowering::lower_vector(const model::Node& node) {
@@ -244,6 +258,7 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::cross: result = cross(vector(node.args[0]), vector(node.args[1])); break;
     case Op::unit: {
       const Vec3 a = vector(node.args[0]);
+      require_divisor(norm(a), node);
       result = scale(dag_.div(dag_.one(), norm(a)), a);
       break;
     }

@@ -3,8 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <unordered_map>
 
+#include "error.hpp"
 #include "mechanics/dependent.hpp"
 #include "reading/approaches.hpp"
 #include "reading/lagrangian.hpp"
@@ -12,6 +14,13 @@
 
 namespace eomgen::reading {
 namespace {
+
+/// A denominator whose vanishing only the reading form sees; those of the model's own text are told with their place.
+Error divides_by_zero(const mechanics::Mechanics& m) {
+  return Error("reading", Where{m.model->file, 0, 0, 1, ""},
+               "an expression of this model divides by 0, or is the logarithm of 0, whatever the state and the time",
+               "check the denominators; of a force between two points that these are not one and the same");
+}
 
 using mechanics::Mechanics;
 
@@ -142,6 +151,8 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
       approach_two(m, bridge, spins, form);
   } catch (const work::OverBudget& over) {
     leave_by_parts(m, form, over.what());
+  } catch (const std::domain_error&) {
+    throw divides_by_zero(m);
   }
   add_constraints(m, bridge, form);
   return form;
@@ -171,7 +182,11 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
 Sum read(const Mechanics& m, symbolic::Ref expression) {
   const work::Budget budget(item_budget);
   Bridge bridge(m);
-  return bridge.sum(expression);
+  try {
+    return bridge.sum(expression);
+  } catch (const std::domain_error&) {
+    throw divides_by_zero(m);
+  }
 }
 
 ReadingForm::ReadingForm() = default;

@@ -43,6 +43,20 @@ TEST_CASE("mechanics refuses: gravity across the plane of motion changes no equa
   CHECK((r.line == 9 || r.line == 10));
 }
 
+TEST_CASE("mechanics refuses: what divides by 0 in every state, with its place") {
+  for (const char* energy : {"1/(x - x)", "x/(sin(y)^2 + cos(y)^2 - 1)", "(x - x)^(-2)*y"}) {
+    CAPTURE(energy);
+    const Refusal r = refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
+    CHECK(r.message == "this divides by 0, whatever the state and the time");
+    CHECK(r.line == 10);
+  }
+  const Refusal r = refusal(
+      planar +
+      "[[particle]]\nname = \"C\"\nmass = \"m\"\nposition = [0, 0, 0]\n[[force]]\ncentral_gravity = { GM = \"1\" }\n");
+  CHECK(r.message == "this divides by 0, whatever the state and the time");
+  CHECK(r.line == 13);
+}
+
 TEST_CASE("mechanics refuses: a constraint that follows from the one before it") {
   const Refusal r = refusal(planar +
                             "[[constraint]]\nname = \"a\"\nholonomic = \"x - 1\"\n"
