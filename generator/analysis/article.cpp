@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "analysis/drawing/figure.hpp"
 #include "analysis/named_functions.hpp"
 #include "analysis/steady_search.hpp"
 #include "conservation/conservative.hpp"
@@ -59,6 +60,16 @@ void judge(Mechanics& m, const ReadingForm& one, const ReadingForm& two, std::ui
                                      certificate.points, certificate.options.digits, certificate.comparisons.size());
   for (const std::string& name : certificate.agreeing())
     findings.judged += (findings.judged.empty() ? "" : ", ") + name;
+}
+
+/// At the start of the default scene.
+void draw(Mechanics& m, const system::EquationSystem& system, print::Findings& findings) {
+  try {
+    findings.figure = figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
+  } catch (const Error& error) {
+    if (error.fault() == Fault::check) throw;
+    findings.left_out.push_back({"the figure", error.message()});
+  }
 }
 
 print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion) {
@@ -125,6 +136,7 @@ std::string article(std::shared_ptr<const model::Model> model, std::uint64_t see
   findings.conserved = conserved_of(m, two, conserved);
   const std::vector<std::uint32_t> cyclic = conservation::cyclic_coordinates(conserved);
   if (!cyclic.empty()) findings.routh = reading::routh_form(m, cyclic);
+  draw(m, system, findings);
   judge(m, one, two, seed, findings);
   look_for_steady_motions(m, two, seed, findings);
   return print::latex_document(m, one, two, findings);

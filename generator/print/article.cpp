@@ -52,6 +52,7 @@ std::string latex_document(const Mechanics& m, const reading::ReadingForm& one, 
   const model::Model& model = *m.model;
   Article article{m, model, one, two, findings ? &*findings : nullptr, out};
   if (findings) article.left_out = findings->left_out;
+  if (uses_amssymb(model)) out.need("amssymb");
   out.title(model.title.empty() ? model.id : model.title);
   if (!model.notes.empty()) out.paragraph(words(model.notes));
   write_system(article);
@@ -67,7 +68,7 @@ std::string latex_document(const Mechanics& m, const reading::ReadingForm& one, 
   }
   write_singular(article);
   write_certificate(article);
-  return out.finish(uses_amssymb(model));
+  return out.finish();
 }
 
 }  // namespace eomgen::print

@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "print/figure.hpp"
 #include "reading/reading.hpp"
 #include "reading/routh.hpp"
 
@@ -42,6 +43,7 @@ struct SteadyFinding {
 
 /// What the sections after the equations are made of.
 struct Findings {
+  std::optional<Figure> figure;
   std::vector<ForceFinding> forces;
   std::vector<ConservedFinding> conserved;
   std::optional<reading::RouthForm> routh;  // where a coordinate is cyclic

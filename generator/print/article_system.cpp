@@ -28,6 +28,7 @@ class System {
 
   void write() {
     counts();
+    figure();
     for (const mechanics::PointMass& mass : m_.masses) describe(mass);
     if (model_.energy.kinetic != model::no_node)
       out_.paragraph("The kinetic energy is given as an expression of coordinates and rates.");
@@ -53,6 +54,12 @@ class System {
                                                           "degrees of freedom.")
                         : ", which prescribes all of its motion.";
     out_.paragraph(text);
+  }
+
+  void figure() {
+    if (a_.findings == nullptr || !a_.findings->figure) return;
+    out_.need("graphicx");
+    out_.raw(figure_in_latex(*a_.findings->figure, out_));
   }
 
   std::string value(model::NodeId node) const {

@@ -143,8 +143,6 @@ bool LatexText::fits_on_a_line(const Formula& formula) const {
   return wide_->fits(print(formula, notation_, *endless_));
 }
 
-std::string LatexText::finish(bool amssymb) {
-  return std::string(begin) + (amssymb ? "\\usepackage{amssymb}\n" : "") + preamble + text_ + "\\end{document}\n";
-}
+std::string LatexText::finish() { return std::string(begin) + packages_ + preamble + text_ + "\\end{document}\n"; }
 
 }  // namespace eomgen::print

@@ -47,14 +47,17 @@ class LatexText {
   /// The number of the next equation.
   std::string next_number() { return "(" + std::to_string(++equations_) + ")"; }
 
-  std::string finish(bool amssymb);
+  /// A package beyond those of every document.
+  void need(const std::string& package) { packages_ += "\\usepackage{" + package + "}\n"; }
+
+  std::string finish();
 
  private:
   void aligned(const std::vector<std::string>& lines);
 
   const Notation& notation_;
   std::unique_ptr<Style> wide_, endless_;
-  std::string text_;
+  std::string text_, packages_;
   std::size_t equations_ = 0;
 };
 

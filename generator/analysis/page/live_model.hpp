@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "analysis/page/drawing.hpp"
+#include "analysis/drawing/parts.hpp"
 #include "pipeline/simulate.hpp"
 
 namespace eomgen::analysis {

@@ -178,7 +178,8 @@ int execute(const Options& options, const Common& common) {
   std::vector<std::string> outputs;  // what the page draws and plots beside the state
   std::vector<Panel> curves;
   request.prepare = [&](pipeline::Derived& derived) {
-    drawing.emplace(derived);
+    drawing.emplace(derived.mechanics);
+    for (system::EquationSystem& candidate : derived.candidates) drawing->add_outputs(candidate);
     outputs = drawing->outputs();
     curves = panels(
         derived.candidates.front().outputs,

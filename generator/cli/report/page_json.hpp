@@ -2,7 +2,7 @@
 // What a page draws and runs, as its script reads it.
 #pragma once
 
-#include "analysis/page/drawing.hpp"
+#include "analysis/drawing/parts.hpp"
 #include "analysis/page/live_model.hpp"
 #include "cli/json.hpp"
 

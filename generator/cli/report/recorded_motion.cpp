@@ -82,9 +82,11 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
     curves.push_back({{"title", panel.title}, {"of", of}});
   }
   for (const run::RunEvent& event : simulation.result.events) events.push_back({{"t", event.t}, {"name", event.name}});
-  for (const double size : analysis::sizes_of(drawing, simulation)) sizes.push_back(shortened(size, digits_of_states));
+  const symbolic::Dag& dag = *simulation.derived->mechanics.dag;
+  for (const double size : analysis::sizes_of(drawing, dag, simulation.scene.parameters))
+    sizes.push_back(shortened(size, digits_of_states));
   const double span = t_.back() - t_.front();
-  const auto down = analysis::falling(*simulation.derived, simulation.scene.parameters);
+  const auto down = analysis::falling(simulation.derived->mechanics, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
   return {{"t", times},
           {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},

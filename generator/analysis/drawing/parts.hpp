@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a page draws of a model. In: the model and its mechanics. Out: outputs that the code is to have (positions, axes
-// of bodies, ends of springs, points of joints and contacts, axes of gears), and where each part of the drawing finds
-// its numbers among them.
+// What is drawn of a model, on a page and in a figure. In: its mechanics. Out: vectors (positions, axes of bodies, ends
+// of springs, points of joints and contacts, axes of gears) as outputs, which the code of a page is to have, and as
+// expressions; and where each part of the drawing finds its numbers among them.
 #pragma once
 
 #include <array>
@@ -9,7 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/simulate.hpp"
+#include "mechanics/imposition.hpp"
+#include "system/equation_system.hpp"
 
 namespace eomgen::analysis {
 
@@ -67,39 +68,47 @@ struct DrawnParts {
 
 class Drawing {
  public:
-  /// Adds the outputs that the model has not got by itself to every candidate.
-  explicit Drawing(pipeline::Derived& derived);
+  explicit Drawing(mechanics::Mechanics& mechanics);
 
-  /// In the order of the array that the page draws from.
+  /// In the order of the array that is drawn from.
   const std::vector<std::string>& outputs() const { return outputs_; }
+  /// What they are: of coordinates, time and parameters.
+  const std::vector<symbolic::Ref>& expressions() const { return expressions_; }
+  /// The outputs that no system of equations has got by itself.
+  void add_outputs(system::EquationSystem& system) const;
   /// Sizes that depend on parameters only: masses and inertias of bodies, lengths of shapes. What depends on more is a
   /// negative number: unknown.
   const std::vector<symbolic::Ref>& sizes() const { return sizes_; }
   const DrawnParts& parts() const { return parts_; }
 
  private:
-  std::size_t vector_of(const std::string& base);  // of outputs that are there: base1 .. base3
-  std::size_t vector(pipeline::Derived& derived, const symbolic::Vec3& value);  // of new ones
-  std::size_t vector(pipeline::Derived& derived, model::NodeId value);
-  std::size_t size(pipeline::Derived& derived, model::NodeId value);
-  void places(const model::Model& model);
-  void bodies(pipeline::Derived& derived);
-  void forces(pipeline::Derived& derived);
-  void joints(pipeline::Derived& derived);
-  void contacts(pipeline::Derived& derived);
-  void couplings(pipeline::Derived& derived);
-  void shapes(pipeline::Derived& derived);
+  std::size_t position(std::uint32_t place);
+  std::size_t vector(const symbolic::Vec3& value);
+  std::size_t vector(model::NodeId value);
+  std::size_t size(model::NodeId value);
+  void places();
+  void bodies();
+  void forces();
+  void joints();
+  void contacts();
+  void couplings();
+  void shapes();
 
+  mechanics::Mechanics& mechanics_;
+  const model::Model& model_;
+  symbolic::Substitution imposed_, written_;
   std::vector<std::string> outputs_;
+  std::vector<symbolic::Ref> expressions_;
+  std::vector<system::Output> own_;
   std::vector<symbolic::Ref> sizes_;
   DrawnParts parts_;
 };
 
-/// The sizes of a drawing at the parameters of a run; -1 where one has no value.
-std::vector<double> sizes_of(const Drawing& drawing, const pipeline::Simulation& simulation);
+/// The sizes of a drawing at parameters; -1 where one has no value.
+std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters);
 
 /// The direction in which things fall, where gravity is uniform; nothing where there is none.
-std::optional<std::array<double, 3>> falling(pipeline::Derived& derived, const std::vector<double>& parameters);
+std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, const std::vector<double>& parameters);
 
 /// Whether parameters are all that an expression depends on.
 bool is_of_parameters(const symbolic::Dag& dag, symbolic::Ref expression);

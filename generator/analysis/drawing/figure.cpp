@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/drawing/figure.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "analysis/drawing/parts.hpp"
+#include "analysis/drawing/sketch.hpp"
+#include "analysis/drawing/solids.hpp"
+#include "reading/reading.hpp"
+#include "symbolic/evaluate.hpp"
+
+namespace eomgen::analysis {
+namespace {
+
+using symbolic::SymbolKind;
+using Weight = Sketch::Weight;
+
+constexpr std::size_t most_strokes = 4000;  // a picture with more is no figure of a page
+constexpr double axis_length = 9;           // mm
+constexpr double seen_sideways = 0.2;       // of a length that is seen from its end
+constexpr int arc_strokes = 16;
+constexpr double least_turn = 0.02;  // rad
+
+class Drawer {
+ public:
+  Drawer(mechanics::Mechanics& mechanics, const run::Scene& scene)
+      : m_(mechanics), model_(*mechanics.model), scene_(scene), drawing_(mechanics), parts_(drawing_.parts()) {}
+
+  std::optional<print::Figure> draw() {
+    if (parts_.places.empty()) return std::nullopt;
+    at_start_ = values(scene_.q);
+    if (!std::all_of(at_start_.begin(), at_start_.end(), [](double x) { return std::isfinite(x); }))
+      return std::nullopt;
+    sizes_ = sizes_of(drawing_, *m_.dag, scene_.parameters);
+    find_solids();
+    std::optional<Point> down;
+    if (const auto g = falling(m_, scene_.parameters)) down = Point(g->data());
+    const View view(points_of_view(), down);
+    Sketch sketch(view, extent());
+    axes(sketch);
+    for (const DrawnContact& contact : parts_.contacts) ground(sketch, contact);
+    for (std::size_t i = 0; i < parts_.places.size(); ++i) link(sketch, i);
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      const auto world = world_of(parts_.bodies[i]);
+      for (const Solid& solid : solids_[i]) sketch.solid(solid, world);
+    }
+    for (const DrawnLine& spring : parts_.springs) sketch.coil(point(spring.a), point(spring.b));
+    for (const DrawnLine& damper : parts_.dampers) sketch.damper(point(damper.a), point(damper.b));
+    for (const DrawnJoint& joint : parts_.joints) {
+      for (const auto& of : joint.of) {
+        if (of) sketch.line(point(parts_.places[*of].at), point(joint.at), Weight::fine);
+      }
+      sketch.dot(sketch.on_paper(point(joint.at)), 1.6, false);
+    }
+    for (std::size_t i = 0; i < parts_.places.size(); ++i) spot(sketch, i);
+    if (view.flat()) angles(sketch);
+    for (const DrawnPlace& place : parts_.places) {
+      if (std::string_view(place.kind) != "point") sketch.label(sketch.on_paper(point(place.at)), place.name);
+    }
+    print::Figure figure = sketch.finish();
+    if (figure.strokes.size() > most_strokes) return std::nullopt;
+    return figure;
+  }
+
+ private:
+  /// Of all vectors, where the coordinates are these.
+  std::vector<double> values(const std::vector<double>& q) const {
+    return symbolic::evaluate(*m_.dag, drawing_.expressions(), [&](const symbolic::Symbol& s) -> double {
+      switch (s.kind) {
+        case SymbolKind::time: return scene_.t0;
+        case SymbolKind::coordinate:
+          return s.order == 0 ? q[s.index] : s.order == 1 ? scene_.qdot[s.index] : std::nan("");
+        case SymbolKind::parameter: return scene_.parameters[s.index];
+        default: return s.kind == SymbolKind::integral ? 0 : std::nan("");  // from the start on
+      }
+    });
+  }
+  static Point at(const std::vector<double>& values, std::size_t i) { return Point(values.data() + i); }
+  Point point(std::size_t i) const { return at(at_start_, i); }
+  Point foot(const DrawnPlace& place) const {
+    return *place.from < 0 ? Point(Point::Zero()) : point(parts_.places[static_cast<std::size_t>(*place.from)].at);
+  }
+
+  Eigen::Matrix3d axes_of(const DrawnBody& body) const {
+    Eigen::Matrix3d axes;
+    axes.col(0) = point(body.axes[0]);
+    axes.col(1) = point(body.axes[1]);
+    axes.col(2) = axes.col(0).cross(axes.col(1));
+    return axes;
+  }
+  std::function<Point(const Point&)> world_of(const DrawnBody& body) const {
+    return [centre = point(parts_.places[body.place].at), axes = axes_of(body)](const Point& r) -> Point {
+      return centre + axes * r;
+    };
+  }
+
+  /// Where a joint or a point is on a body, or else the origin, in its own axes.
+  Point attached(const DrawnBody& body) const {
+    Point spot = Point::Zero();
+    const auto joint = std::find_if(parts_.joints.begin(), parts_.joints.end(), [&](const DrawnJoint& j) {
+      return j.of[0] == body.place || j.of[1] == body.place;
+    });
+    const auto place = std::find_if(parts_.places.begin(), parts_.places.end(),
+                                    [&](const DrawnPlace& p) { return p.from == static_cast<long>(body.place); });
+    if (joint != parts_.joints.end())
+      spot = point(joint->at);
+    else if (place != parts_.places.end())
+      spot = point(place->at);
+    return axes_of(body).transpose() * (spot - point(parts_.places[body.place].at));
+  }
+
+  void find_solids() {
+    for (const DrawnBody& body : parts_.bodies) {
+      std::vector<Solid>& solids = solids_.emplace_back();
+      bool stated = false;
+      for (const DrawnShape& shape : parts_.shapes) {
+        if (shape.place != body.place) continue;
+        stated = true;
+        if (auto solid = solid_of_shape(shape, sizes_)) solids.push_back(*solid);
+      }
+      if (stated) continue;
+      std::optional<Solid> solid = solid_of_inertia(body, sizes_);
+      if (!solid) solid = bar_of_inertia(body, sizes_, attached(body));
+      if (solid) solids.push_back(*solid);
+    }
+  }
+
+  std::vector<std::size_t> spots() const {
+    std::vector<std::size_t> result;
+    for (const DrawnPlace& place : parts_.places) result.push_back(place.at);
+    for (const DrawnJoint& joint : parts_.joints) result.push_back(joint.at);
+    for (const DrawnContact& contact : parts_.contacts) result.push_back(contact.at);
+    for (const auto* lines : {&parts_.springs, &parts_.dampers}) {
+      for (const DrawnLine& line : *lines) result.insert(result.end(), {line.a, line.b});
+    }
+    return result;
+  }
+  bool has_origin() const {
+    return std::any_of(parts_.places.begin(), parts_.places.end(), [](const DrawnPlace& p) { return p.from == -1; });
+  }
+
+  /// What is in a plane at the start may leave it later: two other states tell.
+  std::vector<Point> points_of_view() const {
+    std::vector<Point> result;
+    for (int state = 0; state < 3; ++state) {
+      std::vector<double> q = scene_.q;
+      for (std::size_t i = 0; i < q.size(); ++i)
+        q[i] += state * (0.31 + 0.17 * std::sin(static_cast<double>(i + 1))) * (1 + std::abs(q[i]));
+      const std::vector<double> there = state == 0 ? at_start_ : values(q);
+      for (const std::size_t i : spots()) {
+        if (at(there, i).allFinite()) result.push_back(at(there, i));
+      }
+    }
+    if (has_origin()) result.push_back(Point::Zero());
+    return result;
+  }
+
+  std::vector<Point> extent() const {
+    std::vector<Point> result;
+    for (const std::size_t i : spots()) result.push_back(point(i));
+    if (has_origin()) result.push_back(Point::Zero());
+    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
+      const auto world = world_of(parts_.bodies[i]);
+      for (const Solid& solid : solids_[i]) {
+        for (const std::vector<Point>& face : solid.faces) {
+          for (const Point& r : face) result.push_back(world(r));
+        }
+        for (int k = 0; k < 3; ++k) {
+          result.push_back(world(solid.at) + solid.ball * Point::Unit(k));
+          result.push_back(world(solid.at) - solid.ball * Point::Unit(k));
+        }
+        if (solid.tip) result.push_back(world(*solid.tip));
+      }
+    }
+    return result;
+  }
+
+  /// At the origin where that is on the paper, else in its corner.
+  void axes(Sketch& sketch) const {
+    const PlanePoint origin = sketch.on_paper(Point::Zero()), low = sketch.low(), high = sketch.high();
+    const bool inside = ((origin - low).array() >= -1e-9).all() && ((high - origin).array() >= -1e-9).all();
+    const PlanePoint foot = inside ? origin : PlanePoint(low - PlanePoint::Constant(axis_length));
+    for (int k = 0; k < 3; ++k) {
+      const PlanePoint along = sketch.view()(Point::Unit(k));
+      if (along.norm() < seen_sideways) continue;
+      const PlanePoint tip = foot + axis_length * along;
+      sketch.arrow(foot, tip, Weight::fine);
+      sketch.label(tip, reading::mark("E", {reading::number(static_cast<long>(k + 1))}));
+    }
+  }
+
+  /// The plane that something touches.
+  void ground(Sketch& sketch, const DrawnContact& contact) const {
+    if (contact.tangents) {
+      const Point here = point(contact.at), a = point((*contact.tangents)[0]), b = point((*contact.tangents)[1]);
+      const double reach = 0.3 * (sketch.high() - sketch.low()).norm() / sketch.scale();
+      const Point u = reach * a.normalized(), v = reach * b.normalized();
+      if (u.allFinite() && v.allFinite()) {
+        const std::array<Point, 5> corners{here - u - v, here + u - v, here + u + v, here - u + v, here - u - v};
+        for (std::size_t k = 1; k < corners.size(); ++k) sketch.line(corners[k - 1], corners[k], Weight::fine);
+      }
+    }
+    sketch.dot(sketch.on_paper(point(contact.at)), 1, true);
+  }
+
+  /// A rod or thread, unless a spring is drawn there.
+  void link(Sketch& sketch, std::size_t i) const {
+    const DrawnPlace& place = parts_.places[i];
+    if (!place.from) return;
+    const Point from = foot(place), here = point(place.at);
+    const auto near = [](const Point& a, const Point& b) { return (a - b).norm() < 1e-9 * (1 + a.norm()); };
+    const bool sprung = std::any_of(parts_.springs.begin(), parts_.springs.end(), [&](const DrawnLine& spring) {
+      const Point a = point(spring.a), b = point(spring.b);
+      return (near(a, from) && near(b, here)) || (near(b, from) && near(a, here));
+    });
+    if (!sprung) sketch.line(from, here, Weight::strong);
+  }
+
+  void spot(Sketch& sketch, std::size_t i) const {
+    const DrawnPlace& place = parts_.places[i];
+    const PlanePoint at = sketch.on_paper(point(place.at));
+    if (place.from == -1) sketch.dot(sketch.on_paper(Point::Zero()), 1.2, false);
+    if (std::string_view(place.kind) == "particle") return sketch.dot(at, 2.4, true);
+    const auto body =
+        std::find_if(parts_.bodies.begin(), parts_.bodies.end(), [&](const auto& b) { return b.place == i; });
+    const bool is_solid =
+        body != parts_.bodies.end() && !solids_[static_cast<std::size_t>(body - parts_.bodies.begin())].empty();
+    sketch.dot(at, std::string_view(place.kind) == "body" && !is_solid ? 2.4 : 0.8, true);
+  }
+
+  /// The coordinate that this is, by itself.
+  std::optional<std::uint32_t> plain_coordinate(model::NodeId node) const {
+    if (node == model::no_node) return std::nullopt;
+    const model::Node& leaf = model_.arena[node];
+    return leaf.op == model::Op::coordinate && leaf.order == 0 ? std::optional(leaf.index) : std::nullopt;
+  }
+
+  /// Where the end of a link goes as a coordinate grows from 0 to its value at the start: an arc about its foot, from a
+  /// dashed line; and the length of the link.
+  void angles(Sketch& sketch) const {
+    std::vector<bool> shown(model_.coordinates.size(), false);
+    for (std::size_t i = 0; i < parts_.places.size(); ++i) {
+      const DrawnPlace& place = parts_.places[i];
+      const std::optional<model::Chart>& chart = model_.places[i + 1].chart;
+      if (!place.from || chart->system == "cartesian") continue;
+      for (const model::NodeId entry : chart->entries) {
+        const auto coordinate = plain_coordinate(entry);
+        if (!coordinate || shown[*coordinate] || scene_.q[*coordinate] == 0) continue;
+        shown[*coordinate] = arc(sketch, place, *coordinate);
+      }
+      length(sketch, place, chart->entries[0]);
+    }
+  }
+
+  bool arc(Sketch& sketch, const DrawnPlace& place, std::uint32_t coordinate) const {
+    std::vector<PlanePoint> directions;
+    const PlanePoint centre = sketch.on_paper(foot(place)), end = sketch.on_paper(point(place.at));
+    const double reach = (end - centre).norm();
+    for (int k = 0; k <= arc_strokes; ++k) {
+      std::vector<double> q = scene_.q;
+      q[coordinate] *= static_cast<double>(k) / arc_strokes;
+      const std::vector<double> there = values(q);
+      const Point from =
+          *place.from < 0 ? Point(Point::Zero()) : at(there, parts_.places[static_cast<std::size_t>(*place.from)].at);
+      const PlanePoint along = sketch.on_paper(at(there, place.at)) - sketch.on_paper(from);
+      if (!along.allFinite() || !(std::abs(along.norm() - reach) <= 1e-6 * reach) || reach < 4) return false;
+      directions.push_back(along / reach);
+    }
+    if ((directions.back() - directions.front()).norm() < least_turn) return false;  // a constraint moves it, say
+    const double radius = std::min(0.4 * reach, 11.0);
+    std::vector<PlanePoint> points;
+    for (const PlanePoint& direction : directions) points.emplace_back(centre + radius * direction);
+    sketch.dashes(centre, centre + std::min(reach, 1.6 * radius) * directions.front());
+    sketch.path(points, Weight::fine);
+    sketch.label(points[points.size() / 2], reading::symbol({SymbolKind::coordinate, coordinate, 0}));
+    return true;
+  }
+
+  void length(Sketch& sketch, const DrawnPlace& place, model::NodeId entry) const {
+    const model::Node* leaf = entry == model::no_node ? nullptr : &model_.arena[entry];
+    if (leaf == nullptr || (leaf->op != model::Op::parameter && leaf->op != model::Op::coordinate)) return;
+    if (const auto written = reading::as_written(model_, entry))
+      sketch.label((sketch.on_paper(foot(place)) + sketch.on_paper(point(place.at))) / 2, *written);
+  }
+
+  mechanics::Mechanics& m_;
+  const model::Model& model_;
+  const run::Scene& scene_;
+  Drawing drawing_;
+  const DrawnParts& parts_;
+  std::vector<double> at_start_, sizes_;
+  std::vector<std::vector<Solid>> solids_;  // per body
+};
+
+}  // namespace
+
+std::optional<print::Figure> figure(mechanics::Mechanics& mechanics, const run::Scene& scene) {
+  return Drawer(mechanics, scene).draw();
+}
+
+}  // namespace eomgen::analysis

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The figure of a document: from where a system is seen, what bodies look like, and that what is drawn is where the
+// start puts it.
+#include <doctest/doctest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+
+#include "analysis/drawing/figure.hpp"
+#include "analysis/drawing/sketch.hpp"
+#include "analysis/drawing/solids.hpp"
+#include "analysis/drawing/view.hpp"
+#include "derive/routes/lagrange.hpp"
+#include "support/folders.hpp"
+
+using namespace eomgen;
+using analysis::Point;
+using analysis::View;
+using print::Figure;
+
+namespace {
+
+constexpr double rounding = 1e-12;                       // of a few operations on numbers near 1
+constexpr double paper_width = 170, paper_height = 130;  // mm; a text of A4 is 174 wide
+
+struct Drawn {
+  model::Model model;
+  std::optional<Figure> figure;
+};
+
+Drawn drawn(const std::string& path) {
+  Drawn result{model::read_model(path), {}};
+  mechanics::Mechanics m = mechanics::build_mechanics(result.model);
+  const system::EquationSystem system = derive::lagrange(m, system::Approach::two);
+  result.figure = analysis::figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
+  return result;
+}
+Drawn shipped(const std::string& name) { return drawn(test::source_folder() + "/models/" + name + ".toml"); }
+
+std::vector<Figure::Stroke> strokes(const Figure& figure, Figure::Weight weight) {
+  std::vector<Figure::Stroke> result;
+  for (const Figure::Stroke& s : figure.strokes) {
+    if (s.weight == weight) result.push_back(s);
+  }
+  return result;
+}
+
+double length(const Figure::Stroke& s) { return std::hypot(s.to[0] - s.from[0], s.to[1] - s.from[1]); }
+
+std::set<std::string> names(const Figure& figure) {
+  std::set<std::string> result;
+  for (const Figure::Label& label : figure.labels) {
+    if (const std::string* name = std::get_if<std::string>(&label.text)) result.insert(*name);
+  }
+  return result;
+}
+
+/// Mass, then the nine entries of an inertia, as a drawing has them.
+std::pair<analysis::DrawnBody, std::vector<double>> body(double mass, const Eigen::Matrix3d& inertia) {
+  analysis::DrawnBody result{};
+  std::vector<double> sizes{mass};
+  for (int i = 0; i < 9; ++i) {
+    result.inertia[static_cast<std::size_t>(i)] = sizes.size();
+    sizes.push_back(inertia(i / 3, i % 3));
+  }
+  return {result, sizes};
+}
+
+Point extent(const analysis::Solid& solid) {
+  Point low = Point::Constant(1e300), high = -low;
+  for (const std::vector<Point>& face : solid.faces) {
+    for (const Point& r : face) {
+      low = low.cwiseMin(r);
+      high = high.cwiseMax(r);
+    }
+  }
+  return high - low;
+}
+
+}  // namespace
+
+TEST_CASE("view: a plane is seen along its normal with what falls falling, space from above") {
+  const std::vector<Point> plane{{0, 0, 0}, {1, 0, 0}, {0, -1, 0}}, space{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  const View upright(plane, Point(0, -9.81, 0));
+  CHECK(upright.flat());
+  CHECK((upright({1, 0, 0}) - analysis::PlanePoint(1, 0)).norm() < rounding);
+  CHECK((upright({0, 1, 0}) - analysis::PlanePoint(0, 1)).norm() < rounding);
+  const View along_x(plane, Point(9.81, 0, 0));
+  CHECK((along_x({1, 0, 0}) - analysis::PlanePoint(0, -1)).norm() < rounding);
+  CHECK((along_x({0, 1, 0}) - analysis::PlanePoint(1, 0)).norm() < rounding);
+  // Things that fall out of their plane are not looked at from above.
+  CHECK_FALSE(View(plane, Point(0, 0, -1)).flat());
+  const View spatial(space, Point(0, 0, -1));
+  CHECK_FALSE(spatial.flat());
+  CHECK(std::abs(spatial({0, 0, 1}).x()) < rounding);
+  CHECK(spatial({0, 0, 1}).y() > 0.5);
+}
+
+TEST_CASE("solids: homogeneous bodies are found from their mass and moments, turned or not") {
+  const double m = 3;
+  // A box 0.2 x 0.5 x 1.
+  const Eigen::Matrix3d box = (m / 12 * Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25)).asDiagonal();
+  const auto [plain, sizes] = body(m, box);
+  CHECK((extent(*analysis::solid_of_inertia(plain, sizes)) - Point(0.2, 0.5, 1)).norm() < rounding);
+  const Eigen::Matrix3d turn =
+      (Eigen::AngleAxisd(0.3, Point::UnitX()) * Eigen::AngleAxisd(1.1, Point::UnitZ())).toRotationMatrix();
+  const auto [turned, turned_sizes] = body(m, turn * box * turn.transpose());
+  analysis::Solid back = *analysis::solid_of_inertia(turned, turned_sizes);
+  for (std::vector<Point>& face : back.faces) {
+    for (Point& r : face) r = turn.transpose() * r;
+  }
+  CHECK((extent(back) - Point(0.2, 0.5, 1)).norm() < 1e3 * rounding);  // of an eigenvalue's vector
+  // A cylinder of radius 0.4 and length 1 about the second axis; a ball of radius 0.7.
+  const double across = m / 12 * (3 * 0.16 + 1);
+  const auto [roller, roller_sizes] = body(m, Point(across, m / 2 * 0.16, across).asDiagonal());
+  CHECK(extent(*analysis::solid_of_inertia(roller, roller_sizes)).y() == doctest::Approx(1));
+  const auto [ball, ball_sizes] = body(m, Point::Constant(0.4 * m * 0.49).asDiagonal());
+  CHECK(analysis::solid_of_inertia(ball, ball_sizes)->ball == doctest::Approx(0.7));
+  // One moment alone is of no homogeneous body: a bar as long as a uniform one, towards what holds it.
+  const auto [link, link_sizes] = body(m, Point(0, 0, m / 12 * 4).asDiagonal());
+  CHECK_FALSE(analysis::solid_of_inertia(link, link_sizes));
+  CHECK(extent(*analysis::bar_of_inertia(link, link_sizes, {-1, 0, 0})).x() == doctest::Approx(2));
+}
+
+TEST_CASE("figure: rods stand at the angles of the start, with arcs and lengths beside them") {
+  const Figure figure = shipped("S5_double_pendulum").figure.value();
+  const std::vector<Figure::Stroke> rods = strokes(figure, Figure::Weight::strong);
+  REQUIRE(rods.size() == 2);
+  const std::array<double, 2> angles{0.8, 0.4};  // from the vertical
+  for (std::size_t k = 0; k < 2; ++k) {
+    CHECK(length(rods[k]) == doctest::Approx(length(rods[0])));
+    CHECK(std::atan2(rods[k].to[0] - rods[k].from[0], rods[k].from[1] - rods[k].to[1]) == doctest::Approx(angles[k]));
+  }
+  CHECK(rods[1].from == rods[0].to);
+  CHECK(names(figure) == std::set<std::string>{"P1", "P2"});
+  CHECK(figure.labels.size() == 2 + 2 + 2 + 2);  // names, axes in the plane, angles, lengths
+  // Every mass is a dot at the end of its rod.
+  for (const Figure::Stroke& rod : rods) {
+    CHECK(std::any_of(figure.dots.begin(), figure.dots.end(), [&](const Figure::Dot& dot) {
+      return dot.filled && std::hypot(dot.at[0] - rod.to[0], dot.at[1] - rod.to[1]) < rounding;
+    }));
+  }
+}
+
+TEST_CASE("figure: of a body the edges that it does not hide itself") {
+  // A box seen from above and the side shows three faces: nine edges.
+  analysis::Solid solid;
+  const auto [box, sizes] = body(1, (Point(0.25 + 1, 0.04 + 1, 0.04 + 0.25) / 12).asDiagonal());
+  solid = *analysis::solid_of_inertia(box, sizes);
+  const View view({{0, 0, 0}, {1, 1, 1}}, std::nullopt);
+  analysis::Sketch sketch(view, {{-1, -1, -1}, {1, 1, 1}});
+  sketch.solid(solid, [](const Point& r) { return r; });
+  CHECK(sketch.finish().strokes.size() == 9);
+}
+
+TEST_CASE("figure: every shipped model that has positions has one, of the size of a page") {
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
+    if (entry.path().extension() != ".toml") continue;
+    INFO(entry.path().filename().string());
+    const Drawn found = drawn(entry.path().string());
+    CHECK(found.figure.has_value() == (found.model.places.size() > 1));
+    if (!found.figure) continue;
+    CHECK(found.figure->high[0] - found.figure->low[0] < paper_width);
+    CHECK(found.figure->high[1] - found.figure->low[1] < paper_height);
+    for (const Figure::Stroke& s : found.figure->strokes) CHECK(std::isfinite(length(s)));
+  }
+}
