@@ -5,6 +5,7 @@
 #include <map>
 
 #include "program.hpp"
+#include "support/typeset.hpp"
 
 using namespace eomgen::test;
 
@@ -56,13 +57,24 @@ std::vector<Files> emit_repeatedly(const Words& words) {
   return result;
 }
 
-// Nothing to integrate, so no code: the equations for reading instead.
-bool is_prescribed(const std::string& model) {
-  const Folder folder;
-  return document(folder, {"check", model})["dof"] == 0;
+struct Shipped {
+  std::string name;
+  bool prescribed;  // nothing to integrate, so no code: the equations for reading instead
+};
+
+const std::vector<Shipped>& all_shipped() {
+  static const std::vector<Shipped> all = [] {
+    const Folder folder;
+    std::vector<Shipped> result;
+    for (const std::string& model : shipped_models())
+      result.push_back({model, document(folder, {"check", model})["dof"] == 0});
+    return result;
+  }();
+  return all;
 }
 
-void same_everywhere(const std::string& model, const Words& words, std::size_t files) {
+/// Returns what the first process wrote.
+Files same_everywhere(const std::string& model, const Words& words, std::size_t files) {
   CAPTURE(model);
   const std::vector<Files> all = emit_repeatedly(words);
   CHECK(all.front().size() == files + 1);
@@ -73,13 +85,32 @@ void same_everywhere(const std::string& model, const Words& words, std::size_t f
       CHECK((text == all.front().at(name)));  // in brackets: doctest would print both
     }
   }
+  return all.front();
 }
+
+/// One document of many: what stands between the beginning and the end of each.
+class Pages {
+ public:
+  void add(const std::string& model, const std::string& document) {
+    const std::string begin = "\\begin{document}\n", end = "\\end{document}\n";
+    const std::size_t from = document.find(begin), to = document.rfind(end);
+    REQUIRE(from != std::string::npos);
+    REQUIRE(to != std::string::npos);
+    if (text_.empty()) text_ = document.substr(0, from) + "\\usepackage{amssymb,graphicx}\n" + begin;
+    const std::size_t body = from + begin.size();
+    text_ += "% ITEM " + model + "\n" + document.substr(body, to - body) + "\\clearpage\n";
+  }
+  std::string text() const { return text_ + "\\end{document}\n"; }
+
+ private:
+  std::string text_;
+};
 
 }  // namespace
 
 TEST_CASE("every shipped model emits equal bytes in fresh processes") {
-  for (const std::string& model : shipped_models()) {
-    if (is_prescribed(model)) {
+  for (const auto& [model, prescribed] : all_shipped()) {
+    if (prescribed) {
       same_everywhere(model, {"derive", model, "--show", "all", "--json"}, 0);
       continue;
     }
@@ -87,8 +118,12 @@ TEST_CASE("every shipped model emits equal bytes in fresh processes") {
   }
 }
 
-TEST_CASE("every shipped model's document has equal bytes in fresh processes") {
-  for (const std::string& model : shipped_models()) {
-    if (!is_prescribed(model)) same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
+TEST_CASE("every shipped model's document has equal bytes in fresh processes, and fits on its pages") {
+  Pages pages;
+  for (const auto& [model, prescribed] : all_shipped()) {
+    if (prescribed) continue;
+    const Files files = same_everywhere(model, {"emit", model, "-o", "out", "--target", "latex"}, 1);
+    pages.add(model, files.at(model + ".tex"));
   }
+  if (is_pdflatex_installed()) check_fits(typeset(pages.text(), "documents"));
 }
