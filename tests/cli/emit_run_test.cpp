@@ -31,6 +31,20 @@ struct Case {
   std::vector<std::string> told;
 };
 
+/// Its run is refused with these words, and nothing is written; without the run the model is emitted.
+void check_refusal(const Case& c) {
+  CAPTURE(std::string(c.what));
+  const Folder folder;
+  folder.write("model.toml", c.text);
+  const ChildResult refused = expect(2, folder, {"emit", "model.toml", "-o", "code", "--with", "run"});
+  for (const std::string& part : c.told) {
+    CAPTURE(part);
+    CHECK(contains(refused.err, part));
+  }
+  CHECK_FALSE(folder.has("code"));
+  expect(0, folder, {"emit", "model.toml", "-o", "code"});
+}
+
 }  // namespace
 
 TEST_CASE("emit --with run: a solver that the default scene names and the model is not eligible for is refused") {
@@ -45,19 +59,7 @@ TEST_CASE("emit --with run: a solver that the default scene names and the model 
       {"moving inputs",
        particle("solver = \"taylor\"\ninputs = { F = \"3*sin(2*t)\" }\n"),
        {"solver 'taylor' cannot integrate this scene", "an input is an expression of t"}}};
-  for (const Case& c : cases) {
-    CAPTURE(std::string(c.what));
-    const Folder folder;
-    folder.write("model.toml", c.text);
-    const ChildResult refused = expect(2, folder, {"emit", "model.toml", "-o", "code", "--with", "run"});
-    for (const std::string& part : c.told) {
-      CAPTURE(part);
-      CHECK(contains(refused.err, part));
-    }
-    CHECK_FALSE(folder.has("code"));
-    // It is the scene's run that asks for the solver: without it the model is emitted.
-    expect(0, folder, {"emit", "model.toml", "-o", "code"});
-  }
+  for (const Case& c : cases) check_refusal(c);
 }
 
 TEST_CASE("emit --with run: a solver that the model is eligible for comes with the functions that it needs") {
@@ -85,18 +87,7 @@ TEST_CASE("emit --with run: what emitted code does not know is refused with its 
       {"an input",
        particle("inputs = { F = \"3*sin(2*t)\" }\n"),
        {"an input of the default scene is an expression of t", "give it as a table"}}};
-  for (const Case& c : cases) {
-    CAPTURE(std::string(c.what));
-    const Folder folder;
-    folder.write("model.toml", c.text);
-    const ChildResult refused = expect(2, folder, {"emit", "model.toml", "-o", "code", "--with", "run"});
-    for (const std::string& part : c.told) {
-      CAPTURE(part);
-      CHECK(contains(refused.err, part));
-    }
-    CHECK_FALSE(folder.has("code"));
-    expect(0, folder, {"emit", "model.toml", "-o", "code"});
-  }
+  for (const Case& c : cases) check_refusal(c);
   // An input that jumps is a table, which the header has.
   const Folder folder;
   folder.write("model.toml", particle("inputs = { F = { t = [0, 0.7], value = [5, -3] } }\n"));

@@ -53,10 +53,14 @@ std::vector<std::string> Folder::names() const {
   return result;
 }
 
+Words with(Words words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
 ChildCommand command(const Folder& folder, const Words& words) {
   ChildCommand result;
-  result.arguments = {EOMGEN_PROGRAM};
-  result.arguments.insert(result.arguments.end(), words.begin(), words.end());
+  result.arguments = with({EOMGEN_PROGRAM}, words);
   result.folder = folder.path();
   result.environment = {{"EOMGEN_CACHE_DIR", test::build_folder() + "/test-code"},
                         {"EOMGEN_MODELS", test::source_folder() + "/models"},
@@ -101,6 +105,22 @@ L = "1 m"
 name = "rod"
 holonomic = "x^2 + y^2 - L^2"
 )" + scene;
+}
+
+std::string oscillator_text() {
+  return R"(format = 1
+[parameters]
+m = { value = 1, positive = true }
+k = 4
+[coordinates]
+x = {}
+[energy]
+kinetic = "m*x_dot^2/2"
+potential = "k*x^2/2"
+[scene.default]
+t = [0, 1]
+initial = { x = 1 }
+)";
 }
 
 std::string diverging_text() {

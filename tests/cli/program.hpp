@@ -34,6 +34,7 @@ class Folder {
 
 /// What calls get beside their words: compiled code is cached in one folder for all tests, models are the shipped ones.
 ChildCommand command(const Folder& folder, const Words& words);
+Words with(Words words, const Words& more);
 ChildResult eomgen(const Folder& folder, const Words& words);
 /// The same where success is expected: a failure is a doctest failure that shows what was printed.
 ChildResult expect(int status, const Folder& folder, const Words& words);
@@ -42,6 +43,8 @@ Json document(const Folder& folder, Words words, int status = 0);
 
 /// A particle under gravity on a rod of length L, by x and y: the constraint stays.
 std::string pendulum_text(const std::string& scene);
+/// x'' = -(k/m) x from x = 1, for 1 s: cos(sqrt(k/m) t).
+std::string oscillator_text();
 /// x'' = k x^2 from x = 1: infinite at a finite time.
 std::string diverging_text();
 /// Falls towards x = 0, where its inertia vanishes; Euler's step of length 1 from the start ends there exactly.

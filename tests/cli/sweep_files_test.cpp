@@ -13,15 +13,6 @@ using namespace eomgen::test;
 
 namespace {
 
-const char* const oscillator =
-    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
-    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
-
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 /// The place behind so many lines.
 std::size_t behind(const std::string& text, int lines) {
   std::size_t at = 0;
@@ -33,7 +24,7 @@ std::size_t behind(const std::string& text, int lines) {
 
 TEST_CASE("sweep: killed at any time again and again, it ends with the bytes of one that was left alone") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   std::mt19937 random(5);  // fixed: NOLINT(cert-msc32-c,cert-msc51-cpp)
   for (const Words& how : {Words{"--ensemble"}, Words{"--no-error-estimate", "--jobs", "2"}}) {
     CAPTURE(how.front());
@@ -62,7 +53,7 @@ TEST_CASE("sweep: killed at any time again and again, it ends with the bytes of 
 
 TEST_CASE("sweep: rows that a full disk cut in the middle of the table, and runs that are none of it, are made again") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1:9:9", "--out", "all.csv"};
   expect(0, folder, words);
   const std::string whole = folder.read("all.csv");
@@ -80,7 +71,7 @@ TEST_CASE("sweep: rows that a full disk cut in the middle of the table, and runs
 
 TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they lie") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const Json found =
       document(folder, {"sweep", "oscillator.toml", "--grid", "m=-1:1:4001", "--ensemble", "--t-end", "0.01"}, 3);
   CHECK(found["done"] == 2000);
@@ -90,7 +81,7 @@ TEST_CASE("sweep: runs that cannot begin cost no derivation each, wherever they 
 TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of the model") {
 #if !defined(__SANITIZE_ADDRESS__)
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const auto peak = [&](const char* samples, const Words& how) {
     const Words words =
         with({"sweep", "oscillator.toml", "--sample", "k=1:9", "--t-end", "0.01", "--statistics", "--samples", samples},
@@ -110,7 +101,7 @@ TEST_CASE("sweep: memory does not hold rows, nor what runs put into the graph of
 
 TEST_CASE("merge: a table that ends in the middle of a line lacks that run; one shard is a sweep as well") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const Words sweep{"sweep", "oscillator.toml", "--grid", "k=1:9:7", "--no-error-estimate"};
   for (const char* i : {"1", "2"})
     expect(0, folder, with(sweep, {"--out", std::string(i) + ".csv", "--shard", std::string(i) + "/2"}));

@@ -24,15 +24,6 @@ TEST_CASE("sweep: without MPI there is no eomgen-mpi, and its tests are left out
 
 namespace {
 
-const char* const oscillator =
-    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
-    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
-
-Words with(Words words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
-  return words;
-}
-
 ChildCommand by_ranks(const char* ranks, const Folder& folder, const Words& words) {
   ChildCommand result = command(folder, words);
   result.arguments =
@@ -67,7 +58,7 @@ std::size_t times(const std::string& text, const std::string& part) {
 
 TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one process") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   for (const Words& how : {Words{"--ensemble"}, Words{"--no-error-estimate"}}) {
     CAPTURE(how.front());
     const Words words = with({"sweep", "oscillator.toml", "--grid", "m=-1,1,2", "--sample", "k=1:9", "--samples", "700",
@@ -98,7 +89,7 @@ TEST_CASE("sweep by ranks: the bytes, the counts and the statistics of one proce
 
 TEST_CASE("sweep by ranks: where a rank is killed, or all are, other ranks go on from the rows of all") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml",     "--sample", "k=1:9", "--samples",
                     "20000", "--no-error-estimate", "--out"};
   expect(0, folder, with(words, {"whole.csv"}));
@@ -142,7 +133,7 @@ TEST_CASE("sweep by ranks: where a rank is killed, or all are, other ranks go on
 
 TEST_CASE("sweep by ranks: what is wrong is told once") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const auto told = [&](const Words& words, int status, const std::string& what) {
     const ChildResult result = run_child(by_ranks("3", folder, words));
     CAPTURE(result.err);

@@ -10,10 +10,6 @@ using namespace eomgen::test;
 
 namespace {
 
-const char* const oscillator =
-    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
-    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
-
 /// Holds every array of argv[1] against the table argv[2]; prints "same" and the names of the arrays.
 const char* const comparison = R"(
 import ast, csv, io, math, struct, sys, zipfile
@@ -74,11 +70,7 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
     MESSAGE("there is no python3: archives of columns are not read");
     return;
   }
-  folder.write("oscillator.toml", oscillator);
-  const auto with = [](Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-  };
+  folder.write("oscillator.toml", oscillator_text());
   // More rows than are written at a time; some are refused, and the sentence has quotation marks or commas.
   const Words words{"sweep", "oscillator.toml", "--grid",  "m=1,-1", "--sample", "k=1:9", "--samples",
                     "2500",  "--ensemble",      "--t-end", "0.1",    "--output", "all",   "--out"};
@@ -109,11 +101,9 @@ TEST_CASE("sweep: an archive of columns holds the numbers, outcomes and sentence
 
 TEST_CASE("sweep: where no archive of columns can be written that is told") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const Words words{"sweep", "oscillator.toml", "--grid", "k=1,2", "--out", "a.npz"};
-  Words shard = words;
-  shard.insert(shard.end(), {"--shard", "1/2"});
-  CHECK(contains(expect(2, folder, shard).err, "eomgen merge TABLES -o a.npz"));
+  CHECK(contains(expect(2, folder, with(words, {"--shard", "1/2"})).err, "eomgen merge TABLES -o a.npz"));
   CHECK(contains(expect(2, folder, {"run", "oscillator.toml", "--out", "a.npz"}).err, "this option writes csv"));
   CHECK(folder.names() == Words{"oscillator.toml"});
 }

@@ -10,10 +10,6 @@ using namespace eomgen::test;
 
 namespace {
 
-const char* const oscillator =
-    "format = 1\n[parameters]\nm = { value = 1, positive = true }\nk = 4\n[coordinates]\nx = {}\n"
-    "[energy]\nkinetic = \"m*x_dot^2/2\"\npotential = \"k*x^2/2\"\n[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n";
-
 /// Without the first line, which tells sweeps apart.
 std::string rows(const std::string& text) { return text.substr(text.find('\n')); }
 
@@ -21,7 +17,7 @@ std::string rows(const std::string& text) { return text.substr(text.find('\n'));
 
 TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   folder.write("points.csv",
                "# made elsewhere\r\n k , m\r\n1,1\r\n\r\n2.5, 1e0\n0.1,3");  // the last line without its end
   expect(0, folder, {"sweep", "oscillator.toml", "--points", "points.csv", "--out", "points_sweep.csv"});
@@ -42,13 +38,11 @@ TEST_CASE("sweep: the lines of a file are points, alone and with a grid") {
 
 TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const auto refused = [&](const std::string& text, const std::string& what, const Words& more = {}) {
     folder.write("points.csv", text);
-    Words words{"sweep", "oscillator.toml", "--points", "points.csv"};
-    words.insert(words.end(), more.begin(), more.end());
     CAPTURE(what);
-    CHECK(contains(expect(2, folder, words).err, what));
+    CHECK(contains(expect(2, folder, with({"sweep", "oscillator.toml", "--points", "points.csv"}, more)).err, what));
   };
   refused("", "no line has values");
   refused("k\n", "no line has values");
@@ -70,7 +64,7 @@ TEST_CASE("sweep: what is wrong with a file of points is told with its line") {
 
 TEST_CASE("sweep: histograms count every value once, in equal parts from the least to the greatest") {
   const Folder folder;
-  folder.write("oscillator.toml", oscillator);
+  folder.write("oscillator.toml", oscillator_text());
   const Json found =
       document(folder, {"sweep", "oscillator.toml", "--grid", "k=0:40:41", "--t-end", "0", "--statistics"});
   for (const Json& column : found["statistics"]) {
