@@ -12,7 +12,6 @@
 
 #include "analysis/shortest_decimal.hpp"
 #include "error.hpp"
-#include "model/names.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -98,9 +97,20 @@ const char* name(Design design) {
 }
 
 std::string SampledAxis::obstacle() const {
-  if (kind == Kind::logarithmic && !(a * b > 0)) return "goes through 0 or changes its sign, which log cannot";
-  if (kind == Kind::normal && !(b > 0)) return "has a deviation that is not above 0";
-  return "";
+  constexpr double farthest = 9;  // deviations from the mean: normal_quantile of any binary64 is nearer to 0
+  double reach = b - a;
+  switch (kind) {
+    case Kind::even: break;
+    case Kind::logarithmic:
+      if (a == 0 || b == 0 || (a < 0) != (b < 0)) return "goes through 0 or changes its sign, which log cannot";
+      reach = std::max(a / b, b / a);
+      break;
+    case Kind::normal:
+      if (!(b > 0)) return "has a deviation that is not above 0";
+      reach = std::abs(a) + farthest * b;
+      break;
+  }
+  return std::isfinite(a) && std::isfinite(b) && std::isfinite(reach) ? "" : "leaves the range of binary64";
 }
 
 Sampling::Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed)
@@ -153,8 +163,6 @@ std::vector<symbolic::Rational> Sampling::point(std::size_t index) const {
     double value = axis.a + (axis.b - axis.a) * u;
     if (axis.kind == SampledAxis::Kind::logarithmic) value = axis.a * std::pow(axis.b / axis.a, u);
     if (axis.kind == SampledAxis::Kind::normal) value = axis.a + axis.b * normal_quantile(std::max(u, 0x1p-54));
-    if (!std::isfinite(value))
-      fail(fmt::format("{} leaves the range of binary64", model::quote(axis.parameter)), "sample a narrower range");
     result.push_back(shortest_decimal(value, axis.parameter));
   }
   return result;

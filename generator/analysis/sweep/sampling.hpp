@@ -23,13 +23,14 @@ struct SampledAxis {
   double a = 0, b = 0;
   Kind kind = Kind::even;
 
-  /// Why samples would not exist; empty where all do.
+  /// Why samples would not exist, or not as finite numbers; empty where all do.
   std::string obstacle() const;
 };
 
 class Sampling {
  public:
-  /// Each axis has a parameter of its own. Throws Error{stage "sweep"} for more samples or axes than the design has.
+  /// Each axis has a parameter of its own, and no obstacle. Throws Error{stage "sweep"} for more samples or axes than
+  /// the design has.
   Sampling(std::vector<SampledAxis> axes, std::size_t count, Design design, std::uint64_t seed);
 
   std::vector<std::string> names() const;

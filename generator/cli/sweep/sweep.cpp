@@ -16,6 +16,7 @@
 #include "model/names.hpp"
 #include "pipeline/beginnings.hpp"
 #include "pipeline/tidy_graph.hpp"
+#include "run/eligibility.hpp"
 
 namespace eomgen::cli {
 namespace {
@@ -48,7 +49,7 @@ void require_names(const analysis::Points& points, const SweepOptions& options, 
       throw Error("sweep", {}, fmt::format("there is no parameter '{}'", name), choice_of(name, known));
     }
     if (set.contains(name)) {
-      throw Error("sweep", {}, fmt::format("'{}' has a grid and a value by --set", name), "leave one of them out");
+      throw Error("sweep", {}, fmt::format("'{}' is varied, and has a value by --set", name), "leave one of them out");
     }
   }
 }
@@ -61,11 +62,14 @@ std::string key_of_table(const SweepOptions& options, const model::Model& model,
 void require_side_by_side(const pipeline::Simulation& first) {
   const std::string why = pipeline::ensemble_obstacle(first);
   if (why.empty()) return;
-  std::vector<std::string> solvers;
-  for (const eom::MethodInfo* method : pipeline::ensemble_solvers())
-    solvers.push_back(method->name + std::string(method->adaptive ? "" : " with --step"));
-  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why,
-              fmt::format("leave --ensemble out; with it take --solver {}", fmt::join(solvers, ", ")));
+  std::string remedy = "leave --ensemble out";
+  if (!run::method_named(first.scene.solver).ensemble) {
+    std::vector<std::string> solvers;
+    for (const eom::MethodInfo* method : pipeline::ensemble_solvers())
+      solvers.push_back(method->name + std::string(method->adaptive ? "" : " with --step"));
+    remedy += fmt::format(", or take --solver {}", fmt::join(solvers, ", "));
+  }
+  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why, remedy);
 }
 
 std::size_t threads_of(const SweepOptions& options) {
