@@ -103,11 +103,11 @@ Setting<Precise> setting_of(SteadyProblem& p, const run::Overrides& overrides, c
       run::exact_parameters(d.mechanics, d.model.scene(p.scene.name), overrides, linear::digits + 20, moved);
   for (std::size_t i = 0; i < setting.parameters.size(); ++i) {
     if (d.model.parameters[i].start_of || i == d.model.start_time)
-      setting.parameters[i] = Precise(p.scene.parameters[i]);
+      setting.parameters[i] = numeric::exact(p.scene.parameters[i]);
     setting.parameters[i] = linear::number<Precise>(setting.parameters[i]);
   }
   for (const run::Signal& signal : p.scene.inputs)
-    setting.inputs.push_back(linear::number<Precise>(Precise(signal(p.t, p.t))));
+    setting.inputs.push_back(linear::number<Precise>(numeric::exact(signal(p.t, p.t))));
   for (std::size_t i = 0; i < d.model.integrals.size(); ++i) {
     setting.integrals.push_back(
         linear::number<Precise>(numeric::exact(state.integrals.empty() ? 0.0 : state.integrals[i])));
@@ -142,9 +142,9 @@ SteadyProblem steady_problem(const std::string& command, std::shared_ptr<const m
   }
   p.flow = std::make_unique<linear::Flow>(d.mechanics, p.system());
   for (const auto* values : {&state.q, &state.qdot}) {
-    for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(Precise((*values)[i])));
+    for (const std::uint32_t i : p.system().free) p.z.push_back(linear::number<Precise>(numeric::exact((*values)[i])));
   }
-  p.z.push_back(linear::number<Precise>(Precise(p.t)));
+  p.z.push_back(linear::number<Precise>(numeric::exact(p.t)));
   p.setting = setting_of(p, overrides, state, {});
   for (int k = 0; k < neighbour_count; ++k)
     p.neighbours.push_back(setting_of(p, overrides, state, 100 * seed + static_cast<std::uint64_t>(k)));

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/abi_values.hpp"
 
-#include <cln/dfloat.h>
 #include <cln/rational.h>
 #include <cln/real.h>
 
@@ -13,6 +12,7 @@
 #include <stdexcept>
 
 #include "abi/functions.hpp"
+#include "numeric/numbers.hpp"
 #include "program/kinks.hpp"
 #include "program/rounding.hpp"
 
@@ -129,7 +129,7 @@ std::vector<Real> taylor_coefficients(const Taylor& taylor, const Arguments<Real
 
 /// Infinite where binary64 ends.
 double to_binary64(const cl_R& value) {
-  const bool held = cln::abs(value) <= cln::rational(cln::cl_R(cln::cl_DF(std::numeric_limits<double>::max())));
+  const bool held = cln::abs(value) <= numeric::exact(std::numeric_limits<double>::max());
   return held ? cln::double_approx(value)
               : std::copysign(std::numeric_limits<double>::infinity(), cln::minusp(value) ? -1.0 : 1.0);
 }

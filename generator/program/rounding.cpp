@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "program/rounding.hpp"
 
-#include <cln/dfloat.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "numeric/numbers.hpp"
 #include "symbolic/arithmetic.hpp"
 #include "symbolic/functions.hpp"
 
@@ -138,7 +137,7 @@ class Run {
       case Slot::constant: {
         const symbolic::Rational& exact = function_.constants[operand.index];
         const double value = cln::double_approx(exact);
-        return {value, exact == cln::rational(cln::cl_DF(value)) ? 0 : half_unit * std::fabs(value)};
+        return {value, exact == numeric::exact(value) ? 0 : half_unit * std::fabs(value)};
       }
       case Slot::pi: return {3.14159265358979323846, 2 * half_unit};
       case Slot::time: return {arguments_.t, 0};

@@ -199,7 +199,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   for (const cln::cl_R& p : parameters) result.parameters.push_back(cln::double_approx(p));
   // The start is computed with the binary64 parameters that the run will use.
   std::vector<cln::cl_R> rounded;
-  for (const double p : result.parameters) rounded.push_back(cln::cl_R(p));
+  for (const double p : result.parameters) rounded.push_back(numeric::exact(p));
   SceneEvaluator value(m, rounded);
   if (scene.t0 != model::no_node) result.t0 = value.number(scene.t0, "the start time");
   result.t1 = scene.t1 != model::no_node ? value.number(scene.t1, "the end time") : result.t0 + 10;

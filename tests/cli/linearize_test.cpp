@@ -43,6 +43,13 @@ TEST_CASE("linearize: another parameter, another time") {
   const Json rest = document(folder, {"linearize", "drop.toml", "--at", "60"});
   CHECK(rest["kind"] == "equilibrium");
   CHECK(rest["A"][1][0] == -4.0);
+  // A state of subnormal numbers: 1e-300 exp(-25).
+  folder.write(
+      "faint.toml",
+      "format = 1\n[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\n[[force]]\ngeneralized = { x = "
+      "\"-x_dot\" }\n[scene.default]\nt = [0, 1]\ninitial = { x_dot = 1e-300 }\nsolver = \"rk4\"\nstep = 0.1\n");
+  const Json faint = document(folder, {"linearize", "faint.toml", "--at", "25"});
+  CHECK(faint["A"].back().back() == -1.0);
 }
 
 TEST_CASE("linearize: what has no slope, contacts, wrong names and times are told with a remedy") {

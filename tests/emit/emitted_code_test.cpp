@@ -300,17 +300,17 @@ TEST_CASE("emitted code: compiled functions give what the interpreter gives in 5
     const auto& m = compiled.model;
     const auto& test = e.context.tests[1];
     const double* u = test.u.empty() ? nullptr : test.u.data();
-    program::Arguments<cln::cl_R> exact{exactly(test.t), {}, {}, {}};
-    for (const double value : test.x) exact.x.push_back(exactly(value));
-    for (const double value : test.p) exact.p.push_back(exactly(value));
-    for (const double value : test.u) exact.u.push_back(exactly(value));
+    program::Arguments<cln::cl_R> exact{numeric::exact(test.t), {}, {}, {}};
+    for (const double value : test.x) exact.x.push_back(numeric::exact(value));
+    for (const double value : test.p) exact.p.push_back(numeric::exact(value));
+    for (const double value : test.u) exact.u.push_back(numeric::exact(value));
     for (const auto& function : e.program.functions) {
       auto arguments = exact;
       if (function.name == "rhs_prepared")
         arguments.w = program::interpret(e.program.functions.rbegin()[1], exact, 60).results[0];
       const bool no_inputs = function.name == "mass" || function.name == "constraints";
       for (std::size_t i = 0; i < arguments.u.size() && no_inputs; ++i)
-        arguments.u[i] = exactly(e.context.inputs[i].value);
+        arguments.u[i] = numeric::exact(e.context.inputs[i].value);
       const auto expected = program::interpret(function, arguments, 50).results;
       std::vector<std::vector<double>> got;
       for (const auto& list : expected) got.emplace_back(list.size() + 1);
@@ -336,12 +336,12 @@ TEST_CASE("emitted code: right-hand sides of angles that have gone round ten tho
   const Example e = examples()[1];
   const auto files = emit::emit(e.program, e.context, "c");
   const auto compiled = emit::compile_and_load(files[0].text, files[1].text, e.context.id);
-  program::Arguments<cln::cl_R> exact{exactly(0), {}, {}, {}};
-  for (const double value : e.context.tests[0].p) exact.p.push_back(exactly(value));
+  program::Arguments<cln::cl_R> exact{numeric::exact(0), {}, {}, {}};
+  for (const double value : e.context.tests[0].p) exact.p.push_back(numeric::exact(value));
   for (const auto& [first, second] : {std::pair{70000.25, 0.5}, {0.5, -3e5}, {1e9, 65536.5}, {1e15, -1e15}}) {
     const double x[4] = {first, second, 0.25, -0.5};
     exact.x.clear();
-    for (const double value : x) exact.x.push_back(exactly(value));
+    for (const double value : x) exact.x.push_back(numeric::exact(value));
     double dx[4];
     CHECK(compiled.model.rhs(0, x, e.context.tests[0].p.data(), nullptr, 0, dx) == 0);
     const auto expected = program::interpret(e.program.functions[0], exact, 60).results[0];

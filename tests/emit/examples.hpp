@@ -2,7 +2,6 @@
 // Programs with names and numbers, ready to emit.
 #pragma once
 
-#include <cln/dfloat.h>
 #include <fmt/format.h>
 #include <stdlib.h>
 
@@ -15,13 +14,12 @@
 #include "emit/shared_library/process.hpp"
 #include "emit/targets.hpp"
 #include "emit/write_files.hpp"
+#include "numeric/numbers.hpp"
 #include "program/systems.hpp"
 #include "program/values.hpp"
 #include "support/temporary_folder.hpp"
 
 namespace test_systems {
-
-inline cln::cl_R exactly(double value) { return cln::rational(cln::cl_DF(value)); }
 
 struct Example {
   program::Program program;
@@ -50,7 +48,7 @@ inline Example example(const std::string& id, const system::EquationSystem& syst
       std::vector<double> result_values;
       for (std::size_t i = 0; i < count; ++i) {
         result_values.push_back(cln::double_approx(values[i]));
-        values[i] = exactly(result_values.back());
+        values[i] = numeric::exact(result_values.back());
       }
       return result_values;
     };

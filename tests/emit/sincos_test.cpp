@@ -71,10 +71,10 @@ struct Kernel {
 double ulps(double got, const cln::cl_R& exact) {
   const double nearest = std::abs(cln::double_approx(exact));
   const double unit = std::nextafter(nearest, std::numeric_limits<double>::infinity()) - nearest;
-  return cln::double_approx(cln::abs(exactly(got) - exact) / exactly(unit));
+  return cln::double_approx(cln::abs(numeric::exact(got) - exact) / numeric::exact(unit));
 }
 double worst(const Kernel& kernel, double angle) {
-  const cln::cl_R x = cln::cl_float(exactly(angle), cln::float_format(60));
+  const cln::cl_R x = cln::cl_float(numeric::exact(angle), cln::float_format(60));
   const auto [sine, cosine] = kernel(angle);
   return std::max(ulps(sine, cln::sin(x)), ulps(cosine, cln::cos(x)));
 }

@@ -16,6 +16,7 @@
 #include "emit/shared_library/process.hpp"
 #include "emit/targets.hpp"
 #include "error.hpp"
+#include "numeric/numbers.hpp"
 #include "pipeline/code.hpp"
 #include "pipeline/pipeline.hpp"
 #include "program/abi_values.hpp"
@@ -232,15 +233,14 @@ std::optional<pipeline::CompiledCode> loaded(const std::string& library, const s
 bool differ(const verify::CompiledForm& a, const verify::CompiledForm& b, const Subject& s) {
   std::mt19937_64 engine(7);
   const auto random = [&engine] { return cln::cl_RA(static_cast<long>(engine() % 2001) - 1000) / 1000; };
-  const auto exactly = [](double value) { return cln::rational(cln::cl_R(value)); };
   const std::vector<eom::ContactShape> shapes(s.program.contacts.begin(), s.program.contacts.end());
   const std::vector<int> modes = eom::contact_modes(shapes, 12);
   for (std::size_t point = 0; point < 3 * modes.size(); ++point) {
-    verify::At at{exactly(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
-    for (const double x : s.context.start) at.x.push_back(exactly(x) + random() / 2);
+    verify::At at{numeric::exact(s.context.start_time) + random(), {}, {}, {}, modes[point % modes.size()], 4};
+    for (const double x : s.context.start) at.x.push_back(numeric::exact(x) + random() / 2);
     for (const emit::Quantity& p : s.context.parameters)
-      at.p.push_back(exactly(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));
-    for (const emit::Quantity& u : s.context.inputs) at.u.push_back(exactly(u.value) + random());
+      at.p.push_back(numeric::exact(p.value) * (1 + random() / 4) + (p.value == 0 ? random() : cln::cl_RA(0)));
+    for (const emit::Quantity& u : s.context.inputs) at.u.push_back(numeric::exact(u.value) + random());
     for (const std::string& function : program::abi_function_names(s.program)) {
       const auto of_a = a.call(function, at), of_b = b.call(function, at);
       if (of_a.has_value() != of_b.has_value()) return true;

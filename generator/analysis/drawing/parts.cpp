@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "forces/kind.hpp"
+#include "numeric/numbers.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {
@@ -171,7 +172,7 @@ void Drawing::shapes() {
 
 std::vector<double> sizes_of(const Drawing& drawing, const symbolic::Dag& dag, const std::vector<double>& parameters) {
   std::vector<double> result;
-  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return cln::cl_R(parameters[s.index]); };
+  const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return numeric::exact(parameters[s.index]); };
   for (const Ref size : drawing.sizes()) {
     try {
       result.push_back(cln::double_approx(symbolic::evaluate(dag, {size}, lookup, digits)[0]));
@@ -191,7 +192,7 @@ std::optional<std::array<double, 3>> falling(mechanics::Mechanics& mechanics, co
     double length = 0;
     for (std::size_t k = 0; k < 3; ++k) {
       if (!is_of_parameters(*mechanics.dag, g[k])) return std::nullopt;
-      const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return cln::cl_R(parameters[s.index]); };
+      const auto lookup = [&](const symbolic::Symbol& s) -> cln::cl_R { return numeric::exact(parameters[s.index]); };
       try {
         down[k] = cln::double_approx(symbolic::evaluate(*mechanics.dag, {g[k]}, lookup, digits)[0]);
       } catch (const std::exception&) {
