@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# docs/commands.md against the program: every command has its chapter, every option its row, and no row is invented.
+# docs/commands.md against the program: every command has its chapter, every option its row, no row is invented, and
+# examples print what stands there.
 #   commands_test.sh PROGRAM DOCUMENT
 set -euo pipefail
-program=$1 document=$2
+program=$(realpath -- "$1") document=$2
 failed=0
 refuse() {
   printf 'FAILED: %s\n' "$*" >&2
@@ -31,5 +32,44 @@ for command in "${commands[@]}"; do
     [[ -z $option ]] || grep -qxF -- "$option" <<<"$common" || refuse "$command has no option $option"
   done < <(LC_ALL=C comm -13 <(echo "$there") <(echo "$told"))
 done
+
+# Examples of shipped models: what is printed is what the page shows, but for blanks, digits beyond the sixth, how far the
+# certificate goes and times; `...` stands for any lines.
+models=$(cd -- "$(dirname -- "$document")/../models" && pwd)
+scratch=$(mktemp -d)
+trap 'rm -rf -- "$scratch"' EXIT
+plain() {
+  LC_ALL=C awk '
+    NF == 0 { next }
+    $1 == "seconds" { print $1; next }
+    { sub(/ worst .*/, "")
+      for (i = 1; i <= NF; ++i) if ($i ~ /^-?[0-9]+\.[0-9]+(e[-+]?[0-9]+)?,?$/) $i = sprintf("%.6g", $i)
+      $1 = $1
+      print }' "$1"
+}
+# as_shown SHOWN PRINTED: the lines of SHOWN in their order, and none between them that it does not have.
+as_shown() {
+  awk 'NR == FNR { shown[++n] = $0; next }
+    { while (at < n && shown[at + 1] == "...") { ++at; any = 1 }
+      if (at < n && shown[at + 1] == $0) { ++at; any = 0 } else if (!any) { print "  printed: " $0; exit bad = 1 } }
+    END { while (!bad && at < n && shown[at + 1] == "...") ++at
+      if (!bad && at < n) { print "  not printed: " shown[at + 1]; bad = 1 }
+      exit bad }' <(plain "$1") <(plain "$2")
+}
+awk -v folder="$scratch" '
+  /^```/ { inside = !inside; file = ""; next }
+  inside && /^\$ / { file = sprintf("%s/%03d", folder, ++n); print substr($0, 3) >(file ".call"); printf "" >file; next }
+  file != "" { print >file }' "$document"
+examples=0
+for call in "$scratch"/*.call; do
+  read -r _ command model options <"$call"
+  [[ -f $models/$model.toml ]] || continue
+  read -ra options <<<"$options"
+  (cd "$scratch" && EOMGEN_MODELS=$models "$program" "$command" "$model" "${options[@]}") >"${call%.call}.out" 2>&1 || true
+  [[ ! -s ${call%.call} ]] || difference=$(as_shown "${call%.call}" "${call%.call}.out") ||
+    refuse "$(<"$call") does not print what the page shows"$'\n'"$difference"
+  examples=$((examples + 1))
+done
+((examples >= 8)) || refuse "the page has $examples examples of shipped models only"
 ((failed == 0)) || exit 1
-echo "${#commands[@]} commands are told as they are"
+echo "${#commands[@]} commands and $examples examples are told as they are"
