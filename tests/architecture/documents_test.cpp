@@ -36,6 +36,20 @@ TEST_CASE("every link within the repository leads to something") {
   }
 }
 
+TEST_CASE("numbered sections of a page count from 1 on") {
+  static const std::regex number(R"(\n## (\d+)\. )");
+  std::size_t numbered = 0;
+  for (const fs::path& document : documents()) {
+    const std::string text = read_text(document);
+    int last = 0;
+    for (std::sregex_iterator at(text.begin(), text.end(), number), end; at != end; ++at, ++numbered) {
+      INFO(fs::relative(document, root).generic_string() << " has section " << (*at)[1]);
+      CHECK(std::stoi((*at)[1]) == ++last);
+    }
+  }
+  CHECK(numbered >= 20);
+}
+
 TEST_CASE("the README shows the shipped model as it is") {
   const std::string model = read_text(root / "models" / "P7_moving_sphere.toml");
   CHECK(read_text(root / "README.md").find("```toml\n" + model + "```\n") != std::string::npos);
