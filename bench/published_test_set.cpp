@@ -115,6 +115,7 @@ void andrews_rhs(const Values& v, Quad, const State& x, State& dx) {
     dx[7 + i] = b[i];
   }
 }
+
 // Car axis: the test set's equations with the constraints differentiated twice.
 const Named car_names{{"xl", "yl", "xr", "yr"}};
 
@@ -143,6 +144,7 @@ void car_rhs(const Values& p, Quad t, const State& x, State& dx) {
     dx[4 + i] = b[i];
   }
 }
+
 }  // namespace
 
 Problem andrews() {

@@ -199,7 +199,6 @@ class System {
     const ForceFinding& found = a_.findings->forces[i];
     std::string text = bold(model_.forces[i].name) + ": ";
     std::vector<Formula> shown;
-    const char* letter = model_.forces.size() > 1 ? "U" : nullptr;
     if (found.conservative == "yes")
       text += found.many_valued ? "conservative where its potential is not followed around its singular points"
                                 : "conservative";
@@ -209,7 +208,7 @@ class System {
     if (found.conservative == "yes" && found.potential) {
       if (const auto U = read_short(*found.potential)) {
         std::vector<Formula> index;
-        if (letter != nullptr) index.push_back(reading::number(static_cast<long>(i + 1)));
+        if (model_.forces.size() > 1) index.push_back(reading::number(static_cast<long>(i + 1)));
         const Letters letters(model_, false);
         shown.push_back(reading::relation({reading::mark(letters.U, std::move(index)), reading::arrange(*U)}));
       }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The harnesses without libFuzzer, for any compiler: mutated models in a fixed order, each in a process of its own with
 // bounds on its time and memory.
-//   mutants derive|run FIRST COUNT [SECONDS]   models of the seeds FIRST, FIRST + 1 ..; findings are kept in this
-//   folder mutants derive|run FILE...                 these models, or those in these folders
+//   mutants derive|run FIRST COUNT [SECONDS]: models of the seeds FIRST, FIRST + 1 ..; findings are kept in this folder
+//   mutants derive|run FILE...: these models, or those in these folders
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
