@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/newton.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
+#include <utility>
+
+#include "numeric/dense.hpp"
 
 namespace eomgen::linear {
 namespace {
@@ -67,11 +69,9 @@ std::optional<Eigen::VectorXd> step(const Equations& e, const State<double>& z, 
     }
   }
   if (!J.allFinite() || !r.allFinite()) return std::nullopt;
-  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
-  solver.setThreshold(rank_tolerance);
-  solver.compute(J);
-  open = solver.rank() < columns;
-  return solver.solve(r);
+  numeric::LeastSquares found = numeric::least_squares(J, r, rank_tolerance);
+  open = found.rank < columns;
+  return std::move(found.x);
 }
 
 // All of -1, 0, 1 first: they hold the turns that carry axes into axes. Then random ones.

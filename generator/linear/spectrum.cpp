@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "linear/spectrum.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 #include <algorithm>
 #include <complex>
 
 #include "linear/qr.hpp"
+#include "numeric/dense.hpp"
 
 namespace eomgen::linear {
 namespace {
@@ -117,7 +117,7 @@ class Binary64 {
       for (Eigen::Index j = 0; j < M_.cols(); ++j)
         M_(i, j) = to_double(A(static_cast<std::size_t>(i), static_cast<std::size_t>(j)) / norm);
     }
-    const Eigen::VectorXcd found = Eigen::EigenSolver<Eigen::MatrixXd>(M_, false).eigenvalues();
+    const Eigen::VectorXcd found = numeric::eigenvalues(M_);
     free_.assign(found.data(), found.data() + found.size());
     rounding_ = rounding_factor * static_cast<double>(A.rows) * 2.3e-16;
   }

@@ -4,7 +4,6 @@
 #include <cln/float.h>
 #include <cln/rational.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <functional>
@@ -12,6 +11,7 @@
 
 #include "mechanics/imposition.hpp"
 #include "mechanics/pfaffian.hpp"
+#include "numeric/dense.hpp"
 #include "numeric/numbers.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -215,7 +215,7 @@ bool Closure::is_regular() {
       for (Eigen::Index i = 0; i < n; ++i) {
         if (!open[static_cast<std::size_t>(i)]) A.col(i).setZero();
       }
-      const Eigen::VectorXd move = A.completeOrthogonalDecomposition().solve(psi);
+      const Eigen::VectorXd move = numeric::least_squares(A, psi).x;
       for (Eigen::Index i = 0; i < n && !closed; ++i) q[static_cast<std::size_t>(i)] -= move(i);
     }
     if (!closed) return false;
@@ -235,10 +235,7 @@ bool Closure::is_regular() {
       }
     }
     if (A.rows() == 0) return true;  // contacts alone, which may be open
-    Eigen::ColPivHouseholderQR<Eigen::MatrixXd> qr;
-    qr.setThreshold(plainly_independent);
-    qr.compute(A.transpose());
-    return qr.rank() == A.rows();
+    return numeric::rank(A.transpose(), plainly_independent) == A.rows();
   } catch (const std::exception&) {  // outside the domain of a function
     return false;
   }

@@ -3,10 +3,10 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 
+#include "numeric/dense.hpp"
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::run {
@@ -175,8 +175,7 @@ Jumps::Told Jumps::cross(const At& before, double after, const double* u_after, 
   std::vector<double> M(n_ * n_);
   mass_.values(at(after, u_after), M);
   const auto n = static_cast<Eigen::Index>(n_);
-  const Eigen::VectorXd moved =
-      Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n).completeOrthogonalDecomposition().solve(change);
+  const Eigen::VectorXd moved = numeric::least_squares(Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n), change).x;
   for (std::size_t i = 0; i < n_; ++i) x[n_ + i] += moved(static_cast<Eigen::Index>(i));
   return told;
 }

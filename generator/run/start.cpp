@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Dense>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <set>
 
 #include "derive/imposition.hpp"
+#include "numeric/dense.hpp"
 #include "run/scene.hpp"
 #include "run/start_rows.hpp"
 #include "run/start_unknowns.hpp"
@@ -222,13 +222,10 @@ class StartSolver {
       for (std::size_t i = 0; i < moving.size(); ++i) {
         columns.col(static_cast<Eigen::Index>(i)) = A.col(static_cast<Eigen::Index>(moving[i]));
       }
-      Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-      decomposition.setThreshold(rank_tolerance);
-      decomposition.compute(columns);
-      VectorXd move = decomposition.solve(residual);
-      if (decomposition.rank() < columns.cols()) {
+      auto [move, rank] = numeric::least_squares(columns, residual, rank_tolerance);
+      if (rank < columns.cols()) {
         if (!partly) return false;
-        if (!keep_fixed(columns, decomposition.rank(), rank_tolerance, move)) return rows_.worst(order) <= rounding;
+        if (!keep_fixed(columns, rank, rank_tolerance, move)) return rows_.worst(order) <= rounding;
       }
       double size = 0, scale = 0;
       for (std::size_t i = 0; i < moving.size(); ++i) {
@@ -268,13 +265,10 @@ class StartSolver {
       }
       const auto row = static_cast<Eigen::Index>(k);
       VectorXd move = VectorXd::Zero(columns.cols());
-      Eigen::CompleteOrthogonalDecomposition<MatrixXd> decomposition;
-      decomposition.setThreshold(rank_tolerance);
       VectorXd beside = columns.row(row).transpose();
       if (count > 0 && columns.cols() > 0) {
-        decomposition.compute(held);
-        move = decomposition.solve(wanted);
-        beside -= held.transpose() * held.transpose().completeOrthogonalDecomposition().solve(beside);
+        move = numeric::least_squares(held, wanted, rank_tolerance).x;
+        beside -= held.transpose() * numeric::least_squares(held.transpose(), beside).x;
       }
       const double off = residual(row) - columns.row(row).dot(move);
       const double size = std::abs(residual(row)) + columns.row(row).cwiseAbs().dot(move.cwiseAbs());

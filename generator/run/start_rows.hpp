@@ -3,7 +3,7 @@
 // equations and the values so far, which are those of the StartProblem. Out: residuals and slopes there.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>

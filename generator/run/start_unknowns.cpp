@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "run/start_unknowns.hpp"
 
+#include <Eigen/SVD>
+
 namespace eomgen::run {
 
 using Eigen::Index;

@@ -3,7 +3,7 @@
 // unknowns, a column for each.
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <vector>
 
 namespace eomgen::run {

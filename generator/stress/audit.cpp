@@ -4,13 +4,14 @@
 #include <cln/dfloat.h>
 #include <cln/exception.h>
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
+#include "numeric/dense.hpp"
 #include "numeric/numbers.hpp"
 #include "program/interpret.hpp"
 #include "stress/denominators.hpp"
@@ -45,8 +46,7 @@ std::vector<double> inputs(const run::Scene& scene, double t) {
 
 double condition(const Eigen::MatrixXd& M) {
   if (M.size() == 0 || !M.allFinite()) return infinity;
-  const Eigen::VectorXd values =
-      Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(M, Eigen::EigenvaluesOnly).eigenvalues();
+  const Eigen::VectorXd values = numeric::symmetric_eigenvalues(M);
   const double smallest = values.minCoeff(), largest = values.maxCoeff();
   return smallest > 0 ? largest / smallest : infinity;
 }

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
+#include "numeric/dense.hpp"
 #include "stress/reference_solution.hpp"
 #include "stress/stress.hpp"
 
@@ -126,7 +126,7 @@ double stable_step(const run::Scene& scene, const Request& request) {
       J(i, j) = (high[static_cast<std::size_t>(i)] - low[static_cast<std::size_t>(i)]) / (2 * d);
   }
   if (!J.allFinite()) return 0;
-  const double fastest = Eigen::EigenSolver<Eigen::MatrixXd>(J, false).eigenvalues().cwiseAbs().maxCoeff();
+  const double fastest = numeric::eigenvalues(J).cwiseAbs().maxCoeff();
   return fastest > 0 ? limit_of_rk4 / fastest : 0;
 }
 
