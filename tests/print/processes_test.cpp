@@ -10,6 +10,8 @@
 
 namespace {
 
+constexpr std::size_t long_output = 1000000;  // bytes: seconds of work; two processes are compared
+
 std::string output_of(const std::string& command) {
   std::string result;
   FILE* pipe = popen(command.c_str(), "r");
@@ -30,8 +32,10 @@ TEST_CASE("every shipped model prints equal bytes in fresh processes") {
     const std::string command = std::string(PRINT_EVERYTHING) + " '" + entry.path().string() + "' ";
     const std::string first = output_of(command + "0");
     CHECK(first.size() > 500);
-    for (const char* burnt : {"1", "17", "4242"}) CHECK(output_of(command + burnt) == first);
+    CHECK(output_of(command + "4242") == first);
     ++models;
+    if (first.size() > long_output) continue;
+    for (const char* burnt : {"1", "17"}) CHECK(output_of(command + burnt) == first);
   }
   CHECK(models > 10);
 }
