@@ -11,11 +11,8 @@ namespace {
 
 // Of the factors of a product: 2 lambda m d^2 R sin(phi)^2 d_dot theta_dot.
 constexpr int coordinates = 6, calls = 7, rates = 8, accelerations = 10, last_rank = 11;
-int rank(const Atom& atom) {
-  if (atom.op == Op::pi) return 0;
-  if (atom.op != Op::symbol) return calls;
-  const int order = atom.symbol.order;
-  switch (atom.symbol.kind) {
+constexpr int rank_of(SymbolKind kind, int order) {
+  switch (kind) {
     case SymbolKind::multiplier:
     case SymbolKind::friction:
     case SymbolKind::contact: return 1;
@@ -31,8 +28,25 @@ int rank(const Atom& atom) {
   return calls;
 }
 
+// Orders from 2 on are accelerations.
+constexpr std::size_t kinds = static_cast<std::size_t>(SymbolKind::side) + 1, orders = 3;
+constexpr auto symbol_ranks = [] {
+  std::array<std::array<int, orders>, kinds> ranks{};
+  for (std::size_t kind = 0; kind < kinds; ++kind) {
+    for (std::size_t order = 0; order < orders; ++order)
+      ranks[kind][order] = rank_of(static_cast<SymbolKind>(kind), static_cast<int>(order));
+  }
+  return ranks;
+}();
+
+int rank(const Atom& atom) {
+  if (atom.op == Op::pi) return 0;
+  if (atom.op != Op::symbol) return calls;
+  return symbol_ranks[static_cast<std::size_t>(atom.symbol.kind)][std::min<std::size_t>(atom.symbol.order, orders - 1)];
+}
+
 int sign_of(bool less, bool greater) { return less ? -1 : greater ? 1 : 0; }
-int compare_numbers(const Rational& a, const Rational& b) { return sign_of(a < b, b < a); }
+int compare_numbers(const Rational& a, const Rational& b) { return cln::compare(a, b); }
 
 // How much of each kind is in a term, what moves first: accelerations, rates, rates of coordinates, positions.
 using Weight = std::array<Rational, 4>;
@@ -84,7 +98,10 @@ int compare(const Atom& a, const Atom& b) {
   if (&a == &b) return 0;
   const int rank_a = rank(a), rank_b = rank(b);
   if (rank_a != rank_b) return sign_of(rank_a < rank_b, true);
-  if (a.op == Op::symbol && b.op == Op::symbol) return sign_of(a.symbol < b.symbol, b.symbol < a.symbol);
+  if (a.op == Op::symbol && b.op == Op::symbol) {
+    const auto order = a.symbol <=> b.symbol;
+    return sign_of(order<0, order> 0);
+  }
   if (a.op == Op::pi && b.op == Op::pi) return 0;
   // sin(x) cos(x) sin(y) cos(y) cos(x - y): by argument first, simple ones before sums
   const std::size_t common = std::min(a.args.size(), b.args.size());

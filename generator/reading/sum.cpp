@@ -21,13 +21,22 @@ bool is_one(const Rational& r) { return r == 1; }
 bool is_integer(const Rational& r) { return cln::denominator(r) == 1; }
 long to_long(const Rational& r) { return cln::cl_I_to_long(cln::numerator(r)); }
 
-void Sum::add(const Monomial& monomial, const Rational& coefficient) {
+template <class Key>
+void Sum::add_term(Key&& monomial, const Rational& coefficient) {
   if (cln::zerop(coefficient)) return;
   work::spend(1);
-  auto [found, inserted] = terms_.try_emplace(monomial, coefficient);
+  auto [found, inserted] = terms_.try_emplace(std::forward<Key>(monomial), coefficient);
   if (inserted) return;
   found->second = found->second + coefficient;
   if (cln::zerop(found->second)) terms_.erase(found);
+}
+void Sum::add(const Monomial& monomial, const Rational& coefficient) { add_term(monomial, coefficient); }
+void Sum::add(Monomial&& monomial, const Rational& coefficient) { add_term(std::move(monomial), coefficient); }
+
+void Sum::scale(const Rational& factor) {
+  if (cln::zerop(factor)) terms_.clear();
+  work::spend(terms_.size());
+  for (auto& [monomial, coefficient] : terms_) coefficient = factor * coefficient;
 }
 
 Sum& Sum::operator+=(const Sum& other) {
@@ -47,22 +56,61 @@ Sum operator-(Sum a, const Sum& b) { return a -= b; }
 Sum operator-(const Sum& a) { return Rational(-1) * a; }
 
 Sum operator*(const Rational& factor, const Sum& a) {
-  Sum result;
-  for (const auto& [monomial, coefficient] : a.terms()) result.add(monomial, factor * coefficient);
+  Sum result = a;
+  result.scale(factor);
   return result;
 }
 
+namespace {
+
+/// The factors of both, unless a power of a sum becomes whole.
+bool multiply_factors(const Monomial& a, const Monomial& b, Monomial& product) {
+  product.clear();
+  product.reserve(a.size() + b.size());
+  auto i = a.begin(), j = b.begin();
+  while (i != a.end() || j != b.end()) {
+    const int c = i == a.end() ? 1 : j == b.end() ? -1 : compare(*i->atom, *j->atom);
+    if (c != 0) {
+      const Factor& factor = c < 0 ? *i++ : *j++;
+      if (is_whole_power_to_expand(factor)) return false;
+      product.push_back(factor);
+      continue;
+    }
+    Factor factor{i->atom, i->exponent + j->exponent};
+    ++i;
+    ++j;
+    if (cln::zerop(factor.exponent)) continue;
+    if (is_whole_power_to_expand(factor)) return false;
+    product.push_back(std::move(factor));
+  }
+  return true;
+}
+
+/// sum += coefficient a b, as operations of the product and of the sum.
+void add_product(Sum& sum, const Monomial& a, const Monomial& b, const Rational& coefficient) {
+  Monomial plain;
+  if (multiply_factors(a, b, plain)) {
+    work::spend(1);
+    sum.add(std::move(plain), coefficient);
+    return;
+  }
+  const Sum product = multiply(a, b);
+  for (const auto& [monomial, one] : product.terms()) sum.add(monomial, one * coefficient);
+}
+
+}  // namespace
+
 Sum multiply(const Monomial& a, const Monomial& b) {
   Monomial product;
+  if (multiply_factors(a, b, product)) return {std::move(product), 1};
+  product.clear();
   Sum whole(1);
-  bool expanded = false;
   const auto keep = [&](const Factor& factor) {
     if (cln::zerop(factor.exponent)) return;
     if (!is_whole_power_to_expand(factor)) {
       product.push_back(factor);
       return;
     }
-    expanded = true;
     whole = whole * power(factor.atom->args[0], factor.exponent);
   };
   auto i = a.begin(), j = b.begin();
@@ -78,18 +126,14 @@ Sum multiply(const Monomial& a, const Monomial& b) {
       ++j;
     }
   }
-  const Sum rest(std::move(product), 1);
-  return expanded ? rest * whole : rest;
+  return Sum(std::move(product), 1) * whole;
 }
 
 Sum operator*(const Sum& a, const Sum& b) {
   if (a.size() * b.size() > 16 * term_budget) throw TermBudget();
   Sum result;
   for (const auto& [x, k] : a.terms()) {
-    for (const auto& [y, l] : b.terms()) {
-      const Sum product = multiply(x, y);
-      for (const auto& [monomial, coefficient] : product.terms()) result.add(monomial, coefficient * k * l);
-    }
+    for (const auto& [y, l] : b.terms()) add_product(result, x, y, k * l);
   }
   if (result.size() > term_budget) throw TermBudget();
   return result;
@@ -142,8 +186,7 @@ Sum divide(const Sum& sum, const Content& by) {
   const Monomial reciprocal = inverse(by.monomial);
   Sum result;
   for (const auto& [monomial, coefficient] : sum.terms()) {
-    const Sum quotient = multiply(monomial, reciprocal);
-    for (const auto& [rest, one] : quotient.terms()) result.add(rest, one * coefficient / by.number);
+    add_product(result, monomial, reciprocal, coefficient / by.number);
   }
   return result;
 }

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <map>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "symbolic/dag.hpp"
@@ -55,9 +56,10 @@ class Sum {
   Sum(long value) { add({}, Rational(value)); }
   explicit Sum(const Rational& value) { add({}, value); }
   explicit Sum(AtomPtr atom) { add({{std::move(atom), 1}}, 1); }
-  Sum(Monomial monomial, const Rational& coefficient) { add(monomial, coefficient); }
+  Sum(Monomial monomial, const Rational& coefficient) { add(std::move(monomial), coefficient); }
 
   void add(const Monomial& monomial, const Rational& coefficient);
+  void add(Monomial&& monomial, const Rational& coefficient);
   const Terms& terms() const { return terms_; }
   std::size_t size() const { return terms_.size(); }
   bool is_zero() const { return terms_.empty(); }
@@ -66,8 +68,12 @@ class Sum {
 
   Sum& operator+=(const Sum& other);
   Sum& operator-=(const Sum& other);
+  /// Of every term.
+  void scale(const Rational& factor);
 
  private:
+  template <class Key>
+  void add_term(Key&& monomial, const Rational& coefficient);
   Terms terms_;
 };
 

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <tuple>
+#include <unordered_map>
 
 #include "reading/rational_function.hpp"
 
@@ -20,6 +21,8 @@ struct SumLess {
 bool is_call(const Factor& factor, Op op) {
   return factor.atom->op == op && is_integer(factor.exponent) && cln::plusp(factor.exponent);
 }
+
+Op dual(Op op) { return op == Op::sin ? Op::cos : Op::sin; }
 
 // How long a sum reads: terms first, then factors.
 std::pair<std::size_t, Rational> length(const Sum& sum) {
@@ -46,7 +49,7 @@ std::vector<Sum> angles(const Sum& sum) {
 
 // f^2 -> 1 - g^2 with f, g = sin, cos of `angle`.
 Sum replace_square(const Sum& sum, Op f, const Sum& angle) {
-  const Sum g = call(f == Op::sin ? Op::cos : Op::sin, {angle});
+  const Sum g = call(dual(f), {angle});
   const Sum other = Sum(1) - g * g;
   Sum result;
   for (const auto& [monomial, coefficient] : sum.terms()) {
@@ -71,25 +74,48 @@ const Rational* coefficient_of(const Sum& sum, const Monomial& monomial) {
   return found == sum.terms().end() ? nullptr : &found->second;
 }
 
-// The one monomial of a product of monomials without sums under powers.
-Monomial product(const Monomial& a, const Monomial& b) {
-  const Sum result = multiply(a, b);
-  return result.terms().begin()->first;
-}
+constexpr std::size_t operations_of_a_product = 2;  // the atom's and the product's
 
-Monomial of(Op op, const Sum& angle, long exponent) {
-  Sum value = call(op, {angle});
-  Monomial result = value.terms().begin()->first;
-  for (Factor& factor : result) factor.exponent = exponent;
+/// monomial atom^exponent, of an atom that is no sum under a power.
+Monomial times(const Monomial& monomial, const AtomPtr& atom, long exponent) {
+  work::spend(operations_of_a_product);
+  auto at = monomial.begin();
+  int order = 1;
+  for (; at != monomial.end(); ++at) {
+    order = compare(*at->atom, *atom);
+    if (order >= 0) break;
+  }
+  Monomial result;
+  result.reserve(monomial.size() + 1);
+  result.assign(monomial.begin(), at);
+  if (at == monomial.end() || order > 0) {
+    result.push_back({atom, exponent});
+  } else {
+    const Rational sum = at->exponent + exponent;
+    if (!cln::zerop(sum)) result.push_back({at->atom, sum});
+    ++at;
+  }
+  result.insert(result.end(), at, monomial.end());
   return result;
 }
 
+/// cos(x) of sin(x), and sin(x) of cos(x); each made once.
+class Duals {
+ public:
+  const AtomPtr& operator()(const AtomPtr& atom) {
+    AtomPtr& found = made_[atom];
+    if (!found) found = call(dual(atom->op), {atom->args[0]}).terms().begin()->first.front().atom;
+    return found;
+  }
+
+ private:
+  std::unordered_map<AtomPtr, AtomPtr> made_;  // looked up only
+};
+
 // Where f^2 m stands with its partner, k (f^2 + g^2) m -> k m and k m - k f^2 m -> k g^2 m; one term less each time.
-bool merge_term(Sum& sum, const Monomial& self, const Rational& k, const Factor& square) {
-  const Op f = square.atom->op, g = f == Op::sin ? Op::cos : Op::sin;
-  const Sum angle = square.atom->args[0];
-  const Monomial rest = product(self, of(f, angle, -2));
-  const Monomial partner = product(rest, of(g, angle, 2));
+bool merge_term(Sum& sum, const Monomial& self, const Rational& k, const AtomPtr& f, Duals& duals) {
+  const Monomial rest = times(self, f, -2);
+  const Monomial partner = times(rest, duals(f), 2);
   if (const Rational* other = coefficient_of(sum, partner); other != nullptr && *other == k) {
     sum.add(self, -k);
     sum.add(partner, -k);
@@ -105,22 +131,23 @@ bool merge_term(Sum& sum, const Monomial& self, const Rational& k, const Factor&
   return false;
 }
 
-bool merge_term(Sum& sum, const Monomial& self, const Rational& k) {
+bool merge_term(Sum& sum, const Monomial& self, const Rational& k, Duals& duals) {
   for (const Factor& factor : self) {
     const bool trig = is_call(factor, Op::sin) || is_call(factor, Op::cos);
-    if (trig && factor.exponent >= 2 && merge_term(sum, self, k, factor)) return true;
+    if (trig && factor.exponent >= 2 && merge_term(sum, self, k, factor.atom, duals)) return true;
   }
   return false;
 }
 
 // Passes over the whole sum; the search goes on behind a term that was merged.
 Sum merge_pairs(Sum sum) {
+  Duals duals;
   for (bool changed = true; changed;) {
     changed = false;
     for (auto term = sum.terms().begin(); term != sum.terms().end();) {
       const Monomial monomial = term->first;
       const Rational k = term->second;
-      if (merge_term(sum, monomial, k)) {
+      if (merge_term(sum, monomial, k, duals)) {
         changed = true;
         term = sum.terms().upper_bound(monomial);
       } else {
@@ -132,12 +159,12 @@ Sum merge_pairs(Sum sum) {
 }
 
 // k m f(a) g(b) + l m f'(a) g'(b), |k| = |l|, as one term; `a` and `b` are factors of `monomial`.
-bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const Factor& a, const Factor& b) {
+bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const Factor& a, const Factor& b,
+                  Duals& duals) {
   const Sum &x = a.atom->args[0], &y = b.atom->args[0];
   const Op f = a.atom->op, g = b.atom->op;
-  const auto dual = [](Op op) { return op == Op::sin ? Op::cos : Op::sin; };
-  const Monomial rest = product(product(monomial, of(f, x, -1)), of(g, y, -1));
-  const Monomial partner = product(product(rest, of(dual(f), x, 1)), of(dual(g), y, 1));
+  const Monomial rest = times(times(monomial, a.atom, -1), b.atom, -1);
+  const Monomial partner = times(times(rest, duals(a.atom), 1), duals(b.atom), 1);
   const Rational* other = coefficient_of(sum, partner);
   if (other == nullptr || (*other != k && *other != -k)) return false;
   const bool same = *other == k;
@@ -162,24 +189,24 @@ bool recombine_at(Sum& sum, const Monomial& monomial, const Rational& k, const F
 bool is_trig(const Factor& factor) { return is_call(factor, Op::sin) || is_call(factor, Op::cos); }
 
 // Tries all pairs of sines and cosines of one term.
-bool recombine_term(Sum& sum, const Monomial& monomial, const Rational& k) {
+bool recombine_term(Sum& sum, const Monomial& monomial, const Rational& k, Duals& duals) {
   for (std::size_t i = 0; i < monomial.size(); ++i) {
     if (!is_trig(monomial[i])) continue;
     for (std::size_t j = i + 1; j < monomial.size(); ++j) {
       if (!is_trig(monomial[j]) || monomial[i].atom->args[0] == monomial[j].atom->args[0]) continue;
-      if (recombine_at(sum, monomial, k, monomial[i], monomial[j])) return true;
+      if (recombine_at(sum, monomial, k, monomial[i], monomial[j], duals)) return true;
     }
   }
   return false;
 }
 
 // One pass; the search goes on behind a term that was merged, so that long sums take one pass or two.
-bool recombine_all(Sum& sum) {
+bool recombine_all(Sum& sum, Duals& duals) {
   bool changed = false;
   for (auto term = sum.terms().begin(); term != sum.terms().end();) {
     const Monomial monomial = term->first;
     const Rational k = term->second;
-    if (recombine_term(sum, monomial, k)) {
+    if (recombine_term(sum, monomial, k, duals)) {
       changed = true;
       term = sum.terms().upper_bound(monomial);
     } else {
@@ -238,7 +265,8 @@ Sum reduce_squares(const Sum& sum) {
 
 Sum recombine_angles(const Sum& sum) {
   Sum result = sum;
-  while (recombine_all(result)) {
+  Duals duals;
+  while (recombine_all(result, duals)) {
   }
   return result;
 }
