@@ -99,7 +99,7 @@ class Directions {
   std::vector<double> changed(const std::string& name, double value, double scale, const cln::cl_RA& part) const {
     Derived& derived = *simulation_.derived;
     run::Overrides overrides = request_.overrides;
-    overrides.parameters[name] = numeric::exact(value) + numeric::exact(scale) * part;
+    overrides.values[name] = numeric::exact(value) + numeric::exact(scale) * part;
     try {
       return values_of(run::resolve_scene(derived.mechanics, derived.candidates.front(),
                                           derived.model.scene(request_.scene), overrides),

@@ -31,11 +31,11 @@ class Variation {
     pipeline::Derived& derived = *simulation_.derived;
     run::Overrides overrides = overrides_;
     for (const auto& [p, factor] : test.factor) {
-      overrides.parameters[derived.model.parameters[p].name] = numeric::exact(simulation_.scene.parameters[p] * factor);
+      overrides.values[derived.model.parameters[p].name] = numeric::exact(simulation_.scene.parameters[p] * factor);
     }
     for (const auto& [p, value] :
          test.value) {  // what follows from them is computed anew, and a start that they break is refused
-      if (std::isfinite(value)) overrides.parameters[derived.model.parameters[p].name] = numeric::exact(value);
+      if (std::isfinite(value)) overrides.values[derived.model.parameters[p].name] = numeric::exact(value);
     }
     if (test.rtol) {
       overrides.rtol = *test.rtol;

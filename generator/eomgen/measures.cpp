@@ -16,7 +16,7 @@ Request request_of(const std::shared_ptr<const model::Model>& model, const Optio
   Request request;
   request.model = model;
   request.scene = options.scene;
-  request.overrides.parameters = exact(options.parameters);
+  request.overrides.values = exact(options.parameters);
   request.overrides.t_end = options.t_end;
   request.solvers = options.solvers;
   request.seconds = options.seconds;

@@ -16,7 +16,7 @@ namespace {
 template <class Options>
 run::Overrides overrides_of(const Options& options) {
   run::Overrides overrides;
-  overrides.parameters = exact(options.parameters);
+  overrides.values = exact(options.parameters);
   overrides.t_end = options.t_end;
   overrides.every = options.every;
   overrides.rtol = options.rtol;

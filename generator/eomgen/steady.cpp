@@ -36,7 +36,7 @@ const char* name(linear::Stability stability) {
 Linearisation Model::linearise(const LineariseOptions& options, const Task& task) const {
   return called(task, [&](Call&) {
     run::Overrides overrides;
-    overrides.parameters = exact(options.parameters);
+    overrides.values = exact(options.parameters);
     const analysis::SteadyProblem problem =
         analysis::steady_problem("linearize", read_, options.scene, overrides, options.at, options.seed);
     Linearisation result;
@@ -58,7 +58,7 @@ SteadyMotions Model::steady_motions(const SteadyOptions& options, const Task& ta
     analysis::SteadyRequest request;
     request.model = read_;
     request.scene = options.scene;
-    request.overrides.parameters = exact(options.parameters);
+    request.overrides.values = exact(options.parameters);
     request.hold = exact(options.hold);
     request.starts = options.starts;
     request.seed = options.seed;

@@ -189,6 +189,14 @@ void require_regular(const Mechanics& m, const system::EquationSystem& system, c
 
 }  // namespace
 
+std::optional<StartProblem::Key> start_named(const model::Model& model, const std::string& name) {
+  for (std::uint32_t i = 0; i < model.coordinates.size(); ++i) {
+    if (name == model.coordinates[i].name) return StartProblem::Key{i, 0};
+    if (name == model.coordinates[i].name + "_dot") return StartProblem::Key{i, 1};
+  }
+  return std::nullopt;
+}
+
 Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const model::Scene& scene,
                     const Overrides& overrides) try {
   Scene result;
@@ -231,10 +239,16 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   const std::vector<std::optional<Ref>> inputs = resolve_inputs(m, scene, value, result);
 
   StartProblem problem{m, system, scene, result.t0, result.parameters, {}, {}, {}, {}, {}};
+  const auto give = [&](const StartProblem::Key& key, double v, const model::Span& span) {
+    value.give(key.first, key.second, v);
+    problem.given[key] = {v, span};
+  };
+  for (const auto& [name, v] : overrides.values) {
+    if (const auto key = start_named(*m.model, name)) give(*key, cln::double_approx(v), scene.span);
+  }
   for (const model::InitialValue& initial : scene.initial) {
-    const double v = value.number(initial.value, "an initial value");
-    value.give(initial.coordinate, initial.order, v);
-    problem.given[{initial.coordinate, initial.order}] = {v, initial.span};
+    const StartProblem::Key key{initial.coordinate, initial.order};
+    if (!problem.given.contains(key)) give(key, value.number(initial.value, "an initial value"), initial.span);
   }
   for (const model::InitialRotation& given : scene.rotations) {
     StartProblem::Turn turn{given.frame, {}, given.span};
@@ -264,7 +278,7 @@ Scene resolve_scene(Mechanics& m, const system::EquationSystem& system, const mo
   resolve_ranges(m, value, result);
   require_ranges(m, scene, result);
   result.solved = problem.solved;
-  if (scene.initial.empty() && scene.rotations.empty()) {
+  if (problem.given.empty() && scene.rotations.empty()) {
     result.solved.insert(result.solved.begin(),
                          "no initial values: all coordinates and rates start at 0" +
                              std::string(problem.solved.empty() ? "" : ", but for those that follow"));

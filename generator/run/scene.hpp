@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
@@ -22,7 +23,7 @@ class Jumps;
 
 /// What `run` takes from the command line in place of the scene's values.
 struct Overrides {
-  std::map<std::string, symbolic::Rational> parameters;
+  std::map<std::string, symbolic::Rational> values;  // of parameters; of coordinates and rates at the start
   std::optional<double> t_end, rtol, atol, step, max_step, every;
   std::optional<std::string> solver;
   std::vector<std::string> outputs;  // in place of the scene's, unless empty
@@ -56,6 +57,9 @@ struct Scene {
   std::vector<bool> apart;           // per contact: whether it does not touch at the start
   std::vector<std::string> solved;   // sentences: what followed from the constraints
 };
+
+/// The coordinate (order 0) or its rate (1) whose start has this name, "theta" or "theta_dot".
+std::optional<std::pair<std::uint32_t, std::uint8_t>> start_named(const model::Model& model, const std::string& name);
 
 inline constexpr double start_tolerance = 1e-8;  // relative; the contract's
 

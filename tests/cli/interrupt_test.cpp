@@ -122,8 +122,10 @@ TEST_CASE("every command that derives stops on Ctrl-C at once, with 3, whatever 
                "[[force]]\ngravitation = { G = 1 }\n[scene.default]\nt = [0, 1]\ninitial = { th1 = 0.5, th2 = 0.3 }\n");
   const std::vector<Words> commands{{"check", "a.toml"},
                                     {"derive", "a.toml", "--show", "all"},
+                                    {"derive", "a.toml", "--document", "a.tex"},
                                     {"verify", "a.toml"},
                                     {"emit", "a.toml", "-o", "out"},
+                                    {"emit", "a.toml", "-o", "out", "--target", "latex"},
                                     {"report", "a.toml", "-o", "a.html"},
                                     {"linearize", "a.toml"},
                                     {"equilibria", "a.toml"},

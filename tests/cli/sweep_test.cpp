@@ -57,6 +57,34 @@ TEST_CASE("sweep: every point of the grid is the run that it stands for, the las
   CHECK_FALSE(folder.has("oscillator_sweep.csv.partial"));
 }
 
+TEST_CASE("sweep: starts are varied as parameters are, in processes and side by side") {
+  const Folder folder;
+  folder.write("oscillator.toml", oscillator_text());
+  const Words sweep{"sweep",       "oscillator.toml", "--grid", "x=1,2",  "--grid",
+                    "x_dot=0:3:2", "--grid",          "k=4",    "--rtol", "1e-11"};
+  document(folder, sweep);
+  const std::vector<Words> table = rows(folder.read("oscillator_sweep.csv"));
+  REQUIRE(table.size() == 6);
+  CHECK(Words(table[1].begin(), table[1].begin() + 5) == Words{"run", "initial(x)", "initial(x_dot)", "k", "outcome"});
+  for (std::size_t i = 2; i < table.size(); ++i) {
+    const double x = std::stod(table[i][1]), v = std::stod(table[i][2]);
+    CHECK(std::abs(std::stod(table[i][8]) - (x * std::cos(2.0) + v / 2 * std::sin(2.0))) < 1e-9);
+  }
+  Words lanes = sweep;
+  for (const char* word : {"--ensemble", "-o", "lanes.csv"}) lanes.emplace_back(word);
+  document(folder, lanes);
+  Words plain = sweep;
+  for (const char* word : {"--no-error-estimate", "-o", "plain.csv", "--solver", "dop853"}) plain.emplace_back(word);
+  document(folder, plain);
+  const std::vector<Words> side = rows(folder.read("lanes.csv")), alone = rows(folder.read("plain.csv"));
+  REQUIRE(side.size() == alone.size());
+  for (std::size_t i = 1; i < side.size(); ++i) CHECK(side[i] == alone[i]);
+  CHECK(contains(expect(2, folder, {"sweep", "oscillator.toml", "--grid", "xdot=1,2"}).err, "x_dot"));
+  CHECK(contains(expect(2, folder, {"sweep", "oscillator.toml", "--grid", "x=1,2", "--set", "x=1"}).err,
+                 "'x' is varied, and has a value by --set"));
+  CHECK(document(folder, {"run", "oscillator.toml", "--set", "x=3", "--t-end", "0"})["final"]["x"] == 3);
+}
+
 TEST_CASE("sweep: goes on from what is there, and comes to the same bytes") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());

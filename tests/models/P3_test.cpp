@@ -81,7 +81,7 @@ TEST_CASE("P3: the start of the run is the scene's affair, and a factor of t tha
   const auto problem = [](const char* parameter, long value) -> std::string {
     try {
       test::run_model("P3_moving_plane",
-                      [&](pipeline::SimulationRequest& request) { request.overrides.parameters[parameter] = value; });
+                      [&](pipeline::SimulationRequest& request) { request.overrides.values[parameter] = value; });
     } catch (const Error& error) {
       return std::string(error.what());
     }

@@ -85,7 +85,7 @@ TEST_CASE("S5: a spherical double pendulum that starts in a plane swings as the 
   const test::Finished planar = test::run_model("S5_double_pendulum", [](pipeline::SimulationRequest& request) {
     tighten(request);
     request.overrides.t_end = 3;
-    request.overrides.parameters = {{"m2", symbolic::Rational(1) / 2}, {"L2", symbolic::Rational(4) / 5}};
+    request.overrides.values = {{"m2", symbolic::Rational(1) / 2}, {"L2", symbolic::Rational(4) / 5}};
   });
   const std::string text = R"toml(format = 1
 [parameters]

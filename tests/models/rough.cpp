@@ -21,7 +21,7 @@ Finished run_rough(const std::string& model, const std::string& scene,
 
 std::function<void(pipeline::SimulationRequest&)> with(std::map<std::string, double> parameters) {
   return [parameters](pipeline::SimulationRequest& request) {
-    for (const auto& [name, value] : parameters) request.overrides.parameters[name] = numeric::exact(value);
+    for (const auto& [name, value] : parameters) request.overrides.values[name] = numeric::exact(value);
   };
 }
 

@@ -165,7 +165,7 @@ TEST_CASE(
       request.overrides.solver = solver;
       request.overrides.step = step;
       request.overrides.t_end = end;
-      if (model == std::string("kepler_eccentric")) request.overrides.parameters["e"] = symbolic::Rational(1) / 2;
+      if (model == std::string("kepler_eccentric")) request.overrides.values["e"] = symbolic::Rational(1) / 2;
       request.estimate = false;
     });
   };

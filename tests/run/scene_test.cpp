@@ -165,10 +165,30 @@ parameters = { w = 4 }
 )toml";
   CHECK(resolve(text).parameters[0] == 32);
   run::Overrides overrides;
-  overrides.parameters["m"] = symbolic::Rational(1) / 2;
+  overrides.values["m"] = symbolic::Rational(1) / 2;
   CHECK(resolve(text, overrides).parameters[0] == 8);
-  overrides.parameters["nothing"] = 1;
+  overrides.values["nothing"] = 1;
   CHECK(refusal(text, overrides).find("no parameter 'nothing'") != std::string::npos);
+}
+
+TEST_CASE("scene: starts that are set stand in place of the scene's, and what follows from them follows") {
+  const std::string text = rod + "initial = { x = 1.2, x_dot = \"x/3\" }\nguess = { y = -1 }\n";
+  run::Overrides overrides;
+  overrides.values["x"] = symbolic::Rational(-8) / 5;
+  run::Scene scene = resolve(text, overrides);
+  CHECK(scene.q[0] == -1.6);
+  CHECK(scene.q[1] == doctest::Approx(-1.2).epsilon(rounding));
+  CHECK(scene.qdot[0] == doctest::Approx(-1.6 / 3).epsilon(rounding));
+  overrides.values["x_dot"] = 3;
+  scene = resolve(text, overrides);
+  CHECK(scene.qdot[0] == 3);
+  CHECK(scene.qdot[1] == doctest::Approx(-4).epsilon(rounding));  // x x_dot + y y_dot = 0
+  overrides.values["y"] = 1;                                      // off the circle
+  CHECK(refusal(text, overrides).find("breaks constraint 'rod'") != std::string::npos);
+  // Of a scene that gives no start this is one.
+  run::Overrides alone;
+  alone.values["x"] = 2;
+  for (const std::string& told : resolve(rod, alone).solved) CHECK(told.find("no initial values") == std::string::npos);
 }
 
 TEST_CASE("scene: a parameter that is declared positive stays positive") {
@@ -176,13 +196,13 @@ TEST_CASE("scene: a parameter that is declared positive stays positive") {
   text.replace(text.find("L = 2"), 5, "L = { value = 2, positive = true }");
   CHECK(refusal(text) == "accepted");
   run::Overrides overrides;
-  overrides.parameters["L"] = -2;
+  overrides.values["L"] = -2;
   CHECK(refusal(text, overrides) == "parameter 'L' is declared positive, and its value is -2");
 }
 
 TEST_CASE("scene: masses and coefficients of friction that have no value at its parameters are told") {
   run::Overrides negative;
-  negative.parameters["k"] = -1;
+  negative.values["k"] = -1;
   std::string text = rod;
   text.replace(text.find("m = 1\n"), 6, "m = 1\nk = 1\n");
   std::string heavy = text;

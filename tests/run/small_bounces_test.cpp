@@ -35,7 +35,7 @@ const test::Finished& made() {
 
 run::RunResult with(std::map<std::string, Rational> parameters) {
   run::Overrides overrides;
-  overrides.parameters = std::move(parameters);
+  overrides.values = std::move(parameters);
   return pipeline::run_again(made().simulation, overrides);
 }
 

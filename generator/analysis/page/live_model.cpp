@@ -109,6 +109,10 @@ class Live {
     const bool given = std::any_of(set.begin(), set.end(), [i](const auto& p) { return p.first == i; });
     return !given && !overridden(i) && !dag_.symbols({m_.parameter_value[i]}).empty();
   }
+  std::string state_name(std::size_t k) const {
+    const std::size_t n = m_.free.size();
+    return derived_.model.coordinates[m_.free[k % n]].name + (k < n ? "" : "_dot");
+  }
   bool overridden(std::size_t i) const { return set_.contains(derived_.model.parameters[i].name); }
 
   symbolic::Substitution by_independent() {
@@ -140,7 +144,7 @@ class Live {
       const std::uint32_t c = m_.free[k % n];
       Ref value = exact(dag_, k < n ? s_.scene.q[c] : s_.scene.qdot[c]);
       for (const model::InitialValue& initial : model_scene().initial) {
-        if (initial.coordinate != c || initial.order != (k < n ? 0 : 1)) continue;
+        if (initial.coordinate != c || initial.order != (k < n ? 0 : 1) || set_.contains(state_name(k))) continue;
         const Ref formula = written(mechanics::lower_scalar(m_, initial.value));
         if (is_of_parameters(dag_, formula) && !dag_.symbols({formula}).empty()) value = expanded(formula);
       }
@@ -174,14 +178,12 @@ class Live {
       const std::uint32_t c = m_.free[k % n];
       const std::uint8_t order = k < n ? 0 : 1;
       const auto same = [&](const auto& key) { return key.first == c && key.second == order; };
-      const bool stated = std::any_of(scene.initial.begin(), scene.initial.end(),
+      const bool stated = set_.contains(state_name(k)) ||
+                          std::any_of(scene.initial.begin(), scene.initial.end(),
                                       [&](const auto& v) { return v.coordinate == c && v.order == order; });
       if (stated && std::none_of(scene.solve.begin(), scene.solve.end(), same)) start.given.push_back(k);
       const std::string& unit = model.coordinates[c].unit.text;
-      start.states.push_back({model.coordinates[c].name + (k < n ? "" : "_dot"), k < n          ? unit
-                                                                                 : unit.empty() ? ""
-                                                                                 : unit == "1"  ? "1/s"
-                                                                                                : unit + "/s"});
+      start.states.push_back({state_name(k), k < n ? unit : unit.empty() ? "" : unit == "1" ? "1/s" : unit + "/s"});
     }
     for (std::size_t i = 0; i < model.parameters.size(); ++i) {
       const model::Parameter& p = model.parameters[i];

@@ -109,7 +109,7 @@ int execute(const Options& options, const Common& common) {
   analysis::SteadyRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides.parameters = parse_assignments("equilibria", options.set);
+  request.overrides.values = parse_assignments("equilibria", options.set);
   request.hold = parse_assignments("equilibria", options.hold);
   request.starts = options.starts;
   request.seed = common.seed;
@@ -142,7 +142,8 @@ Execute declare_equilibria(Arguments& app) {
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")
       .show_preset();
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   app.add_list("--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
   app.add_option("--starts", options->starts, "how many starts the search has")
       .check(whole_number(1, 100000))

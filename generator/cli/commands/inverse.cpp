@@ -91,7 +91,7 @@ std::string readable(const Json& found) {
 
 int execute(const Options& options, const Common& common) {
   analysis::InverseRequest request;
-  request.overrides.parameters = parse_assignments("inverse", options.set);
+  request.overrides.values = parse_assignments("inverse", options.set);
   request.overrides.t_end = options.t_end;
   request.overrides.at_start = true;
   request.overrides.every = options.every;
@@ -132,7 +132,8 @@ Execute declare_inverse(Arguments& app) {
   app.add_option("--scene", options->scene, "a scene of the model").show_preset();
   app.add_list("--constraint", options->constraints,
                "constraints whose forces are asked for; without it those that prescribe a coordinate");
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the motion").check(finite_number());
   app.add_option("--every", options->every, "interval of the rows").check(positive_number());
   app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")

@@ -132,7 +132,7 @@ std::string text(const Answer& a) {
 
 int execute(const Options& options, const Common& common) {
   run::Overrides overrides;
-  overrides.parameters = parse_assignments("linearize", options.set);
+  overrides.values = parse_assignments("linearize", options.set);
   const analysis::SteadyProblem problem = analysis::steady_problem("linearize", load_model(options.model),
                                                                    options.scene, overrides, options.at, common.seed);
   const linear::Linearisation l = analysis::linearised(problem, common.seed);
@@ -153,7 +153,8 @@ Execute declare_linearize(Arguments& app) {
   app.add_option("--scene", options->scene, "a scene of the model").show_preset();
   app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")
       .check(finite_number());
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   return [options](const Common& common) { return execute(*options, common); };
 }
 

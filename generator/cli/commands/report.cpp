@@ -167,7 +167,7 @@ int execute(const Options& options, const Common& common) {
   request.model = load_model(options.model);
   request.scene = options.scene;
   request.seed = common.seed;
-  request.overrides.parameters = parse_assignments("report", options.set);
+  request.overrides.values = parse_assignments("report", options.set);
   request.overrides.rtol = options.rtol;
   request.overrides.atol = options.atol;
   request.overrides.t_end = options.t_end;
@@ -199,7 +199,7 @@ int execute(const Options& options, const Common& common) {
   const model::Model& model = simulation.derived->model;
   const Json run = RunReport{simulation, true}.json();
   std::set<std::string> set;
-  for (const auto& [name, value] : request.overrides.parameters) set.insert(name);
+  for (const auto& [name, value] : request.overrides.values) set.insert(name);
   const analysis::LiveModel live = analysis::live_model(simulation, *drawing, outputs, set);
   const Json moving = recorded.json(simulation, *drawing, live, outputs, curves);
   Html html;
@@ -234,7 +234,8 @@ Execute declare_report(Arguments& app) {
   app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
   app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
   app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   return [options](const Common& common) { return execute(*options, common); };
 }

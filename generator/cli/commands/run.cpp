@@ -38,7 +38,7 @@ struct Options {
 
 run::Overrides overrides_of(const Options& options) {
   run::Overrides o;
-  o.parameters = parse_assignments("run", options.set);
+  o.values = parse_assignments("run", options.set);
   o.rtol = options.rtol;
   o.atol = options.atol;
   o.step = options.step;
@@ -248,7 +248,8 @@ Execute declare_run(Arguments& app) {
   app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
   app.add_option("--step", options->step, "a fixed step, without error control").check(positive_number());
   app.add_option("--max-step", options->max_step, "the longest step where steps are chosen").check(positive_number());
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")
       .check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());

@@ -139,7 +139,7 @@ int execute(const Options& options, const Common& common) {
   analysis::StressRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides.parameters = parse_assignments("stress", options.set);
+  request.overrides.values = parse_assignments("stress", options.set);
   request.overrides.t_end = options.t_end;
   request.solvers = options.solvers;
   request.seconds = options.seconds;
@@ -167,7 +167,8 @@ Execute declare_stress(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--scene", options->scene, "a scene of the model").show_preset();
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
   app.add_option("--steps", options->steps, "what takes more is ended, and told")

@@ -69,7 +69,8 @@ Execute declare_sweep(Arguments& app) {
   app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
   app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
   app.add_option("--step", options->step, "a fixed step, without error control").check(positive_number());
-  app.add_list("--set", options->set, "PARAMETER=VALUE in SI units; may be repeated");
+  app.add_list("--set", options->set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
   app.add_option("--t-end", options->t_end, "the end of the runs").check(finite_number());
   app.add_place("-o,--out", options->out,
                 "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");

@@ -11,7 +11,7 @@ namespace eomgen::cli {
 
 run::Overrides overrides_of(const SweepOptions& options) {
   run::Overrides o;
-  o.parameters = parse_assignments("sweep", options.set);
+  o.values = parse_assignments("sweep", options.set);
   o.rtol = options.rtol;
   o.atol = options.atol;
   o.step = options.step;

@@ -37,6 +37,8 @@ std::string number(double value) {
 
 RowText::RowText(std::vector<std::string> varied, const model::Model& model, const run::Scene& scene)
     : varied_(std::move(varied)) {
+  for (const std::string& name : varied_)
+    titles_.push_back(run::start_named(model, name) ? "initial(" + name + ")" : name);
   for (const model::Coordinate& c : model.coordinates) {
     names_.push_back(c.name);
     names_.push_back(c.name + "_dot");
@@ -48,7 +50,7 @@ RowText::RowText(std::vector<std::string> varied, const model::Model& model, con
 
 std::string RowText::header() const {
   std::string text = "run";
-  for (const std::string& name : varied_) text += "," + name;
+  for (const std::string& title : titles_) text += "," + title;
   text += ",outcome,t,steps,rhs_evaluations";
   for (const std::string& name : names_) text += "," + name;
   return text + ",error_estimate,detail";

@@ -27,7 +27,7 @@ class RowText {
  private:
   std::string beginning(std::size_t run, const Point& point) const;
 
-  std::vector<std::string> varied_, names_;
+  std::vector<std::string> varied_, titles_, names_;
 };
 
 }  // namespace eomgen::cli

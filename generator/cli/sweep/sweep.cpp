@@ -40,13 +40,14 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& po
 }
 
 void require_names(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
-  const std::map<std::string, symbolic::Rational> set = overrides_of(options).parameters;
+  const std::map<std::string, symbolic::Rational> set = overrides_of(options).values;
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
-    if (std::none_of(model.parameters.begin(), model.parameters.end(), named)) {
+    if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::start_named(model, name)) {
       std::vector<std::string> known;
       for (const model::Parameter& p : model.parameters) known.push_back(p.name);
-      throw Error("sweep", {}, fmt::format("there is no parameter '{}'", name), choice_of(name, known));
+      for (const model::Coordinate& c : model.coordinates) known.insert(known.end(), {c.name, c.name + "_dot"});
+      throw Error("sweep", {}, fmt::format("there is no parameter or coordinate '{}'", name), choice_of(name, known));
     }
     if (set.contains(name)) {
       throw Error("sweep", {}, fmt::format("'{}' is varied, and has a value by --set", name), "leave one of them out");
@@ -169,7 +170,7 @@ std::vector<analysis::ColumnStatistics> Sweep::statistics() const {
 run::Overrides Sweep::at(std::size_t run) const {
   run::Overrides o = overrides_of(options_);
   if (options_.ensemble) o.solver = solver_;
-  o.parameters.merge(points_.point(run));
+  o.values.merge(points_.point(run));
   return o;
 }
 
