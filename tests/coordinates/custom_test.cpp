@@ -2,7 +2,10 @@
 // Coordinates that a model defines itself, by x(q), by q(x), or by both.
 #include <doctest/doctest.h>
 
+#include <fstream>
+
 #include "reading/by_name.hpp"
+#include "support/folders.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -74,6 +77,22 @@ TEST_CASE("x(q) and q(x) together are held against one another") {
   CHECK(refusal(custom(polar + good)).find("q(x) and x(q) are not inverse") != std::string::npos);
   const std::string bad = refusal(custom(polar + "q = [\"sqrt(x1^2 + x2^2)\", \"atan2(x1, x2)\", \"x3\"]", range));
   CHECK(bad.find("q(x) and x(q) are not inverse: where this coordinate is") != std::string::npos);
+}
+
+TEST_CASE("custom coordinates: the examples of docs/model-format.md are read") {
+  std::ifstream page(source_folder() + "/docs/model-format.md");
+  const std::string begin = "position = { custom";
+  int examples = 0;
+  for (std::string line; std::getline(page, line);) {
+    if (!line.starts_with(begin)) continue;
+    CAPTURE(line);
+    const std::size_t inside = line.find('{') + 1;
+    const bool polar = line.find("atan2") != std::string::npos;
+    CHECK(refusal(custom(line.substr(inside, line.find('}') - inside),
+                         polar ? "[coordinates]\nr = { range = [0, inf] }\n" : "")) == "accepted");
+    ++examples;
+  }
+  CHECK(examples == 3);
 }
 
 TEST_CASE("what is no coordinate system is refused") {
