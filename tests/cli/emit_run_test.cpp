@@ -81,6 +81,17 @@ TEST_CASE("emit --with run: a solver that the model is eligible for comes with t
   }
 }
 
+TEST_CASE("emit --with run: targets that write no C tell that there is no header of the run") {
+  const Folder folder;
+  folder.write("model.toml", particle(""));
+  for (const char* target : {"javascript", "cuda"})
+    CHECK(contains(expect(0, folder, {"emit", "model.toml", "-o", target, "--target", target, "--with", "run"}).err,
+                   "the target " + std::string(target) + " has no header of a run"));
+  for (const char* target : {"cpp", "batch", "python"})
+    CHECK_FALSE(contains(
+        expect(0, folder, {"emit", "model.toml", "-o", target, "--target", target, "--with", "run"}).err, "warning"));
+}
+
 TEST_CASE("emit --with run: what emitted code does not know is refused with its reason") {
   const std::vector<Case> cases{
       {"a support", jumping_support, {"needs to know what jumps (a support, a potential)", "leave run out of --with"}},

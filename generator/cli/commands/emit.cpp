@@ -54,6 +54,16 @@ int emit_document(const Options& options, const Common& common) {
   return 0;
 }
 
+/// The header of a run is C++ beside C.
+void tell_run_left_out(const Options& options, const std::vector<emit::EmittedFile>& files) {
+  const auto is_header = [](const emit::EmittedFile& file) { return file.name.ends_with("_run.hpp"); };
+  if (std::find(options.with.begin(), options.with.end(), "run") == options.with.end() ||
+      std::any_of(files.begin(), files.end(), is_header))
+    return;
+  tell(fmt::format("warning: the target {} has no header of a run: --with run adds the functions that a run calls\n",
+                   options.target));
+}
+
 /// What is computed once for the parameters, and the right-hand side that is left; null where it is not split.
 Json hoisted(const program::Program& program) {
   if (program.prepared_count() == 0) return nullptr;
@@ -84,6 +94,7 @@ int execute(const Options& options, const Common& common) {
   const pipeline::Emission emission = pipeline::emit_model(model, request);
   const program::Program& program = emission.program;
   const verify::Certificate& certificate = emission.certificate;
+  tell_run_left_out(options, emission.files);
   const std::vector<std::string> files = write_results(options.folder, emission.files, model->file);
   const pipeline::Timings& seconds = emission.seconds;
   if (common.json) {
