@@ -145,6 +145,7 @@ TEST_CASE("sweep: what is wrong with a grid is told") {
   refused({"--sample", "k=-1:2:log", "--samples", "3"}, "goes through 0");
   refused({"--sample", "k=1:-1:normal", "--samples", "3"}, "a deviation that is not above 0");
   refused({"--sample", "k=1e-200:1e200:log", "--samples", "3"}, "leaves the range of binary64");
+  refused({"--sample", "k=1e-400:1:log", "--samples", "3"}, "leaves the range of binary64");
   refused({"--sample", "k=-1e308:1e308", "--samples", "3"}, "leaves the range of binary64");
   refused({"--grid", "k=1:2:10000", "--grid", "m=1:2:1001"}, "no more than 10000000 points, and these are 10010000");
   refused({"--grid", "k=1:2:1000000", "--grid", "m=1:2:1000001"}, "more than 1000000000000 points");

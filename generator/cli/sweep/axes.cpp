@@ -82,7 +82,12 @@ SampledAxis sampled_axis_of(const std::string& text) {
   const std::vector<std::string> fields = parts(values, ':');
   if (fields.size() < 2 || fields.size() > 3)
     wrong_sample(fmt::format("{} is no range of samples", model::quote(text)));
-  const auto number = [&text](const std::string& field) { return cln::double_approx(parse_decimal(field, text)); };
+  const auto number = [&text](const std::string& field) {
+    const Rational value = parse_decimal(field, text);
+    const double rounded = cln::double_approx(value);
+    if (rounded == 0 && !cln::zerop(value)) wrong_sample(model::quote(text) + " leaves the range of binary64");
+    return rounded;
+  };
   SampledAxis axis{parameter, number(fields[0]), number(fields[1])};
   const std::string kind = fields.size() == 3 ? fields[2] : "lin";
   if (kind == "log")
