@@ -2,6 +2,7 @@
 // Lagrange's equations by both approaches, and what decouples.
 #include <algorithm>
 #include <map>
+#include <set>
 
 #include "print/article_parts.hpp"
 
@@ -60,6 +61,8 @@ class Equations {
     std::erase_if(explicit_rows, [&](const Row& row) { return repeats(row, rows); });
     if (!explicit_rows.empty()) out_.paragraph("The same, written out:");
     show(explicit_rows);
+    parts(a_.one);
+    if (a_.builds_in()) parts(a_.two);
     decoupling();
   }
 
@@ -96,6 +99,19 @@ class Equations {
       if (s.key == key) place(s).two = s.formula;
     }
     return rows;
+  }
+
+  /// What the letters of equations stand for that are not written out; once where both approaches have the same.
+  void parts(const reading::ReadingForm& form) {
+    if (!form.by_parts) return;
+    std::vector<Statement> all;
+    add_equations(m_, form, all);
+    std::erase_if(all, [](const Statement& s) { return s.key != "parts"; });
+    std::vector<Formula> formulas = a_.formulas(all);
+    std::erase_if(formulas, [this](const Formula& f) { return !parts_.insert(out_.math(f)).second; });
+    if (formulas.empty()) return;
+    out_.paragraph(form.approach == system::Approach::two ? "Here, by Approach II," : "Here, by Approach I,");
+    out_.display(formulas);
   }
 
   bool same(const std::optional<Formula>& a, const std::optional<Formula>& b) const {
@@ -227,6 +243,7 @@ class Equations {
   Article& a_;
   const mechanics::Mechanics& m_;
   LatexText& out_;
+  std::set<std::string> parts_;                   // that stand there
   std::map<std::uint32_t, std::string> numbers_;  // of the first equation of each coordinate
 };
 

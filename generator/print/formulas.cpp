@@ -120,7 +120,7 @@ void add_rotations(const Mechanics& m, const ReadingForm& form, const Formula& T
   std::vector<Formula> terms;
   for (const mechanics::PointMass& mass : m.masses) {
     const Formula place = reading::number(static_cast<long>(mass.place)), v = dotted(mark("r", {place}));
-    terms.push_back(halved({mark("m", {place}), reading::wrap(Form::dot_product, {v, v})}));
+    terms.push_back(halved({mass_letter(m, mass), reading::wrap(Form::dot_product, {v, v})}));
   }
   add_angular_velocities(form, out);
   for (const reading::ReadSpin& spin : form.spins) {
@@ -261,39 +261,6 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
   }
 }
 
-// Too long to be written out: sum m r_ddot . dr/dq_i = -dU/dq_i + Q_i, eq. (3.20).
-Formula by_parts(const Mechanics& m, const Equation& equation) {
-  std::vector<Formula> left, right;
-  const Formula q = coordinate(equation.coordinate, 0);
-  for (const mechanics::PointMass& mass : m.masses) {
-    const std::uint32_t place = mass.place;
-    const Formula r = mark("r", {reading::number(static_cast<long>(place))});
-    Formula acceleration = reading::wrap(Form::dot, {r});
-    acceleration.order = 2;
-    left.push_back(
-        reading::product({mark("m", {reading::number(static_cast<long>(place))}),
-                          reading::wrap(Form::dot_product, {acceleration, reading::wrap(Form::partial, {r, q})})}));
-  }
-  for (const mechanics::Spin& spin : m.spins) {  // dH/dt . dw/dqdot_i, eq. (9.39)
-    const Formula body = reading::number(static_cast<long>(spin.frame));
-    left.push_back(
-        reading::wrap(Form::dot_product,
-                      {dotted(mark("H", {body})),
-                       reading::wrap(Form::partial, {mark("omega", {body}), coordinate(equation.coordinate, 1)})}));
-  }
-  right.push_back(reading::negative(reading::wrap(Form::partial, {mark("U"), q})));
-  right.push_back(mark("Q", {q}));
-  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
-    if (!m.holds(k)) continue;
-    const Formula psi = mark("psi", {reading::number(k + 1)});
-    const Formula slope = m.constraints[k].holonomic()
-                              ? reading::wrap(Form::partial, {psi, q})
-                              : reading::wrap(Form::partial, {dotted(psi), coordinate(equation.coordinate, 1)});
-    right.push_back(reading::product({multiplier(k), slope}));
-  }
-  return reading::relation({reading::sum(std::move(left)), reading::sum(std::move(right))});
-}
-
 void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   const auto add = [&](const char* key, bool of_motion, auto&& formula) {
     for (const Equation& equation : form.equations) {
@@ -302,11 +269,7 @@ void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Stat
                      formula(equation)});
     }
   };
-  if (form.by_parts) {
-    for (const bool of_motion : {true, false})
-      add("equations", of_motion, [&](const Equation& e) { return by_parts(m, e); });
-    return;
-  }
+  if (form.by_parts) return add_equations_by_parts(m, form, out);
   for (const bool of_motion : {true, false}) add("equations", of_motion, momentum_form);
   for (const bool of_motion : {true, false}) add("explicit", of_motion, explicit_form);
 }

@@ -40,6 +40,11 @@ void add_constraints(const mechanics::Mechanics& mechanics, const reading::Readi
                      std::vector<Statement>& out);
 void add_equations(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                    std::vector<Statement>& out);
+/// Of a mass of one letter that letter, else m with the number of its place.
+reading::Formula mass_letter(const mechanics::Mechanics& mechanics, const mechanics::PointMass& mass);
+/// Those that are too long to be written out, by named parts; and these, with the key "parts".
+void add_equations_by_parts(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
+                            std::vector<Statement>& out);
 void add_lagrangian(const mechanics::Mechanics& mechanics, const reading::ReadingForm& form,
                     std::vector<Statement>& out);
 void add_reactions(const reading::ReadingForm& form, std::vector<Statement>& out);

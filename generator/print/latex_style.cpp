@@ -113,7 +113,10 @@ class LatexStyle final : public Style {
     return {"\\frac{\\partial " + above.text + "}{\\partial " + below.text + "}", Piece::call};
   }
   Piece dotted(const Piece& base, int dots) const override {
-    return {std::string(dots == 1 ? "\\dot{" : "\\ddot{") + base.text + "}", Piece::atom};
+    // Over the letter, not over its index too.
+    const std::size_t index = base.text.ends_with('}') ? base.text.find("_{") : std::string::npos;
+    const std::string below = index == std::string::npos ? "" : base.text.substr(index);
+    return {std::string(dots == 1 ? "\\dot{" : "\\ddot{") + base.text.substr(0, index) + "}" + below, Piece::atom};
   }
   Piece dot_product(const Piece& a, const Piece& b) const override {
     return {a.text + " \\cdot " + b.text, Piece::product};
@@ -164,7 +167,10 @@ class LatexStyle final : public Style {
   static std::string letter(const std::string& word) {
     if (word.back() == '~') return "\\tilde{" + letter(word.substr(0, word.size() - 1)) + "}";
     if (word.starts_with("cal ")) return "\\mathcal{" + word.substr(4) + "}";
-    if (word.starts_with("bold ")) return "\\mathbf{" + word.substr(5) + "}";
+    if (word.starts_with("bold ")) {
+      const std::string of = word.substr(5);
+      return greek(of).empty() ? "\\mathbf{" + of + "}" : "\\boldsymbol{\\" + of + "}";
+    }
     if (word.starts_with("det ")) return "\\det(" + word.substr(4) + "_{ik})";
     if (word == "...") return "\\ldots";
     if (word == "a" || word == "e" || word == "E" || word == "r" || word == "v") return "\\mathbf{" + word + "}";

@@ -89,7 +89,14 @@ std::string in_alphabet(std::string_view word, unsigned capital_a, unsigned smal
   }
   return text;
 }
-std::string bold(std::string_view word) { return in_alphabet(word, 0x1d400, 0x1d41a, "", nullptr); }
+std::string bold(std::string_view word) {
+  const std::string_view letter = greek(word);  // two bytes
+  if (letter.size() != 2) return in_alphabet(word, 0x1d400, 0x1d41a, "", nullptr);
+  constexpr unsigned capital_alpha = 0x391, alpha = 0x3b1, bold_capital_alpha = 0x1d6a8, bold_alpha = 0x1d6c2;
+  const unsigned code =
+      (static_cast<unsigned char>(letter[0]) & 0x1fu) << 6 | (static_cast<unsigned char>(letter[1]) & 0x3fu);
+  return utf8(code < alpha ? bold_capital_alpha + (code - capital_alpha) : bold_alpha + (code - alpha));
+}
 // Some script letters were there before the alphabet, and stand elsewhere in Unicode.
 std::string script(std::string_view word) {
   static constexpr unsigned elsewhere[] = {0x212c, 0x2130, 0x2131, 0x210b, 0x2110, 0x2112,

@@ -76,6 +76,7 @@ std::string heading_of(const print::Item& item) {
   if (item.key == "singular")
     return item.role == "both" ? "where both approaches fail" : fmt::format("where approach {} fails", item.role);
   if (item.key == "conserved") return "conserved, " + item.role;
+  if (item.key == "parts") return "where";
   if (item.role.empty()) return item.key;
   return item.key + ": " + item.role;
 }

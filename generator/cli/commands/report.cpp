@@ -96,6 +96,7 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
     for (const print::Item& item : items) {
       const std::string what = item.key == "explicit"   ? "written out"
                                : item.key == "singular" ? "approach " + item.role
+                               : item.key == "parts"    ? item.role + (item.name.empty() ? "" : " of " + item.name)
                                                         : item.role;
       if (what != before && !what.empty()) html.paragraph(what, "quiet");
       before = what;

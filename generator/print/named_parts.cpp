@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equations that are too long to be written out, by parts that have names: sum m r_ddot . dr/dq + H_dot . domega/dqdot
+// = -dU/dq + Q + lambda dpsi/dq, eqs. (3.20), (9.39), and what each of these letters stands for. Angular velocities
+// are quasi-velocities: their components along the axes in which the inertia stands have names of their own.
+#include <algorithm>
+#include <optional>
+
+#include "mechanics/dependent.hpp"
+#include "mechanics/imposition.hpp"
+#include "print/formulas.hpp"
+#include "print/letters.hpp"
+
+namespace eomgen::print {
+namespace {
+
+using mechanics::Mechanics;
+using reading::Equation;
+using reading::Form;
+using reading::Formula;
+using reading::mark;
+using reading::ReadingForm;
+using reading::Sum;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+using symbolic::Vec3;
+
+Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
+Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
+Formula dotted(const Formula& f, int order = 1) {
+  Formula result = reading::wrap(Form::dot, {f});
+  result.order = order;
+  return result;
+}
+Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
+Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
+
+/// Of a vector that is 0, 0.
+Formula linear_combination(const std::vector<Formula>& components, const std::vector<Formula>& vectors) {
+  std::vector<Formula> terms;
+  for (std::size_t k = 0; k < components.size(); ++k) {
+    if (reading::is_zero(components[k])) continue;
+    const bool minus = components[k].form == Form::negative;
+    Formula term = reading::product({minus ? components[k].args[0] : components[k], vectors[k]});
+    terms.push_back(minus ? reading::negative(std::move(term)) : std::move(term));
+  }
+  return reading::sum(std::move(terms));
+}
+
+class NamedParts {
+ public:
+  NamedParts(const Mechanics& given, const ReadingForm& form, std::vector<Statement>& out)
+      : two_(form.approach == system::Approach::two),
+        m_(two_ ? mechanics::impose_dependent(given) : given),
+        form_(form),
+        letters_(*m_.model, two_),
+        imposed_(two_ ? mechanics::impose(m_) : symbolic::Substitution(*m_.dag, {})),
+        out_(out) {}
+
+  void equations() {
+    for (const bool of_motion : {true, false}) {
+      for (const Equation& e : form_.equations) {
+        if (e.of_motion != of_motion) continue;
+        const std::string& name = m_.model->coordinates[e.coordinate].name;
+        out_.push_back({"equations", "", name, of_motion ? "motion" : "constraint force", equation(e.coordinate)});
+      }
+    }
+  }
+
+  void definitions() {
+    for (const mechanics::PointMass& mass : m_.masses) position(mass);
+    for (std::size_t i = 0; i < m_.spins.size(); ++i) rotation(i);
+    if (has_given()) {
+      const auto written = reading::as_written(*m_.model, m_.model->energy.kinetic);
+      if (written && !two_)
+        define("kinetic energy", "", reading::relation({mark(letters_.T), *written}));
+      else
+        define("kinetic energy", "", mark(letters_.T), m_.kinetic_given);
+    }
+    if (is_used(m_.potential, SymbolKind::coordinate)) define("potential energy", "", mark(letters_.U), m_.potential);
+    for (const Equation& e : form_.equations) {
+      const Ref Q = generalized_force(e.coordinate);
+      if (!m_.dag->is_zero(Q)) define("generalised force", "", mark("Q", {coordinate(e.coordinate, 0)}), Q);
+    }
+  }
+
+ private:
+  bool has_given() { return !m_.dag->is_zero(value(m_.kinetic_given)); }
+  /// With the constraints imposed by approach II.
+  Ref value(Ref r) { return imposed_(r); }
+  bool depends(Ref r, std::uint32_t i, std::uint8_t order) {
+    return !m_.dag->is_zero(symbolic::partial(*m_.dag, {SymbolKind::coordinate, i, order})(value(r)));
+  }
+  template <class Refs>
+  bool any_depends(const Refs& refs, std::uint32_t i, std::uint8_t order) {
+    return std::any_of(refs.begin(), refs.end(), [&](Ref r) { return depends(r, i, order); });
+  }
+  bool is_used(Ref r, SymbolKind kind) {
+    const std::vector<Symbol> symbols = m_.dag->symbols({value(r)});
+    return std::any_of(symbols.begin(), symbols.end(), [kind](const Symbol& s) { return s.kind == kind; });
+  }
+
+  std::optional<Formula> read(Ref r) {
+    try {
+      return arranged(reading::read(m_, value(r)));
+    } catch (const work::OverBudget& over) {
+      why_ = over.what();
+      return std::nullopt;
+    }
+  }
+
+  /// One fraction where that is shorter, as of rotations in Euler parameters.
+  static Formula arranged(const Sum& sum) {
+    const bool fractions = std::all_of(sum.terms().begin(), sum.terms().end(), [](const auto& term) {
+      return std::any_of(term.first.begin(), term.first.end(),
+                         [](const reading::Factor& f) { return cln::minusp(f.exponent); });
+    });
+    return sum.size() > 1 && fractions ? reading::factored(sum) : reading::arrange(sum);
+  }
+
+  /// Q_i, friction among it; in approach II of the eliminated coordinates too that follow this one.
+  Ref generalized_force(std::uint32_t i) {
+    symbolic::Dag& dag = *m_.dag;
+    const auto along = [&](std::uint32_t k) {
+      Ref sum = dag.zero();
+      for (const std::vector<Ref>& force : m_.force_components) sum = dag.add(sum, force[k]);
+      for (const mechanics::Contact& contact : m_.contacts) {
+        for (std::uint32_t a = 0; a < contact.dimensions(); ++a)
+          sum = dag.add(sum, dag.mul(contact.tangents[a][k], dag.symbol({SymbolKind::friction, contact.first + a, 0})));
+      }
+      return sum;
+    };
+    Ref sum = along(i);
+    if (two_) {
+      for (const mechanics::FixedCoordinate& fixed : m_.fixed) {
+        const Ref slope = symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(value(fixed.value));
+        if (!dag.is_zero(slope)) sum = dag.add(sum, dag.mul(slope, along(fixed.coordinate)));
+      }
+    }
+    return value(sum);
+  }
+
+  Formula equation(std::uint32_t i) {
+    std::vector<Formula> left, right;
+    const Formula q = coordinate(i, 0), rate = coordinate(i, 1);
+    for (const mechanics::PointMass& mass : m_.masses) {
+      if (!any_depends(mass.position, i, 0)) continue;
+      const Formula r = mark("r", {index(mass.place)});
+      left.push_back(reading::product({mass_letter(m_, mass), dot_product(dotted(r, 2), partial(r, q))}));
+    }
+    for (const mechanics::Spin& spin : m_.spins) {
+      if (!any_depends(spin.w, i, 1)) continue;
+      left.push_back(dot_product(dotted(mark("bold H", {index(spin.frame)})),
+                                 partial(mark("bold omega", {index(spin.frame)}), rate)));
+    }
+    if (depends(m_.kinetic_given, i, 1)) left.push_back(reading::wrap(Form::rate, {partial(mark(letters_.T), rate)}));
+    if (depends(m_.kinetic_given, i, 0)) left.push_back(reading::negative(partial(mark(letters_.T), q)));
+    if (depends(m_.potential, i, 0)) right.push_back(reading::negative(partial(mark(letters_.U), q)));
+    if (!m_.dag->is_zero(generalized_force(i))) right.push_back(mark("Q", {q}));
+    for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) constraint_force(i, k, right);
+    return reading::relation({reading::sum(std::move(left)), reading::sum(std::move(right))});
+  }
+
+  void constraint_force(std::uint32_t i, std::uint32_t k, std::vector<Formula>& terms) {
+    const mechanics::Constraint& c = m_.constraints[k];
+    const auto built_in = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
+    if (!m_.holds(k) || (two_ && std::any_of(m_.fixed.begin(), m_.fixed.end(), built_in))) return;
+    const bool acts = c.holonomic() ? depends(c.psi, i, 0) : depends(m_.velocity_form(c), i, 1);
+    if (!acts) return;
+    const Formula psi = mark(letters_.psi, {index(k + 1)});
+    terms.push_back(
+        reading::product({reading::symbol({SymbolKind::multiplier, k, 0}),
+                          c.holonomic() ? partial(psi, coordinate(i, 0)) : partial(dotted(psi), coordinate(i, 1))}));
+  }
+
+  void define(const std::string& role, const std::string& name, Formula formula) {
+    out_.push_back({"parts", name, "", role, std::move(formula)});
+  }
+  void define(const std::string& role, const std::string& name, Formula left, Ref right) {
+    if (std::optional<Formula> written = read(right))
+      define(role, name, reading::relation({std::move(left), *std::move(written)}));
+    else
+      out_.push_back(left_out("parts", name, role, why_));
+  }
+  /// Along E1, E2, E3.
+  void define(const std::string& role, const std::string& name, Formula left, const Vec3& right,
+              std::optional<Formula> beside = {}) {
+    std::vector<Formula> components, axes;
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::optional<Formula> written = read(right[k]);
+      if (!written) {
+        out_.push_back(left_out("parts", name, role, why_));
+        return;
+      }
+      components.push_back(*std::move(written));
+      axes.push_back(mark("E", {index(static_cast<std::uint32_t>(k + 1))}));
+    }
+    Formula sum = linear_combination(components, axes);
+    if (beside) sum = reading::sum({*std::move(beside), std::move(sum)});
+    define(role, name, reading::relation({std::move(left), std::move(sum)}));
+  }
+
+  /// From the particle or body that it is measured from, where it is.
+  void position(const mechanics::PointMass& mass) {
+    const Formula letter = mass_letter(m_, mass);
+    if (letter.form != Form::symbol) define("mass", mass.name, letter, mass.mass);
+    const std::uint32_t from = m_.model->places[mass.place].chart ? m_.model->places[mass.place].from : 0;
+    const auto base = std::find_if(m_.masses.begin(), m_.masses.end(),
+                                   [from](const mechanics::PointMass& other) { return other.place == from; });
+    Vec3 r = mass.position;
+    std::optional<Formula> beside;
+    if (from > 0 && base != m_.masses.end()) {
+      for (std::size_t k = 0; k < 3; ++k) r[k] = m_.dag->sub(r[k], base->position[k]);
+      beside = mark("r", {index(from)});
+    }
+    define("position", mass.name, mark("r", {index(mass.place)}), r, std::move(beside));
+  }
+
+  void rotation(std::size_t i) {
+    const mechanics::Spin& spin = m_.spins[i];
+    const std::uint32_t b = spin.frame;
+    std::vector<Formula> axes, w, W, H;
+    const bool carried = spin.carrier != spin.w;  // the axes turn otherwise than the body
+    for (std::uint32_t k = 0; k < 3; ++k) {
+      axes.push_back(mark("e", {index(k + 1), index(b)}));
+      w.push_back(mark("omega", {index(k + 1), index(b)}));
+      W.push_back(carried ? mark("Omega", {index(k + 1), index(b)}) : w.back());
+      H.push_back(mark("H", {index(k + 1), index(b)}));
+    }
+    for (std::size_t k = 0; k < 3; ++k) define("axes", spin.name, axes[k], spin.axes[k]);
+    for (std::size_t k = 0; k < 3; ++k) define("angular velocity", spin.name, w[k], spin.w[k]);
+    define("angular velocity", spin.name,
+           reading::relation({mark("bold omega", {index(b)}), linear_combination(w, axes)}));
+    if (carried) {
+      for (std::size_t k = 0; k < 3; ++k) define("angular velocity of the axes", spin.name, W[k], spin.carrier[k]);
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::vector<Formula> J;
+      for (std::size_t j = 0; j < 3; ++j) {
+        const std::optional<Formula> entry = read(spin.J[k][j]);
+        J.push_back(entry ? *entry : mark("..."));
+      }
+      define("angular momentum", spin.name, reading::relation({H[k], linear_combination(J, w)}));
+    }
+    define("angular momentum", spin.name, reading::relation({mark("bold H", {index(b)}), linear_combination(H, axes)}));
+    std::vector<Formula> rate;  // of H along the axes: Euler's equations
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t x = (k + 1) % 3, y = (k + 2) % 3;
+      rate.push_back(reading::sum(
+          {dotted(H[k]), reading::product({W[x], H[y]}), reading::negative(reading::product({W[y], H[x]}))}));
+    }
+    define("rate of the angular momentum", spin.name,
+           reading::relation({dotted(mark("bold H", {index(b)})), linear_combination(rate, axes)}));
+  }
+
+  bool two_;
+  Mechanics m_;
+  const ReadingForm& form_;
+  Letters letters_;
+  symbolic::Substitution imposed_;
+  std::vector<Statement>& out_;
+  std::string why_;  // the last that was not read
+};
+
+}  // namespace
+
+Formula mass_letter(const Mechanics& m, const mechanics::PointMass& mass) {
+  const symbolic::Node& node = (*m.dag)[mass.mass];
+  return node.op == symbolic::Op::symbol ? reading::symbol(m.dag->symbols({mass.mass}).front())
+                                         : mark("m", {index(mass.place)});
+}
+
+void add_equations_by_parts(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
+  NamedParts parts(m, form, out);
+  parts.equations();
+  parts.definitions();
+}
+
+}  // namespace eomgen::print

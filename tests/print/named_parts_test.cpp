@@ -1,0 +1,246 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Equations by named parts: every letter in them is defined, and with these definitions they are the equations of
+// motion: evaluated as they are printed, with finite differences for what has dots and for partial derivatives.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "derive/routes/lagrange.hpp"
+#include "print/formulas.hpp"
+#include "support/folders.hpp"
+#include "symbolic/evaluate.hpp"
+
+using namespace eomgen;
+using print::Statement;
+using reading::Form;
+using reading::Formula;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+namespace {
+
+constexpr double step = 1e-4;     // of differences, whose error is its square for rates
+constexpr double allowed = 1e-5;  // relative to the size of the terms, third and fourth derivatives among them
+
+struct Value {
+  bool vector = false;
+  std::array<double, 3> x{};  // of a number the first
+};
+Value number(double x) { return {false, {x, 0, 0}}; }
+Value combined(const Value& a, const Value& b, double factor) {
+  Value result{a.vector || b.vector, {}};
+  for (std::size_t k = 0; k < 3; ++k) result.x[k] = a.x[k] + factor * b.x[k];
+  return result;
+}
+Value times(const Value& a, const Value& b) {
+  const double factor = a.vector ? b.x[0] : a.x[0];
+  Value result = a.vector ? a : b;
+  for (double& x : result.x) x *= factor;
+  return result;
+}
+
+std::string key(const Formula& f) {
+  std::string text = f.form == Form::dot ? "dot " + key(f.args[0]) : f.word;
+  for (const Formula& lower : f.lower)
+    text += lower.form == Form::number ? " " + std::to_string(cln::double_approx(lower.number))
+                                       : " q" + std::to_string(lower.symbol.index);
+  return text;
+}
+
+/// What the statements say, at a state that moves on with constant accelerations.
+class Reader {
+ public:
+  Reader(const std::vector<Statement>& statements, std::vector<double> q, std::vector<double> v, std::vector<double> a,
+         std::vector<double> parameters)
+      : q_(std::move(q)), v_(std::move(v)), a_(std::move(a)), parameters_(std::move(parameters)) {
+    for (const Statement& s : statements) {
+      if (s.key == "parts") definitions_[key(s.formula.args[0])] = s.formula.args[1];
+    }
+  }
+
+  Value operator()(const Formula& f) {
+    switch (f.form) {
+      case Form::number: return number(cln::double_approx(f.number));
+      case Form::symbol: return number(symbol(f.symbol));
+      case Form::mark: return mark(f);
+      case Form::negative: return combined(number(0), (*this)(f.args[0]), -1);
+      case Form::fraction: return times((*this)(f.args[0]), number(1 / (*this)(f.args[1]).x[0]));
+      case Form::power: return number(std::pow((*this)(f.args[0]).x[0], (*this)(f.args[1]).x[0]));
+      case Form::call: return call(f);
+      case Form::product: {
+        Value result = number(1);
+        for (const Formula& factor : f.args) {
+          if (result.x == std::array<double, 3>{}) return result;  // 0 times what stands elsewhere
+          result = times(result, (*this)(factor));
+        }
+        return result;
+      }
+      case Form::sum: {
+        Value result = number(0);
+        for (const Formula& term : f.args) result = combined(result, (*this)(term), 1);
+        return result;
+      }
+      case Form::dot_product: {
+        const Value a = (*this)(f.args[0]), b = (*this)(f.args[1]);
+        return number(a.x[0] * b.x[0] + a.x[1] * b.x[1] + a.x[2] * b.x[2]);
+      }
+      case Form::dot: return dotted(f);
+      case Form::rate: return over_time([&] { return (*this)(f.args[0]); }, 1);
+      case Form::partial: return partial(f.args[0], f.args[1].symbol);
+      default: FAIL("a form that no part has"); return {};
+    }
+  }
+
+ private:
+  double symbol(const Symbol& s) const {
+    if (s.kind == SymbolKind::parameter) return parameters_[s.index];
+    if (s.kind == SymbolKind::time) return t_;
+    if (s.kind == SymbolKind::multiplier || s.kind == SymbolKind::friction) return 0;
+    REQUIRE(s.kind == SymbolKind::coordinate);
+    if (shift_ && shift_->first == s) return at(s) + shift_->second;
+    return at(s);
+  }
+  double at(const Symbol& s) const {
+    return s.order == 0 ? q_[s.index] + t_ * (v_[s.index] + t_ * a_[s.index] / 2) : v_[s.index] + t_ * a_[s.index];
+  }
+  Value mark(const Formula& f) {
+    if (f.word == "E") {
+      Value unit{true, {}};
+      unit.x[static_cast<std::size_t>(cln::double_approx(f.lower[0].number)) - 1] = 1;
+      return unit;
+    }
+    const auto found = definitions_.find(key(f));
+    INFO(key(f));
+    REQUIRE(found != definitions_.end());
+    return (*this)(found->second);
+  }
+  Value call(const Formula& f) {
+    const double x = (*this)(f.args[0]).x[0];
+    switch (f.op) {
+      case symbolic::Op::sin: return number(std::sin(x));
+      case symbolic::Op::cos: return number(std::cos(x));
+      case symbolic::Op::tan: return number(std::tan(x));
+      case symbolic::Op::sqrt: return number(std::sqrt(x));
+      case symbolic::Op::abs: return number(std::abs(x));
+      case symbolic::Op::exp: return number(std::exp(x));
+      case symbolic::Op::atan2: return number(std::atan2(x, (*this)(f.args[1]).x[0]));
+      default: FAIL("a function that is not evaluated here"); return {};
+    }
+  }
+  Value dotted(const Formula& f) {
+    if (const auto found = definitions_.find(key(f)); found != definitions_.end() && f.order == 1)
+      return (*this)(found->second);
+    return over_time([&] { return (*this)(f.args[0]); }, f.order);
+  }
+  template <class Evaluate>
+  Value over_time(Evaluate&& evaluate, int order) {
+    const double t = t_;
+    const Value now = evaluate();
+    t_ = t + step;
+    const Value later = evaluate();
+    t_ = t - step;
+    const Value before = evaluate();
+    t_ = t;
+    if (order == 1) return times(combined(later, before, -1), number(1 / (2 * step)));
+    return times(combined(combined(later, before, 1), now, -2), number(1 / (step * step)));
+  }
+  Value partial(const Formula& of, const Symbol& by) {
+    shift_ = {by, step};
+    const Value above = (*this)(of);
+    shift_ = {by, -step};
+    const Value below = (*this)(of);
+    shift_.reset();
+    return times(combined(above, below, -1), number(1 / (2 * step)));
+  }
+
+  std::vector<double> q_, v_, a_, parameters_;
+  std::map<std::string, Formula> definitions_;
+  double t_ = 0;
+  std::optional<std::pair<Symbol, double>> shift_;
+};
+
+bool is_plain(const model::Model& model) {
+  return model.functions.empty() && model.inputs.empty() && model.integrals.empty() && !model.bodies.empty();
+}
+
+}  // namespace
+
+TEST_CASE("named parts: with what they are said to be, the equations are those of motion") {
+  int models = 0, with_axes_of_their_own = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
+    if (entry.path().extension() != ".toml") continue;
+    const model::Model model = model::read_model(entry.path().string());
+    if (!is_plain(model)) continue;
+    INFO(model.id);
+    mechanics::Mechanics m = mechanics::build_mechanics(model);
+    const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);
+    std::vector<Statement> statements;
+    print::add_equations_by_parts(m, form, statements);
+    if (std::any_of(statements.begin(), statements.end(), [](const Statement& s) { return !s.left_out.empty(); }))
+      continue;
+    std::vector<double> parameters(model.parameters.size()), q, v, a;
+    for (std::size_t i = 0; i < parameters.size(); ++i) parameters[i] = 0.7 + 0.3 * std::sin(static_cast<double>(i));
+    for (std::size_t i = 0; i < m.q.size(); ++i) {
+      const auto x = static_cast<double>(i);
+      q.push_back(0.4 + 0.3 * std::cos(1.7 * x));
+      v.push_back(0.5 * std::sin(2.3 * x + 1));
+      a.push_back(0.6 * std::cos(3.1 * x + 2));
+    }
+    const system::EquationSystem s = derive::lagrange(m, system::Approach::two);
+    if (s.free.size() != form.equations.size()) continue;  // constraints among coordinates, imposed by the form alone
+    std::vector<symbolic::Ref> rows = s.M;
+    rows.insert(rows.end(), s.f.begin(), s.f.end());
+    const std::vector<double> values = symbolic::evaluate(*s.dag, rows, [&](const Symbol& symbol) -> double {
+      if (symbol.kind == SymbolKind::parameter) return parameters[symbol.index];
+      if (symbol.kind == SymbolKind::coordinate) return (symbol.order == 0 ? q : v)[symbol.index];
+      return 0;  // the time; multipliers and friction, as in Reader
+    });
+    if (!std::all_of(values.begin(), values.end(), [](double x) { return std::isfinite(x); })) continue;
+    Reader reader(statements, q, v, a, parameters);
+    const std::size_t n = s.free.size();
+    for (const Statement& statement : statements) {
+      if (statement.key != "equations") continue;
+      INFO(statement.coordinate);
+      const auto at = std::find_if(s.free.begin(), s.free.end(),
+                                   [&](std::uint32_t i) { return model.coordinates[i].name == statement.coordinate; });
+      REQUIRE(at != s.free.end());
+      const auto i = static_cast<std::size_t>(at - s.free.begin());
+      double expected = -values[n * n + i], size = 1 + std::abs(expected);
+      for (std::size_t k = 0; k < n; ++k) {
+        expected += values[i * n + k] * a[s.free[k]];
+        size += std::abs(values[i * n + k] * a[s.free[k]]);
+      }
+      const double found = reader(statement.formula.args[0]).x[0] - reader(statement.formula.args[1]).x[0];
+      CHECK(std::abs(found - expected) < allowed * size);
+    }
+    ++models;
+    for (const mechanics::Spin& spin : m.spins) with_axes_of_their_own += spin.carrier != spin.w ? 1 : 0;
+  }
+  CHECK(models > 15);
+  CHECK(with_axes_of_their_own > 2);  // turning otherwise than their bodies
+}
+
+TEST_CASE("named parts: forms that are too long have them, also for the constraint forces of approach I") {
+  const model::Model model = model::read_model(test::source_folder() + "/models/R4_turntable.toml");
+  const mechanics::Mechanics m = mechanics::build_mechanics(model);
+  for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
+    const reading::ReadingForm form = reading::derive_reading(m, approach);
+    REQUIRE(form.by_parts);
+    std::vector<Statement> statements;
+    print::add_statements(m, form, {"equations"}, statements);
+    const auto count = [&](const char* role) {
+      return std::count_if(statements.begin(), statements.end(), [role](const Statement& s) { return s.role == role; });
+    };
+    CHECK(count("motion") == 6);
+    CHECK(count("constraint force") == (approach == system::Approach::one ? 1 : 0));
+    CHECK(count("position") == 1);
+    CHECK(count("axes") == 3);
+    CHECK(count("angular velocity") == 4);
+    CHECK(count("rate of the angular momentum") == 1);
+  }
+}
