@@ -119,7 +119,7 @@ TEST_CASE("a model name of 240 letters is no obstacle, or is told") {
   folder.write(name + ".toml", oscillator);
   const ChildResult sweep =
       expect(2, folder, {"sweep", name + ".toml", "--grid", "k=1,2", "--out", "s.txt", "--set", "k=2"});
-  CHECK(contains(sweep.err, "a grid and a value"));
+  CHECK(contains(sweep.err, "is varied, and has a value by --set"));
   expect(0, folder, {"sweep", name + ".toml", "--grid", "k=1,2"});
   CHECK(folder.has(name + "_sweep.csv"));
   folder.write(std::string(250, 'n') + ".toml", oscillator);
