@@ -103,9 +103,13 @@ class Equations {
 
   /// What the letters of equations stand for that are not written out; once where both approaches have the same.
   void parts(const reading::ReadingForm& form) {
-    if (!form.by_parts) return;
     std::vector<Statement> all;
     add_equations(m_, form, all);
+    for (const Statement& s : all) {
+      if (!s.left_out.empty() && s.key != "parts")
+        a_.left_out.push_back(
+            {std::string(s.key) + (form.approach == system::Approach::two ? ", II" : ", I"), s.left_out});
+    }
     std::erase_if(all, [](const Statement& s) { return s.key != "parts"; });
     std::vector<Formula> formulas = a_.formulas(all);
     std::erase_if(formulas, [this](const Formula& f) { return !parts_.insert(out_.math(f)).second; });

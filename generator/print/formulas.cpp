@@ -261,6 +261,18 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
   }
 }
 
+namespace {
+
+constexpr std::size_t most_terms = 300;  // of an equation that somebody reads
+
+std::size_t longest_equation(const ReadingForm& form) {
+  std::size_t longest = 0;
+  for (const Equation& e : form.equations) longest = std::max(longest, e.expanded.size() + e.force.size());
+  return longest;
+}
+
+}  // namespace
+
 void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Statement>& out) {
   const auto add = [&](const char* key, bool of_motion, auto&& formula) {
     for (const Equation& equation : form.equations) {
@@ -270,6 +282,11 @@ void add_equations(const Mechanics& m, const ReadingForm& form, std::vector<Stat
     }
   };
   if (form.by_parts) return add_equations_by_parts(m, form, out);
+  if (const std::size_t terms = longest_equation(form); terms > most_terms) {
+    add_equations_by_parts(m, form, out);
+    out.push_back(left_out("equations written out", "", "", "the longest has " + std::to_string(terms) + " terms"));
+    return;
+  }
   for (const bool of_motion : {true, false}) add("equations", of_motion, momentum_form);
   for (const bool of_motion : {true, false}) add("explicit", of_motion, explicit_form);
 }

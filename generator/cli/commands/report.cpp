@@ -94,6 +94,11 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
     html.heading(3, title);
     std::string before;
     for (const print::Item& item : items) {
+      if (!item.left_out.empty()) {
+        html.paragraph(fmt::format("Left out, {}: {}.", item.name.empty() ? item.key : item.name, item.left_out),
+                       "quiet");
+        continue;
+      }
       const std::string what = item.key == "explicit"   ? "written out"
                                : item.key == "singular" ? "approach " + item.role
                                : item.key == "parts"    ? item.role + (item.name.empty() ? "" : " of " + item.name)
