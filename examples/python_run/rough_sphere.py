@@ -34,7 +34,8 @@ assert list(model.rhs(0, x, mode=model.info["mode_numbers"][-1])) != list(model.
 apart = model.run(0.1, x0={"R": 1.5})  # above the sphere
 assert apart["mode.sphere"][0] == apart["mode.sphere"][-1] and apart["reaction.sphere"][0] == 0
 
-for wrong in (lambda: model.run(solver="fast"), lambda: model.run(x0=[1]), lambda: model.simulate(1)):
+for wrong in (lambda: model.run(solver="fast"), lambda: model.run(x0=[1]), lambda: model.run(every=0), lambda: model.run(float("nan")),
+              lambda: model.simulate(1)):
     try:
         wrong()
     except (ValueError, NotImplementedError):
