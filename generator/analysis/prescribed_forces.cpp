@@ -4,8 +4,8 @@
 #include <algorithm>
 
 #include "mechanics/imposition.hpp"
+#include "mechanics/particle_force.hpp"
 #include "mechanics/vanishes.hpp"
-#include "symbolic/factorisation.hpp"
 
 namespace eomgen::analysis {
 
@@ -47,7 +47,7 @@ class Forces {
         result.push_back({"force." + m_.model->coordinates[i].name, Q_[i], OutputKind::prescribed_force, i});
     }
     for (std::uint32_t p = 0; p < m_.masses.size(); ++p) {
-      const std::optional<Vec3> force = on_particle(p);
+      const std::optional<Vec3> force = mechanics::force_on_particle(m_, p, Q_);
       if (!force || mechanics::vanishes(dag_, {(*force)[0], (*force)[1], (*force)[2]})) continue;
       for (std::uint32_t k = 0; k < 3; ++k)
         result.push_back(
@@ -59,53 +59,6 @@ class Forces {
 
  private:
   Ref finish(Ref r) { return written_(imposed_(r)); }
-  Ref slope(std::size_t mass, std::size_t k, std::uint32_t i) {
-    return symbolic::partial(dag_, {SymbolKind::coordinate, i, 0})(m_.masses[mass].position[k]);
-  }
-  bool moves(std::uint32_t i, std::size_t mass) {
-    return !mechanics::vanishes(dag_, {slope(mass, 0, i), slope(mass, 1, i), slope(mass, 2, i)});
-  }
-
-  bool turns(std::uint32_t i) {
-    symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, i, 1});
-    return std::any_of(m_.spins.begin(), m_.spins.end(), [&](const mechanics::Spin& spin) {
-      return !mechanics::vanishes(dag_, {by(spin.w[0]), by(spin.w[1]), by(spin.w[2])});
-    });
-  }
-
-  // F = J (J^T J)^-1 Q: the least F with F . dr/dq_i = Q_i. What turns a body needs moments too.
-  std::optional<Vec3> on_particle(std::size_t p) {
-    std::vector<std::uint32_t> own;
-    for (std::uint32_t i = 0; i < Q_.size(); ++i) {
-      if (!moves(i, p)) continue;
-      if (turns(i)) return std::nullopt;
-      own.push_back(i);
-      for (std::size_t other = 0; other < m_.masses.size(); ++other) {
-        if (other != p && moves(i, other)) return std::nullopt;
-      }
-    }
-    const std::size_t n = own.size();
-    if (n == 0 || n > 3 || !m_.dag->is_zero(m_.kinetic_given)) return std::nullopt;
-    std::vector<Ref> J(3 * n), N(n * n, dag_.zero()), Q;
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < n; ++i) J[k * n + i] = finish(slope(p, k, own[i]));
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      Q.push_back(Q_[own[i]]);
-      for (std::size_t j = 0; j < n; ++j) {
-        for (std::size_t k = 0; k < 3; ++k) N[i * n + j] = dag_.add(N[i * n + j], dag_.mul(J[k * n + i], J[k * n + j]));
-        if (i != j && mechanics::vanishes(dag_, {N[i * n + j]})) N[i * n + j] = dag_.zero();
-      }
-    }
-    const symbolic::Factorisation factors(dag_, N, n, symbolic::Ties::ascending);
-    const std::vector<Ref> components = factors.backward(factors.forward(Q));  // along the a_i
-    Vec3 force = symbolic::zero_vector(dag_);
-    for (std::size_t k = 0; k < 3; ++k) {
-      for (std::size_t i = 0; i < n; ++i) force[k] = dag_.add(force[k], dag_.mul(J[k * n + i], components[i]));
-    }
-    return force;
-  }
-
   Mechanics& m_;
   Dag& dag_;
   symbolic::Substitution imposed_, written_;

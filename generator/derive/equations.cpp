@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "mechanics/particle_force.hpp"
+
 namespace eomgen::derive {
 namespace {
 
@@ -82,6 +84,39 @@ void add_reactions(Mechanics& m, const FullEquations& full, EquationSystem& s) {
   }
 }
 
+/// N = sum lambda_k grad psi_k on every particle whose coordinates move nothing else, where the motion determines it.
+void add_constraint_forces(Mechanics& m, EquationSystem& s) {
+  Dag& dag = *m.dag;
+  std::vector<Ref> Q(m.q.size(), dag.zero());
+  std::vector<bool> open(m.q.size(), false);  // constraints act along it whose force is not determined
+  for (const system::Reaction& reaction : s.reactions) {
+    const mechanics::Constraint& c = m.constraints[reaction.constraint];
+    for (std::size_t i = 0; i < Q.size(); ++i) {
+      if (dag.is_zero(c.gradient[i])) continue;
+      Q[i] = dag.add(Q[i], dag.mul(reaction.value, c.gradient[i]));
+      open[i] = open[i] || !c.determined;
+    }
+  }
+  for (std::size_t p = 0; p < m.masses.size(); ++p) {
+    const mechanics::PointMass& mass = m.masses[p];
+    const auto is_mass = [&](const model::Body& body) { return body.place == mass.place; };
+    if (std::any_of(m.model->bodies.begin(), m.model->bodies.end(), is_mass)) continue;
+    bool bound = false, determined = true;
+    for (const Symbol& q : dag.symbols({mass.position[0], mass.position[1], mass.position[2]})) {
+      if (q.kind != SymbolKind::coordinate) continue;
+      bound = bound || !dag.is_zero(Q[q.index]);
+      determined = determined && !open[q.index];
+    }
+    if (!bound || !determined) continue;
+    const std::optional<Vec3> force = mechanics::force_on_particle(m, p, Q);
+    if (!force) continue;
+    const std::string vector = mass.name + ".constraint_force";
+    for (std::uint32_t k = 0; k < 3; ++k)
+      s.outputs.push_back(
+          {vector + std::to_string(k + 1), (*force)[k], OutputKind::constraint_force, mass.place, k, "N", vector});
+  }
+}
+
 /// Multipliers; of joints the force on B and the moment about its point instead. Both as far as the motion determines
 /// them.
 void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
@@ -108,6 +143,7 @@ void add_reaction_outputs(Mechanics& m, EquationSystem& s) {
       s.outputs.push_back({vector + "." + std::to_string(j + 1), sum, OutputKind::joint_reaction, i, j, "", vector});
     }
   }
+  add_constraint_forces(m, s);
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const mechanics::Constraint& c = m.constraints[k];
     if (c.need == mechanics::Need::redundant)

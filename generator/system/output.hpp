@@ -35,6 +35,7 @@ enum class OutputKind : std::uint8_t {
   constraint_reaction,
   joint_reaction,
   rolling_reaction,
+  constraint_force,  // of a place, part: axis; all constraints together
   // of a contact; part: axis of the friction, tangent of the slip
   friction,
   slip,

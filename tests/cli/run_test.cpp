@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <tuple>
 
 #include "program.hpp"
 #include "support/elliptic.hpp"
@@ -134,4 +135,46 @@ TEST_CASE("the error estimate bounds what a far tighter run shows, within its fa
     CHECK(estimate > error / 10);
     CHECK(estimate < error * 10);
   }
+}
+
+TEST_CASE("run: what constraints exert on a particle is its mass times acceleration less the forces that are given") {
+  const Folder folder;
+  const std::string bowl = R"toml(format = 1
+[parameters]
+m = 2
+g = 9.81
+[[particle]]
+name = "P"
+mass = "m"
+position = { cartesian = ["x", "y", "z"] }
+[[force]]
+gravity = "-g*E3"
+[[constraint]]
+name = "bowl"
+holonomic = "z - (x^2 + y^2)"
+[[constraint]]
+name = "blade"
+velocity = "y_dot - x*x_dot"
+[scene.default]
+initial = { x = 1, x_dot = 2 }
+outputs = ["all"]
+)toml";
+  folder.write("bowl.toml", bowl);
+  const Json on_bowl = document(folder, {"run", "bowl.toml", "--t-end", "0"})["final"];
+  const double m = 2, g = 9.81;
+  for (const auto& [force, acceleration, given] : {std::tuple{"P.constraint_force1", "x_ddot", 0.0},
+                                                   {"P.constraint_force2", "y_ddot", 0.0},
+                                                   {"P.constraint_force3", "z_ddot", -m * g}}) {
+    CAPTURE(force);
+    CHECK(on_bowl[force].get<double>() == doctest::Approx(m * on_bowl[acceleration].get<double>() - given));
+  }
+  // Of two particles on rods the second is moved by coordinates of its own; on the first acts what acts on both.
+  const Json rods =
+      document(folder, {"run", "S5_double_pendulum", "--t-end", "0", "--output", "P2.constraint_force,reaction.rod2"});
+  const double tension = rods["final"]["reaction.rod2"];
+  CHECK(rods["final"]["P2.constraint_force1"].get<double>() == doctest::Approx(tension * std::cos(0.4)));
+  CHECK(rods["final"]["P2.constraint_force2"].get<double>() == doctest::Approx(tension * std::sin(0.4)));
+  CHECK(rods["final"]["P2.constraint_force3"] == 0);
+  CHECK(contains(expect(2, folder, {"run", "S5_double_pendulum", "--output", "P1.constraint_force"}).err,
+                 "there is no output 'P1.constraint_force'"));
 }

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A generalised force as one force on a particle, along E1, E2, E3.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "mechanics/mechanics.hpp"
+
+namespace eomgen::mechanics {
+
+/// F = J (J^T J)^-1 Q with J = dr/dq of the coordinates that move the particle and nothing else, the least F with
+/// F . dr/dq_i = Q_i. Nothing where these do not span what it can do: what acts along other coordinates is exerted on
+/// other masses too. `mass`: index into Mechanics::masses; `Q`: of all coordinates. Slopes are written out with the
+/// constraints imposed.
+std::optional<Vec3> force_on_particle(Mechanics& mechanics, std::size_t mass, const std::vector<Ref>& Q);
+
+}  // namespace eomgen::mechanics
