@@ -18,16 +18,6 @@ using symbolic::SymbolKind;
 
 namespace {
 
-Formula symbol_of(std::uint32_t coordinate, std::uint8_t order) {
-  return reading::symbol({SymbolKind::coordinate, coordinate, order});
-}
-
-Formula dotted(Formula f) {
-  Formula result = reading::wrap(Form::dot, {std::move(f)});
-  result.order = 1;
-  return result;
-}
-
 bool equal(const Partials& a, const Partials& b) {
   return a.coordinate == b.coordinate && a.left_out.empty() && b.left_out.empty() && a.momentum == b.momentum &&
          a.rate == b.rate && a.kinetic == b.kinetic && a.potential == b.potential && a.force == b.force;
@@ -114,7 +104,7 @@ void write_partials(Article& a, const ReadingForm& form, std::vector<Partials>& 
     }
     std::vector<Formula> shown;
     const auto partial = [&](const std::string& letter, std::uint8_t order) {
-      return reading::wrap(Form::partial, {mark(letter), symbol_of(p.coordinate, order)});
+      return reading::wrap(Form::partial, {mark(letter), coordinate(p.coordinate, order)});
     };
     const auto add = [&](std::vector<Formula> formulas) {  // on one line where there is room
       Formula together = reading::wrap(Form::list, formulas);
@@ -130,7 +120,7 @@ void write_partials(Article& a, const ReadingForm& form, std::vector<Partials>& 
     add(std::move(momentum));
     add({reading::relation({partial(letters.T, 0), arrange(p.kinetic)}),
          reading::relation({partial(letters.U, 0), arrange(p.potential)}),
-         reading::relation({mark("Q", {symbol_of(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
+         reading::relation({mark("Q", {coordinate(p.coordinate, 0)}), arrange(p.force, Layout::terms)})});
     std::string why;
     for (const Formula& f : shown) why = why.empty() ? a.out.too_long(f) : why;
     if (why.empty())

@@ -20,17 +20,18 @@ using reading::Sum;
 using reading::Symbol;
 using reading::SymbolKind;
 
+Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
+Formula dotted(Formula letter, int order) {
+  Formula result = reading::wrap(Form::dot, {std::move(letter)});
+  result.order = order;
+  return result;
+}
+
 namespace {
 
 constexpr std::size_t longest_in_a_list =
     3;  // terms of an acceleration that still fits on a line with its coordinate and rate
 
-Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
-Formula dotted(const Formula& f) {
-  Formula result = reading::wrap(Form::dot, {f});
-  result.order = 1;
-  return result;
-}
 Formula multiplier(std::uint32_t k) { return reading::symbol({SymbolKind::multiplier, k, 0}); }
 
 // lambda slope: numbers first, then lambda, then the rest

@@ -20,6 +20,11 @@ inline Statement left_out(std::string key, std::string name, std::string role, s
   return {std::move(key), std::move(name), "", std::move(role), reading::mark("..."), std::move(why)};
 }
 
+/// q_i, its rate or its acceleration.
+reading::Formula coordinate(std::uint32_t i, std::uint8_t order);
+/// A letter with dots over it.
+reading::Formula dotted(reading::Formula letter, int order = 1);
+
 struct Item;  // render.hpp
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);
 

@@ -26,12 +26,6 @@ using symbolic::SymbolKind;
 using symbolic::Vec3;
 
 Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
-Formula coordinate(std::uint32_t i, std::uint8_t order) { return reading::symbol({SymbolKind::coordinate, i, order}); }
-Formula dotted(const Formula& f, int order = 1) {
-  Formula result = reading::wrap(Form::dot, {f});
-  result.order = order;
-  return result;
-}
 Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
 Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
 
