@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include "emit/names.hpp"
+#include "emit/parts.hpp"
 #include "emit/signature.hpp"
 #include "emit/text.hpp"
 #include "program/taylor.hpp"
@@ -93,12 +94,23 @@ ModelNames names_of_next(const ModelNames& names) {
   return result;
 }
 
+/// The function, and before it the parts that it calls where it is long.
 std::string helper(const program::Function& function, const ModelNames& names, const EmissionContext& context,
                    const Dialect& dialect, const std::string& prefix, const std::string& remark) {
-  const FunctionText text = print_function(function, names, context, dialect);
-  const std::string head = function_head(prefix + function.name, function, text, names, dialect.real);
-  if (prefix.empty()) return fmt::format("// {}\ntemplate <class Real>\n{} {{\n{}}}\n", remark, head, text.body);
-  return fmt::format("/* {} */\nstatic {}\n{{\n{}}}\n", remark, head, text.body);
+  FunctionText text = print_function(function, names, context, dialect);
+  const std::string name = prefix + function.name;
+  const bool generic = prefix.empty();
+  std::string parts;
+  for (std::size_t k = 0; k < text.parts.size(); ++k) {
+    parts += fmt::format(
+        "{}#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\n{}int {}_part{}({}, {}* {})\n{{\n{}}}\n\n",
+        generic ? "template <class Real>\n" : "", generic ? "" : "static ", name, k + 1,
+        argument_list(arguments(function.name, text, names), dialect.real), dialect.real, text.work, text.parts[k]);
+  }
+  if (!text.parts.empty()) text.body = calls_of_parts(name, text, argument_names(function, text, names), dialect.real);
+  const std::string head = function_head(name, function, text, names, dialect.real);
+  if (generic) return fmt::format("{}// {}\ntemplate <class Real>\n{} {{\n{}}}\n", parts, remark, head, text.body);
+  return fmt::format("{}/* {} */\nstatic {}\n{{\n{}}}\n", parts, remark, head, text.body);
 }
 
 }  // namespace

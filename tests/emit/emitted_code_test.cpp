@@ -45,7 +45,8 @@ TEST_CASE("emitted code: clean under strict warnings as C and as C++, and its se
   }
 }
 
-TEST_CASE("emitted code: a right-hand side of thousands of operations comes in parts that agree with the whole") {
+TEST_CASE(
+    "emitted code: a right-hand side and a series of thousands of operations come in parts that agree with the whole") {
   constexpr std::uint32_t n = 22;
   std::vector<std::string> coordinates, parameters;
   for (std::uint32_t i = 1; i <= n; ++i) coordinates.push_back(fmt::format("theta{}", i));
@@ -53,7 +54,7 @@ TEST_CASE("emitted code: a right-hand side of thousands of operations comes in p
     for (std::uint32_t i = 1; i <= n; ++i) parameters.push_back(fmt::format("{}{}", of, i));
   }
   parameters.push_back("g");
-  const Example e = example("long_chain", chain(n), coordinates, parameters, {}, {});
+  const Example e = example("long_chain", chain(n), coordinates, parameters, {}, {"taylor"});
   REQUIRE(e.program.functions[0].code.size() > 3000);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context));
@@ -62,6 +63,7 @@ TEST_CASE("emitted code: a right-hand side of thousands of operations comes in p
   std::ifstream written(c);
   const std::string text{std::istreambuf_iterator<char>(written), {}};
   CHECK(text.find("long_chain_rhs_part2(") != std::string::npos);
+  CHECK(text.find("long_chain_taylor_start_part2(") != std::string::npos);
   std::ofstream(use) << "#include \"long_chain.hpp\"\n#include \"long_chain.h\"\n"
                         "int main() { return eom::long_chain::selftest() + long_chain_selftest(); }\n";
   CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-O1", "-c", "-o", object}, {c}) == "");
