@@ -212,13 +212,26 @@ void JointsReader::joint_points(Joint& joint, std::array<JointEnd, 2>& ends, con
   }
 }
 
+std::optional<std::size_t> JointsReader::own_axis_of_plane(const Typed& vector, std::uint32_t frame) const {
+  const Node& node = model_.arena[vector.node];
+  if (node.op != Op::fixed_basis) return std::nullopt;
+  if (frame == 0) return node.index;
+  const FrameSource& of = frame_sources_[frame];
+  if (!of.upright || !of.axis || !of.axis->numbers) return std::nullopt;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if ((k == node.index) == cln::zerop((*of.axis->numbers)[k])) return std::nullopt;
+  }
+  return node.index;
+}
+
 // The axis of one end with two directions across it, all along the axes of that body with constant components.
 std::array<Typed, 3> JointsReader::triad_about(const Value& written, const JointEnd& end, const std::string& what) {
   const std::string of = end.frame == 0 ? "E1, E2, E3" : fmt::format("{0}.e1, {0}.e2, {0}.e3", end.name);
   const Context context{fmt::format("an axis of {}", what), end.frame == 0 ? Facts{0} : on_motion, Shape::vector,
                         std::nullopt, "it is fixed in its body: make it of " + of};
   const Typed axis = resolver_.value(written, context);
-  const Typed along = end.frame == 0 ? axis : resolver_.in_axes(axis, end.frame);
+  const bool in_plane = own_axis_of_plane(axis, end.frame).has_value();
+  const Typed along = end.frame == 0 || in_plane ? axis : resolver_.in_axes(axis, end.frame);
   if (along.node == no_node)
     source_.fail(written.span, fmt::format("this axis is not fixed in '{}'", end.name),
                  "make it of " + of + " with constant components");
@@ -291,6 +304,14 @@ void JointsReader::joint_axes(const joints::Joint& kind, std::array<JointEnd, 2>
       resolver_.value(*axis, {fmt::format("the axis of {}", what), on_motion, Shape::vector, std::nullopt,
                               "it is made of axes of bodies, E1, E2, E3 and parameters"});
   AtStart start = at_start(scope_.find(table.find("name")->text)->index);
+  const auto follows = [&](const JointEnd& end) {
+    return end.frame != 0 && start(resolver_.own_axis(end.frame, 0, axis->span).node) == no_node;
+  };
+  const auto in_plane = [&](const JointEnd& end) { return own_axis_of_plane(direction, end.frame).has_value(); };
+  if (in_plane(ends[0]) && in_plane(ends[1]) && (follows(ends[0]) || follows(ends[1]))) {
+    for (JointEnd& end : ends) end.axis = triad_about(*axis, end, what);
+    return;
+  }
   axis_at_start(direction, ends, start, axis->span, what);
 }
 

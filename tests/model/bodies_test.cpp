@@ -83,3 +83,26 @@ TEST_CASE("a pin as placed at the start may have an axis of a body that is turne
       "[scene.default]\ninitial = { q = 0.3 }\n");
   CHECK(model.constraints.at(0).psi.size() == 5);
 }
+
+TEST_CASE("a pin of bodies in a plane has its axis in E3, wherever they start, once or for both") {
+  const auto linkage = [](const std::string& axis) {
+    std::string text = "format = 1\n";
+    for (const std::string n : {"1", "2"})
+      text += "[[body]]\nname = \"B" + n + "\"\nmass = 1\ninertia = 1\nposition = { cartesian = [\"x" + n + "\", \"y" +
+              n + "\"] }\nrotation = { axis = \"E3\", angle = \"q" + n + "\" }\n";
+    return read(text +
+                "[[joint]]\nname = \"foot\"\ntype = \"ball\"\nbodies = [\"ground\", \"B1\"]\nat = [\"origin\", "
+                "\"B1 - B1.e1\"]\n"
+                "[[joint]]\nname = \"j\"\ntype = \"pin\"\nbodies = [\"B1\", \"B2\"]\nat = [\"B1 + B1.e1\", \"B2 - "
+                "B2.e1\"]\naxis = " +
+                axis + "\n[scene.default]\ninitial = { q1_dot = 1 }\n");
+  };
+  const std::size_t own = linkage("[\"B1.e3\", \"B2.e3\"]").arena.nodes.size();
+  for (const char* axis : {"\"E3\"", "[\"E3\", \"E3\"]", "[\"E3\", \"B2.e3\"]"}) {
+    CAPTURE(axis);
+    const Model model = linkage(axis);
+    CHECK(model.constraints.at(1).psi.size() == 5);
+    CHECK(model.arena.nodes.size() < own + 20);
+  }
+  CHECK_THROWS_AS(linkage("[\"E1\", \"E1\"]"), eomgen::Error);
+}
