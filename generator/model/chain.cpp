@@ -10,7 +10,7 @@
 namespace eomgen::model {
 
 void ChainsReader::declare(const Value& table) {
-  check_keys(table, {"[[chain]]", {"name", "n", "mass", "length", "coordinate", "angles", "from"}, {}});
+  check_keys(table, {"[[chain]]", {"name", "n", "mass", "length", "coordinate", "angles", "from"}});
   Chain chain;
   chain.table = &table;
   chain.name = text_of_key(table, "name", "this [[chain]]");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tables and their keys: what is unknown, what is missing, what is not supported yet.
+// Tables and their keys: what is unknown, what is missing.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -11,21 +11,11 @@ namespace eomgen::model {
 void SectionReader::check_keys(const Value& table, const Keys& keys) const {
   for (const Entry& entry : table.entries) {
     if (std::find(keys.known.begin(), keys.known.end(), entry.key) != keys.known.end()) continue;
-    if (std::find(keys.later.begin(), keys.later.end(), entry.key) != keys.later.end()) {
-      not_yet(entry.span,
-              &table == &root_ ? fmt::format("[[{}]]", entry.key) : fmt::format("'{}' in {}", entry.key, keys.what));
-    }
-    std::vector<std::string> candidates(keys.known.begin(), keys.known.end());
-    candidates.insert(candidates.end(), keys.later.begin(), keys.later.end());
+    const std::vector<std::string> candidates(keys.known.begin(), keys.known.end());
     const std::string hint = did_you_mean(entry.key, candidates);
     source_.fail(entry.span, fmt::format("{} has no key {}", keys.what, quote(entry.key)),
                  hint.empty() ? fmt::format("its keys are {}", fmt::join(keys.known, ", ")) : hint);
   }
-}
-
-void SectionReader::not_yet(Span span, const std::string& what) const {
-  source_.fail(span, what + " is not supported yet",
-               "a later version brings it; docs/model-format.md lists what works now");
 }
 
 const Value& SectionReader::needed(const Value& table, std::string_view key, const std::string& what,

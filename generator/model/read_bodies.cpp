@@ -44,8 +44,7 @@ void BodiesReader::declare_angles(const Value& table) {
 
 const Entry& BodiesReader::rotation_entry(const Value& rotation) const {
   as(Value::Kind::table, rotation, "a rotation", form);
-  check_keys(rotation,
-             {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}, {}});
+  check_keys(rotation, {"a rotation", {"euler", "angles", "axis", "angle", "euler_parameters", "rodrigues", "fixed"}});
   const Entry* found = nullptr;
   for (const Entry& entry : rotation.entries) {
     if (entry.key == "angles" || entry.key == "angle") continue;

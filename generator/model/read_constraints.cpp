@@ -13,8 +13,7 @@ namespace eomgen::model {
 void ConstraintsReader::declare() {
   for (const Value* table : sections("constraint")) {
     Keys keys{"[[constraint]]",
-              {"name", "holonomic", "velocity", "rolling", "sliding", "holds", "restitution", "friction"},
-              {}};
+              {"name", "holonomic", "velocity", "rolling", "sliding", "holds", "restitution", "friction"}};
     for (const couplings::Coupling& coupling : couplings::registry()) keys.known.push_back(coupling.name);
     check_keys(*table, keys);
     const std::string name = text_of_key(*table, "name", "this [[constraint]]");
@@ -193,7 +192,7 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
 void ConstraintsReader::read_energy() {
   const Value* table = section("energy");
   if (table == nullptr) return;
-  check_keys(*table, {"[energy]", {"kinetic", "potential"}, {}});
+  check_keys(*table, {"[energy]", {"kinetic", "potential"}});
   if (table->entries.empty())
     source_.fail(table->span, "[energy] is empty", "add kinetic = \"..\" and potential = \"..\"");
   const auto energy = [&](const char* key, Facts allowed, const char* remedy) {

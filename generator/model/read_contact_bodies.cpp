@@ -55,7 +55,7 @@ void ContactsReader::spheres_in_contact(const Value& table, std::map<std::string
   const auto radius = [&](const char* key, const std::vector<std::string_view>& kinds) {
     const Value& shape =
         as(Value::Kind::table, needed(table, key, "a contact of two spheres", form), fmt::format("'{}'", key), form);
-    check_keys(shape, {fmt::format("'{}' in a contact of two bodies", key), kinds, {}});
+    check_keys(shape, {fmt::format("'{}' in a contact of two bodies", key), kinds});
     if (shape.entries.size() != 1)
       source_.fail(shape.span, fmt::format("'{}' is given in {} ways", key, shape.entries.size()), form);
     return resolver_.value(shape.entries[0].value,

@@ -73,7 +73,7 @@ void CouplingsReader::read(Constraint& constraint, const Entry& entry) {
   const couplings::Coupling& kind = *couplings::find(entry.key);
   const std::string what = fmt::format("the {} '{}'", kind.name, constraint.name);
   const Value& table = as(Value::Kind::table, entry.value, what, form(kind.name));
-  check_keys(table, {what, {"bodies", "axes", "carrier", "angles", "ratio"}, {}});
+  check_keys(table, {what, {"bodies", "axes", "carrier", "angles", "ratio"}});
   const Value *bodies = table.find("bodies"), *angles = table.find("angles");
   if (bodies == nullptr && angles == nullptr)
     source_.fail(table.span, fmt::format("{} has neither bodies nor angles", what), form(kind.name));

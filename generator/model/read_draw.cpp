@@ -53,7 +53,7 @@ void DrawReader::read() {
 Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   const std::string what = fmt::format("the drawing of '{}'", model_.places[place].name);
   as(Value::Kind::table, value, what, form);
-  Keys keys{what, {}, {}};
+  Keys keys{what, {}};
   for (const DrawnShape& shape : shapes) keys.known.push_back(shape.key);
   for (const char* key : {"axis", "at"}) keys.known.emplace_back(key);
   check_keys(value, keys);

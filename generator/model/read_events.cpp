@@ -19,7 +19,7 @@ const char* name(Event::Direction direction) {
 
 void EventsReader::declare() {
   for (const Value* table : sections("event")) {
-    check_keys(*table, {"[[event]]", {"name", "when", "direction", "action"}, {}});
+    check_keys(*table, {"[[event]]", {"name", "when", "direction", "action"}});
     Event event;
     event.name = text_of_key(*table, "name", "this [[event]]");
     event.span = table->find("name")->span;

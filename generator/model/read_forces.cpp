@@ -70,7 +70,7 @@ void ForcesReader::read() {
 
 const Entry& ForcesReader::kind_of(const Value& table) const {
   const std::vector<std::string_view> others = beside();
-  Keys keys{"[[force]]", kinds(), {}};
+  Keys keys{"[[force]]", kinds()};
   keys.known.emplace_back("name");
   keys.known.insert(keys.known.end(), others.begin(), others.end());
   check_keys(table, keys);
@@ -112,7 +112,7 @@ void ForcesReader::read_force(Force& force, const Value& table) {
   }
   Open open{kind, force, kind.form == forces::Form::value ? table : entry.value, what, named, {}};
   if (kind.form == forces::Form::table) {
-    Keys keys{what, {}, {}};
+    Keys keys{what, {}};
     for (const forces::Key& key : kind.keys) keys.known.push_back(key.name);
     check_keys(entry.value, keys);
   }

@@ -60,7 +60,7 @@ Friction FrictionReader::coefficients(const Value& table, const std::string& wha
 void FrictionReader::of_constraint(Constraint& constraint, const Value& value) {
   const std::string what = fmt::format("the friction of '{}'", constraint.name);
   as(Value::Kind::table, value, what, "write friction = { static = \"mu_s\", dynamic = \"mu_d\" }");
-  check_keys(value, {what, {"static", "dynamic", "surface_velocity", "law", "width"}, {}});
+  check_keys(value, {what, {"static", "dynamic", "surface_velocity", "law", "width"}});
   if (constraint.velocity) {
     source_.fail(value.span,
                  fmt::format("'{}' is a constraint on velocities, which has no surface to slide on", constraint.name),
@@ -84,7 +84,7 @@ void FrictionReader::of_constraint(Constraint& constraint, const Value& value) {
 }
 
 Dry FrictionReader::dry(const Value& table, const std::string& what) {
-  check_keys(table, {what, {"coordinate", "normal", "static", "dynamic", "law", "width"}, {}});
+  check_keys(table, {what, {"coordinate", "normal", "static", "dynamic", "law", "width"}});
   const Value& name = needed(table, "coordinate", what, "add coordinate = \"x\", the coordinate that rubs");
   as(Value::Kind::text, name, fmt::format("the coordinate of {}", what), "write the name of a coordinate");
   const Symbol* symbol = scope_.find(name.text);

@@ -65,7 +65,7 @@ void InertiaReader::read(Body& body, const Value& table) {
     return;
   }
   if (!value.is(Value::Kind::table)) return read_scalar_inertia(body, value);
-  Keys keys{what, {"principal"}, {}};
+  Keys keys{what, {"principal"}};
   for (const Shape3& shape : shapes()) keys.known.push_back(shape.key);
   check_keys(value, keys);
   if (value.entries.size() != 1) {

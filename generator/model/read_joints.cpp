@@ -29,7 +29,7 @@ constexpr double parallel = 1e-9;
 
 void JointsReader::declare() {
   for (const Value* table : sections("joint")) {
-    check_keys(*table, {"[[joint]]", {"name", "type", "bodies", "at", "axis", "axes"}, {}});
+    check_keys(*table, {"[[joint]]", {"name", "type", "bodies", "at", "axis", "axes"}});
     Joint joint;
     joint.name = text_of_key(*table, "name", "this [[joint]]");
     joint.span = table->find("name")->span;

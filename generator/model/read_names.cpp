@@ -64,7 +64,7 @@ void NamesReader::read_coordinate(const Entry& entry) {
   } else {
     as(Value::Kind::table, entry.value, fmt::format("the coordinate {}", what),
        "write x = \"m\", x = {} or x = { unit = \"m\" }");
-    check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range"}, {}});
+    check_keys(entry.value, {fmt::format("the coordinate {}", what), {"unit", "tex", "range"}});
     unit = entry.value.find("unit");
     coordinate.tex = tex_of(entry.value, what);
     if (entry.value.find("range") != nullptr) ranged_.insert(index);
@@ -124,7 +124,7 @@ Typed NamesReader::define_parameter(Symbol& symbol) {
   const Value* value = &declared;
   std::optional<MeasuredUnit> stated;
   if (declared.is(Value::Kind::table)) {
-    check_keys(declared, {what, {"value", "unit", "tex", "note", "positive"}, {}});
+    check_keys(declared, {what, {"value", "unit", "tex", "note", "positive"}});
     value = &needed(declared, "value", what, "add value = ...");
     parameter.tex = tex_of(declared, what);
     if (declared.find("note") != nullptr) parameter.note = text_of_key(declared, "note", what);
@@ -156,7 +156,7 @@ Typed NamesReader::define_function(Symbol& symbol) {
   const Value* is = &declared;
   Context context{what, on_time, Shape::scalar, std::nullopt, ""};
   if (declared.is(Value::Kind::table)) {
-    check_keys(declared, {what, {"is", "unit", "tex"}, {}});
+    check_keys(declared, {what, {"is", "unit", "tex"}});
     is = &needed(declared, "is", what, "add is = \"expression of t\"");
     function.tex = tex_of(declared, what);
     if (const Value* unit = declared.find("unit")) function.unit = si_unit(*unit, what);
@@ -181,7 +181,7 @@ Typed NamesReader::define_input(Symbol& symbol) {
   const Value& declared = symbol.entry->value;
   const std::string what = fmt::format("the input '{}'", symbol.name);
   as(Value::Kind::table, declared, what, fmt::format("write {} = {{ unit = \"N\", default = 0 }}", symbol.name));
-  check_keys(declared, {what, {"unit", "default", "tex"}, {}});
+  check_keys(declared, {what, {"unit", "default", "tex"}});
   Input input;
   input.name = symbol.name;
   input.span = symbol.span;

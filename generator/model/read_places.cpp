@@ -44,11 +44,11 @@ void PlacesReader::declare() {
       ChainsReader(context_).declare(*table);
       continue;
     }
-    if (which == 0) check_keys(*table, {"[[particle]]", {"name", "mass", "position"}, {}});
-    if (which == 1) check_keys(*table, {"[[point]]", {"name", "position", "on", "at"}, {}});
+    if (which == 0) check_keys(*table, {"[[particle]]", {"name", "mass", "position"}});
+    if (which == 1) check_keys(*table, {"[[point]]", {"name", "position", "on", "at"}});
     if (which == 3)
-      check_keys(*table, {"[[body]]", {"name", "mass", "inertia", "position", "rotation", "relative_to"}, {}});
-    if (which == 4) check_keys(*table, {"[[frame]]", {"name", "rotation", "relative_to"}, {}});
+      check_keys(*table, {"[[body]]", {"name", "mass", "inertia", "position", "rotation", "relative_to"}});
+    if (which == 4) check_keys(*table, {"[[frame]]", {"name", "rotation", "relative_to"}});
     constexpr std::array<const char*, 5> kinds{"particle", "point", "chain", "body", "frame"};
     const std::string name =
         text_of_key(*table, "name", fmt::format("this [[{}]]", kinds[static_cast<std::size_t>(which)]));

@@ -48,7 +48,7 @@ void PositionsReader::declare_entry(const Value& entry, std::string_view unit) {
 
 // The one entry of the table that names a coordinate system; keys that belong to another one are refused.
 const Entry& PositionsReader::system_entry(const Value& table) const {
-  Keys keys{"a position", {"from", "axes", "custom", "x", "q"}, {}};
+  Keys keys{"a position", {"from", "axes", "custom", "x", "q"}};
   for (const coordinates::CoordinateSystem* system : coordinates::registry()) {
     keys.known.push_back(system->name);
     if (!system->constant.name.empty()) keys.known.push_back(system->constant.name);

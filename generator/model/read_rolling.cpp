@@ -31,7 +31,7 @@ std::map<std::string, Typed> ContactsReader::plane_of_contact(const Value& on) {
     return {{"o", zero}, {"V", zero}, {"n", basis(2)}, {"t1", basis(0)}, {"t2", basis(1)}};
   }
   as(Value::Kind::table, on, "'on'", "write on = \"ground\" or on = { point = \"<vector>\", normal = \"<vector>\" }");
-  check_keys(on, {"a plane", {"point", "normal", "velocity"}, {}});
+  check_keys(on, {"a plane", {"point", "normal", "velocity"}});
   const auto vector = [&](const char* key, Facts allowed, const char* unit, const char* remedy) {
     const Value* value = on.find(key);
     if (value == nullptr) return zero;
@@ -71,7 +71,7 @@ Typed ContactsReader::contact_arm(const Value& table, std::map<std::string, Type
                     "it is made of axes of the body, angles and lengths"};
   if (at != nullptr) return resolver_.value(*at, arm);
   as(Value::Kind::table, *shape, "'shape'", "write shape = { sphere = \"R\" } or { disk = \"R\" }");
-  check_keys(*shape, {"a shape in contact", {"sphere", "disk"}, {}});
+  check_keys(*shape, {"a shape in contact", {"sphere", "disk"}});
   if (shape->entries.size() != 1)
     source_.fail(shape->span, fmt::format("a shape in contact is given in {} ways", shape->entries.size()),
                  "write shape = { sphere = \"R\" } or { disk = \"R\" }");
@@ -127,7 +127,7 @@ void ContactsReader::read_contact_point(Constraint& constraint, const Value& tab
 void ContactsReader::read(Constraint& constraint, const Value& table, bool rolling, bool rough) {
   const std::string what = fmt::format("the constraint '{}'", constraint.name);
   as(Value::Kind::table, table, what, form);
-  check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}, {}});
+  check_keys(table, {what, {"body", "on", "at", "shape", "at_b", "shape_b", "normal", "tangent"}});
   const Value& name = needed(table, "body", what, form);
   const std::uint32_t frame = frame_named(name, fmt::format("'body' of {}", what));
   if (frame == 0 || frame_sources_[frame].place == 0)

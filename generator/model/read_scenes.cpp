@@ -60,8 +60,7 @@ std::vector<const Entry*> ScenesReader::merged(const Entry& scene, std::vector<s
   as(Value::Kind::table, scene.value, what, "write [scene.NAME] and its keys below");
   check_keys(scene.value, {what,
                            {"from", "t", "initial", "solve", "guess", "parameters", "inputs", "outputs", "solver",
-                            "rtol", "atol", "step", "every", "stop"},
-                           {}});
+                            "rtol", "atol", "step", "every", "stop"}});
   if (std::find(from.begin(), from.end(), scene.key) != from.end()) {
     source_.fail(
         scene.value.find("from")->span,
@@ -168,7 +167,9 @@ void ScenesReader::read_span(Scene& scene, const Value& value) {
 }
 
 NodeId ScenesReader::positive_number(const Value& value, const std::string& what, std::string_view unit) {
-  if (value.is(Value::Kind::array)) not_yet(value.span, fmt::format("{} with a value for each coordinate", what));
+  if (value.is(Value::Kind::array))
+    source_.fail(value.span, fmt::format("{} has {} values", what, value.items.size()),
+                 "write one, which holds for all");
   const Typed typed = resolver_.value(value, plain(what, unit == "1" ? "1" : unit));
   if (typed.constant && !cln::plusp(*typed.constant))
     source_.fail(value.span, fmt::format("{} is not positive", what), "write a number greater than 0");

@@ -103,11 +103,10 @@ void Reader::read() {
 }
 
 void Reader::read_head() {
-  check_keys(root_, {"a model",
-                     {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
-                      "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
-                      "force",       "constraint", "joint",    "event",      "draw",      "scene"},
-                     {}});
+  check_keys(root_,
+             {"a model", {"format",      "title",      "notes",    "parameters", "functions", "inputs", "coordinates",
+                          "definitions", "energy",     "particle", "body",       "frame",     "point",  "chain",
+                          "force",       "constraint", "joint",    "event",      "draw",      "scene"}});
   const Value& format = needed(root_, "format", "the model", "add format = 1 at the top");
   if (!format.is(Value::Kind::integer) || format.text != "1") {
     source_.fail(format.span, fmt::format("the format {} is not known", quote(format.text)), "write format = 1");

@@ -82,7 +82,7 @@ void ScenesReader::read_scene_inputs(Scene& scene, const std::vector<const Entry
 InputTable ScenesReader::read_input_table(const Value& table, const Symbol& input) {
   const std::string what = fmt::format("the table of the input '{}'", input.name);
   const std::string remedy = "write { t = [0, 1, 2], value = [0, 5, 0] }: value[k] holds from t[k] on";
-  check_keys(table, {what, {"t", "value"}, {}});
+  check_keys(table, {what, {"t", "value"}});
   const Value& times = as(Value::Kind::array, needed(table, "t", what, remedy), "'t'", remedy);
   const Value& values = as(Value::Kind::array, needed(table, "value", what, remedy), "'value'", remedy);
   if (times.items.empty() || times.items.size() != values.items.size()) {

@@ -23,7 +23,6 @@ inline constexpr long max_chain = 64;
 struct Keys {
   std::string what;  // "[[particle]]"
   std::vector<std::string_view> known;
-  std::vector<std::string_view> later;
 };
 
 /// Where a place is declared.
@@ -90,7 +89,6 @@ class SectionReader {
   std::vector<const Value*> sections(std::string_view name) const;  // [[name]]
   std::string text_of_key(const Value& table, std::string_view key, const std::string& what) const;
   Span key_span(const Value& table, std::string_view key) const;
-  [[noreturn]] void not_yet(Span span, const std::string& what) const;
   std::string tex_of(const Value& table, const std::string& what) const;
   /// A unit that values are given in: SI without a factor.
   Unit si_unit(const Value& value, const std::string& what) const;

@@ -54,6 +54,8 @@ std::vector<WrongModel> wrong_scenes() {
        "'G' is not a parameter", "the keys of 'parameters' are names of [parameters]"},
       {"a negative tolerance", pendulum({}, "[scene.default]\nrtol = -1e-6\n"), "13:8", "'rtol' is not positive",
        "write a number greater than 0"},
+      {"tolerances in a list", pendulum({}, "[scene.default]\nrtol = [1e-6, 1e-9]\n"), "13:8", "'rtol' has 2 values",
+       "write one, which holds for all"},
       {"an input table of unequal lengths",
        pendulum({{"[parameters]", "[inputs]\nF = { unit = \"N\" }\n[parameters]"}},
                 "[scene.default]\ninputs = { F = { t = [0, 1], value = [1] } }\n"),
