@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "mechanics/vanishes.hpp"
+#include "mechanics/domain.hpp"
 #include "symbolic/polynomial.hpp"
 
 namespace eomgen::mechanics {
@@ -191,6 +191,10 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
     const Vec3 a = arg(0).components, b = arg(1).components;
     return of(Vec3{combine(a[0], b[0]), combine(a[1], b[1]), combine(a[2], b[2])});
   };
+  const auto valued = [&](Ref r) {
+    require_value(m_, r, node.span);
+    return of(r);
+  };
   switch (node.op) {
     case Op::add:
       if (node.vector) return each([&](Ref a, Ref b) { return dag_.add(a, b); });
@@ -205,13 +209,13 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
       if (!node.vector) return of(dag_.mul(arg(0).scalar, arg(1).scalar));
       return arg(0).vector ? of(scale(arg(1).scalar, arg(0).components)) : of(scale(arg(0).scalar, arg(1).components));
     case Op::divide:
-      require_divisor(arg(1).scalar, node);
+      require_divisor(m_, arg(1).scalar, node.span);
       if (!node.vector) return of(dag_.div(arg(0).scalar, arg(1).scalar));
       return of(scale(dag_.div(dag_.one(), arg(1).scalar), arg(0).components));
     case Op::power:
       if (dag_.is_constant(arg(1).scalar) && cln::minusp(dag_.value(arg(1).scalar)))
-        require_divisor(arg(0).scalar, node);
-      return of(dag_.pow(arg(0).scalar, arg(1).scalar));
+        require_divisor(m_, arg(0).scalar, node.span);
+      return valued(dag_.pow(arg(0).scalar, arg(1).scalar));
     case Op::conditional:
       if (node.vector) {
         const Vec3 x = arg(2).components, y = arg(3).components;
@@ -225,18 +229,9 @@ Lowering::Value Lowering::lower_arithmetic(const model::Node& node) {
   }
   const sym::Op op = op_of(node.fn);
   if (op == sym::Op::atan2 || op == sym::Op::min || op == sym::Op::max) {
-    return of(dag_.call(op, arg(0).scalar, arg(1).scalar));
+    return valued(dag_.call(op, arg(0).scalar, arg(1).scalar));
   }
-  return of(dag_.call(op, arg(0).scalar));
-}
-
-// What turns out to be 0 by itself, such as the distance of a mass at rest in the centre that attracts it.
-void Lowering::require_divisor(Ref divisor, const model::Node& node) const {
-  const sym::Op op = dag_[divisor].op;
-  const bool is_sum = op == sym::Op::add || op == sym::Op::sub || op == sym::Op::neg;  // a product would have shown it
-  if (!dag_.is_zero(divisor) && !(is_sum && vanishes(dag_, {divisor}))) return;
-  throw Error("mechanics", m_.model->where(node.span), "this divides by 0, whatever the state and the time",
-              "check the denominator; of a force between two points that these are not one and the same");
+  return valued(dag_.call(op, arg(0).scalar));
 }
 
 Lowering::Value Lowering::lower_vector(const model::Node& node) {
@@ -258,7 +253,7 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::cross: result = cross(vector(node.args[0]), vector(node.args[1])); break;
     case Op::unit: {
       const Vec3 a = vector(node.args[0]);
-      require_divisor(norm(a), node);
+      require_divisor(m_, norm(a), node.span);
       result = scale(dag_.div(dag_.one(), norm(a)), a);
       break;
     }
@@ -288,6 +283,7 @@ Lowering::Value Lowering::basis(const model::Node& node) {
   const Vec3 a = gradient(position(node.index), coordinate);
   if (node.op == model::Op::covariant_basis) return of(a);
   if (const model::NodeId e = chart_vector(node.index, coordinate); e != model::no_node) return of(vector(e));
+  require_divisor(m_, norm(a), node.span);
   return of(scale(dag_.div(dag_.one(), norm(a)), a));
 }
 

@@ -62,7 +62,6 @@ class Lowering {
   Ref rolling_reaction(const model::Node& node);
   Ref joint_force(const model::Node& node);
   Value lower_arithmetic(const model::Node& node);
-  void require_divisor(Ref divisor, const model::Node& node) const;
   Value lower_vector(const model::Node& node);
   Value lower_derivative(const model::Node& node);
   Value basis(const model::Node& node);

@@ -3,7 +3,10 @@
 
 #include <fmt/format.h>
 
+#include <stdexcept>
+
 #include "reading/lagrangian.hpp"
+#include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
@@ -120,7 +123,7 @@ std::string why_no_curve(const Mechanics& m) {
   return "";
 }
 
-Frenet frenet(const Mechanics& mechanics) {
+Frenet frenet(const Mechanics& mechanics) try {
   if (const std::string why = why_no_curve(mechanics); !why.empty()) {
     throw Error("derive", Where{mechanics.model->file, 0, 0, 1, ""},
                 "there is no curve whose Frenet triad could be shown: " + why,
@@ -168,6 +171,8 @@ Frenet frenet(const Mechanics& mechanics) {
     f.torsion = on_curve(simplify(dot(bend, third) * power(square, -1)));
   }
   return f;
+} catch (const std::domain_error&) {
+  throw no_value(mechanics);
 }
 
 }  // namespace eomgen::reading

@@ -2,9 +2,11 @@
 // Bases (1.20), (1.22), metric (1.31), Christoffel symbols (2.184), (2.185) of one particle's coordinates, and of the
 // whole system's configuration manifold.
 #include <algorithm>
+#include <stdexcept>
 #include <string>
 
 #include "reading/lagrangian.hpp"
+#include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
@@ -144,7 +146,7 @@ Geometry of_place(Bridge& bridge, Mechanics& m, std::uint32_t index, const mecha
 
 }  // namespace
 
-std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>* left_out) {
+std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>* left_out) try {
   Mechanics m = mechanics;  // shares the Dag; lowering the unit vectors may add nodes to it
   Bridge bridge(m);
   std::vector<Geometry> result;
@@ -160,9 +162,11 @@ std::vector<Geometry> geometry(const Mechanics& mechanics, std::vector<LeftOut>*
     }
   }
   return result;
+} catch (const std::domain_error&) {
+  throw no_value(mechanics);
 }
 
-std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<LeftOut>* left_out) {
+std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<LeftOut>* left_out) try {
   const std::size_t n = m.free.size();
   if (n > largest_manifold) {
     if (left_out != nullptr)
@@ -188,6 +192,8 @@ std::optional<Geometry> configuration_space(const Mechanics& m, std::vector<Left
     return std::nullopt;
   }
   return g;
+} catch (const std::domain_error&) {
+  throw no_value(m);
 }
 
 }  // namespace eomgen::reading

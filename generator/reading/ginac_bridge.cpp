@@ -87,7 +87,7 @@ Sum Bridge::convert(const ex& e) {
   if (++steps_ > most_steps) throw TermBudget();
   if (GiNaC::is_a<GiNaC::numeric>(e)) {
     const cln::cl_N value = GiNaC::ex_to<GiNaC::numeric>(e).to_cl_N();
-    if (!GiNaC::ex_to<GiNaC::numeric>(e).is_rational()) throw std::logic_error("a number that is not exact");
+    if (!GiNaC::ex_to<GiNaC::numeric>(e).is_rational()) throw std::domain_error("a number that is not real");
     return Sum(cln::the<cln::cl_RA>(value));
   }
   if (GiNaC::is_a<GiNaC::symbol>(e)) return alphabet_(meaning_.at(e));

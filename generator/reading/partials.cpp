@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "reading/partials.hpp"
 
+#include <stdexcept>
+
 #include "reading/lagrangian.hpp"
+#include "reading/no_value.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
 
-std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const ReadingForm& form) {
+std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const ReadingForm& form) try {
   std::vector<Partials> result;
   if (form.by_parts) return result;
   Bridge bridge(m);
@@ -30,6 +33,8 @@ std::vector<Partials> partial_derivatives(const mechanics::Mechanics& m, const R
     result.push_back(std::move(p));
   }
   return result;
+} catch (const std::domain_error&) {
+  throw no_value(m);
 }
 
 }  // namespace eomgen::reading

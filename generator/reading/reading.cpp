@@ -6,21 +6,14 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "error.hpp"
 #include "mechanics/dependent.hpp"
 #include "reading/approaches.hpp"
 #include "reading/lagrangian.hpp"
+#include "reading/no_value.hpp"
 #include "reading/trig.hpp"
 
 namespace eomgen::reading {
 namespace {
-
-/// A denominator whose vanishing only the reading form sees; those of the model's own text are told with their place.
-Error divides_by_zero(const mechanics::Mechanics& m) {
-  return Error("reading", Where{m.model->file, 0, 0, 1, ""},
-               "an expression of this model divides by 0, or is the logarithm of 0, whatever the state and the time",
-               "check the denominators; of a force between two points that these are not one and the same");
-}
 
 using mechanics::Mechanics;
 
@@ -131,7 +124,7 @@ double most_terms(const symbolic::Dag& dag, symbolic::Ref expression) {
 
 }  // namespace
 
-ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
+ReadingForm derive_reading(const Mechanics& given, system::Approach approach) try {
   const Mechanics m = approach == system::Approach::two ? mechanics::impose_dependent(given) : given;
   ReadingForm form;
   form.approach = approach;
@@ -151,11 +144,11 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) {
       approach_two(m, bridge, spins, form);
   } catch (const work::OverBudget& over) {
     leave_by_parts(m, form, over.what());
-  } catch (const std::domain_error&) {
-    throw divides_by_zero(m);
   }
   add_constraints(m, bridge, form);
   return form;
+} catch (const std::domain_error&) {
+  throw no_value(given);
 }
 
 std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::Mechanics& m) {
@@ -179,14 +172,12 @@ std::vector<symbolic::Ref> residuals_on_dag(const ReadingForm& form, mechanics::
   return result;
 }
 
-Sum read(const Mechanics& m, symbolic::Ref expression) {
+Sum read(const Mechanics& m, symbolic::Ref expression) try {
   const work::Budget budget(item_budget);
   Bridge bridge(m);
-  try {
-    return bridge.sum(expression);
-  } catch (const std::domain_error&) {
-    throw divides_by_zero(m);
-  }
+  return bridge.sum(expression);
+} catch (const std::domain_error&) {
+  throw no_value(m);
 }
 
 ReadingForm::ReadingForm() = default;

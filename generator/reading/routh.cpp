@@ -2,8 +2,10 @@
 #include "reading/routh.hpp"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "reading/approaches.hpp"
+#include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
@@ -79,7 +81,7 @@ void reduce(const Mechanics& m, Bridge& bridge, RouthForm& form) {
 
 Symbol momentum_symbol(std::uint32_t coordinate) { return {SymbolKind::extra, coordinate, 3}; }
 
-RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic) {
+RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic) try {
   RouthForm form;
   form.cyclic = cyclic;
   Bridge bridge(m);
@@ -91,6 +93,8 @@ RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cycli
   }
   if (form.by_parts) form = RouthForm{true, cyclic, {}, {}, {}, {}, {}};
   return form;
+} catch (const std::domain_error&) {
+  throw no_value(m);
 }
 
 std::vector<symbolic::Ref> residuals_on_dag(const RouthForm& form, Mechanics& m) {

@@ -6,9 +6,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <stdexcept>
 
 #include "reading/evaluator.hpp"
 #include "reading/lagrangian.hpp"
+#include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
 #include "reading/trig.hpp"
@@ -199,7 +201,7 @@ void add_geometry(const Mechanics& m, Bridge& bridge, const std::map<Symbol, Sum
 
 }  // namespace
 
-std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>* left_out) {
+std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>* left_out) try {
   Bridge bridge(m);
   Sets sets;
   std::vector<std::uint32_t> all;
@@ -229,6 +231,8 @@ std::vector<SingularSet> singular_sets(const Mechanics& m, std::vector<LeftOut>*
   within_budget("the metrics of the charts", [&] { add_geometry(m, bridge, values, sets); });
   within_budget("the angles of the bodies", [&] { add_rotations(m, bridge, values, sets); });
   return sets.take();
+} catch (const std::domain_error&) {
+  throw no_value(m);
 }
 
 }  // namespace eomgen::reading

@@ -44,8 +44,10 @@ TEST_CASE("mechanics refuses: gravity across the plane of motion changes no equa
 }
 
 TEST_CASE("mechanics refuses: what divides by 0 in every state, with its place") {
-  for (const char* energy : {"1/(x - x)", "x/(sin(y)^2 + cos(y)^2 - 1)", "(x - x)^(-2)*y"}) {
-    CAPTURE(energy);
+  for (const char* energy :
+       {"1/(x - x)", "x/(sin(y)^2 + cos(y)^2 - 1)", "(x - x)^(-2)*y", "x/(-y^2*(sin(y)^2 + cos(y)^2 - 1)^3)",
+        "1/(y*(sin(x)^2 + cos(x)^2 - 1))", "x/abs(2*(x + y)^2 - 2*x^2 - 2*y^2 - 4*x*y)"}) {
+    CAPTURE(std::string(energy));
     const Refusal r = refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
     CHECK(r.message == "this divides by 0, whatever the state and the time");
     CHECK(r.line == 10);
@@ -55,6 +57,34 @@ TEST_CASE("mechanics refuses: what divides by 0 in every state, with its place")
       "[[particle]]\nname = \"C\"\nmass = \"m\"\nposition = [0, 0, 0]\n[[force]]\ncentral_gravity = { GM = \"1\" }\n");
   CHECK(r.message == "this divides by 0, whatever the state and the time");
   CHECK(r.line == 13);
+}
+
+TEST_CASE("mechanics refuses: a function or a power that has no value in any state, with its place") {
+  const auto of = [](const std::string& energy) {
+    return refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
+  };
+  struct Case {
+    const char *energy, *what;
+  };
+  for (const Case& c : {Case{"log(x - x)", "this is the logarithm of 0"},
+                        {"y*log(sin(x)^2 + cos(x)^2 - 1)", "this is the logarithm of 0"},
+                        {"x/sqrt(sin(y)^2 + cos(y)^2 - 1)", "this is the root of 0, which has no derivative"},
+                        {"(sin(y)^2 + cos(y)^2 - 1)^x", "this is a power of 0"},
+                        {"atan2(x - x, y - y)", "this is the angle of a direction of length 0"},
+                        {"x*sqrt(1 - pi)", "this has no value: sqrt of a negative number"},
+                        {"x*(-8)^(1/3)", "this has no value: real power of a number that is not positive"},
+                        {"x*log(-1)", "this has no value: log of a number that is not positive"},
+                        {"x*acos(1.5)", "this has no value: asin or acos outside [-1, 1]"},
+                        {"x*tan(3*pi/2)", "this has no value: a tangent at its pole"}}) {
+    CAPTURE(std::string(c.energy));
+    const Refusal r = of(c.energy);
+    CHECK(r.message == std::string(c.what) + ", whatever the state and the time");
+    CHECK(r.line == 10);
+  }
+  for (const char* energy : {"x*sqrt(x - x) + x^2", "x*asin(1) + y*tan(pi/4)", "log(1)*x + x^0.5", "atan2(0*x, y)"}) {
+    CAPTURE(std::string(energy));
+    CHECK(of(energy).message == "accepted");
+  }
 }
 
 TEST_CASE("mechanics refuses: a constraint that follows from the one before it") {

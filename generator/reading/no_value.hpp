@@ -1,0 +1,20 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// What the functions of this stage throw in place of std::domain_error, which is where GiNaC or a Sum meets an
+// expression without a value. Operations of the model's own text are refused before, with their place
+// (mechanics/domain.hpp).
+#pragma once
+
+#include "error.hpp"
+#include "mechanics/mechanics.hpp"
+
+namespace eomgen::reading {
+
+inline Error no_value(const mechanics::Mechanics& mechanics) {
+  return Error(
+      "reading", Where{mechanics.model->file, 0, 0, 1, ""},
+      "an expression of this model has no value, whatever the state and the time: a division by 0, a logarithm "
+      "of 0, a tangent at its pole, the root of a negative number",
+      "check the denominators and the arguments of functions");
+}
+
+}  // namespace eomgen::reading
