@@ -12,6 +12,7 @@
 #include "derive/routes.hpp"
 #include "verify/comparisons.hpp"
 #include "verify/points.hpp"
+#include "verify/system_values.hpp"
 
 namespace eomgen::verify {
 namespace {
@@ -46,6 +47,18 @@ int mode_at(const mechanics::Mechanics& mechanics, const State& state) {
       mode = eom::with_contact_digit(mode, j, eom::contact_states / 2);
   }
   return mode;
+}
+
+/// Code that says of every state that its law of friction is undecided is compared nowhere: it is wrong.
+void note_uncompared(const Subjects& subjects, Tally& tally) {
+  const auto note = [&](const std::string& name, Kind kind) {
+    const auto& rows = tally.comparisons();
+    if (std::none_of(rows.begin(), rows.end(), [&](const Comparison& row) { return row.a == name; }))
+      tally.note(name, name_of(subjects.systems.front()), true, 1, kind);
+  };
+  if (subjects.systems.empty()) return;
+  for (const ProgramForm& form : subjects.programs) note(form.name, Kind::precise);
+  for (const CompiledForm& form : subjects.compiled) note(form.name, Kind::binary64);
 }
 
 }  // namespace
@@ -142,6 +155,7 @@ Certificate certify(const mechanics::Mechanics& mechanics, const Subjects& subje
     tally = std::move(with_this_point);
     tally.count_point();
   }
+  if (!interrupted) note_uncompared(subjects, tally);
   Certificate certificate;
   certificate.options = options;
   certificate.comparisons = tally.comparisons();

@@ -140,18 +140,18 @@ void compare_compiled_functions(const Subjects& subjects, const State& rounded, 
 
 void compare_code(const Subjects& subjects, const SystemValues& v, const Judge& judge, int mode, Tally& tally) {
   const EquationSystem& first = subjects.systems.front();
-  bool told = false;  // that the law has no solution here, or several
+  bool undecided = false;  // the law of friction has no solution here, or several
   for (const ProgramForm& form : subjects.programs) {
     const At arguments = arguments_at(first, v.state, mode);
     const std::vector<Real> dx = form.rhs(v.state.t, arguments.x, v.state.parameters, v.state.inputs, mode);
-    told = told || (dx.empty() && !first.contacts.empty());
-    if (told) continue;
+    undecided = undecided || (dx.empty() && !first.contacts.empty());
+    if (undecided) continue;
     // An acceleration may be 0 because the terms of its form cancel: they are what it is compared with.
     const std::vector<Real> rounding = rounding_of_rhs(form, arguments, judge);
     tally.note(form.name, name_of(first), true,
                rhs_difference(dx, right_hand_side(first, judge, v.state), first, v, rounding));
   }
-  if (told) return;
+  if (undecided) return;
   compare_functions(subjects, v, judge, mode, tally);
   if (subjects.compiled.empty()) return;
   const State at = in_binary64(v.state, judge);

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <functional>
 
+#include "support/folders.hpp"
 #include "symbolic/evaluate.hpp"
 #include "verify/sample_models.hpp"
 
@@ -221,6 +222,20 @@ TEST_CASE("certificate: program, compiled code and reading form are held against
   CHECK(!bad.pass);
   for (const char* name : {"program", "emitted code"}) CHECK(!find(bad, name, "lagrange I").pass);
   CHECK(!find(bad, "reading form II", "d'Alembert").pass);
+}
+
+TEST_CASE("certificate: code that says of every state that friction is undecided there is not passed over") {
+  const model::Model model = model::read_model(eomgen::test::source_folder() + "/models/rough_incline_puck.toml");
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  Subjects subjects;
+  subjects.systems = all_routes(m);
+  const std::string first = subjects.systems.front().route + " " + system::name(subjects.systems.front().approach);
+  CHECK(certify(m, subjects, {50, 3, 1}).pass);
+  subjects.programs.push_back({"program", [](const Real&, const std::vector<Real>&, const std::vector<Real>&,
+                                             const std::vector<Real>&, int) { return std::vector<Real>{}; }});
+  const Certificate found = certify(m, subjects, {50, 3, 1});
+  CHECK_FALSE(found.pass);
+  CHECK_FALSE(find(found, "program", first).pass);
 }
 
 TEST_CASE("certificate: digits that binary64 cannot tell apart are refused, 300 are not") {
