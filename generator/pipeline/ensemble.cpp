@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <eom/ensemble/integrate.hpp>
+#include <eom/hybrid/balance.hpp>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -18,9 +19,9 @@
 namespace eomgen::pipeline {
 namespace {
 
-// What a run without an error estimate may lose of its energy is ten times this (run/balance.cpp): nearer to that it is
-// made alone, where the energy is looked at after every step.
-constexpr double doubtful_energy = 1e-2;
+// Nearer than this to what a run without an error estimate may lose of its energy it is made alone, where the energy is
+// looked at after every step.
+constexpr double doubtful_energy = eom::hybrid::balance::without_estimate / 10;
 
 emit::LoadedBatch compile_batch(const Simulation& first) {
   Derived& derived = *first.derived;
@@ -202,7 +203,7 @@ class Runs {
 
 std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides) {
   if (overrides.solver || scene.solver != "auto") return overrides.solver.value_or(scene.solver);
-  return overrides.step ? "rk4" : "dop853";
+  return overrides.step || scene.step != model::no_node ? "rk4" : "dop853";
 }
 
 std::vector<const eom::MethodInfo*> ensemble_solvers() {

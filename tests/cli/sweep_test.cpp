@@ -158,6 +158,7 @@ TEST_CASE(
     "there") {
   const Folder folder;
   folder.write("oscillator.toml", oscillator_text());
+  folder.write("stepped.toml", oscillator_text() + "step = 0.01\n");
   folder.write("diverging.toml", diverging);
   folder.write("pushed.toml",
                "format = 1\n[parameters]\nm = 1\nc = 0.5\n[inputs]\nF = { unit = \"N\" }\n[coordinates]\nx = "
@@ -182,6 +183,7 @@ TEST_CASE(
              {"--grid", "m=1,-1,2,0", "--grid", "k=1:100:log:4", "--solver", "rk4", "--step", "0.01"},
              3},
         Case{"diverging.toml", {"--grid", "k=0:1:7", "--solver", "dopri5"}, 3},
+        Case{"stepped.toml", {"--grid", "k=1:9:5"}, 0},
         Case{"pushed.toml", {"--grid", "m=1:3:7", "--solver", "dop853"}, 0}}) {
     CAPTURE(std::string(c.model));
     const auto sweep = [&](const Words& more) {
