@@ -7,19 +7,17 @@
 #include <string>
 
 #include "couplings/coupling.hpp"
-#include "support/folders.hpp"
-#include "support/simulation.hpp"
+#include "support/run_text.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
 
 namespace {
 
-Finished run_text(const std::string& name, const std::string& text) {
-  const std::string path = test::build_folder() + "/" + name + ".toml";
-  write_text(path, "format = 1\ntitle = \"" + name + "\"\n" + text);
-  return run_model(
-      path, [](pipeline::SimulationRequest& request) { request.overrides.rtol = request.overrides.atol = 1e-12; });
+Finished run_tight(const std::string& name, const std::string& sections) {
+  return run_text(name, sections, [](pipeline::SimulationRequest& request) {
+    request.overrides.rtol = request.overrides.atol = 1e-12;
+  });
 }
 
 // Runs of a second or two at 1e-12, with motions of the order of 10.
@@ -71,7 +69,7 @@ TEST_CASE("gear: speeds by the ratio, the inertia of the second over its square,
           "angles = [\"a\", \"b\"]"}) {
       CAPTURE(ratio);
       CAPTURE(which);
-      const Finished run = run_text("gear_pair", shafts(which + ", ratio = " + std::to_string(ratio)));
+      const Finished run = run_tight("gear_pair", shafts(which + ", ratio = " + std::to_string(ratio)));
       const double acceleration = 3 / (2 + 0.5 / (ratio * ratio)), t = 2;
       const double turned = 0.5 * t + acceleration * t * t / 2;
       CHECK(std::abs(run.final("a") - (0.1 + turned)) < same);
@@ -84,7 +82,7 @@ TEST_CASE("gear: speeds by the ratio, the inertia of the second over its square,
 }
 
 TEST_CASE("gear: on a carrier, with a ring at rest: Willis' equation, and power in equals power into the motion") {
-  const Finished run = run_text("gear_planetary", R"toml(
+  const Finished run = run_tight("gear_planetary", R"toml(
 [parameters]
 zs = 20
 zp = 15

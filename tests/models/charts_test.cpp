@@ -6,9 +6,8 @@
 #include <cmath>
 
 #include "support/attitude.hpp"
-#include "support/folders.hpp"
 #include "support/free_body.hpp"
-#include "support/simulation.hpp"
+#include "support/run_text.hpp"
 
 using namespace eomgen;
 
@@ -21,13 +20,6 @@ std::size_t exchanges(const test::Finished& run, const std::string& whose = "B")
   for (const run::RunEvent& event : run.simulation.result.events)
     count += event.kind == "chart" && event.name == whose ? 1 : 0;
   return count;
-}
-
-test::Finished run_text(const std::string& name, const std::string& text,
-                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
-  const std::string path = test::build_folder() + "/" + name + ".toml";
-  test::write_text(path, "format = 1\n" + text);
-  return test::run_model(path, adjust);
 }
 
 /// Outputs e_k . E_j of the body, "c11" to "c33".
@@ -58,7 +50,7 @@ test::Finished thousand_turns(const rotations::Rotation& r, const std::string& s
     request.overrides.rtol = request.overrides.atol = 1e-13;
     request.overrides.solver = solver;
   };
-  return run_text(
+  return test::run_text(
       "charts_" + r.name,
       "[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [1, 1.3, 2.2] }\nrotation = " + written.rotation +
           "\n[definitions]\n" + definitions + "[scene.default]\nt = [0, 6200]\ninitial = { " + written.start +
@@ -135,7 +127,7 @@ TEST_CASE(
     const double rate = symmetric ? -1 : 1;
     char numbers[100];
     std::snprintf(numbers, sizeof numbers, "a = 0.3, b = %.17g, c = -0.4, b_dot = %g", start, rate);
-    const test::Finished run = run_text(
+    const test::Finished run = test::run_text(
         std::string("charts_through_") + set,
         std::string("[[body]]\nname = \"B\"\nmass = 1\ninertia = { principal = [2, 2, 2] }\nrotation = { euler = \"") +
             set +
@@ -165,7 +157,7 @@ TEST_CASE(
       "[scene.default]\nt = [0, 3]\nrtol = 1e-12\natol = 1e-13\ninitial = { a = 0.2, b_dot = 0.7, a_dot = 0.4, c_dot = "
       "0.3 }\noutputs = [" +
       omegas + "]\n";
-  const test::Finished run = run_text("charts_start", text);
+  const test::Finished run = test::run_text("charts_start", text);
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   REQUIRE(exchanges(run) >= 2);
   CHECK(run.simulation.result.events.front().t == 0);
@@ -173,7 +165,7 @@ TEST_CASE(
   CHECK(run.drift("energy") < 1e-11);
   CHECK(run.simulation.result.error_estimate.back().second < 1e-10);
   CHECK_THROWS_WITH_AS(
-      run_text("charts_start", text, [](pipeline::SimulationRequest& request) { request.charts = false; }),
+      test::run_text("charts_start", text, [](pipeline::SimulationRequest& request) { request.charts = false; }),
       doctest::Contains("the start is a singular configuration"), Error);
 }
 
@@ -186,7 +178,7 @@ TEST_CASE("charts: a particle in spherical coordinates goes straight past the po
     std::snprintf(numbers, sizeof numbers,
                   "R = %.17g, phi = %.17g, theta = %.17g, R_dot = %.17g, phi_dot = %.17g, theta_dot = %.17g", R,
                   std::atan2(s, 1), std::atan2(miss, 1), -1 / R, -1 / (R * R * s), miss / (s * s));
-    const test::Finished run = run_text(
+    const test::Finished run = test::run_text(
         "charts_line",
         std::string("[[particle]]\nname = \"P\"\nmass = 2\nposition = { spherical = [\"R\", \"phi\", \"theta\"] }\n"
                     "[scene.default]\nt = [0, 2.5]\nrtol = 1e-12\natol = 1e-13\ninitial = { ") +
@@ -207,12 +199,12 @@ TEST_CASE("charts: a particle in spherical coordinates goes straight past the po
 
 TEST_CASE("charts: a pendulum on a sphere swings exactly through its lowest point, a pole of its coordinates") {
   const test::Finished run =
-      run_text("charts_pendulum",
-               "[parameters]\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", "
-               "\"phi\", \"theta\"] }\n"
-               "[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"rod\"\nholonomic = \"R - "
-               "1\"\n[scene.default]\nt = [0, 5]\nrtol = 1e-12\natol = 1e-13\n"
-               "initial = { phi = \"pi - 1\", theta = 0.4 }\noutputs = [\"P.position3\", \"reaction.rod\"]\n");
+      test::run_text("charts_pendulum",
+                     "[parameters]\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = 1\nposition = { spherical = [\"R\", "
+                     "\"phi\", \"theta\"] }\n"
+                     "[[force]]\ngravity = \"-g*E3\"\n[[constraint]]\nname = \"rod\"\nholonomic = \"R - "
+                     "1\"\n[scene.default]\nt = [0, 5]\nrtol = 1e-12\natol = 1e-13\n"
+                     "initial = { phi = \"pi - 1\", theta = 0.4 }\noutputs = [\"P.position3\", \"reaction.rod\"]\n");
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(run, "P") >= 8);
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
@@ -240,9 +232,9 @@ TEST_CASE("charts: the multipliers of a joint are the same in both charts, and t
   char start[300];
   std::snprintf(start, sizeof start, "e0 = %.17g, e1 = %.17g, \"B.omega\" = [0.4, 0.1, 3], %s", std::cos(1.1),
                 std::sin(1.1), placed.c_str());
-  const test::Finished euler = run_text("charts_joint", model(angles.rotation, angles.start));
-  const test::Finished parameters =
-      run_text("charts_joint_parameters", model("{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", start));
+  const test::Finished euler = test::run_text("charts_joint", model(angles.rotation, angles.start));
+  const test::Finished parameters = test::run_text(
+      "charts_joint_parameters", model("{ euler_parameters = [\"e0\", \"e1\", \"e2\", \"e3\"] }", start));
   REQUIRE(euler.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(euler) >= 2);
   for (std::size_t i = 0; i < euler.rows.size(); ++i) {
@@ -261,12 +253,12 @@ TEST_CASE(
   std::string text = test::read_text(test::model_path("R7_satellite"));
   text = text.substr(0, text.find("[scene.default]"));
   text = text.substr(text.find("format = 1\n") + 11);
-  const test::Finished run =
-      run_text("charts_satellite",
-               text +
-                   "[scene.default]\nt = [0, 20]\nrtol = 1e-12\natol = 1e-13\noutputs = [\"HO1\", \"HO2\", \"HO3\"]\n"
-                   "[scene.default.initial]\nR = 1\nphi = 1.2\nphi_dot = -1\ntheta_dot = 0.05\nn1 = 0.1\nn2 = "
-                   "0.2\n\"S.omega\" = [0.3, 0.9, 0.2]\n");
+  const test::Finished run = test::run_text(
+      "charts_satellite",
+      text +
+          "[scene.default]\nt = [0, 20]\nrtol = 1e-12\natol = 1e-13\noutputs = [\"HO1\", \"HO2\", \"HO3\"]\n"
+          "[scene.default.initial]\nR = 1\nphi = 1.2\nphi_dot = -1\ntheta_dot = 0.05\nn1 = 0.1\nn2 = "
+          "0.2\n\"S.omega\" = [0.3, 0.9, 0.2]\n");
   REQUIRE(run.simulation.result.outcome == eom::Outcome::done);
   CHECK(exchanges(run, "S") >= 2);
   CHECK(exchanges(run, "S.position") >= 6);

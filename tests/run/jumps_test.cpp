@@ -5,21 +5,13 @@
 #include <cmath>
 
 #include "support/by_hand.hpp"
-#include "support/folders.hpp"
-#include "support/simulation.hpp"
+#include "support/run_text.hpp"
 
 using namespace eomgen;
 
 namespace {
 
 constexpr double g = 9.81;
-
-test::Finished run_text(const std::string& name, const std::string& text,
-                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
-  const std::string path = test::build_folder() + "/" + name + ".toml";
-  test::write_text(path, "format = 1\n" + text);
-  return test::run_model(path, adjust);
-}
 
 std::string pendulum(const std::string& support) {
   return "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[coordinates]\nth = \"1\"\n[functions]\ns = \"" + support +
@@ -64,7 +56,7 @@ TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an imp
   for (const Case& c : {Case{"a*abs(t - 1)", 2}, Case{"a*max(0, t - 1)", 1}, Case{"if(t < 1, 0, a*(t - 1))", 1},
                         Case{"3 - a*min(1, t)", 1}}) {
     CAPTURE(std::string(c.support));
-    const test::Finished finished = run_text("support", pendulum(c.support));
+    const test::Finished finished = test::run_text("support", pendulum(c.support));
     const auto [th, th_dot] = expected(c.change);
     CHECK(finished.simulation.result.outcome == eom::Outcome::done);
     CHECK(std::abs(finished.final("th") - th) < 1e-7);
@@ -78,7 +70,7 @@ TEST_CASE("jumps: where the velocity of a support jumps the pendulum gets an imp
 }
 
 TEST_CASE("jumps: the same by a constraint with a multiplier") {
-  const test::Finished finished = run_text(
+  const test::Finished finished = test::run_text(
       "rod",
       "[parameters]\nm = 1\nl = 1\na = 1\ng = 9.81\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cartesian = "
       "[\"x\", \"y\"] }\n[[force]]\ngravity = \"-g*E2\"\n"
@@ -94,31 +86,32 @@ TEST_CASE("jumps: the same by a constraint with a multiplier") {
 }
 
 TEST_CASE("jumps: a support whose velocity bends and does not jump gives no impulse") {
-  const test::Finished finished = run_text("bends", pendulum("a*max(0, t - 1)^2"));
+  const test::Finished finished = test::run_text("bends", pendulum("a*max(0, t - 1)^2"));
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(impulse(finished) == nullptr);
 }
 
 TEST_CASE("jumps: a support that jumps itself ends the run, and is named") {
-  const test::Finished finished = run_text("place", pendulum("if(t < 1, 0, a)"));
+  const test::Finished finished = test::run_text("place", pendulum("if(t < 1, 0, a)"));
   CHECK(finished.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(finished.simulation.result.detail.find("P.position1 jumps at t = 1") == 0);
 }
 
 TEST_CASE("jumps: a step of a potential ends the run where it is crossed, one that is not is no matter") {
-  const test::Finished crossed = run_text("step", step_at_one("if(x < 1, 0, 5)", 4));
+  const test::Finished crossed = test::run_text("step", step_at_one("if(x < 1, 0, 5)", 4));
   CHECK(crossed.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(crossed.simulation.result.detail.find("the potential energy jumps by 5") == 0);
   CHECK(std::abs(crossed.final("x") - 1) < 1e-9);
-  CHECK(run_text("step", step_at_one("if(x < 1, 0, 5)", 0.3)).simulation.result.outcome == eom::Outcome::done);
-  CHECK(run_text("step", step_at_one("if(x < 1, 0, 5*(x - 1))", 4)).simulation.result.outcome == eom::Outcome::done);
+  CHECK(test::run_text("step", step_at_one("if(x < 1, 0, 5)", 0.3)).simulation.result.outcome == eom::Outcome::done);
+  CHECK(test::run_text("step", step_at_one("if(x < 1, 0, 5*(x - 1))", 4)).simulation.result.outcome ==
+        eom::Outcome::done);
 }
 
 TEST_CASE("jumps: a wire with a corner ends the run there") {
-  const test::Finished corner = run_text("corner",
-                                         "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = "
-                                         "\"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
-                                         "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
+  const test::Finished corner = test::run_text("corner",
+                                               "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\n[[particle]]\nname = "
+                                               "\"P\"\nmass = \"m\"\nposition = [\"x\", \"max(0, x - 1)\", 0]\n"
+                                               "[scene.default]\nt = [0, 3]\ninitial = { x_dot = 1 }\n");
   CHECK(corner.simulation.result.outcome == eom::Outcome::jump_undetermined);
   CHECK(corner.simulation.result.detail.find("P.velocity2 jumps by -1 at t = 1") == 0);
 }

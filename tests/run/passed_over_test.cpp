@@ -7,19 +7,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "support/folders.hpp"
-#include "support/simulation.hpp"
+#include "support/run_text.hpp"
 
 using namespace eomgen;
 
 namespace {
-
-test::Finished run_text(const std::string& name, const std::string& text,
-                        const std::function<void(pipeline::SimulationRequest&)>& adjust = {}) {
-  const std::string path = test::build_folder() + "/" + name + ".toml";
-  test::write_text(path, "format = 1\n" + text);
-  return test::run_model(path, adjust);
-}
 
 std::string particle(const std::string& force, const std::string& more) {
   return "[parameters]\nm = 1\nF = 658\n[coordinates]\nx = \"m\"\n" + more +
@@ -48,8 +40,8 @@ TEST_CASE(
         Case{"if(abs(t - 5.123) < 0.0005, F, 0)", F * w, 1e-9, false},
         Case{"F*max(0, 1 - abs(t - 5.123)/0.001)", F * w, 1e-9, false}}) {
     CAPTURE(std::string(c.force));
-    const test::Finished finished = run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n",
-                                             [](auto& request) { request.every_solver = true; });
+    const test::Finished finished = test::run_text("pulse", particle(c.force, "") + "[scene.default]\nt = [0, 10]\n",
+                                                   [](auto& request) { request.every_solver = true; });
     CHECK(std::abs(finished.final("x_dot") - c.impulse) < c.allowed);
     for (const eom::MethodInfo& method : eom::methods()) {
       if (method.needs.required.has(eom::Feature::constraints) ||
@@ -76,7 +68,7 @@ TEST_CASE("passed over: conditions in inputs are met, narrow ones too") {
       "[scene.pulses]\nfrom = \"default\"\ninputs = { u = \"if(cos(2*pi*t) > 0.9999, 1, 0)\" }\n"
       "[scene.table]\nfrom = \"default\"\ninputs = { u = { t = [0, 5, 5.001], value = [0, 1000, 0] } }\n";
   const auto end = [&](const std::string& scene) {
-    const test::Finished finished = run_text("input", text, [&](auto& request) { request.scene = scene; });
+    const test::Finished finished = test::run_text("input", text, [&](auto& request) { request.scene = scene; });
     CHECK(finished.simulation.result.outcome == eom::Outcome::done);
     return finished.final("x_dot");
   };
@@ -94,7 +86,7 @@ TEST_CASE("passed over: of a free particle, whose steps are long, every event is
       "[[event]]\nname = \"time\"\nwhen = \"sin(5*t + 1)\"\n[[event]]\nname = \"place\"\nwhen = \"sin(50*x + 1)\"\n"
       "[[event]]\nname = \"narrow\"\nwhen = \"abs(x - 3.3333) - 1e-5\"\n[scene.default]\nt = [0, 10]\ninitial = { "
       "x_dot = 1.1 }\n";
-  const test::Finished finished = run_text("events", text);
+  const test::Finished finished = test::run_text("events", text);
   const run::RunResult& result = finished.simulation.result;
   CHECK(result.outcome == eom::Outcome::done);
   CHECK(count(result, "custom", "time") == 16);    // 51 rad
@@ -103,19 +95,20 @@ TEST_CASE("passed over: of a free particle, whose steps are long, every event is
 }
 
 TEST_CASE("passed over: a narrow region of force is met by a particle that crosses it within a step") {
-  const test::Finished finished = run_text("barrier", particle("if(abs(x - 3.3) < 0.01, -20, 0)", "") +
-                                                          "[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n");
+  const test::Finished finished =
+      test::run_text("barrier", particle("if(abs(x - 3.3) < 0.01, -20, 0)", "") +
+                                    "[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n");
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(std::abs(finished.final("x_dot") - std::sqrt(1 - 2 * 20 * 0.02)) < 1e-7);
 }
 
 TEST_CASE("passed over: a bump that is narrower than a step is hit") {
-  const test::Finished finished =
-      run_text("bump",
-               "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = "
-               "\"m\"\nposition = [\"x\", \"y\", 0]\n[[constraint]]\nname = \"floor\"\n"
-               "holonomic = \"y - 0.1[m]/(1 + ((x - 3.7[m])/0.025[m])^2)\"\nholds = \"unilateral\"\nrestitution = "
-               "1\n[scene.default]\nt = [0, 5]\ninitial = { x = 0, y = 0.05, x_dot = 2, y_dot = 0 }\n");
+  const test::Finished finished = test::run_text(
+      "bump",
+      "[parameters]\nm = 1\n[coordinates]\nx = \"m\"\ny = \"m\"\n[[particle]]\nname = \"P\"\nmass = "
+      "\"m\"\nposition = [\"x\", \"y\", 0]\n[[constraint]]\nname = \"floor\"\n"
+      "holonomic = \"y - 0.1[m]/(1 + ((x - 3.7[m])/0.025[m])^2)\"\nholds = \"unilateral\"\nrestitution = "
+      "1\n[scene.default]\nt = [0, 5]\ninitial = { x = 0, y = 0.05, x_dot = 2, y_dot = 0 }\n");
   CHECK(finished.simulation.result.outcome == eom::Outcome::done);
   CHECK(count(finished.simulation.result, "contact", "floor") == 1);
   CHECK(std::abs(finished.final("x_dot")) < 1.99);
@@ -134,10 +127,10 @@ TEST_CASE(
                         Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
     CAPTURE(std::string(c.potential));
     const test::Finished finished =
-        run_text("narrow",
-                 "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"" + std::string(c.potential) +
-                     "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",
-                 [](auto& request) { request.every_solver = true; });
+        test::run_text("narrow",
+                       "[coordinates]\nx = {}\n[energy]\nkinetic = \"x_dot^2/2\"\npotential = \"" +
+                           std::string(c.potential) + "\"\n[scene.default]\nt = [0, 10]\ninitial = { x_dot = 1 }\n",
+                       [](auto& request) { request.every_solver = true; });
     for (const eom::MethodInfo& method : eom::methods()) {
       if (method.needs.keeps_constraints || !method.adaptive) continue;
       CAPTURE(std::string(method.name));
