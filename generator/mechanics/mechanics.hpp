@@ -114,7 +114,7 @@ struct Contact {
   bool unilateral = false;                      // its one constraint can be left
   Ref restitution;                              // of impacts then
   std::optional<std::uint32_t> body_contact;    // of a body: index into Model::constraints
-  bool rolls = false;                           // sticking is rolling: the point of contact wanders over the body
+  bool rolls = false;                           // sticking is rolling: the point of contact moves over the body
 
   std::size_t dimensions() const { return tangents.size(); }
 };

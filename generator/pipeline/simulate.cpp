@@ -80,6 +80,24 @@ bool energy_is_conserved(const Derived& derived) {
                      [](const conservation::Conserved& c) { return c.kind == OutputKind::energy; });
 }
 
+/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
+/// contacts.
+run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
+  const system::EquationSystem& system = derived.candidates.front();
+  std::vector<std::optional<symbolic::Ref>> functions;
+  for (const system::Event& event : system.events) functions.emplace_back(event.value);
+  functions.insert(functions.end(), code.kink_values.begin(), code.kink_values.end());
+  functions.resize(system.events.size() + code.kinks.size());
+  for (const system::Contact& contact : system.contacts) {
+    for (std::size_t value = 0; value < eom::contact_values; ++value) {
+      functions.emplace_back();
+      if (value == 3 && contact.unilateral) functions.back() = system.psi[*contact.unilateral];
+    }
+  }
+  if (functions.empty()) return {};
+  return run::EventRanges(system, functions, scene.parameters);
+}
+
 }  // namespace
 
 double row_interval(const run::Scene& scene) {
@@ -95,24 +113,6 @@ std::vector<std::string> state_names(const Derived& derived) {
     names.push_back(derived.model.integrals[integral.integral].name);
   }
   return names;
-}
-
-/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
-/// contacts.
-static run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
-  const system::EquationSystem& system = derived.candidates.front();
-  std::vector<std::optional<symbolic::Ref>> functions;
-  for (const system::Event& event : system.events) functions.emplace_back(event.value);
-  functions.insert(functions.end(), code.kink_values.begin(), code.kink_values.end());
-  functions.resize(system.events.size() + code.kinks.size());
-  for (const system::Contact& contact : system.contacts) {
-    for (std::size_t value = 0; value < eom::contact_values; ++value) {
-      functions.emplace_back();
-      if (value == 3 && contact.unilateral) functions.back() = system.psi[*contact.unilateral];
-    }
-  }
-  if (functions.empty()) return {};
-  return run::EventRanges(system, functions, scene.parameters);
 }
 
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate) {

@@ -9,7 +9,7 @@ namespace eomgen::program {
 
 /// The graph of one function, one node per Dag node, nothing rewritten; `free` and `integrals` tell which
 /// state entries they are.
-/// Pivot tests are kept where they say something (see pivots.cpp). Throws Error where an expression uses what a
+/// Pivot tests are kept where they say something (reduce_pivots). Throws Error where an expression uses what a
 /// program cannot have (accelerations, functions of time that were not written out).
 Polynomials from_dag(const symbolic::Dag& dag, const WantedFunction& wanted, const std::vector<std::uint32_t>& free,
                      const std::vector<system::IntegralState>& integrals = {});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The canonical form in which equations are read: a sum of monomials with exact coefficients, over atoms (symbols,
 // function calls, sums under a power). Its order is our own - by kind, then by order of declaration - and never
-// GiNaC's, which changes from process to process. Products are always multiplied out here; layout.hpp factors them
+// GiNaC's, which changes from process to process. Products are always multiplied out here; layout.cpp factors them
 // again for reading.
 #pragma once
 

@@ -12,27 +12,14 @@
 #include "run/integration.hpp"
 
 namespace eomgen::run {
+namespace {
 
-static SolverReason::Slopes slopes_of(const Code& code) {
+SolverReason::Slopes slopes_of(const Code& code) {
   return code.jac != nullptr ? SolverReason::Slopes::compiled : SolverReason::Slopes::differences;
 }
 
-std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene) {
-  using Basis = SolverReason::Basis;
-  if (asked != eom::Automatic::name) {
-    solvers_among("run", {asked});
-    if (!method_named(asked).adaptive && scene.step <= 0) {
-      throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
-                  "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
-    }
-    return {asked, Basis::asked};
-  }
-  if (scene.step > 0) return {"rk4", Basis::fixed_step};
-  return {eom::Automatic::name, scene.rtol > 1e-6 ? Basis::loose_tolerance : Basis::tight_tolerance};
-}
-
 /// Before it runs: what the solver takes of the code.
-static SolverReason reason_of(const RunRequest& request, const std::string& solver, SolverReason::Basis basis) {
+SolverReason reason_of(const RunRequest& request, const std::string& solver, SolverReason::Basis basis) {
   SolverReason reason;
   reason.basis = basis;
   const eom::MethodInfo& method = method_named(solver);
@@ -46,7 +33,7 @@ static SolverReason reason_of(const RunRequest& request, const std::string& solv
 }
 
 /// What `auto` did: the method that it ended with, the changes, where df/dx came from.
-static void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
+void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult& result) {
   if (choice.method != nullptr) result.solver = choice.method;
   result.reason.changes = choice.changes;
   if (!choice.changes.empty() && result.statistics.jacobians > 0)
@@ -54,7 +41,7 @@ static void take_choice(const RunRequest& request, const eom::Choice& choice, Ru
 }
 
 /// Why the run ended, in the words of the command line.
-static std::string told_end(const RunRequest& request, const eom::hybrid::RunResult& run) {
+std::string told_end(const RunRequest& request, const eom::hybrid::RunResult& run) {
   if (run.left_range && run.outcome == eom::Outcome::chart_left) {
     const eom::hybrid::LeftRange& left = *run.left_range;
     return fmt::format(
@@ -73,7 +60,7 @@ static std::string told_end(const RunRequest& request, const eom::hybrid::RunRes
 }
 
 /// The estimate by names; its doubts in the words of the command line.
-static void tell_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
+void tell_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
   const eom::hybrid::EndError& error = run.error;
   result.estimate_note = error.note;
   if (error.doubt == eom::hybrid::Doubt::passed_over) {
@@ -88,6 +75,22 @@ static void tell_error(const RunRequest& request, const eom::hybrid::RunResult& 
     result.error_estimate.emplace_back(request.state_names[i], error.states[i]);
   if (error.t) result.error_estimate.emplace_back("t", *error.t);
   result.error_estimate.emplace_back("max", error.max);
+}
+
+}  // namespace
+
+std::pair<std::string, SolverReason::Basis> choose_solver(const std::string& asked, const Scene& scene) {
+  using Basis = SolverReason::Basis;
+  if (asked != eom::Automatic::name) {
+    solvers_among("run", {asked});
+    if (!method_named(asked).adaptive && scene.step <= 0) {
+      throw Error("run", {}, fmt::format("solver '{}' takes steps of a fixed size, and none is given", asked),
+                  "give --step H (or step = H in the scene), or take dop853, which chooses its steps");
+    }
+    return {asked, Basis::asked};
+  }
+  if (scene.step > 0) return {"rk4", Basis::fixed_step};
+  return {eom::Automatic::name, scene.rtol > 1e-6 ? Basis::loose_tolerance : Basis::tight_tolerance};
 }
 
 RunResult integrate_scene(const RunRequest& request) {

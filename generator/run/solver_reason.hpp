@@ -28,7 +28,7 @@ struct SolverReason {
   bool momenta = false;                             // from the equations
   bool discrete_forces = false;                     // those that change the energy
   std::optional<double> shorter_steps_from = {};    // fixed ones, for functions of time
-  std::optional<double> time_unfollowed_from = {};  // Clock::incomplete
+  std::optional<double> time_unfollowed_from = {};  // Clock::unfollowed_from
   std::vector<eom::MethodChange> changes = {};      // of auto
   Slopes slopes_after_change = Slopes::unused;      // of the solvers that it changed to
   std::optional<double> narrow_unsure_from = {};    // whether a narrow force lies in a step

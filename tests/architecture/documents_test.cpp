@@ -1,4 +1,5 @@
-// What the documents say about the tree: their links, the model that the README shows, the packages and the commands.
+// What documents and comments say about the tree: links and files, the model that the README shows, the packages and
+// the commands.
 #include <doctest/doctest.h>
 
 #include <filesystem>
@@ -48,6 +49,32 @@ TEST_CASE("numbered sections of a page count from 1 on") {
     }
   }
   CHECK(numbered >= 20);
+}
+
+TEST_CASE("every file that a comment names is there") {
+  std::vector<fs::path> sources;
+  std::string tree;  // the paths, a line each
+  for (const char* folder : {"bench", "cmake", "docs", "examples", "generator", "lib", "templates", "tests"}) {
+    for (const fs::path& file : files_below(root / folder)) {
+      tree += "/" + fs::relative(file, root).generic_string() + "\n";
+      if (file.extension() == ".cpp" || file.extension() == ".hpp") sources.push_back(file);
+    }
+  }
+  static const std::regex comment("//.*"), name(R"(\b[\w/-]+\.(cpp|hpp|inc|md)\b)");
+  std::size_t seen = 0;
+  for (const fs::path& source : sources) {
+    const std::string text = read_text(source);
+    for (std::sregex_iterator line(text.begin(), text.end(), comment), end; line != end; ++line) {
+      const std::string words = line->str();
+      for (std::sregex_iterator at(words.begin(), words.end(), name); at != end; ++at, ++seen) {
+        const std::string file = "/" + at->str();
+        INFO(fs::relative(source, root).generic_string() << ": " << words);
+        CHECK((file.find("NAME") != std::string::npos || tree.find(file + "\n") != std::string::npos ||
+               tree.find(file + ".mustache\n") != std::string::npos));
+      }
+    }
+  }
+  CHECK(seen > 100);
 }
 
 TEST_CASE("the README shows the shipped model as it is") {
