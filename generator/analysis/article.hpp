@@ -10,6 +10,9 @@
 
 namespace eomgen::analysis {
 
+/// What `emit --target` calls it, beside the targets of code.
+inline constexpr const char* document_target = "latex";
+
 /// LaTeX. The equations are held against the judge first; throws Error{Fault::check} where they disagree.
 std::string article(std::shared_ptr<const model::Model> model, std::uint64_t seed);
 

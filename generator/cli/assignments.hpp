@@ -12,8 +12,8 @@ namespace eomgen::cli {
 using symbolic::decimal_text;
 using symbolic::parse_decimal;
 
-/// --set NAME=VALUE, of two for one name the last. Throws Error{stage `command`} for what sets nothing.
-std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command,
+/// NAME=VALUE behind `option`, of two for one name the last. Throws Error{stage `command`} for what sets nothing.
+std::map<std::string, symbolic::Rational> parse_assignments(const std::string& command, const std::string& option,
                                                             const std::vector<std::string>& assignments);
 
 }  // namespace eomgen::cli

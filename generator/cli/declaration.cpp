@@ -11,7 +11,6 @@
 
 #include "cli/locate.hpp"
 #include "cli/usage.hpp"
-#include "emit/targets.hpp"
 #include "model/names.hpp"
 
 namespace eomgen::cli {
@@ -97,13 +96,6 @@ struct Declaration::Parser {
   std::map<const CLI::App*, std::function<int(const Common&)>> actions;
   Words words;
 };
-
-std::vector<std::string> target_names() {
-  std::vector<std::string> names;
-  for (const emit::TargetEntry& entry : emit::targets()) names.emplace_back(entry.name);
-  names.emplace_back(document_target);
-  return names;
-}
 
 std::vector<std::string> DeclaredCommand::flags() const {
   std::vector<std::string> result;

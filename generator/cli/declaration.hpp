@@ -12,11 +12,6 @@
 
 namespace eomgen::cli {
 
-inline constexpr const char* document_target = "latex";  // beside the targets of code
-
-/// Of code, and that of the document.
-std::vector<std::string> target_names();
-
 /// An option or an argument, as those who read about it see it.
 struct DeclaredOption {
   std::vector<std::string> flags;  // "-o", "--out"; none of an argument

@@ -81,13 +81,6 @@ std::string operations_text(const program::Operations& o) {
   return result;
 }
 
-const char* approach_name(system::Approach approach) { return approach == system::Approach::one ? "I" : "II"; }
-
-const char* form_name(system::Form form) {
-  if (form == system::Form::multipliers) return "multipliers";
-  return form == system::Form::nullspace ? "nullspace" : "chaplygin";
-}
-
 }  // namespace
 
 std::vector<std::string> banner_lines(const program::Program& program, const EmissionContext& context) {
@@ -95,7 +88,7 @@ std::vector<std::string> banner_lines(const program::Program& program, const Emi
                                  context.title.empty() ? context.id : context.title, ""};
   lines.push_back("model       " + context.id);
   lines.push_back("content     " + context.content_hash);
-  lines.push_back(fmt::format("equations   approach {}, route {}", approach_name(program.approach), program.route));
+  lines.push_back(fmt::format("equations   approach {}, route {}", system::name(program.approach), program.route));
   lines.push_back("verified    " + (context.verdict.empty() ? "no" : context.verdict));
   for (const std::string& set : context.singular) lines.push_back("singular    " + set);
   for (const program::Function& function : program.functions) {
@@ -270,9 +263,9 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   }
   if (!dependent.empty()) info["dependent"] = dependent;
   if (!context.start_parameter.empty()) info["start_parameter"] = context.start_parameter;
-  info["approach"] = approach_name(program.approach);
+  info["approach"] = system::name(program.approach);
   info["route"] = program.route;
-  if (program.active_constraints > 0) info["form"] = form_name(program.form);
+  if (program.active_constraints > 0) info["form"] = system::name(program.form);
   info["verdict"] = context.verdict;
   info["singular"] = context.singular;
   for (const program::Function& function : program.functions) {

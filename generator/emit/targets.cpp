@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "emit/targets.hpp"
 
+#include <fmt/format.h>
+
 #include "emit/batch/batch.hpp"
 #include "emit/c/c.hpp"
 #include "emit/cpp/cpp.hpp"
@@ -26,14 +28,19 @@ constexpr TargetEntry registry[] = {
 
 std::span<const TargetEntry> targets() { return registry; }
 
+std::vector<std::string> target_names() {
+  std::vector<std::string> names;
+  for (const TargetEntry& entry : registry) names.emplace_back(entry.name);
+  return names;
+}
+
 std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,
                               const std::string& target) {
-  std::string known;
   for (const TargetEntry& entry : registry) {
     if (entry.name == target) return entry.emit(program, context);
-    known += (known.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw Error("emit", {}, "there is no target `" + target + "`", "targets: " + known);
+  throw Error("emit", {}, fmt::format("there is no target `{}`", target),
+              fmt::format("targets: {}", fmt::join(target_names(), ", ")));
 }
 
 }  // namespace eomgen::emit

@@ -24,6 +24,7 @@ struct TargetEntry {
 };
 
 std::span<const TargetEntry> targets();
+std::vector<std::string> target_names();
 
 /// Sources for `target`. Throws Error with the names that exist where it is unknown.
 std::vector<EmittedFile> emit(const program::Program& program, const EmissionContext& context,

@@ -47,10 +47,6 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
   });
 }
 
-std::vector<std::string> targets() {
-  std::vector<std::string> names;
-  for (const emit::TargetEntry& entry : emit::targets()) names.emplace_back(entry.name);
-  return names;
-}
+std::vector<std::string> targets() { return emit::target_names(); }
 
 }  // namespace eomgen

@@ -76,19 +76,12 @@ program::Request request_of(const EmissionRequest& options, Derived& derived, co
 
 void require_with(const std::vector<std::string>& with) {
   for (const std::string& name : with) {
-    if (std::find(emitted_functions().begin(), emitted_functions().end(), name) != emitted_functions().end()) continue;
+    if (has(emitted_functions(), name)) continue;
     const bool batch = name.ends_with("_batch");
     throw Error("emit", {}, fmt::format("there is no function {} to emit", model::quote(name)),
                 batch ? "--target batch writes batches of rhs and of all that --with and --output ask for"
                       : model::choice_of(name, emitted_functions()));
   }
-}
-
-void require_target(const std::string& target) {
-  std::vector<std::string> known;
-  for (const emit::TargetEntry& entry : emit::targets()) known.emplace_back(entry.name);
-  if (std::find(known.begin(), known.end(), target) != known.end()) return;
-  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
 }
 
 /// All second charts and what can be combined of them; warns of what cannot be exchanged.
@@ -111,6 +104,13 @@ void add_all_charts(Derived& derived, program::Program& program, const ChartRequ
 }
 
 }  // namespace
+
+void require_target(const std::string& target, const std::vector<std::string>& beside) {
+  std::vector<std::string> known = emit::target_names();
+  known.insert(known.end(), beside.begin(), beside.end());
+  if (has(known, target)) return;
+  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
+}
 
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {
   require_target(request.target);

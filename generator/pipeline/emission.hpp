@@ -21,6 +21,9 @@ struct EmissionRequest {
 /// "run", all that a run calls.
 const std::vector<std::string>& emitted_functions();
 
+/// Throws Error where it is neither one of the targets nor one of those `beside` them.
+void require_target(const std::string& target, const std::vector<std::string>& beside = {});
+
 struct Emission {
   std::vector<emit::EmittedFile> files;
   program::Program program;

@@ -11,6 +11,7 @@
 #include "derive/routes.hpp"
 #include "emit/self_test.hpp"
 #include "error.hpp"
+#include "model/names.hpp"
 #include "numeric/numbers.hpp"
 #include "pipeline/kept_certificates.hpp"
 #include "pipeline/self_test_states.hpp"
@@ -142,30 +143,49 @@ verify::ProgramForm program_form(const program::Program& program, int digits,
   return form;
 }
 
+template <class Choice>
+using Choices = std::vector<std::pair<std::string, Choice>>;
+
+Choices<ApproachChoice> approach_choices() {
+  using system::Approach;
+  return {{"auto", ApproachChoice::automatic},
+          {system::name(Approach::one), ApproachChoice::one},
+          {system::name(Approach::two), ApproachChoice::two}};
+}
+
+Choices<FormChoice> form_choices() {
+  Choices<FormChoice> choices{{"auto", std::nullopt}};
+  for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin})
+    choices.emplace_back(system::name(form), form);
+  return choices;
+}
+
+template <class Choice>
+std::vector<std::string> words(const Choices<Choice>& choices) {
+  std::vector<std::string> result;
+  for (const auto& [word, choice] : choices) result.push_back(word);
+  return result;
+}
+
+template <class Choice>
+Choice chosen(const Choices<Choice>& choices, const char* what, const std::string& text) {
+  for (const auto& [word, choice] : choices) {
+    if (word == text) return choice;
+  }
+  throw Error("cli", {}, fmt::format("there is no {} {}", what, model::quote(text)),
+              model::choice_of(text, words(choices)));
+}
+
 }  // namespace
 
 Derived::Derived(std::shared_ptr<const model::Model> read) : shared(std::move(read)), model(*shared) {}
 Derived::~Derived() = default;
 
-std::vector<std::string> approach_words() { return {"auto", "I", "II"}; }
+std::vector<std::string> approach_words() { return words(approach_choices()); }
+ApproachChoice approach_choice(const std::string& text) { return chosen(approach_choices(), "approach", text); }
 
-ApproachChoice approach_choice(const std::string& text) {
-  if (text == "auto") return ApproachChoice::automatic;
-  if (text == "I") return ApproachChoice::one;
-  if (text == "II") return ApproachChoice::two;
-  throw Error("cli", {}, fmt::format("there is no approach '{}'", text), "choose auto, I or II");
-}
-
-std::vector<std::string> form_words() { return {"auto", "multipliers", "nullspace", "chaplygin"}; }
-
-FormChoice form_choice(const std::string& text) {
-  if (text == "auto") return std::nullopt;
-  for (const system::Form form : {system::Form::multipliers, system::Form::nullspace, system::Form::chaplygin}) {
-    if (text == system::name(form)) return form;
-  }
-  throw Error("cli", {}, fmt::format("there is no form '{}'", text),
-              "choose auto, multipliers, nullspace or chaplygin");
-}
+std::vector<std::string> form_words() { return words(form_choices()); }
+FormChoice form_choice(const std::string& text) { return chosen(form_choices(), "form", text); }
 
 std::unique_ptr<Derived> derive_model(std::shared_ptr<const model::Model> model, ApproachChoice approach,
                                       FormChoice form) {

@@ -24,13 +24,13 @@ struct Timings {
 };
 
 enum class ApproachChoice { automatic, one, two };
-std::vector<std::string> approach_words();
-ApproachChoice approach_choice(const std::string& text);  // "auto", "I", "II"; throws Error
+std::vector<std::string> approach_words();                // "auto", "I", "II"
+ApproachChoice approach_choice(const std::string& text);  // of one of them; throws Error
 
 /// Nothing: the cheapest of those that hold everywhere.
 using FormChoice = std::optional<system::Form>;
-std::vector<std::string> form_words();
-FormChoice form_choice(const std::string& text);  // "auto", "multipliers", "nullspace", "chaplygin"; throws Error
+std::vector<std::string> form_words();            // "auto", and the names of system::Form
+FormChoice form_choice(const std::string& text);  // of one of them; throws Error
 
 /// A model and its equations. It stays where it is: what is made from it refers to it.
 struct Derived {

@@ -5,21 +5,20 @@
 #include <optional>
 
 #include "analysis/benchmark.hpp"
-#include "cli/assignments.hpp"
 #include "cli/bench_report.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
 namespace {
 
-struct Options {
-  std::string model, scene = "default", csv, svg, approach = "auto", form = "auto";
-  std::vector<std::string> set, solvers;
-  std::optional<double> t_end;
+struct Options : SceneOptions {
+  std::string model, csv, svg, approach = "auto", form = "auto";
+  std::vector<std::string> solvers;
   double seconds = 10;
   bool no_libraries = false;
 };
@@ -45,8 +44,7 @@ int execute(const Options& options, const Common& common) {
   analysis::BenchmarkRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides.values = parse_assignments("bench", options.set);
-  request.overrides.t_end = options.t_end;
+  request.overrides = overrides_of("bench", options);
   request.approach = pipeline::approach_choice(options.approach);
   request.form = pipeline::form_choice(options.form);
   request.solvers = options.solvers;
@@ -77,9 +75,8 @@ int execute(const Options& options, const Common& common) {
 Execute declare_bench(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_scene(app, *options);
+  add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
   app.add_option("--seconds", options->seconds, "what takes longer is interrupted")
@@ -88,10 +85,8 @@ Execute declare_bench(Arguments& app) {
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
   app.add_place("-o,--out,--csv", options->csv, "the table as a CSV file");
   app.add_place("--plot,--svg", options->svg, "error over run time as an SVG plot");
-  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
-  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")
-      .show_preset()
-      .one_of(pipeline::form_words());
+  add_approach(app, options->approach);
+  add_form(app, options->form);
   return [options](const Common& common) { return execute(*options, common); };
 }
 

@@ -8,6 +8,7 @@
 #include "cli/commands/commands.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 #include "cli/watch.hpp"
 
@@ -146,7 +147,7 @@ int execute(const Options& options, const Common& common) {
 Execute declare_derive(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
+  add_approach(app, options->approach);
   app.add_list("--show", options->show,
                fmt::format("what to show; a list of {}", fmt::join(analysis::equation_keys(), ", ")))
       .one_of(analysis::equation_keys());

@@ -7,12 +7,11 @@
 #include "abi/functions.hpp"
 #include "analysis/article.hpp"
 #include "cli/commands/commands.hpp"
-#include "cli/declaration.hpp"
 #include "cli/locate.hpp"
 #include "cli/operations.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
-#include "model/names.hpp"
 #include "pipeline/emission.hpp"
 
 namespace eomgen::cli {
@@ -24,10 +23,11 @@ struct Options {
   bool print_name = false;
 };
 
-void require_target(const std::string& target) {
-  const std::vector<std::string> known = target_names();
-  if (std::find(known.begin(), known.end(), target) != known.end()) return;
-  throw Error("emit", {}, fmt::format("there is no target {}", model::quote(target)), model::choice_of(target, known));
+/// Of code, and that of the document.
+std::vector<std::string> target_names() {
+  std::vector<std::string> names = emit::target_names();
+  names.emplace_back(analysis::document_target);
+  return names;
 }
 
 std::string name_for(const std::string& target, const std::string& id) {
@@ -73,14 +73,14 @@ Json hoisted(const program::Program& program) {
 
 int execute(const Options& options, const Common& common) {
   if (options.print_name) {
-    require_target(options.target);
+    pipeline::require_target(options.target, {analysis::document_target});
     fmt::print("{}\n", name_for(options.target, std::filesystem::path(options.model).stem().string()));
     return 0;
   }
   if (options.folder.empty())
     throw Error("usage", {}, "-o is required: the folder for the sources", "eomgen emit --help tells how it is used");
   require_folder(options.folder);
-  require_target(options.target);
+  pipeline::require_target(options.target, {analysis::document_target});
   const pipeline::EmissionRequest request{options.target,
                                           pipeline::approach_choice(options.approach),
                                           pipeline::form_choice(options.form),
@@ -88,7 +88,7 @@ int execute(const Options& options, const Common& common) {
                                           options.outputs,
                                           options.fix,
                                           common.seed};
-  if (options.target == document_target) return emit_document(options, common);
+  if (options.target == analysis::document_target) return emit_document(options, common);
   double reading = 0;
   const auto model = load_model(options.model, &reading);
   const pipeline::Emission emission = pipeline::emit_model(model, request);
@@ -148,7 +148,7 @@ Execute declare_emit(Arguments& app) {
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_place("-o,--out", options->folder, "the folder for the sources; it is made if need be");
   app.add_option("--target", options->target,
-                 fmt::format("{}; {} is a document", fmt::join(target_names(), ", "), document_target))
+                 fmt::format("{}; {} is a document", fmt::join(target_names(), ", "), analysis::document_target))
       .show_preset()
       .one_of(target_names());
   app.add_list(
@@ -158,11 +158,8 @@ Execute declare_emit(Arguments& app) {
                      fmt::join(abi::asked_for(), ", ")))
       .one_of(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");
-  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
-  app.add_option("--form", options->form,
-                 "auto, multipliers, nullspace or chaplygin: how constraints that stay are solved")
-      .show_preset()
-      .one_of(pipeline::form_words());
+  add_approach(app, options->approach);
+  add_form(app, options->form);
   app.add_flag("--print-name", options->print_name,
                "only prints NAME, which the model's file gives to files and symbols");
   app.add_list("--fix", options->fix, "parameters that become numbers");

@@ -9,6 +9,7 @@
 #include "cli/eigenvalues.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 #include "cli/watch.hpp"
 #include "work.hpp"
@@ -16,9 +17,9 @@
 namespace eomgen::cli {
 namespace {
 
-struct Options {
-  std::string model, scene = "default";
-  std::vector<std::string> set, hold;
+struct Options : SceneOptions {
+  std::string model;
+  std::vector<std::string> hold;
   std::size_t starts = 300;
 };
 
@@ -109,8 +110,8 @@ int execute(const Options& options, const Common& common) {
   analysis::SteadyRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides.values = parse_assignments("equilibria", options.set);
-  request.hold = parse_assignments("equilibria", options.hold);
+  request.overrides = overrides_of("equilibria", options);
+  request.hold = parse_assignments("equilibria", "--hold", options.hold);
   request.starts = options.starts;
   request.seed = common.seed;
   bool shown = false;
@@ -142,8 +143,7 @@ Execute declare_equilibria(Arguments& app) {
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_option("--scene", options->scene, "a scene: its parameters, and the start whose momenta are held")
       .show_preset();
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_values(app, *options);
   app.add_list("--hold", options->hold, "OUTPUT=VALUE in place of the conserved momenta; may be repeated");
   app.add_option("--starts", options->starts, "how many starts the search has")
       .check(whole_number(1, 100000))

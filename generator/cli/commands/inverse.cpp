@@ -8,21 +8,20 @@
 #include <optional>
 #include <utility>
 
-#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
 namespace {
 
-struct Options {
-  std::string model, scene = "default", out;
-  std::vector<std::string> constraints, set;
-  std::optional<double> t_end, every, rtol, atol;
+struct Options : SceneOptions {
+  std::string model, out;
+  std::vector<std::string> constraints;
   std::size_t max_steps = 0;
   bool yes = false;
 };
@@ -91,12 +90,8 @@ std::string readable(const Json& found) {
 
 int execute(const Options& options, const Common& common) {
   analysis::InverseRequest request;
-  request.overrides.values = parse_assignments("inverse", options.set);
-  request.overrides.t_end = options.t_end;
+  request.overrides = overrides_of("inverse", options);
   request.overrides.at_start = true;
-  request.overrides.every = options.every;
-  request.overrides.rtol = options.rtol;
-  request.overrides.atol = options.atol;
   request.scene = options.scene;
   request.constraints = options.constraints;
   request.max_steps = options.max_steps;
@@ -129,11 +124,10 @@ int execute(const Options& options, const Common& common) {
 Execute declare_inverse(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  add_scene(app, *options);
   app.add_list("--constraint", options->constraints,
                "constraints whose forces are asked for; without it those that prescribe a coordinate");
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the motion").check(finite_number());
   app.add_option("--every", options->every, "interval of the rows").check(positive_number());
   app.add_option("--rtol", options->rtol, "relative tolerance where something is free to move")

@@ -6,19 +6,18 @@
 #include <optional>
 
 #include "analysis/steady.hpp"
-#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/eigenvalues.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
 namespace {
 
-struct Options {
-  std::string model, scene = "default";
-  std::vector<std::string> set;
+struct Options : SceneOptions {
+  std::string model;
   std::optional<double> at;
 };
 
@@ -131,10 +130,9 @@ std::string text(const Answer& a) {
 }
 
 int execute(const Options& options, const Common& common) {
-  run::Overrides overrides;
-  overrides.values = parse_assignments("linearize", options.set);
-  const analysis::SteadyProblem problem = analysis::steady_problem("linearize", load_model(options.model),
-                                                                   options.scene, overrides, options.at, common.seed);
+  const analysis::SteadyProblem problem =
+      analysis::steady_problem("linearize", load_model(options.model), options.scene,
+                               overrides_of("linearize", options), options.at, common.seed);
   const linear::Linearisation l = analysis::linearised(problem, common.seed);
   const Answer answer{problem, l};
   if (common.json) {
@@ -150,11 +148,10 @@ int execute(const Options& options, const Common& common) {
 Execute declare_linearize(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
+  add_scene(app, *options);
   app.add_option("--at", options->at, "a time: the state that the scene's run has reached then; without it the start")
       .check(finite_number());
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_values(app, *options);
   return [options](const Common& common) { return execute(*options, common); };
 }
 

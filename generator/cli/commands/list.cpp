@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
 
+#include "analysis/article.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/output.hpp"
 #include "coordinates/coordinate_system.hpp"
@@ -46,8 +47,8 @@ Json registries() {
   for (const emit::TargetEntry& target : emit::targets())
     targets.push_back({{"name", target.name}, {"title", target.title}});
   // A document comes from the reading form, not from a program, so it is no entry of that registry.
-  targets.push_back(
-      {{"name", "latex"}, {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
+  targets.push_back({{"name", analysis::document_target},
+                     {"title", "a LaTeX document: both approaches side by side, constraint forces"}});
   result["coordinates"] = coordinates;
   Json rotations = Json::array();
   for (const rotations::Rotation& rotation : rotations::registry()) {

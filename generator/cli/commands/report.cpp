@@ -9,7 +9,6 @@
 
 #include "analysis/equations.hpp"
 #include "analysis/page/live_model.hpp"
-#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
@@ -17,6 +16,7 @@
 #include "cli/report/html.hpp"
 #include "cli/report/recorded_motion.hpp"
 #include "cli/run_report.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 #include "pipeline/simulate.hpp"
 #include "print/render.hpp"
@@ -24,11 +24,8 @@
 namespace eomgen::cli {
 namespace {
 
-struct Options {
-  std::string model, scene = "default", out;
-  std::vector<std::string> set;
-  std::optional<double> rtol, atol, t_end;
-  std::optional<std::string> solver;
+struct Options : SceneOptions {
+  std::string model, out;
 };
 
 constexpr double rows_of_a_page = 400;
@@ -173,11 +170,7 @@ int execute(const Options& options, const Common& common) {
   request.model = load_model(options.model);
   request.scene = options.scene;
   request.seed = common.seed;
-  request.overrides.values = parse_assignments("report", options.set);
-  request.overrides.rtol = options.rtol;
-  request.overrides.atol = options.atol;
-  request.overrides.t_end = options.t_end;
-  request.overrides.solver = options.solver;
+  request.overrides = overrides_of("report", options);
   request.rows = rows_of_a_page;
   request.with = {"mass"};  // a point that is dragged moves the lightest most
   std::optional<analysis::Drawing> drawing;
@@ -236,12 +229,9 @@ Execute declare_report(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
   app.add_place("-o,--out", options->out, "the page; without it report.html in this folder");
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
-  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
-  app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_scene(app, *options);
+  add_solver(app, *options);
+  add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -10,7 +10,6 @@
 #include <optional>
 
 #include "analysis/sensitivities.hpp"
-#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
@@ -20,6 +19,7 @@
 #include "cli/picture/svg_picture.hpp"
 #include "cli/run_plot.hpp"
 #include "cli/run_report.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/table_size.hpp"
 #include "cli/usage.hpp"
 #include "pipeline/simulate.hpp"
@@ -27,29 +27,12 @@
 namespace eomgen::cli {
 namespace {
 
-struct Options {
-  std::string model, scene = "default", out, plot, approach = "auto", form = "auto";
-  std::vector<std::string> set, outputs, sensitivity, plot_of;
-  std::optional<double> rtol, atol, step, max_step, t_end, every;
-  std::optional<std::string> solver;
+struct Options : SceneOptions {
+  std::string model, out, plot, approach = "auto", form = "auto";
+  std::vector<std::string> sensitivity, plot_of;
   std::size_t max_steps = 0;
   bool no_error_estimate = false, no_charts = false, yes = false;
 };
-
-run::Overrides overrides_of(const Options& options) {
-  run::Overrides o;
-  o.values = parse_assignments("run", options.set);
-  o.rtol = options.rtol;
-  o.atol = options.atol;
-  o.step = options.step;
-  o.max_step = options.max_step;
-  o.every = options.every;
-  o.t_end = options.t_end;
-  o.at_start = true;
-  o.solver = options.solver;
-  o.outputs = options.outputs;
-  return o;
-}
 
 /// Rows to the CSV file and to the plot.
 class Rows {
@@ -171,7 +154,8 @@ int execute(const Options& options, const Common& common) {
   pipeline::SimulationRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides = overrides_of(options);
+  request.overrides = overrides_of("run", options);
+  request.overrides.at_start = true;
   request.approach = pipeline::approach_choice(options.approach);
   request.form = pipeline::form_choice(options.form);
   request.estimate = !options.no_error_estimate;
@@ -242,14 +226,11 @@ int execute(const Options& options, const Common& common) {
 Execute declare_run(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
-  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
-  app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
-  app.add_option("--step", options->step, "a fixed step, without error control").check(positive_number());
+  add_scene(app, *options);
+  add_solver(app, *options);
+  add_fixed_step(app, *options);
   app.add_option("--max-step", options->max_step, "the longest step where steps are chosen").check(positive_number());
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_values(app, *options);
   app.add_option("--max-steps", options->max_steps, "the most steps, accepted and rejected")
       .check(whole_number(1, 1'000'000'000'000'000));
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
@@ -263,11 +244,9 @@ Execute declare_run(Arguments& app) {
   app.add_flag("--yes", options->yes, "writes a table however large it is");
   app.add_list("--sensitivity", options->sensitivity,
                "derivatives of the end by these parameters and values of the start");
-  app.add_list("--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
-  app.add_option("--approach", options->approach, "auto, I or II").show_preset().one_of(pipeline::approach_words());
-  app.add_option("--form", options->form, "auto, multipliers, nullspace or chaplygin")
-      .show_preset()
-      .one_of(pipeline::form_words());
+  add_outputs(app, *options);
+  add_approach(app, options->approach);
+  add_form(app, options->form);
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second run out");
   app.add_flag("--no-charts", options->no_charts, "keep to the model's angles where they fail");
   return [options](const Common& common) { return execute(*options, common); };

@@ -7,11 +7,11 @@
 #include <optional>
 
 #include "analysis/stress_test.hpp"
-#include "cli/assignments.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
@@ -19,10 +19,9 @@ namespace {
 
 using stress::Verdict;
 
-struct Options {
-  std::string model, scene = "default";
-  std::vector<std::string> set, solvers;
-  std::optional<double> t_end;
+struct Options : SceneOptions {
+  std::string model;
+  std::vector<std::string> solvers;
   double seconds = 60;
   std::size_t steps = 20000;
   bool quick = false;
@@ -139,8 +138,7 @@ int execute(const Options& options, const Common& common) {
   analysis::StressRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
-  request.overrides.values = parse_assignments("stress", options.set);
-  request.overrides.t_end = options.t_end;
+  request.overrides = overrides_of("stress", options);
   request.solvers = options.solvers;
   request.seconds = options.seconds;
   request.steps = options.steps;
@@ -166,9 +164,8 @@ int execute(const Options& options, const Common& common) {
 Execute declare_stress(Arguments& app) {
   auto options = std::make_shared<Options>();
   app.add_option("MODEL", options->model, "a model file, or the name of one in models/").required();
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_scene(app, *options);
+  add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the run").check(finite_number());
   app.add_list("--solver", options->solvers, "only these solvers").one_of(run::solver_names());
   app.add_option("--steps", options->steps, "what takes more is ended, and told")

@@ -64,17 +64,14 @@ Execute declare_sweep(Arguments& app) {
                  "every point of the grid");
   app.add_option("--shard", options->shard, "NUMBER/COUNT: only these runs; eomgen merge joins the tables");
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
-  app.add_option("--scene", options->scene, "a scene of the model").show_preset();
-  app.add_option("--solver", options->solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
-  app.add_option("--rtol", options->rtol, "relative tolerance").check(number_not_negative());
-  app.add_option("--atol", options->atol, "absolute tolerance").check(number_not_negative());
-  app.add_option("--step", options->step, "a fixed step, without error control").check(positive_number());
-  app.add_list("--set", options->set,
-               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+  add_scene(app, *options);
+  add_solver(app, *options);
+  add_fixed_step(app, *options);
+  add_values(app, *options);
   app.add_option("--t-end", options->t_end, "the end of the runs").check(finite_number());
   app.add_place("-o,--out", options->out,
                 "the table: F.csv, or F.npz for arrays of columns; without it MODEL_sweep.csv in this folder");
-  app.add_list("--output", options->outputs, "columns beside the coordinates, in place of the scene's; all for all");
+  add_outputs(app, *options);
   app.add_option("--jobs", options->jobs, "processes, or threads of an ensemble; without it one for each processor")
       .check(whole_number(1, 1024));
   app.add_flag("--no-error-estimate", options->no_error_estimate, "leave the second runs out");

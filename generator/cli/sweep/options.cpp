@@ -3,24 +3,10 @@
 
 #include <fmt/format.h>
 
-#include "cli/assignments.hpp"
 #include "cli/output.hpp"
 #include "model/content_hash.hpp"
 
 namespace eomgen::cli {
-
-run::Overrides overrides_of(const SweepOptions& options) {
-  run::Overrides o;
-  o.values = parse_assignments("sweep", options.set);
-  o.rtol = options.rtol;
-  o.atol = options.atol;
-  o.step = options.step;
-  o.t_end = options.t_end;
-  o.at_start = true;
-  o.solver = options.solver;
-  o.outputs = options.outputs;
-  return o;
-}
 
 std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
                    const std::string& points_hash) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What was asked of a sweep, as it was typed, and what that is for a run.
+// What was asked of a sweep, as it was typed.
 #pragma once
 
 #include <cstddef>
@@ -8,22 +8,18 @@
 #include <string>
 #include <vector>
 
+#include "cli/shared_options.hpp"
 #include "model/model.hpp"
-#include "run/scene.hpp"
 
 namespace eomgen::cli {
 
-struct SweepOptions {
-  std::string model, scene = "default", out, points;
-  std::vector<std::string> grid, sample, set, outputs;
-  std::optional<double> rtol, atol, step, t_end;
-  std::optional<std::string> solver, design, shard;
+struct SweepOptions : SceneOptions {
+  std::string model, out, points;
+  std::vector<std::string> grid, sample;
+  std::optional<std::string> design, shard;
   std::size_t jobs = 0, samples = 0;
   bool no_error_estimate = false, ensemble = false, statistics = false;
 };
-
-/// Of every run, before its point.
-run::Overrides overrides_of(const SweepOptions& options);
 
 /// What makes two sweeps the same: the model's bytes and all that was asked.
 std::string key_of(const SweepOptions& options, const model::Model& model, std::uint64_t seed,

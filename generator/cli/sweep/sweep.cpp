@@ -40,7 +40,7 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& po
 }
 
 void require_names(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
-  const std::map<std::string, symbolic::Rational> set = overrides_of(options).values;
+  const std::map<std::string, symbolic::Rational> set = overrides_of("sweep", options).values;
   for (const std::string& name : points.names()) {
     const auto named = [&](const model::Parameter& p) { return p.name == name; };
     if (std::none_of(model.parameters.begin(), model.parameters.end(), named) && !run::start_named(model, name)) {
@@ -97,7 +97,7 @@ Sweep::Sweep(const SweepOptions& options, const Common& common, const model::Mod
                 fmt::format("{} is written by one process that makes the whole sweep", model::quote(file_)),
                 "write tables as .csv with --shard (1/1 for all), and join them by eomgen merge TABLES -o " + file_);
   }
-  if (options.ensemble) solver_ = pipeline::ensemble_solver(model.scene(options.scene), overrides_of(options));
+  if (options.ensemble) solver_ = pipeline::ensemble_solver(model.scene(options.scene), overrides_of("sweep", options));
 }
 
 bool Sweep::run_alone() {
@@ -168,7 +168,8 @@ std::vector<analysis::ColumnStatistics> Sweep::statistics() const {
 }
 
 run::Overrides Sweep::at(std::size_t run) const {
-  run::Overrides o = overrides_of(options_);
+  run::Overrides o = overrides_of("sweep", options_);
+  o.at_start = true;
   if (options_.ensemble) o.solver = solver_;
   o.values.merge(points_.point(run));
   return o;

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/shared_options.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/assignments.hpp"
+#include "pipeline/pipeline.hpp"
+#include "run/eligibility.hpp"
+
+namespace eomgen::cli {
+
+run::Overrides overrides_of(const std::string& command, const SceneOptions& options) {
+  run::Overrides o;
+  o.values = parse_assignments(command, "--set", options.set);
+  o.t_end = options.t_end;
+  o.rtol = options.rtol;
+  o.atol = options.atol;
+  o.step = options.step;
+  o.max_step = options.max_step;
+  o.every = options.every;
+  o.solver = options.solver;
+  o.outputs = options.outputs;
+  return o;
+}
+
+void add_scene(Arguments& app, SceneOptions& options) {
+  app.add_option("--scene", options.scene, "a scene of the model").show_preset();
+}
+
+void add_values(Arguments& app, SceneOptions& options) {
+  app.add_list("--set", options.set,
+               "NAME=VALUE in SI units, of a parameter or of a coordinate or rate at the start; may be repeated");
+}
+
+void add_solver(Arguments& app, SceneOptions& options) {
+  app.add_option("--solver", options.solver, "a solver that eomgen list shows, or auto").one_of(run::solver_names());
+  app.add_option("--rtol", options.rtol, "relative tolerance").check(number_not_negative());
+  app.add_option("--atol", options.atol, "absolute tolerance").check(number_not_negative());
+}
+
+void add_fixed_step(Arguments& app, SceneOptions& options) {
+  app.add_option("--step", options.step, "a fixed step, without error control").check(positive_number());
+}
+
+void add_outputs(Arguments& app, SceneOptions& options) {
+  app.add_list("--output", options.outputs, "columns beside the coordinates, in place of the scene's; all for all");
+}
+
+void add_approach(Arguments& app, std::string& approach) {
+  const std::vector<std::string> words = pipeline::approach_words();
+  app.add_option("--approach", approach, fmt::format("{}", fmt::join(words, ", "))).show_preset().one_of(words);
+}
+
+void add_form(Arguments& app, std::string& form) {
+  const std::vector<std::string> words = pipeline::form_words();
+  app.add_option("--form", form, fmt::format("{}: how constraints that stay are solved", fmt::join(words, ", ")))
+      .show_preset()
+      .one_of(words);
+}
+
+}  // namespace eomgen::cli

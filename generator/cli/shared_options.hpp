@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Options that several commands have: one name and one meaning in all of them. Each command adds those that it knows.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/arguments.hpp"
+#include "run/scene.hpp"
+
+namespace eomgen::cli {
+
+/// A scene, and what is asked of it in place of its own values.
+struct SceneOptions {
+  std::string scene = "default";
+  std::vector<std::string> set, outputs;
+  std::optional<double> t_end, rtol, atol, step, max_step, every;
+  std::optional<std::string> solver;
+};
+
+/// Throws Error {stage `command`} for an assignment that sets nothing.
+run::Overrides overrides_of(const std::string& command, const SceneOptions& options);
+
+void add_scene(Arguments& app, SceneOptions& options);       // --scene
+void add_values(Arguments& app, SceneOptions& options);      // --set
+void add_solver(Arguments& app, SceneOptions& options);      // --solver, --rtol, --atol
+void add_fixed_step(Arguments& app, SceneOptions& options);  // --step
+void add_outputs(Arguments& app, SceneOptions& options);     // --output
+
+void add_approach(Arguments& app, std::string& approach);
+void add_form(Arguments& app, std::string& form);
+
+}  // namespace eomgen::cli
