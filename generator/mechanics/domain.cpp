@@ -59,6 +59,13 @@ void require_divisor(const Mechanics& m, Ref divisor, const model::Span& place) 
               "check the denominator; of a force between two points that these are not one and the same");
 }
 
+void require_direction(const Mechanics& m, Ref length, const model::Span& place) {
+  if (!is_zero_everywhere(*m.dag, length)) return;
+  throw Error("mechanics", m.model->where(place),
+              "this is the direction of a vector that is 0, whatever the state and the time",
+              "give a vector that is not 0, or two points that are not one and the same");
+}
+
 void require_value(const Mechanics& m, Ref expression, const model::Span& place) {
   const Dag& dag = *m.dag;
   const symbolic::Node& node = dag[expression];

@@ -253,7 +253,7 @@ Lowering::Value Lowering::lower_vector(const model::Node& node) {
     case Op::cross: result = cross(vector(node.args[0]), vector(node.args[1])); break;
     case Op::unit: {
       const Vec3 a = vector(node.args[0]);
-      require_divisor(m_, norm(a), node.span);
+      require_direction(m_, norm(a), node.span);
       result = scale(dag_.div(dag_.one(), norm(a)), a);
       break;
     }
@@ -283,7 +283,7 @@ Lowering::Value Lowering::basis(const model::Node& node) {
   const Vec3 a = gradient(position(node.index), coordinate);
   if (node.op == model::Op::covariant_basis) return of(a);
   if (const model::NodeId e = chart_vector(node.index, coordinate); e != model::no_node) return of(vector(e));
-  require_divisor(m_, norm(a), node.span);
+  require_direction(m_, norm(a), node.span);
   return of(scale(dag_.div(dag_.one(), norm(a)), a));
 }
 

@@ -59,6 +59,16 @@ TEST_CASE("mechanics refuses: what divides by 0 in every state, with its place")
   CHECK(r.line == 13);
 }
 
+TEST_CASE("mechanics refuses: the direction of a vector that is 0 in every state, with its place") {
+  for (const char* force :
+       {"force = \"unit(P - P)\"\non = \"P\"", "linear_actuator = { between = [\"P\", \"x*E1 + y*E2\"], force = 1 }"}) {
+    CAPTURE(std::string(force));
+    const Refusal r = refusal(planar + "[[force]]\n" + force + "\n");
+    CHECK(r.message == "this is the direction of a vector that is 0, whatever the state and the time");
+    CHECK(r.line >= 9);
+  }
+}
+
 TEST_CASE("mechanics refuses: a function or a power that has no value in any state, with its place") {
   const auto of = [](const std::string& energy) {
     return refusal(planar + "[energy]\npotential = \"" + energy + "\"\n");
