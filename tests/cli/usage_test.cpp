@@ -71,7 +71,7 @@ TEST_CASE("names that are not there: the nearest one is told") {
       {{"run", P2, "--output", "enrgy"}, "there is no output 'enrgy'", "choose from: energy, "},
       {{"run", P2, "--set", "LL=1"}, "there is no parameter 'LL' to set", "did you mean 'L'?"},
       {{"run", P2, "--set", "nosuch=1"}, "there is no parameter 'nosuch' to set", "the parameters are m, g, L"},
-      {{"run", P2, "--approach", "III"}, "there is no approach 'III'", "choose from: auto, I, II"},
+      {{"run", P2, "--approach", "III"}, "there is no approach 'III'", "did you mean 'II'? choose from: auto, I, II"},
       {{"emit", P2, "-o", "out", "--fix", "LL"}, "there is no parameter 'LL' to fix", "did you mean 'L'?"},
       {{"emit", P2, "-o", "out", "--with", "jacc"}, "there is no function 'jacc'", "did you mean 'jac'?"},
       {{"emit", P2, "-o", "out", "--with", "jac,rhs_batch"},
