@@ -13,6 +13,7 @@
 #include "mechanics/dependent.hpp"
 #include "pipeline/pipeline.hpp"
 #include "print/article.hpp"
+#include "reading/forms.hpp"
 
 namespace eomgen::analysis {
 namespace {
@@ -127,15 +128,15 @@ void look_for_steady_motions(const Mechanics& m, const ReadingForm& two, std::ui
 std::string article(std::shared_ptr<const model::Model> model, std::uint64_t seed) {
   const work::Stage stage("deriving the equations");
   Mechanics m = mechanics::build_mechanics(std::move(model));
-  const ReadingForm one = reading::derive_reading(m, system::Approach::one),
-                    two = reading::derive_reading(m, system::Approach::two);
+  reading::Forms forms(m);
+  const ReadingForm &one = forms(system::Approach::one), &two = forms(system::Approach::two);
   print::Findings findings;
   findings.forces = forces_of(m);
   system::EquationSystem system = derive::lagrange(m, system::Approach::two);
   const std::vector<conservation::Conserved> conserved = conservation::conserved_quantities(m, system);
   findings.conserved = conserved_of(m, two, conserved);
   const std::vector<std::uint32_t> cyclic = conservation::cyclic_coordinates(conserved);
-  if (!cyclic.empty()) findings.routh = reading::routh_form(m, cyclic);
+  if (!cyclic.empty()) findings.routh = forms.routh(cyclic);
   draw(m, system, findings);
   judge(m, one, two, seed, findings);
   look_for_steady_motions(m, two, seed, findings);

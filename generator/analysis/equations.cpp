@@ -11,6 +11,7 @@
 #include "mechanics/dependent.hpp"
 #include "model/names.hpp"
 #include "print/notation.hpp"
+#include "reading/forms.hpp"
 
 namespace eomgen::analysis {
 
@@ -70,13 +71,13 @@ std::vector<Multiplier> legend(const mechanics::Mechanics& m, const reading::Rea
   return result;
 }
 
-void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::string>& show,
+void add_conserved(mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
                    std::vector<print::Item>& items) {
   const bool wanted =
       std::any_of(show.begin(), show.end(), [](const auto& key) { return key == "conserved" || key == "all"; });
   if (!wanted) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
-  const reading::ReadingForm form = reading::derive_reading(mechanics, system::Approach::two);
+  const reading::ReadingForm& form = forms(system::Approach::two, reading::Extent::equations);
   for (const conservation::Conserved& c : conservation::conserved_quantities(mechanics, system)) {
     const auto named = in_named_functions(mechanics, form, c);
     print::Item item = named ? print::render_expression(mechanics, "conserved", c.name, *named)
@@ -87,13 +88,13 @@ void add_conserved(mechanics::Mechanics& mechanics, const std::vector<std::strin
 }
 
 // Only on request: it is another form of the equations that `all` shows already.
-void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& show, std::vector<print::Item>& items,
-               std::vector<std::string>& notes) {
+void add_routh(mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
+               std::vector<print::Item>& items, std::vector<std::string>& notes) {
   if (std::find(show.begin(), show.end(), "routh") == show.end()) return;
   system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
   const std::vector<std::uint32_t> cyclic =
       conservation::cyclic_coordinates(conservation::conserved_quantities(mechanics, system));
-  const reading::RouthForm form = reading::routh_form(mechanics, cyclic);
+  const reading::RouthForm form = forms.routh(cyclic);
   if (cyclic.empty()) notes.emplace_back("no coordinate is cyclic: there is nothing to reduce");
   if (form.by_parts)
     notes.emplace_back("the reduction is too long to be written out, or the momenta do not give the rates");
@@ -101,18 +102,21 @@ void add_routh(mechanics::Mechanics& mechanics, const std::vector<std::string>& 
 }
 
 // Only on request: n^2 entries of four matrices, twice.
-void add_linear(const mechanics::Mechanics& mechanics, const std::vector<std::string>& show,
+void add_linear(const mechanics::Mechanics& mechanics, reading::Forms& forms, const std::vector<std::string>& show,
                 std::vector<print::Item>& items) {
   if (std::find(show.begin(), show.end(), "linear") == show.end()) return;
-  for (print::Item& item : print::render_linear(mechanics, reading::linear_form(mechanics)))
-    items.push_back(std::move(item));
+  for (print::Item& item : print::render_linear(mechanics, forms.linear())) items.push_back(std::move(item));
+}
+
+system::Approach approach_to_show(const mechanics::Mechanics& m) {
+  const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
+  return one ? system::Approach::one : system::Approach::two;
 }
 
 }  // namespace
 
 reading::ReadingForm form_to_show(const mechanics::Mechanics& m) {
-  const bool one = !mechanics::impose_dependent(m).fixed.empty() || !m.contacts.empty();
-  return reading::derive_reading(m, one ? system::Approach::one : system::Approach::two);
+  return reading::derive_reading(m, approach_to_show(m));
 }
 
 Equations equations(std::shared_ptr<const model::Model> model, const EquationsRequest& request) {
@@ -120,19 +124,18 @@ Equations equations(std::shared_ptr<const model::Model> model, const EquationsRe
   require_keys(request.show);
   const work::Stage stage("deriving the equations");
   mechanics::Mechanics mechanics = mechanics::build_mechanics(std::move(model));
-  const reading::ReadingForm form =
-      request.approach == ApproachChoice::automatic
-          ? form_to_show(mechanics)
-          : reading::derive_reading(
-                mechanics, request.approach == ApproachChoice::one ? system::Approach::one : system::Approach::two);
+  reading::Forms forms(mechanics);
+  const reading::ReadingForm& form = forms(request.approach == ApproachChoice::automatic ? approach_to_show(mechanics)
+                                           : request.approach == ApproachChoice::one     ? system::Approach::one
+                                                                                         : system::Approach::two);
   Equations result;
   result.approach = form.approach;
   result.items = print::render(mechanics, form, request.show, &result.interrupted);
   try {
     if (!result.interrupted) {
-      add_conserved(mechanics, request.show, result.items);
-      add_routh(mechanics, request.show, result.items, result.notes);
-      add_linear(mechanics, request.show, result.items);
+      add_conserved(mechanics, forms, request.show, result.items);
+      add_routh(mechanics, forms, request.show, result.items, result.notes);
+      add_linear(mechanics, forms, request.show, result.items);
     }
   } catch (const work::Interrupted&) {
     result.interrupted = true;

@@ -23,7 +23,7 @@
 #include "program/fingerprint.hpp"
 #include "program/interpret.hpp"
 #include "program/kinks.hpp"
-#include "reading/reading.hpp"
+#include "reading/forms.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -216,12 +216,14 @@ program::Program make_program(Derived& derived, const program::Request& request)
   return program;
 }
 
-void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
+namespace {
+
+void add_forms(mechanics::Mechanics& mechanics, reading::Forms& forms, verify::Subjects& subjects) {
   constexpr std::size_t large = 16;  // coordinates
   for (const system::Approach approach : {system::Approach::one, system::Approach::two}) {
     // With nothing to eliminate the approaches are one: a large system is not looked at twice.
     if (approach == system::Approach::one && mechanics.fixed.empty() && mechanics.q.size() > large) continue;
-    const reading::ReadingForm form = reading::derive_reading(mechanics, approach);
+    const reading::ReadingForm& form = forms(approach, reading::Extent::equations);
     std::string name = fmt::format("reading form {}", system::name(approach));
     // Too large to be written out: it is shown by parts, and there is nothing to hold against the others.
     if (form.by_parts)
@@ -229,6 +231,13 @@ void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjec
     else
       subjects.reading.push_back({std::move(name), reading::residuals_on_dag(form, mechanics)});
   }
+}
+
+}  // namespace
+
+void add_reading_forms(mechanics::Mechanics& mechanics, verify::Subjects& subjects) {
+  reading::Forms forms(mechanics);
+  add_forms(mechanics, forms, subjects);
 }
 
 namespace {
@@ -261,10 +270,10 @@ verify::Certificate certify(Derived& derived, const program::Program& program, c
   }
   verify::Subjects subjects;
   subjects.systems = verify::all_routes(derived.mechanics, &subjects.left_out);
-  add_reading_forms(derived.mechanics, subjects);
+  reading::Forms written(derived.mechanics);
+  add_forms(derived.mechanics, written, subjects);
   if (options.reductions) {
-    const reading::RouthForm routh =
-        reading::routh_form(derived.mechanics, conservation::cyclic_coordinates(derived.conserved));
+    const reading::RouthForm routh = written.routh(conservation::cyclic_coordinates(derived.conserved));
     subjects.reading.push_back(
         {"Routh's reduction", reading::residuals_on_dag(routh, derived.mechanics)});  // none: left out
   }

@@ -2,6 +2,7 @@
 #include "reading/linear_form.hpp"
 
 #include "reading/approaches.hpp"
+#include "reading/forms.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/trig.hpp"
 
@@ -61,9 +62,8 @@ class Linearisation {
 
 }  // namespace
 
-LinearForm linear_form(const Mechanics& mechanics) {
+LinearForm linear_form(const Mechanics& mechanics, const ReadingForm& read) {
   LinearForm form;
-  const ReadingForm read = derive_reading(mechanics, system::Approach::two);
   form.why_not = obstacle(mechanics, read);
   if (!form.why_not.empty()) return form;
   std::vector<Sum> residuals;

@@ -8,6 +8,7 @@
 
 #include "mechanics/dependent.hpp"
 #include "reading/approaches.hpp"
+#include "reading/forms.hpp"
 #include "reading/lagrangian.hpp"
 #include "reading/no_value.hpp"
 #include "reading/trig.hpp"
@@ -47,21 +48,9 @@ std::string within_budget(Read&& read) {
   }
 }
 
-void read_constraint(const Mechanics& m, Bridge& bridge, ReadConstraint& c, ReadingForm& form) {
-  const std::uint32_t k = c.constraint;
-  c.no_psi = within_budget([&] {
-    if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
-  });
-  c.no_rate = c.no_psi;
-  if (c.no_rate.empty()) {
-    c.no_rate = within_budget([&] {
-      c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
-    });
-  }
-  c.no_acceleration = c.no_rate;
-  if (c.no_acceleration.empty())
-    c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
-  const auto fixes = [k](const mechanics::FixedCoordinate& f) { return f.constraint == k; };
+/// What the constraint makes of the coordinate that it fixes, if it fixes one.
+void read_value(const Mechanics& m, Bridge& bridge, ReadConstraint& c, ReadingForm& form) {
+  const auto fixes = [&c](const mechanics::FixedCoordinate& f) { return f.constraint == c.constraint; };
   const auto found = std::find_if(m.fixed.begin(), m.fixed.end(), fixes);
   if (found == m.fixed.end()) return;
   const std::string no_value = within_budget([&] {
@@ -75,15 +64,33 @@ void read_constraint(const Mechanics& m, Bridge& bridge, ReadConstraint& c, Read
   if (!form.by_parts) leave_by_parts(m, form, no_value);
 }
 
-void add_constraints(const Mechanics& m, Bridge& bridge, ReadingForm& form) {
+void read_rates(const Mechanics& m, Bridge& bridge, ReadConstraint& c) {
+  const std::uint32_t k = c.constraint;
+  c.no_psi = within_budget([&] {
+    if (c.holonomic) c.psi = bridge.sum(m.constraints[k].psi);
+  });
+  c.no_rate = c.no_psi;
+  if (c.no_rate.empty()) {
+    c.no_rate = within_budget([&] {
+      c.rate = c.holonomic ? bridge.total_derivative(c.psi) : simplify(bridge.sum(m.velocity_form(m.constraints[k])));
+    });
+  }
+  c.no_acceleration = c.no_rate;
+  if (c.no_acceleration.empty())
+    c.no_acceleration = within_budget([&] { c.acceleration = bridge.total_derivative(c.rate); });
+}
+
+void add_constraints(const Mechanics& m, Bridge& bridge, Extent extent, ReadingForm& form) {
+  const work::Budget budget(form_budget);  // of all together
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     if (!m.holds(k)) continue;
     ReadConstraint c;
     c.constraint = k;
     c.label = m.constraints[k].label;
     c.holonomic = m.constraints[k].holonomic();
-    read_constraint(m, bridge, c, form);
-    form.constraints.push_back(std::move(c));
+    if (extent == Extent::whole) read_rates(m, bridge, c);
+    read_value(m, bridge, c, form);
+    if (extent == Extent::whole || c.fixes) form.constraints.push_back(std::move(c));
   }
 }
 
@@ -124,7 +131,7 @@ double most_terms(const symbolic::Dag& dag, symbolic::Ref expression) {
 
 }  // namespace
 
-ReadingForm derive_reading(const Mechanics& given, system::Approach approach) try {
+ReadingForm derive_reading(const Mechanics& given, system::Approach approach, Extent extent) try {
   const Mechanics m = approach == system::Approach::two ? mechanics::impose_dependent(given) : given;
   ReadingForm form;
   form.approach = approach;
@@ -145,7 +152,7 @@ ReadingForm derive_reading(const Mechanics& given, system::Approach approach) tr
   } catch (const work::OverBudget& over) {
     leave_by_parts(m, form, over.what());
   }
-  add_constraints(m, bridge, form);
+  if (extent == Extent::whole || !form.by_parts) add_constraints(m, bridge, extent, form);
   return form;
 } catch (const std::domain_error&) {
   throw no_value(given);

@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "reading/approaches.hpp"
+#include "reading/forms.hpp"
 #include "reading/no_value.hpp"
 #include "reading/rational_function.hpp"
 #include "reading/small_matrix.hpp"
@@ -48,19 +49,29 @@ bool solve_rates(Bridge& bridge, RouthForm& form) {
   return true;
 }
 
-void reduce(const Mechanics& m, Bridge& bridge, RouthForm& form) {
+/// The constrained Lagrangian: that of the form, unless it has more constraints built in than those that fix
+/// coordinates.
+Sum lagrangian(const Mechanics& m, Bridge& bridge, const ReadingForm& two) {
+  if (two.equations.size() == m.free.size()) {
+    if (two.by_parts) throw work::OverBudget(two.why_by_parts);
+    return two.lagrangian;
+  }
   ReadingForm whole;
   whole.approach = system::Approach::two;
   approach_two(m, bridge, read_spins(m, bridge), whole);
+  return std::move(whole.lagrangian);
+}
+
+void reduce(const Mechanics& m, Bridge& bridge, const ReadingForm& two, RouthForm& form) {
+  const Sum L = lagrangian(m, bridge, two);
   for (const std::uint32_t c : form.cyclic) {
-    form.momenta.push_back(simplify(bridge.derivative(whole.lagrangian, coordinate_symbol(c, 1))));
+    form.momenta.push_back(simplify(bridge.derivative(L, coordinate_symbol(c, 1))));
   }
   if (!solve_rates(bridge, form)) {
     form.by_parts = true;
     return;
   }
   std::map<Symbol, Sum> values = imposed_values(m, bridge), rates;
-  Sum L = whole.lagrangian;
   for (std::size_t i = 0; i < form.cyclic.size(); ++i) rates[coordinate_symbol(form.cyclic[i], 1)] = form.rates[i];
   form.routhian = bridge.substitute(L, rates);
   for (std::size_t i = 0; i < form.cyclic.size(); ++i) {
@@ -81,13 +92,13 @@ void reduce(const Mechanics& m, Bridge& bridge, RouthForm& form) {
 
 Symbol momentum_symbol(std::uint32_t coordinate) { return {SymbolKind::extra, coordinate, 3}; }
 
-RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic) try {
+RouthForm routh_form(const Mechanics& m, const std::vector<std::uint32_t>& cyclic, const ReadingForm& two) try {
   RouthForm form;
   form.cyclic = cyclic;
   Bridge bridge(m);
   try {
     const work::Budget budget(form_budget);
-    reduce(m, bridge, form);
+    reduce(m, bridge, two, form);
   } catch (const work::OverBudget&) {
     form.by_parts = true;
   }

@@ -5,6 +5,7 @@
 #include <chrono>
 
 #include "reading/by_name.hpp"
+#include "reading/forms.hpp"
 
 using namespace eomgen;
 using namespace eomgen::test;
@@ -35,6 +36,20 @@ TEST_CASE("a chain of 15 relative angles is told by parts, with every coordinate
   CHECK(form.by_parts);
   CHECK(form.equations.size() == 15);
   CHECK(reading::residuals_on_dag(form, s.mechanics).empty());
+}
+
+TEST_CASE("what is too long by one approach is not tried by the other where both are the same equations") {
+  System s(model::read_model_text(relative_chain(15), "chain"));
+  reading::Forms forms(s.mechanics);
+  const reading::ReadingForm& one = forms(system::Approach::one);
+  CHECK(one.by_parts);
+  const work::Budget nothing(0);
+  const reading::ReadingForm& two = forms(system::Approach::two);
+  CHECK(two.by_parts);
+  CHECK(two.approach == system::Approach::two);
+  CHECK(two.equations.size() == 15);
+  CHECK(two.why_by_parts == one.why_by_parts);
+  CHECK(reading::derive_reading(s.mechanics, system::Approach::two).why_by_parts != one.why_by_parts);
 }
 
 TEST_CASE("a chain of 4 relative angles is written out, with residuals on the Dag") {
