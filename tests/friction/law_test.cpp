@@ -129,6 +129,6 @@ TEST_CASE("friction: coefficients that make no sense are refused with their plac
   CHECK(message("mu_d = 0.5", "mu_d = -0.5") == "a coefficient of friction of 'belt' is negative");
   CHECK(message("mu_d = 0.5", "mu_d = 1.5") ==
         "the static coefficient of friction of 'belt' is less than the dynamic one");
-  CHECK(message("mu_d = 0.5", "mu_d = \"log(0)\"") ==
+  CHECK(message("mu_d = 0.5", "mu_d = \"log(-mu_s)\"") ==
         "a coefficient of friction of 'belt' has no value: log of a number that is not positive");
 }
