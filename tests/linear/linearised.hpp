@@ -58,7 +58,7 @@ inline Linearised linearised(const std::string& model, const std::string& scene 
     write_text(path, text);
   }
   run::Overrides overrides;
-  overrides.parameters = set;
+  overrides.values = set;
   analysis::SteadyProblem problem =
       analysis::steady_problem("linearize", test::model_at(path), scene, overrides, at, 1);
   linear::Linearisation l = linear::linearise(*problem.flow, problem.z, problem.setting, problem.neighbours, 1);
