@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "print/latex_text.hpp"
 
+#include <algorithm>
 #include <cctype>
+#include <iterator>
 
 namespace eomgen::print {
 namespace {
@@ -111,7 +113,13 @@ std::vector<std::string> LatexText::lines(const Formula& formula, std::size_t wi
 void LatexText::display(const std::vector<Formula>& formulas) {
   std::vector<std::string> all;
   for (const Formula& f : formulas) {
-    for (std::string& line : lines(f, page_width)) all.push_back(std::move(line));
+    std::vector<std::string> more = lines(f, page_width);
+    // TeX holds a whole display in its memory, which ends at some hundred lines.
+    if (!all.empty() && all.size() + more.size() > most_lines) {
+      aligned(all);
+      all.clear();
+    }
+    std::move(more.begin(), more.end(), std::back_inserter(all));
   }
   if (!all.empty()) aligned(all);
 }

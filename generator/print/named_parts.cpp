@@ -25,6 +25,9 @@ using symbolic::Symbol;
 using symbolic::SymbolKind;
 using symbolic::Vec3;
 
+constexpr std::size_t longest_numerator = 12;  // terms: beyond, one fraction multiplies out what stands apart
+constexpr std::size_t most_terms = 100;        // of a part that somebody reads
+
 Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
 Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
 Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
@@ -74,7 +77,9 @@ class NamedParts {
     if (is_used(m_.potential, SymbolKind::coordinate)) define("potential energy", "", mark(letters_.U), m_.potential);
     for (const Equation& e : form_.equations) {
       const Ref Q = generalized_force(e.coordinate);
-      if (!m_.dag->is_zero(Q)) define("generalised force", "", mark("Q", {coordinate(e.coordinate, 0)}), Q);
+      if (!m_.dag->is_zero(Q))
+        define("generalised force", m_.model->coordinates[e.coordinate].name, mark("Q", {coordinate(e.coordinate, 0)}),
+               Q);
     }
   }
 
@@ -96,7 +101,10 @@ class NamedParts {
 
   std::optional<Formula> read(Ref r) {
     try {
-      return arranged(reading::read(m_, value(r)));
+      const Sum sum = reading::read(m_, value(r));
+      if (sum.size() <= most_terms) return arranged(sum);
+      why_ = "it has " + std::to_string(sum.size()) + " terms";
+      return std::nullopt;
     } catch (const work::OverBudget& over) {
       why_ = over.what();
       return std::nullopt;
@@ -109,7 +117,8 @@ class NamedParts {
       return std::any_of(term.first.begin(), term.first.end(),
                          [](const reading::Factor& f) { return cln::minusp(f.exponent); });
     });
-    return sum.size() > 1 && fractions ? reading::factored(sum) : reading::arrange(sum);
+    return sum.size() > 1 && sum.size() <= longest_numerator && fractions ? reading::factored(sum)
+                                                                          : reading::arrange(sum);
   }
 
   /// Q_i, friction among it; in approach II of the eliminated coordinates too that follow this one.
