@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <set>
+#include <utility>
 
 #include "analysis/drawing/figure.hpp"
 #include "analysis/drawing/sketch.hpp"
@@ -31,14 +32,16 @@ struct Drawn {
   std::optional<Figure> figure;
 };
 
-Drawn drawn(const std::string& path) {
-  Drawn result{model::read_model(path), {}};
+Drawn drawn(model::Model model) {
+  Drawn result{std::move(model), {}};
   mechanics::Mechanics m = mechanics::build_mechanics(result.model);
   const system::EquationSystem system = derive::lagrange(m, system::Approach::two);
   result.figure = analysis::figure(m, run::resolve_scene(m, system, m.model->scene("default"), {}));
   return result;
 }
-Drawn shipped(const std::string& name) { return drawn(test::source_folder() + "/models/" + name + ".toml"); }
+Drawn shipped(const std::string& name) {
+  return drawn(model::read_model(test::source_folder() + "/models/" + name + ".toml"));
+}
 
 std::vector<Figure::Stroke> strokes(const Figure& figure, Figure::Weight weight) {
   std::vector<Figure::Stroke> result;
@@ -160,11 +163,27 @@ TEST_CASE("figure: every shipped model that has positions has one, of the size o
   for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
     if (entry.path().extension() != ".toml") continue;
     INFO(entry.path().filename().string());
-    const Drawn found = drawn(entry.path().string());
+    const Drawn found = drawn(model::read_model(entry.path().string()));
     CHECK(found.figure.has_value() == (found.model.places.size() > 1));
     if (!found.figure) continue;
     CHECK(found.figure->high[0] - found.figure->low[0] < paper_width);
     CHECK(found.figure->high[1] - found.figure->low[1] < paper_height);
     for (const Figure::Stroke& s : found.figure->strokes) CHECK(std::isfinite(length(s)));
   }
+}
+
+TEST_CASE("figure: a picture with too many strokes for a page is refused with their number, never left out unsaid") {
+  const auto model = [](int springs) {
+    std::string text =
+        "format = 1\n[parameters]\nm = \"1 kg\"\nk = \"1 N/m\"\nl = \"1 m\"\n[[particle]]\nname = \"P\"\n"
+        "mass = \"m\"\nposition = { cartesian = [\"x\", \"y\"] }\n[scene.default]\nt = [0, 1]\n";
+    for (int i = 0; i < springs; ++i) {
+      const std::string n = std::to_string(i);
+      text += "[[point]]\nname = \"A" + n + "\"\nposition = \"" + n + "/100*l*E1 - 3*l*E2\"\n[[force]]\n" +
+              "spring = { between = [\"P\", \"A" + n + "\"], stiffness = \"k\" }\n";
+    }
+    return model::read_model_text(text, "model.toml");
+  };
+  CHECK(drawn(model(30)).figure.has_value());
+  CHECK_THROWS_WITH_AS(drawn(model(300)), doctest::Contains("strokes, above 4000"), Error);
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "analysis/drawing/figure.hpp"
 
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
@@ -12,6 +14,7 @@
 #include "analysis/drawing/parts.hpp"
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/solids.hpp"
+#include "error.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -35,8 +38,10 @@ class Drawer {
   std::optional<print::Figure> draw() {
     if (parts_.places.empty()) return std::nullopt;
     at_start_ = values(scene_.q);
-    if (!std::all_of(at_start_.begin(), at_start_.end(), [](double x) { return std::isfinite(x); }))
-      return std::nullopt;
+    if (!std::all_of(at_start_.begin(), at_start_.end(), [](double x) { return std::isfinite(x); })) {
+      throw Error("derive", {}, "a position has no finite value at the start of the scene",
+                  "start the default scene where every position has one");
+    }
     sizes_ = sizes_of(drawing_, *m_.dag, scene_.parameters);
     find_solids();
     std::optional<Point> down;
@@ -64,7 +69,10 @@ class Drawer {
       if (std::string_view(place.kind) != "point") sketch.label(sketch.on_paper(point(place.at)), place.name);
     }
     print::Figure figure = sketch.finish();
-    if (figure.strokes.size() > most_strokes) return std::nullopt;
+    if (figure.strokes.size() > most_strokes) {
+      throw Error("derive", {}, fmt::format("it would have {} strokes, above {}", figure.strokes.size(), most_strokes),
+                  "see it on the page of eomgen report");
+    }
     return figure;
   }
 

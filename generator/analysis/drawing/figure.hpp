@@ -11,7 +11,8 @@
 
 namespace eomgen::analysis {
 
-/// Nothing where the model has no positions, or where one has no value at the start.
+/// Nothing where the model has no positions. Throws Error where one has no value at the start, and where the picture
+/// has too many strokes for a page.
 std::optional<print::Figure> figure(mechanics::Mechanics& mechanics, const run::Scene& scene);
 
 }  // namespace eomgen::analysis

@@ -49,8 +49,8 @@ struct LiveModel {
   LiveStart start;
 };
 
-/// `outputs`: names in the order of the array that the page draws and plots from; `set`: parameters that the command
-/// line made numbers.
+/// `outputs`: names in the order of the array that the page draws and plots from; `set`: parameters and starts that
+/// the command line made numbers.
 LiveModel live_model(const pipeline::Simulation& simulation, const Drawing& drawing,
                      const std::vector<std::string>& outputs, const std::set<std::string>& set);
 
