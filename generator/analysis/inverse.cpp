@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <eom/hybrid/jumps.hpp>
 #include <eom/ode.hpp>
 #include <utility>
 
@@ -12,7 +13,6 @@
 #include "conservation/conserved.hpp"
 #include "derive/routes/lagrange.hpp"
 #include "model/names.hpp"
-#include "run/jumps.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::analysis {
@@ -150,13 +150,15 @@ class Prescribed {
 
   /// Where a velocity jumps the forces are an impulse, which no row shows.
   void tell_jumps(InverseAnswer& result) const {
-    if (!scene_.jumps || !scene_.jumps->by_time()) return;
-    for (const run::Break& at : scene_.clock.breaks) {
+    const eom::hybrid::Jumps jumps(scene_.jumps, system_.free.size(), integrals_.size(), scene_.inputs.size(),
+                                   scene_.parameters, !scene_.clock.breaks.empty());
+    if (!jumps.by_time()) return;
+    for (const eom::hybrid::Break& at : scene_.clock.breaks) {
       std::vector<double> before, after, x = integrals_;
       const double side = (at.before + at.after) / 2;
       for (const run::Signal& input : scene_.inputs)
         before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
-      const run::Jumps::Told told = scene_.jumps->cross({at.before, x, before.data()}, at.after, after.data(), x);
+      const eom::hybrid::Impulse told = jumps.cross({at.before, x, before.data()}, at.after, after.data(), x);
       if (told.undetermined.empty() && !told.velocities) continue;
       result.outcome = eom::Outcome::jump_undetermined;
       result.detail = !told.undetermined.empty() ? told.undetermined

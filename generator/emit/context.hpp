@@ -47,6 +47,7 @@ struct EventText {
 struct RunText {
   std::shared_ptr<const eom::hybrid::Problem> problem;
   std::vector<std::size_t> columns;
+  std::vector<std::uint32_t> beyond_range = {};  // coordinates of the model that may leave their range
 };
 
 struct EmissionContext {

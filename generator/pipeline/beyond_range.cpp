@@ -75,42 +75,71 @@ std::optional<Eigen::VectorXd> motion(const system::EquationSystem& s, const run
   return result;
 }
 
-}  // namespace
-
-bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
-                        std::uint32_t coordinate, double t, std::span<const double> x) {
-  if (!code.contacts.empty() || code.integrals > 0 || !of_system(derived.model, coordinate)) return false;
-  const auto place = std::find(code.free.begin(), code.free.end(), coordinate);
-  if (place == code.free.end()) return false;
+/// Whether what `own` gives (accelerations, energies) is that of equations derived without the range, on both sides.
+template <class Own>
+bool holds_beyond(const Derived& derived, const run::Scene& scene, const std::vector<std::uint32_t>& own_free,
+                  std::uint32_t coordinate, double t, std::span<const double> x, const Own& own) {
+  if (!of_system(derived.model, coordinate)) return false;
+  const auto place = std::find(own_free.begin(), own_free.end(), coordinate);
+  if (place == own_free.end()) return false;
   model::Model free = derived.model;
   free.coordinates[coordinate].lower = model::no_node;
   try {
     mechanics::Mechanics mechanics = mechanics::build_mechanics(free);
     const system::EquationSystem system = derive::lagrange(mechanics, system::Approach::two);
-    const std::size_t n = code.free.size();
-    if (system.free != code.free) return false;
-    std::vector<double> state(x.begin(), x.end()), dx(x.size()), y(code.output_names.size()), u;
-    for (const run::Signal& input : scene.inputs) u.push_back(input(t, t));
-    u.resize(std::max<std::size_t>(1, u.size()));
-    const auto output = [&](const char* name) {
-      return y[static_cast<std::size_t>(std::find(code.output_names.begin(), code.output_names.end(), name) -
-                                        code.output_names.begin())];
-    };
+    if (system.free != own_free) return false;
+    std::vector<double> state(x.begin(), x.end());
     const double size = std::max(1.0, std::abs(scene.q[coordinate]));
     for (const double part : {0.3, 0.0, -1e-3, -0.2, -0.7}) {
-      state[static_cast<std::size_t>(place - code.free.begin())] = scene.lower[coordinate] + part * size;
+      state[static_cast<std::size_t>(place - own_free.begin())] = scene.lower[coordinate] + part * size;
       const std::optional<Eigen::VectorXd> expected = motion(system, scene, t, state);
-      if (!expected || code.rhs(t, state.data(), scene.parameters.data(), u.data(), 0, dx.data()) != 0 ||
-          code.outputs(t, state.data(), scene.parameters.data(), u.data(), 0, y.data()) != 0)
+      const std::optional<Eigen::VectorXd> found = expected ? own(t, state) : std::nullopt;
+      if (!found || !((*found - *expected).cwiseAbs().maxCoeff() <= agree * (1 + expected->cwiseAbs().maxCoeff())))
         return false;
-      Eigen::VectorXd found(static_cast<Eigen::Index>(n) + 2);
-      found << numbers(dx, n, n), output("kinetic"), output("potential");
-      if (!((found - *expected).cwiseAbs().maxCoeff() <= agree * (1 + expected->cwiseAbs().maxCoeff()))) return false;
     }
     return true;
   } catch (const Error&) {
     return false;
   }
+}
+
+}  // namespace
+
+bool holds_beyond_range(const Derived& derived, const run::Scene& scene, const run::Code& code,
+                        std::uint32_t coordinate, double t, std::span<const double> x) {
+  if (!code.contacts.empty() || code.integrals > 0) return false;
+  const std::size_t n = code.free.size();
+  std::vector<double> dx(x.size()), y(code.output_names.size()), u;
+  for (const run::Signal& input : scene.inputs) u.push_back(input(t, t));
+  u.resize(std::max<std::size_t>(1, u.size()));
+  const auto output = [&](const char* name) {
+    return y[static_cast<std::size_t>(std::find(code.output_names.begin(), code.output_names.end(), name) -
+                                      code.output_names.begin())];
+  };
+  const auto own = [&](double at, const std::vector<double>& state) -> std::optional<Eigen::VectorXd> {
+    if (code.rhs(at, state.data(), scene.parameters.data(), u.data(), 0, dx.data()) != 0 ||
+        code.outputs(at, state.data(), scene.parameters.data(), u.data(), 0, y.data()) != 0)
+      return std::nullopt;
+    Eigen::VectorXd found(static_cast<Eigen::Index>(n) + 2);
+    found << numbers(dx, n, n), output("kinetic"), output("potential");
+    return found;
+  };
+  return holds_beyond(derived, scene, code.free, coordinate, t, x, own);
+}
+
+std::vector<std::uint32_t> held_beyond_range(const Derived& derived, const run::Scene& scene) {
+  const system::EquationSystem& system = derived.candidates.front();
+  if (!system.contacts.empty() || !system.integrals.empty()) return {};
+  std::vector<double> start;
+  for (const std::vector<double>* values : {&scene.q, &scene.qdot}) {
+    for (const std::uint32_t i : system.free) start.push_back((*values)[i]);
+  }
+  const auto own = [&](double t, const std::vector<double>& state) { return motion(system, scene, t, state); };
+  std::vector<std::uint32_t> result;
+  for (const std::uint32_t i : system.free) {
+    if (holds_beyond(derived, scene, system.free, i, scene.t0, start, own)) result.push_back(i);
+  }
+  return result;
 }
 
 }  // namespace eomgen::pipeline

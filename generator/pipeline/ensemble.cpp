@@ -14,6 +14,7 @@
 #include "emit/targets.hpp"
 #include "error.hpp"
 #include "pipeline/tidy_graph.hpp"
+#include "run/looked_at.hpp"
 #include "work.hpp"
 
 namespace eomgen::pipeline {
@@ -37,8 +38,8 @@ emit::LoadedBatch compile_batch(const Simulation& first) {
 
 bool stands_still(const run::Scene& scene) {
   const auto still = [](const run::Signal& signal) { return !signal.moves() && signal.jumps().empty(); };
-  return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && !scene.jumps && scene.clock.bounds.empty() &&
-         scene.clock.breaks.empty();
+  return std::all_of(scene.inputs.begin(), scene.inputs.end(), still) && scene.jumps.functions.empty() &&
+         scene.clock.bounds.empty() && scene.clock.breaks.empty();
 }
 
 /// A coordinate with a range that moves; what is eliminated and the same at states that have nothing in common stands
@@ -226,7 +227,7 @@ std::string ensemble_obstacle(const Simulation& first) {
   if (code.integrals > 0) return "an integral over time is a state of the model";
   if (const std::string name = ranged(first, code); !name.empty())
     return fmt::format("'{}' has a range, which is looked at after every step", name);
-  if (run::NarrowForces(first.derived->candidates.front(), first.scene.parameters).any())
+  if (!run::narrow_functions(first.derived->candidates.front()).empty())
     return "exp, tanh, sinh, cosh or a high power of the state may make a force that is narrow, which is looked for in "
            "every step";
   if (!stands_still(first.scene)) return "inputs or functions of time move, whose jumps and pulses are located";

@@ -4,10 +4,11 @@
 #include <algorithm>
 #include <eom/hybrid/problem.hpp>
 
-#include "error.hpp"
+#include "pipeline/beyond_range.hpp"
 #include "pipeline/code.hpp"
 #include "pipeline/simulate.hpp"
 #include "run/bind.hpp"
+#include "run/looked_at.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -34,39 +35,28 @@ std::vector<eom::hybrid::ExchangedChart> exchanged(const program::Program& progr
   return result;
 }
 
-void require_code_alone(const Derived& derived, const run::Scene& scene) {
-  const auto refuse = [&](const char* what, const char* remedy) {
-    throw Error("emit", Where{derived.model.file, 0, 0, 1, ""}, what, remedy);
-  };
-  if (scene.jumps)
-    refuse(
-        "the run of the default scene needs to know what jumps (a support, a potential), which emitted code does not",
-        "leave run out of --with and integrate with eomgen run, or make what jumps a motion that takes some time");
-  for (const run::Signal& input : scene.inputs) {
-    if (input.moves())
-      refuse("an input of the default scene is an expression of t, which emitted code does not have",
-             "leave run out of --with, write the expression where the input is used, or give it as a table");
-  }
-}
-
 }  // namespace
 
 std::shared_ptr<const emit::RunText> run_text(const Derived& derived, const run::Scene& scene,
                                               const program::Program& program) {
-  require_code_alone(derived, scene);
   auto described = std::make_shared<Described>(Described{scene, described_code(program), {}});
   run::RunRequest request = run_request(derived, described->scene, described->code, true);
   request.every = row_interval(scene);
   described->problem = run::problem_of(request, run::choose_solver(scene.solver, scene).first);
-  described->problem.bounded = {};  // by expressions
   described->problem.beyond_range = {};
-  described->problem.charts = exchanged(program);
+  described->problem.time = scene.time;  // a run looks at it with the numbers that it has then
+  described->problem.breaks = {};
+  described->problem.bounds = {};
+  // As of eomgen run: where something jumps the run keeps to the coordinates that it has.
+  if (scene.jumps.functions.empty()) described->problem.charts = exchanged(program);
+  if (described->problem.charts.empty()) described->problem.jumps = run::jump_functions(derived.candidates.front());
   auto text = std::make_shared<emit::RunText>();
   for (std::size_t i = 0; i < 2 * derived.model.coordinates.size(); ++i) text->columns.push_back(i);
   for (const std::string& name : scene.outputs) {
     const auto place = std::find(program.outputs.begin(), program.outputs.end(), name);
     text->columns.push_back(static_cast<std::size_t>(place - program.outputs.begin()));
   }
+  text->beyond_range = held_beyond_range(derived, scene);
   text->problem = std::shared_ptr<const eom::hybrid::Problem>(described, &described->problem);
   return text;
 }

@@ -9,6 +9,7 @@
 #include "error.hpp"
 #include "pipeline/beyond_range.hpp"
 #include "program/kinks.hpp"
+#include "run/looked_at.hpp"
 
 namespace eomgen::pipeline {
 namespace {
@@ -82,7 +83,7 @@ bool energy_is_conserved(const Derived& derived) {
 
 /// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
 /// contacts.
-run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
+std::vector<eom::expressions::Table> ranges_of(const Derived& derived, const run::Code& code) {
   const system::EquationSystem& system = derived.candidates.front();
   std::vector<std::optional<symbolic::Ref>> functions;
   for (const system::Event& event : system.events) functions.emplace_back(event.value);
@@ -95,7 +96,7 @@ run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, cons
     }
   }
   if (functions.empty()) return {};
-  return run::EventRanges(system, functions, scene.parameters);
+  return run::bounded_events(system, functions);
 }
 
 }  // namespace
@@ -130,8 +131,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
   run.contacts = contact_outputs(system);
-  run.ranges = ranges_of(derived, scene, code);
-  run.narrow = run::NarrowForces(system, scene.parameters);
+  run.bounded = {ranges_of(derived, code), run::narrow_functions(system)};
   run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return holds_beyond_range(derived, scene, code, coordinate, t, x);
   };
@@ -224,7 +224,7 @@ Simulation simulate(const SimulationRequest& request) {
   const std::string solver =
       run::choose_solver(scene.solver, scene).first;  // a wrong name is told before anything is compiled
   const eom::Refusal* const keeps_charts = run::method_named(solver).needs.refusal(eom::Feature::charts);
-  const bool exchanges = possible && !scene.jumps && keeps_charts == nullptr;
+  const bool exchanges = possible && scene.jumps.functions.empty() && keeps_charts == nullptr;
 
   program::Request wanted = run_functions(*derived, scene, solver, request.every_solver);
   for (const std::string& name : prepared) {

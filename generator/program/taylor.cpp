@@ -192,8 +192,8 @@ class Recurrences : private SeriesCode {
       return c;
     }
     const symbolic::Function& f = symbolic::function_of(instruction.op);
-    const auto fall = [&f](const Operand& o) { return f.falls ? minus(o) : o; };
-    switch (f.slope) {
+    const auto fall = [&f](const Operand& o) { return f.falls() ? minus(o) : o; };
+    switch (f.slope()) {
       case Slope::self: {
         const auto [next, s] = integrated(a[0], c.zero);
         c.next = next;
@@ -202,7 +202,7 @@ class Recurrences : private SeriesCode {
       }
       case Slope::one_plus_v2:
       case Slope::one_minus_v2: {
-        const bool plus = f.slope == Slope::one_plus_v2;
+        const bool plus = f.slope() == Slope::one_plus_v2;
         const Operand square = at_start(Op::mul, {c.zero, c.zero});
         const Operand slope = at_start(Op::add, {one(), plus ? square : minus(square)});
         const auto [next, s] = integrated(a[0], slope);
@@ -212,8 +212,8 @@ class Recurrences : private SeriesCode {
       }
       case Slope::other: {
         const bool odd = f.parity == symbolic::Parity::odd;
-        Series other{true, at_start(f.other, {a[0].zero}), {}};
-        pair(a[0], odd ? c : other, odd ? other : c, f.falls || symbolic::function_of(f.other).falls);
+        Series other{true, at_start(f.other(), {a[0].zero}), {}};
+        pair(a[0], odd ? c : other, odd ? other : c, f.falls() || symbolic::function_of(f.other()).falls());
         return c;
       }
       case Slope::over_x: c.next = divided({weighted(a[0])}, a[0]); return c;

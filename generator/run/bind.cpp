@@ -4,14 +4,10 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "run/jumps.hpp"
-
 namespace eomgen::run {
 namespace {
 
-using eom::hybrid::Place;
 using eom::hybrid::Problem;
-using eom::hybrid::Sampling;
 
 std::size_t index_of(const std::vector<std::string>& names, const std::string& name) {
   const auto found = std::find(names.begin(), names.end(), name);
@@ -68,42 +64,19 @@ void bind_start(const RunRequest& request, Problem& problem) {
 }
 
 void bind_time(const Scene& scene, Problem& problem) {
-  for (const Signal& signal : scene.inputs) {
-    if (signal.jumps().empty())
-      problem.inputs.push_back({[signal](double t) { return signal(t, t); }, {}, {}});
-    else
-      problem.inputs.push_back({{}, signal.jumps(), signal.values()});
-  }
+  problem.inputs = signals_of(scene);
   problem.breaks = scene.clock.breaks;
   problem.bounds = scene.clock.bounds;
 }
 
-void bind_jumps(const std::shared_ptr<Jumps>& jumps, Problem& problem) {
-  if (!jumps) return;
-  if (jumps->by_time())
-    problem.jumps.at_time = [jumps](const Place& before, double after, const double* u_after, std::span<double> x) {
-      return jumps->cross(before, after, u_after, x);
-    };
-  problem.jumps.surfaces = jumps->surfaces();
-  problem.jumps.values = [jumps](const Place& at, double* g) { jumps->values(at, g); };
-  problem.jumps.across = [jumps](const Place& at, std::size_t surface) { return jumps->cross(at, surface); };
-}
-
-/// By reference: expressions as code are large, and what they find out is asked of the request.
-void bind_bounds(const RunRequest& request, Problem& problem) {
-  if (request.ranges.any())
-    problem.bounded.hidden = [&ranges = request.ranges](const eom::StepView& step, std::size_t i, int side, double from,
-                                                        double to, const Sampling& sampling) {
-      return ranges.first(step, i, side, from, to, sampling.inputs);
-    };
-  if (!request.narrow.any()) return;
-  problem.bounded.longest = [&narrow = request.narrow](const eom::StepView& step, const Sampling& sampling) {
-    return narrow.longest(step, sampling);
-  };
-  problem.bounded.unsure = [&narrow = request.narrow] { return narrow.unsure(); };
-}
-
 }  // namespace
+
+std::vector<eom::hybrid::Signal> signals_of(const Scene& scene) {
+  std::vector<eom::hybrid::Signal> signals;
+  for (const Signal& signal : scene.inputs)
+    signals.push_back({{}, signal.jumps(), signal.values(), signal.expression()});
+  return signals;
+}
 
 Problem problem_of(const RunRequest& request, const std::string& solver) {
   const Scene& scene = request.scene;
@@ -132,8 +105,8 @@ Problem problem_of(const RunRequest& request, const std::string& solver) {
   bind_outputs(request, problem);
   bind_start(request, problem);
   bind_time(scene, problem);
-  bind_jumps(scene.jumps, problem);
-  bind_bounds(request, problem);
+  problem.jumps = scene.jumps;
+  problem.bounded = request.bounded;
   return problem;
 }
 

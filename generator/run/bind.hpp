@@ -5,10 +5,14 @@
 
 #include <eom/hybrid/problem.hpp>
 #include <string>
+#include <vector>
 
 #include "run/runner.hpp"
 
 namespace eomgen::run {
+
+/// The inputs of a scene.
+std::vector<eom::hybrid::Signal> signals_of(const Scene& scene);
 
 /// The request has to stay. `solver`: one that can integrate it.
 eom::hybrid::Problem problem_of(const RunRequest& request, const std::string& solver);

@@ -13,8 +13,6 @@
 #include <vector>
 
 #include "run/eligibility.hpp"
-#include "run/event_ranges.hpp"
-#include "run/narrow_forces.hpp"
 #include "run/scene.hpp"
 #include "run/solver_reason.hpp"
 
@@ -110,9 +108,8 @@ struct RunRequest {
   std::vector<std::string> redundant = {};      // outputs: psi of constraints that the others make hold
   std::vector<ExchangedChart> charts = {};      // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts =
-      {};                   // code that knows these second charts, and those asked for before
-  EventRanges ranges = {};  // of event functions
-  NarrowForces narrow = {};
+      {};  // code that knows these second charts, and those asked for before
+  eom::hybrid::BoundedFunctions bounded = {};
   /// Whether the equations hold where a coordinate has left its range; none: they do not.
   std::function<bool(std::uint32_t coordinate, double t, std::span<const double> x)> beyond_range = {};
   std::vector<std::string> constraint_names = {};  // of Code::active_constraints

@@ -7,13 +7,17 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <eom/hybrid/clock.hpp>
+#include <eom/hybrid/jumps.hpp>
 #include <limits>
 
 #include "derive/imposition.hpp"
 #include "numeric/numbers.hpp"
-#include "run/jumps.hpp"
+#include "run/bind.hpp"
+#include "run/looked_at.hpp"
 #include "run/parameters.hpp"
 #include "run/start.hpp"
+#include "run/time_functions.hpp"
 #include "symbolic/evaluate.hpp"
 
 namespace eomgen::run {
@@ -117,11 +121,13 @@ std::vector<std::optional<Ref>> resolve_inputs(Mechanics& m, const model::Scene&
 // What time alone does, and where that makes something jump.
 void resolve_clock(const Mechanics& m, const system::EquationSystem& system,
                    const std::vector<std::optional<Ref>>& expressions, Scene& result) {
-  std::vector<ClockInput> inputs;
-  for (std::size_t i = 0; i < expressions.size(); ++i) inputs.push_back({&result.inputs[i], expressions[i]});
-  result.clock = look_at_time(system, result.parameters, inputs, result.t0, result.t1);
-  auto jumps = std::make_shared<Jumps>(m, system, result.parameters, result.clock);
-  if (!jumps->none()) result.jumps = std::move(jumps);
+  for (Signal& input : result.inputs) input.parameters(result.parameters);
+  result.time = time_functions(system, expressions);
+  result.clock = eom::hybrid::look_at_time(result.time, result.parameters, signals_of(result), result.t0, result.t1);
+  eom::hybrid::JumpFunctions jumps = jump_functions(system);
+  const eom::hybrid::Jumps found(jumps, system.free.size(), system.integrals.size(), m.model->inputs.size(),
+                                 result.parameters, !result.clock.breaks.empty());
+  if (!found.none()) result.jumps = std::move(jumps);
 }
 
 // A start outside its chart would be integrated with equations that do not hold there.

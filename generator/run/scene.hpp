@@ -5,6 +5,7 @@
 
 #include <cln/real.h>
 
+#include <eom/hybrid/clock.hpp>
 #include <map>
 #include <memory>
 #include <optional>
@@ -13,13 +14,10 @@
 #include <vector>
 
 #include "mechanics/mechanics.hpp"
-#include "run/clock.hpp"
 #include "run/signal.hpp"
 #include "system/equation_system.hpp"
 
 namespace eomgen::run {
-
-class Jumps;
 
 /// What `run` takes from the command line in place of the scene's values.
 struct Overrides {
@@ -50,8 +48,9 @@ struct Scene {
   double step = 0, every = 0;        // 0: not given
   double max_step = 0;               // of chosen steps; 0: not bounded
   std::vector<Signal> inputs;        // one per input of the model
-  Clock clock;                       // what time alone does
-  std::shared_ptr<Jumps> jumps;      // where something may jump, or null
+  eom::hybrid::TimeFunctions time;   // functions of time alone
+  eom::hybrid::Clock clock;          // what they do in the span of the run
+  eom::hybrid::JumpFunctions jumps;  // where something may jump; empty: nowhere
   std::vector<std::string> outputs;  // expanded, without the coordinates, each once
   std::vector<bool> stops;           // per event of the model: whether it ends the run
   std::vector<bool> apart;           // per contact: whether it does not touch at the start

@@ -75,7 +75,8 @@ class Variational {
 };
 
 /// Ends of the segments between jumps of the inputs and kinks of time, and where the next one begins.
-std::vector<Break> segments(const Scene& scene, double t_end) {
+std::vector<eom::hybrid::Break> segments(const Scene& scene, double t_end) {
+  using eom::hybrid::Break;
   std::vector<Break> ends;
   const double direction = t_end < scene.t0 ? -1 : 1;
   for (const Signal& signal : scene.inputs) {

@@ -2,9 +2,10 @@
 // An input u(t) during a run: an expression of t and parameters, or piecewise constant with jumps.
 #pragma once
 
+#include <eom/expressions/code.hpp>
 #include <vector>
 
-#include "run/range_code.hpp"
+#include "symbolic/dag.hpp"
 
 namespace eomgen::run {
 
@@ -16,15 +17,20 @@ class Signal {
   /// value[k] from time[k] until time[k+1]; value[0] before time[0].
   Signal(std::vector<double> time, std::vector<double> value);
 
+  /// Other numbers for the parameters of its expression.
+  void parameters(const std::vector<double>& values);
+
   /// The value at t. At a jump: the value of the segment that `side_of` (a time inside the current segment) lies in.
   double operator()(double t, double side_of) const;
   /// Whether it changes between its jumps.
   bool moves() const;
   const std::vector<double>& jumps() const { return time_; }
-  const std::vector<double>& values() const { return value_; }  // from each jump on
+  const std::vector<double>& values() const { return value_; }               // from each jump on
+  const eom::expressions::Table& expression() const { return expression_; }  // of t; empty where it is a table
 
  private:
-  RangeCode code_;  // of t; without a root where there is no expression
+  eom::expressions::Table expression_;
+  eom::expressions::Code code_;
   std::vector<double> time_, value_;
 };
 

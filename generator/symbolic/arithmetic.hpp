@@ -12,6 +12,7 @@
 #include <stdexcept>
 
 #include "symbolic/dag.hpp"
+#include "symbolic/runtime_operations.hpp"
 
 namespace eomgen::symbolic {
 
@@ -84,25 +85,7 @@ struct Binary64 {
   static double divide(double a, double b) { return a / b; }
   static double power(double a, long n) { return std::pow(a, static_cast<double>(n)); }
   static double pow(double a, double b) { return std::pow(a, b); }
-  static double call(Op op, double x) {
-    switch (op) {
-      case Op::sqrt: return std::sqrt(x);
-      case Op::sin: return std::sin(x);
-      case Op::cos: return std::cos(x);
-      case Op::tan: return std::tan(x);
-      case Op::asin: return std::asin(x);
-      case Op::acos: return std::acos(x);
-      case Op::atan: return std::atan(x);
-      case Op::sinh: return std::sinh(x);
-      case Op::cosh: return std::cosh(x);
-      case Op::tanh: return std::tanh(x);
-      case Op::exp: return std::exp(x);
-      case Op::log: return std::log(x);
-      case Op::abs: return std::fabs(x);
-      case Op::sign: return x > 0 ? 1.0 : x < 0 ? -1.0 : x;
-      default: return std::nan("");
-    }
-  }
+  static double call(Op op, double x) { return eom::expressions::call(runtime_op(op), x); }
   static double atan2(double y, double x) { return std::atan2(y, x); }
   static bool less(double a, double b) { return a < b; }
 };

@@ -16,11 +16,6 @@ std::string particle(const std::string& scene, const std::string& more = "") {
          more + "[scene.default]\nt = [0, 1]\ninitial = { x = 1 }\n" + scene;
 }
 
-const std::string jumping_support =
-    "format = 1\n[parameters]\nm = 1\nl = 1\ng = 9.81\n[coordinates]\nth = \"1\"\n[functions]\ns = \"abs(t - 1)\"\n"
-    "[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = [\"s + l*sin(th)\", \"-l*cos(th)\", 0]\n[[force]]\n"
-    "gravity = \"-g*E2\"\n[scene.default]\nt = [0, 3]\ninitial = { th = 0.1 }\n";
-
 std::string pendulum(const std::string& solver) {
   return pendulum_text("[scene.default]\nt = [0, 1]\ninitial = { x = 0.6, y = -0.8 }\nsolver = \"" + solver + "\"\n");
 }
@@ -92,16 +87,16 @@ TEST_CASE("emit --with run: targets that write no C tell that there is no header
         expect(0, folder, {"emit", "model.toml", "-o", target, "--target", target, "--with", "run"}).err, "warning"));
 }
 
-TEST_CASE("emit --with run: what emitted code does not know is refused with its reason") {
-  const std::vector<Case> cases{
-      {"a support", jumping_support, {"needs to know what jumps (a support, a potential)", "leave run out of --with"}},
-      {"an input",
-       particle("inputs = { F = \"3*sin(2*t)\" }\n"),
-       {"an input of the default scene is an expression of t", "give it as a table"}}};
-  for (const Case& c : cases) check_refusal(c);
-  // An input that jumps is a table, which the header has.
+TEST_CASE("emit --with run: inputs are tables that jump, or expressions as tables of operations") {
   const Folder folder;
-  folder.write("model.toml", particle("inputs = { F = { t = [0, 0.7], value = [5, -3] } }\n"));
-  expect(0, folder, {"emit", "model.toml", "-o", ".", "--target", "c", "--with", "run"});
-  CHECK(contains(folder.read("model_run.hpp"), "problem.inputs = {{{}, {0.0, 0.7}, {5.0, -3.0}}};"));
+  const auto header_of = [&](const std::string& inputs) {
+    folder.write("model.toml", particle("inputs = { F = " + inputs + " }\n"));
+    expect(0, folder, {"emit", "model.toml", "-o", ".", "--target", "c", "--with", "run"});
+    return folder.read("model_run.hpp");
+  };
+  CHECK(contains(header_of("{ t = [0, 0.7], value = [5, -3] }"),
+                 "problem.inputs = {{{}, {0.0, 0.7}, {5.0, -3.0}, {}}};"));
+  CHECK(
+      contains(header_of("\"m*sin(t*1[1/s])*1[N/kg]\""),
+               "problem.inputs = {{{}, {}, {}, {{{Op::variable, {0}}, {Op::parameter, {0}}, {Op::sin, {0}}, {Op::mul"));
 }

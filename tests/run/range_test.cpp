@@ -3,9 +3,10 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <eom/hybrid/clock.hpp>
 
-#include "run/clock.hpp"
-#include "run/range_code.hpp"
+#include "run/expression_tables.hpp"
+#include "run/time_functions.hpp"
 
 using namespace eomgen;
 using symbolic::Dag;
@@ -14,16 +15,16 @@ using symbolic::Ref;
 
 namespace {
 
-run::RangeCode::Leaf time_is_variable(const symbolic::Symbol&) { return run::RangeCode::Leaf::of_variable(0); }
+run::Leaf time_is_variable(const symbolic::Symbol&) { return run::Leaf::of_variable(0); }
 
 /// A system whose force is one function of time.
-run::Clock clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) {
+eom::hybrid::Clock clock_of(const std::function<Ref(Dag&, Ref)>& force, double t1 = 10) {
   system::EquationSystem system;
   system.dag = std::make_shared<Dag>();
   Dag& dag = *system.dag;
   system.kinetic = system.potential = system.energy = system.power = dag.zero();
   system.f = {force(dag, dag.symbol({symbolic::SymbolKind::time, 0, 0}))};
-  return run::look_at_time(system, {}, {}, 0, t1);
+  return eom::hybrid::look_at_time(run::time_functions(system, {}), {}, {}, 0, t1);
 }
 
 Ref number(Dag& dag, long numerator, long denominator = 1) {
@@ -46,17 +47,18 @@ TEST_CASE("ranges: every operation keeps values and slopes between its bounds") 
   functions.push_back(dag.select(t, half, dag.power(t, 3), dag.neg(t)));
   functions.push_back(dag.div(dag.sub(t, half), dag.add(dag.power(t, 4), half)));
   functions.push_back(dag.pow(dag.add(dag.power(t, 2), half), dag.mul(t, half)));
-  const run::RangeCode code(dag, functions, time_is_variable);
-  REQUIRE(code.complete());
+  std::optional<run::Table> table = run::table_of(dag, functions, time_is_variable);
+  REQUIRE(table);
+  const eom::expressions::Code code(std::move(*table), {});
   constexpr double rounding = 1e-9;
   for (const double from : {-2.9, -1.3, -0.2, 0.0, 0.31, 1.4}) {
     for (const double width : {1.4, 0.3, 0.01}) {
-      const std::vector<run::Sloped> box{{{from, from + width}, {1, 1}}};
+      const std::vector<eom::expressions::Sloped> box{{{from, from + width}, {1, 1}}};
       for (std::size_t i = 0; i < functions.size(); ++i) {
         CAPTURE(i);
         CAPTURE(from);
         CAPTURE(width);
-        const run::Sloped range = code.range(box, i);
+        const eom::expressions::Sloped range = code.range(box, i);
         for (int k = 0; k <= 20; ++k) {
           const double at = from + width * k / 20, h = 1e-6 * width;
           const double v = code.value(std::vector<double>{at}, i);
@@ -73,7 +75,7 @@ TEST_CASE("ranges: every operation keeps values and slopes between its bounds") 
 }
 
 TEST_CASE("clock: kinks of time are found however near to one another, each to the last digit and none twice") {
-  const run::Clock pulse = clock_of([](Dag& dag, Ref t) {  // if(|t - 5.123| < 1e-7, 1, 0), and |t - 2|
+  const eom::hybrid::Clock pulse = clock_of([](Dag& dag, Ref t) {  // if(|t - 5.123| < 1e-7, 1, 0), and |t - 2|
     const Ref inside = dag.select(dag.call(Op::abs, dag.sub(t, number(dag, 5123, 1000))), number(dag, 1, 10'000'000),
                                   dag.one(), dag.zero());
     return dag.add(inside, dag.call(Op::abs, dag.sub(t, number(dag, 2))));
@@ -85,12 +87,12 @@ TEST_CASE("clock: kinks of time are found however near to one another, each to t
     CHECK(pulse.breaks[i].after > pulse.breaks[i].before);
     CHECK(pulse.breaks[i].after - pulse.breaks[i].before < 4e-15);
   }
-  const run::Clock periodic = clock_of([](Dag& dag, Ref t) {
+  const eom::hybrid::Clock periodic = clock_of([](Dag& dag, Ref t) {
     return dag.select(number(dag, 9999, 10000), dag.call(Op::sin, dag.mul(number(dag, 20), t)), dag.one(), dag.zero());
   });
   CHECK(periodic.breaks.size() == 64);  // 32 maxima in 200 rad
   CHECK(!periodic.unfollowed_from);
-  const run::Clock touches =
+  const eom::hybrid::Clock touches =
       clock_of([](Dag& dag, Ref t) { return dag.call(Op::abs, dag.power(dag.sub(t, number(dag, 3)), 2)); });
   CHECK(touches.breaks.empty());
   CHECK(touches.bounds.empty());
@@ -99,7 +101,7 @@ TEST_CASE("clock: kinks of time are found however near to one another, each to t
 TEST_CASE("clock: steps are bounded where a smooth function of time is narrow, and nowhere else") {
   for (const double w : {1e-1, 1e-3, 1e-6}) {
     CAPTURE(w);
-    const run::Clock gauss = clock_of([&](Dag& dag, Ref t) {
+    const eom::hybrid::Clock gauss = clock_of([&](Dag& dag, Ref t) {
       const Ref width = number(dag, static_cast<long>(std::lround(w * 1e6)), 1'000'000);
       return dag.call(Op::exp, dag.neg(dag.power(dag.div(dag.sub(t, number(dag, 5123, 1000)), width), 2)));
     });

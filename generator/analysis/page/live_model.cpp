@@ -73,7 +73,8 @@ class Live {
   std::string obstacle() const {
     if (!s_.program.contacts.empty())
       return "its contacts stick, slide or part, and each of these has equations of its own";
-    if (s_.scene.jumps) return "something jumps on its way, with an impulse that only the program works out";
+    if (!s_.scene.jumps.functions.empty())
+      return "something jumps on its way, with an impulse that only the program works out";
     if (!s_.program.integrals.empty()) return "an integral over time has no closed form and is a state of its own";
     for (const model::SceneInput& input : model_scene().inputs) {
       if (std::holds_alternative<model::InputTable>(input.signal))

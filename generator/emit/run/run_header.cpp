@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <eom/hybrid/problem.hpp>
 #include <optional>
@@ -33,8 +34,25 @@ std::string text(const std::string& value) { return string_literal(value, "     
 std::string text(const std::optional<std::size_t>& value) { return value ? text(*value) : "std::nullopt"; }
 template <class Entry>
 std::string text(const std::vector<Entry>& list);
-std::string text(const eom::hybrid::Break& b) { return fmt::format("{{{}, {}}}", number(b.before), number(b.after)); }
-std::string text(const eom::StepBound& b) { return fmt::format("{{{}, {}}}", number(b.t), number(b.step)); }
+std::string text(const eom::expressions::Step& step) {
+  std::size_t given = std::max<std::size_t>(1, eom::expressions::operands(step.op));
+  if (step.op == eom::expressions::Op::power) given = 2;
+  std::string operands;
+  for (std::size_t k = 0; k < given; ++k) operands += fmt::format("{}{}", k == 0 ? "" : ", ", step.a[k]);
+  return fmt::format("{{Op::{}, {{{}}}}}", eom::expressions::name_of(step.op), operands);
+}
+std::string text(const eom::expressions::Table& table) {
+  return fmt::format("{{{}, {}, {}}}", text(table.steps), text(table.numbers), text(table.roots));
+}
+std::string text(const eom::hybrid::Signal& signal) {
+  if (!signal.times.empty()) return fmt::format("{{{{}}, {}, {}, {{}}}}", text(signal.times), text(signal.values));
+  if (signal.expression.empty()) return "{}";
+  return fmt::format("{{{{}}, {{}}, {{}}, {}}}", text(signal.expression));
+}
+std::string text(const eom::hybrid::JumpFunctions::Function& function) {
+  static constexpr std::array<const char*, 7> kinds{"potential", "momentum", "psi", "row", "rate", "place", "velocity"};
+  return fmt::format("{{What::{}, {}}}", kinds.at(static_cast<std::size_t>(function.what)), text(function.name));
+}
 std::string text(const eom::hybrid::Range& r) { return fmt::format("{{{}, {}}}", number(r.lower), number(r.upper)); }
 std::string text(const eom::hybrid::OwnOutputs& own) {
   return fmt::format("{{{}, {}}}", own.in_charts, text(own.outputs));
@@ -83,9 +101,12 @@ class Statements {
       line(wrapped(fmt::format("{}.{} = {};", of_, member, text(entries)), "      "));
     } else {  // names may have blanks, at which a line must not be broken
       std::string all;
-      for (const Entry& entry : entries) all += (all.empty() ? "" : ",\n      ") + text(entry);
+      for (const Entry& entry : entries) all += (all.empty() ? "" : ",\n      ") + in_lines(entry);
       line(fmt::format("{}.{} = {{{}}};", of_, member, all));
     }
+  }
+  void table(const char* member, const eom::expressions::Table& table) {
+    if (!table.empty()) line(wrapped(fmt::format("{}.{} = {};", of_, member, text(table)), "      "));
   }
   void line(const std::string& line) { lines_ += "  " + line + "\n"; }
   std::string done() {
@@ -94,6 +115,14 @@ class Statements {
   }
 
  private:
+  template <class Entry>
+  static std::string in_lines(const Entry& entry) {
+    if constexpr (std::is_same_v<Entry, eom::expressions::Table> || std::is_same_v<Entry, eom::hybrid::Signal>)
+      return wrapped(text(entry), "      ");  // without names
+    else
+      return text(entry);
+  }
+
   std::string of_, lines_;
 };
 
@@ -137,19 +166,20 @@ std::string code_text(const program::Program& program, const eom::hybrid::Code& 
   return s.done();
 }
 
-std::string problem_text(const Problem& p) {
+/// The equations hold beyond the ranges of these coordinates.
+std::string beyond_text(const std::vector<std::uint32_t>& coordinates) {
+  std::string any;
+  for (const std::uint32_t i : coordinates) any += fmt::format("{}i == {}", any.empty() ? "" : " || ", i);
+  return fmt::format("problem.beyond_range = [](std::uint32_t i, double, std::span<const double>) {{ return {}; }};",
+                     any);
+}
+
+std::string problem_text(const RunText& run) {
+  const Problem& p = *run.problem;
   Statements s("problem");
   s.set("t0", p.t0);
   s.set("t1", p.t1);
-  std::string inputs;
-  for (std::size_t i = 0; i < p.inputs.size(); ++i) {
-    const eom::hybrid::Signal& signal = p.inputs[i];
-    inputs +=
-        (i == 0 ? "" : ", ") +
-        (signal.times.empty() ? fmt::format("{{[](double) {{ return {}; }}, {{}}, {{}}}}", text(signal(p.t0, p.t0)))
-                              : fmt::format("{{{{}}, {}, {}}}", text(signal.times), text(signal.values)));
-  }
-  if (!inputs.empty()) s.line(fmt::format("problem.inputs = {{{}}};", inputs));
+  s.list("inputs", p.inputs);
   s.set("solver", p.solver);
   s.set("rtol", p.rtol);
   s.set("atol", p.atol);
@@ -164,15 +194,33 @@ std::string problem_text(const Problem& p) {
   s.list("contacts", p.contacts);
   s.list("apart", p.apart);
   s.list("events", p.events);
-  s.list("breaks", p.breaks);
-  s.list("bounds", p.bounds);
+  s.list("time.surfaces", p.time.surfaces);
+  s.list("time.terms", p.time.terms);
+  s.list("jumps.functions", p.jumps.functions);
+  s.table("jumps.values", p.jumps.values);
+  s.table("jumps.mass", p.jumps.mass);
+  s.list("bounded.events", p.bounded.events);
+  s.list("bounded.narrow", p.bounded.narrow);
   s.list("charts", p.charts);
   if (!p.charts.empty()) s.line("problem.in_charts = [&code](unsigned) -> const eom::hybrid::Code& { return code; };");
   s.list("ranges", p.ranges);
+  if (!run.beyond_range.empty()) s.line(beyond_text(run.beyond_range));
   s.list("state_names", p.state_names);
   s.list("constraint_names", p.constraint_names);
   s.set("every", p.every);
   return s.done();
+}
+
+/// Short names for what expressions are written with.
+std::string used_names(const Problem& p) {
+  std::string result;
+  const bool signals = std::any_of(p.inputs.begin(), p.inputs.end(),
+                                   [](const eom::hybrid::Signal& signal) { return !signal.expression.empty(); });
+  if (signals || !p.time.empty() || !p.bounded.events.empty() || !p.bounded.narrow.empty() ||
+      !p.jumps.functions.empty())
+    result += "  using eom::expressions::Op;\n";
+  if (!p.jumps.functions.empty()) result += "  using What = eom::hybrid::JumpFunctions::What;\n";
+  return result;
 }
 
 }  // namespace
@@ -192,7 +240,8 @@ std::vector<EmittedFile> emit_run_header(const program::Program& program, const 
                      {"infinity",
                       infinite ? "  constexpr double infinity = std::numeric_limits<double>::infinity();\n" : ""},
                      {"parameters", fmt::format("{}", problem.parameters.size())},
-                     {"problem", problem_text(problem)},
+                     {"problem", problem_text(*context.run)},
+                     {"names", used_names(problem)},
                      {"columns", wrapped(fmt::format("  return {};", text(context.run->columns)), "      ")}},
                     {})}};
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // All functions whose changes of sign a run watches, in one array g: events of the model, kinks, contact_values of each
 // contact, surfaces where something may jump. In: the compiled model. Out: values, what is watched for, bounds along a
-// step where the caller knows some.
+// step of those that the problem has as expressions.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "eom/hybrid/contacts.hpp"
+#include "eom/hybrid/event_ranges.hpp"
+#include "eom/hybrid/jumps.hpp"
 #include "eom/hybrid/kinks.hpp"
 #include "eom/hybrid/model.hpp"
 
@@ -21,24 +23,26 @@ class EventFunctions {
  public:
   /// contacts: null where there are none.
   EventFunctions(const Problem& problem, Model& model, const std::unique_ptr<ContactModes>& contacts)
-      : problem_(problem), model_(model), contacts_(contacts) {}
+      : problem_(problem), model_(model), contacts_(contacts), ranges_(problem), jumps_(problem) {}
 
   std::size_t first_kink() const { return problem_.events.size(); }
   std::size_t first_contact() const { return first_kink() + problem_.code->kinks.size(); }
   std::size_t first_jump() const { return first_contact() + contact_values * problem_.code->contacts.size(); }
-  std::size_t size() const { return first_jump() + problem_.jumps.surfaces; }
+  std::size_t size() const { return first_jump() + jumps_.surfaces(); }
 
   /// Of contacts as they are watched.
   int operator()(double t, const double* x, double* g) {
     const int code = model_.events(t, x, g);
-    if (code == 0 && problem_.jumps.surfaces > 0)
-      problem_.jumps.values({t, {x, problem_.states()}, model_.inputs(t)}, g + first_jump());
+    if (code == 0 && jumps_.surfaces() > 0)
+      jumps_.values({t, {x, problem_.states()}, model_.inputs(t)}, g + first_jump());
     if (code != 0 || !contacts_) return code;
     double* const of_contacts = g + first_contact();
     if (const int bad = ContactModes::code_of(of_contacts, first_jump() - first_contact()); bad != 0) return bad;
     contacts_->adjust(of_contacts);
     return 0;
   }
+
+  Jumps& jumps() { return jumps_; }
 
   std::vector<EventFunction> watched() const {
     std::vector<EventFunction> functions;
@@ -55,20 +59,22 @@ class EventFunctions {
   /// Where in a step function i first leaves its side, though no sample shows it.
   std::optional<std::pair<double, double>> hidden(const StepView& step, std::size_t i, int side, double from, double to,
                                                   const Sampling& sampling) const {
-    if (!problem_.bounded.hidden || charts_of(model_.mode()) != 0) return std::nullopt;
+    if (charts_of(model_.mode()) != 0) return std::nullopt;
     if (i >= first_contact()) {
       const std::size_t j = (i - first_contact()) / contact_values;
       const bool apart = j < problem_.code->contacts.size() && problem_.code->contacts[j].unilateral &&
                          contact_digit(model_.contact_mode(), j) >= 3;
       if (!apart) return std::nullopt;
     }
-    return problem_.bounded.hidden(step, i, side, from, to, sampling);
+    return ranges_.first(step, i, side, from, to, sampling);
   }
 
  private:
   const Problem& problem_;
   Model& model_;
   const std::unique_ptr<ContactModes>& contacts_;
+  EventRanges ranges_;
+  Jumps jumps_;
 };
 
 }  // namespace eom::hybrid

@@ -46,7 +46,7 @@ inline std::string cross_impulse(Parts& parts, const Segment& before, Result& to
   const std::vector<double> x = total.x;
   const double side = parts.model.side(std::nextafter(before.next, problem.t1));
   const Impulse impulse =
-      problem.jumps.at_time({before.end, x, u.data()}, before.next, parts.model.inputs(before.next), total.x);
+      parts.events.jumps().cross({before.end, x, u.data()}, before.next, parts.model.inputs(before.next), total.x);
   std::string open = impulse.undetermined;
   if (!impulse.velocities && !impulse.potential) return open;
   if (open.empty() && impulse.velocities && parts.contacts && any_contact_touches(parts))
@@ -85,7 +85,7 @@ inline std::string begin_segment(Parts& parts, const Segment& before, Result& to
   const int sides = parts.model.mode();
   const bool kink = before.next > before.end;
   std::string open;
-  if (kink && parts.problem.jumps.at_time) open = cross_impulse(parts, before, total, event);
+  if (kink && parts.events.jumps().by_time()) open = cross_impulse(parts, before, total, event);
   total.t = before.next;
   if (!kink) return open;
   parts.hold_sides(total.t, total.x.data(), true);

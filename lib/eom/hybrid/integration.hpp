@@ -20,6 +20,7 @@
 #include "eom/hybrid/impulses.hpp"
 #include "eom/hybrid/methods.hpp"
 #include "eom/hybrid/motion.hpp"
+#include "eom/hybrid/narrow_forces.hpp"
 #include "eom/hybrid/parts.hpp"
 #include "eom/hybrid/passage.hpp"
 #include "eom/hybrid/segments.hpp"
@@ -41,6 +42,8 @@ class Integration {
   const Choice& choice() const { return choice_; }  // of the solver auto, and its changes in the run
   /// Where fixed steps first went over a force that is narrow in the state.
   std::optional<double> passed_over() const { return passed_over_; }
+  /// Where it could first not be told whether a step goes over one.
+  std::optional<double> unsure_from() const { return narrow_.unsure(); }
 
  private:
   bool start(Result& total, const OnEvent& event);
@@ -58,6 +61,7 @@ class Integration {
   SlowSlip slow_slip_;
   std::unique_ptr<Passage> passage_;  // where constraints without contacts may lose their rank
   Sampling sampling_;
+  NarrowForces narrow_;
   Choice choice_;
   std::optional<double> passed_over_;
   double fixed_step_ = 0;  // of the run
@@ -73,7 +77,8 @@ inline Integration::Integration(const Problem& problem)
     : problem_(problem),
       parts_(problem),
       keeps_constraints_(method_named(problem.solver).needs.keeps_constraints),
-      slow_slip_(parts_) {
+      slow_slip_(parts_),
+      narrow_(problem) {
   if (!parts_.contacts && parts_.rows.size() > 0 && !keeps_constraints_) passage_ = std::make_unique<Passage>(parts_);
   sampling_ = {[this](double t) { return parts_.model.inputs(t); },
                [this](double t, const double* x, double* dx) { return parts_.rhs(t, x, dx); }, problem.rtol,
@@ -95,7 +100,7 @@ inline Result Integration::run(const Options& options, const Observer& observer,
   Options segment = options;
   segment.choice = &choice_;
   segment.step_bounds = problem_.bounds;
-  if (problem_.bounded.longest) segment.admit = [this](const StepView& step) { return longest_step(step); };
+  if (narrow_.any()) segment.admit = [this](const StepView& step) { return longest_step(step); };
   // Where contacts stick the state may stand still, and the steps would see nothing of the work of what moves them.
   segment.quadratures = problem_.power && problem_.code->contacts.empty() ? 1 : 0;
   Result total;
@@ -221,7 +226,7 @@ inline AtEvent Integration::at_event(const EventPoint& point, const OnEvent& eve
   const std::size_t i = point.crossing.function;
   const EventFunctions& functions = parts_.events;
   if (i >= functions.first_jump()) {
-    jump_ = problem_.jumps.across({point.t, point.x, parts_.model.inputs(point.t)}, i - functions.first_jump());
+    jump_ = parts_.events.jumps().cross({point.t, point.x, parts_.model.inputs(point.t)}, i - functions.first_jump());
     return jump_.empty() ? AtEvent::go_on : AtEvent::stop;
   }
   if (i >= functions.first_contact()) return change_contact(point, event);
@@ -251,7 +256,7 @@ inline AtEvent Integration::change_contact(const EventPoint& point, const OnEven
 /// Of a step of the method: infinity, unless a force that is narrow in the state lies in it unseen.
 inline double Integration::longest_step(const StepView& step) {
   if (parts_.charts.second() != 0) return std::numeric_limits<double>::infinity();
-  const double longest = problem_.bounded.longest(step, sampling_);
+  const double longest = narrow_.longest(step, sampling_);
   if (fixed_step_ > 0 && !slow_slip_.finer() && !passed_over_ && longest < step.t1 - step.t0) passed_over_ = step.t0;
   return longest;
 }

@@ -54,7 +54,8 @@ inline void require_functions(const Problem& problem) {
          "each contact of the code needs its outputs, and whether it is apart at the start");
   demand(problem.start.size() >= 2 * code.free.size(), "the start has too few values");
   const MethodInfo& method = method_named(problem.solver);
-  const Eligibility found = eligible(method, features_of(code));
+  const bool moving = std::any_of(problem.inputs.begin(), problem.inputs.end(), moves);
+  const Eligibility found = eligible(method, features_of(code).set(Feature::moving_inputs, moving));
   if (!found) eom::detail::throw_ineligible("eom::hybrid::run", method, found, "model", "eom/hybrid/code.hpp");
 }
 

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "eom/hybrid/inputs.hpp"
 #include "eom/hybrid/problem.hpp"
 #include "eom/modes/chart_state.hpp"
 #include "eom/modes/contact_state.hpp"
@@ -23,6 +24,7 @@ class Model {
       : problem_(problem),
         code_(problem.code),
         n_(problem.n()),
+        inputs_(problem),
         u_(std::max<std::size_t>(1, problem.inputs.size())),
         h_(n_),
         y_(problem.code->output_names.size()) {
@@ -50,7 +52,7 @@ class Model {
   double side(double t) { return std::exchange(side_, t); }
   /// Valid until the next call.
   const double* inputs(double t) const {
-    for (std::size_t i = 0; i < problem_.inputs.size(); ++i) u_[i] = problem_.inputs[i](t, side_);
+    for (std::size_t i = 0; i < inputs_.size(); ++i) u_[i] = inputs_(i, t, side_);
     return u_.data();
   }
   const double* parameters() const { return problem_.parameters.data(); }
@@ -129,6 +131,7 @@ class Model {
   std::size_t n_;
   int mode_ = 0;  // of the step that is being made: contacts, sides of kinks, charts
   double side_ = 0;
+  Inputs inputs_;
   mutable std::vector<double> u_;
   std::vector<double> w_;  // of Code::prepare
   std::vector<double> h_, y_;

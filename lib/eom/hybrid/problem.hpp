@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "eom/events/locator.hpp"
+#include "eom/expressions/code.hpp"
 #include "eom/hybrid/code.hpp"
 #include "eom/hybrid/signal.hpp"
 #include "eom/run_types.hpp"
@@ -81,14 +82,17 @@ struct Impulse {
   std::string undetermined;  // a sentence: what jumps that no equation says the consequences of
 };
 
-/// Where energies, momenta or constraints jump, which the equations tell and compiled code does not. Empty: nowhere.
-struct Jumps {
-  /// From just before a Break to just after it: changes velocities in x to what they are without impulses of
-  /// constraints.
-  std::function<Impulse(const Place& before, double after, const double* u_after, std::span<double> x)> at_time = {};
-  std::size_t surfaces = 0;                                           // in the state
-  std::function<void(const Place&, double* g)> values = {};           // of them: above 0 on one side
-  std::function<std::string(const Place&, std::size_t)> across = {};  // what jumps at one, or ""
+/// Functions that may jump where the equations have kinks, which compiled code does not tell. Empty: nothing jumps.
+/// Variables of expressions: t, free coordinates, their rates, integrals, inputs.
+struct JumpFunctions {
+  enum class What : std::uint8_t { potential, momentum, psi, row, rate, place, velocity };
+  struct Function {
+    What what = What::potential;
+    std::string name = {};  // of a place or a velocity
+  };
+  std::vector<Function> functions = {};
+  expressions::Table values = {};  // of each of them
+  expressions::Table mass = {};    // M, n x n
 };
 
 /// What is asked with, of functions between the places at which a step is sampled.
@@ -99,16 +103,19 @@ struct Sampling {
   bool series = false;  // the method sees the equations at the start of its steps only
 };
 
-/// Bounds along a step, where the caller can give any; samples decide else.
-struct Bounds {
-  /// Between which places of the step (0 to 1) event function i first leaves its side.
-  std::function<std::optional<std::pair<double, double>>(const StepView&, std::size_t i, int side, double from,
-                                                         double to, const Sampling&)>
-      hidden = {};
-  /// The longest step that may be taken in place of one, since a force is narrow in the state; infinity where it may.
-  std::function<double(const StepView&, const Sampling&)> longest = {};
-  /// The first step for which they were too wide to tell; since the last call.
-  std::function<std::optional<double>()> unsure = {};
+/// Functions of time alone, whose kinks are crossed between steps and which steps have to follow. Variables: t, then
+/// the inputs, those that are tables; others are written out.
+struct TimeFunctions {
+  std::vector<expressions::Table> surfaces = {};  // of kinks: one root, or two that are compared
+  std::vector<expressions::Table> terms = {};     // smooth between them
+
+  bool empty() const { return surfaces.empty() && terms.empty(); }
+};
+
+/// Functions that have bounds along a step; of others samples decide. Variables as of JumpFunctions.
+struct BoundedFunctions {
+  std::vector<expressions::Table> events = {};  // by their place among the event functions; empty: of none
+  std::vector<expressions::Table> narrow = {};  // of forces that are narrow in the state, and have no tails
 };
 
 /// Open range of a coordinate of the model; infinite where there is none.
@@ -138,10 +145,11 @@ struct Problem {
 
   std::vector<bool> apart = {};           // per contact: does not touch at the start
   std::vector<WatchedEvent> events = {};  // of the model, all
+  TimeFunctions time = {};                // a run makes breaks and bounds of them; none: they are given
   std::vector<Break> breaks = {};         // inside the span, ascending; without the jumps of tables
   std::vector<StepBound> bounds = {};     // of steps, that follow functions of time
-  Jumps jumps = {};
-  Bounds bounded = {};
+  JumpFunctions jumps = {};
+  BoundedFunctions bounded = {};
   std::vector<ExchangedChart> charts = {};                     // none: the run keeps to the coordinates that it has
   std::function<const Code&(unsigned charts)> in_charts = {};  // code that knows these second charts, and those before
   std::vector<Range> ranges = {};                              // of the coordinates of the model; none: not watched

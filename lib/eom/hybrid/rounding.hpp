@@ -24,7 +24,8 @@ class Momenta {
         p_(Eigen::VectorXd::Zero(n_)),
         scratch_(Eigen::VectorXd::Zero(n_)),
         M_(n_, n_) {
-    for (const Signal& signal : problem.inputs) u_.push_back(signal(t, t));
+    const Inputs inputs(problem);
+    for (std::size_t i = 0; i < inputs.size(); ++i) u_.push_back(inputs(i, t, t));
     valid_ = problem.code->mass(t, x.data(), problem.parameters.data(), M_.data(), scratch_.data()) == 0 &&
              M_.allFinite() && at(x, p_);
     force_ = scratch_;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "eom/hybrid/balance.hpp"
+#include "eom/hybrid/clock.hpp"
 #include "eom/hybrid/estimate.hpp"
 #include "eom/hybrid/integration.hpp"
 #include "eom/hybrid/run_result.hpp"
@@ -46,6 +47,16 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
 /// momenta, constraints), or options that make no sense. Where t1 is t0 nothing is integrated.
 inline RunResult run(const Problem& problem) {
   require_functions(problem);
+  if (!problem.time.empty()) {
+    const Clock clock = look_at_time(problem.time, problem.parameters, problem.inputs, problem.t0, problem.t1);
+    Problem looked = problem;
+    looked.time = {};
+    looked.breaks = clock.breaks;
+    looked.bounds = clock.bounds;
+    RunResult result = run(looked);
+    result.time_unfollowed_from = clock.unfollowed_from;
+    return result;
+  }
   const Options options = options_of(problem);
   Integration integration(problem);
   Parts& parts = integration.parts();
@@ -89,7 +100,7 @@ inline RunResult run(const Problem& problem) {
                         " goes over a force that is narrow in the state, and sees nothing of it: the estimate says "
                         "nothing; give shorter steps, or let them be chosen";
   }
-  if (problem.bounded.unsure) result.unsure_from = problem.bounded.unsure();
+  result.unsure_from = integration.unsure_from();
   const bool ended = result.ended();
   if (problem.estimate && ended && moves) {
     Result own = end;

@@ -68,7 +68,8 @@ struct RunResult {
   std::vector<Event> events;
   std::vector<std::size_t> kink_crossings;  // per Code::kinks
   std::optional<LeftRange> left_range = {};
-  std::optional<double> unsure_from = {};   // Bounds::unsure of the run
+  std::optional<double> unsure_from = {};  // where it could first not be told whether a narrow force lies in a step
+  std::optional<double> time_unfollowed_from = {};  // Clock::unfollowed_from, where the run looked at time itself
   std::optional<double> open_balance = {};  // of the outcome balance_open: how much of itself the energy is off by
 
   bool ended() const { return outcome == Outcome::done || outcome == Outcome::stopped_by_event; }

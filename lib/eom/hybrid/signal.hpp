@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// An input u(t) of a run: a function of time, or a table of values that jump.
+// An input u(t) of a run: a function of time, an expression of it, or a table of values that jump.
 #pragma once
 
 #include <algorithm>
@@ -7,18 +7,26 @@
 #include <functional>
 #include <vector>
 
+#include "eom/expressions/code.hpp"
+
 namespace eom::hybrid {
 
 struct Signal {
-  std::function<double(double t)> function = {};  // where there is no table; none: 0
+  std::function<double(double t)> function = {};  // where there is no table and no expression; none: 0
   std::vector<double> times = {}, values = {};    // values[k] from times[k] until times[k+1]; values[0] before times[0]
-
-  /// The value at t. Of a table: that of the segment that `side` (a time inside the current segment) lies in.
-  double operator()(double t, double side) const {
-    if (times.empty()) return function ? function(t) : 0.0;
-    const auto after = std::upper_bound(times.begin(), times.end(), side);
-    return values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - times.begin() - 1))];
-  }
+  expressions::Table expression = {};             // of one variable, t; where there is no table
 };
+
+/// Of a table: the value of the segment that a time inside it lies in. 0 where it is none.
+inline double in_segment(const Signal& signal, double inside) {
+  if (signal.times.empty()) return 0;
+  const auto after = std::upper_bound(signal.times.begin(), signal.times.end(), inside);
+  return signal.values[static_cast<std::size_t>(std::max<std::ptrdiff_t>(0, after - signal.times.begin() - 1))];
+}
+
+/// A function of time between its jumps.
+inline bool moves(const Signal& signal) {
+  return signal.times.empty() && (signal.expression.empty() ? bool(signal.function) : !signal.expression.constant());
+}
 
 }  // namespace eom::hybrid

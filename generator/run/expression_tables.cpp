@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/expression_tables.hpp"
+
+#include <algorithm>
+
+#include "symbolic/arithmetic.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using eom::expressions::Op;
+using symbolic::Dag;
+using symbolic::Node;
+using symbolic::Ref;
+using symbolic::Symbol;
+using symbolic::SymbolKind;
+
+class Writer {
+ public:
+  Writer(const Dag& dag, const Lookup& lookup) : dag_(dag), lookup_(lookup), place_(dag.size(), unseen) {}
+
+  std::optional<Table> write(const std::vector<Ref>& roots) {
+    add(roots);
+    for (const Ref root : roots) table_.roots.push_back(place_[root.id]);
+    if (!complete_) return std::nullopt;
+    return std::move(table_);
+  }
+
+ private:
+  static constexpr std::int32_t unseen = -1;
+
+  void add(const std::vector<Ref>& roots) {
+    for (const Ref r : dag_.reachable(roots)) {
+      if (place_[r.id] != unseen) continue;
+      const Node& node = dag_[r];
+      if (node.op == symbolic::Op::symbol)
+        add_symbol(r);
+      else if (node.op == symbolic::Op::pi)
+        put(r, Op::number, number(symbolic::Binary64::pi()));
+      else if (node.op == symbolic::Op::constant)
+        put(r, Op::number, number(cln::double_approx(dag_.value(r))));
+      else
+        add_operation(r, node);
+    }
+  }
+
+  void add_operation(Ref r, const Node& node) {
+    eom::expressions::Step step{symbolic::runtime_op(node.op), {}};
+    for (std::size_t k = 0; k < node.arity; ++k) step.a[k] = place_[node.args[k].id];
+    if (node.op == symbolic::Op::power) step.a[1] = node.payload;
+    place_[r.id] = static_cast<std::int32_t>(table_.steps.size());
+    table_.steps.push_back(step);
+  }
+
+  void add_symbol(Ref r) {
+    const Leaf leaf = lookup_(dag_.symbol_of(r));
+    switch (leaf.kind) {
+      case Leaf::Kind::expression:
+        add({leaf.expression});
+        place_[r.id] = place_[leaf.expression.id];
+        return;
+      case Leaf::Kind::parameter: put(r, Op::parameter, static_cast<std::int32_t>(leaf.index)); return;
+      case Leaf::Kind::variable: put(r, Op::variable, static_cast<std::int32_t>(leaf.index)); return;
+      case Leaf::Kind::number: put(r, Op::number, number(leaf.number)); return;
+      case Leaf::Kind::unknown: break;
+    }
+    complete_ = false;
+    put(r, Op::number, number(0));
+  }
+
+  void put(Ref r, Op op, std::int32_t index) {
+    place_[r.id] = static_cast<std::int32_t>(table_.steps.size());
+    table_.steps.push_back({op, {index}});
+  }
+  std::int32_t number(double value) {
+    table_.numbers.push_back(value);
+    return static_cast<std::int32_t>(table_.numbers.size()) - 1;
+  }
+
+  const Dag& dag_;
+  const Lookup& lookup_;
+  std::vector<std::int32_t> place_;  // of nodes of the Dag
+  Table table_;
+  bool complete_ = true;
+};
+
+}  // namespace
+
+std::optional<Table> table_of(const Dag& dag, const std::vector<Ref>& roots, const Lookup& lookup) {
+  return Writer(dag, lookup).write(roots);
+}
+
+Lookup variables_of(const system::EquationSystem& s) {
+  return [&s](const Symbol& symbol) {
+    const std::size_t n = s.free.size();
+    switch (symbol.kind) {
+      case SymbolKind::time: return Leaf::of_variable(0);
+      case SymbolKind::parameter: return Leaf::of_parameter(symbol.index);
+      case SymbolKind::input: return Leaf::of_variable(1 + 2 * n + s.integrals.size() + symbol.index);
+      case SymbolKind::side: return Leaf::of(0);
+      case SymbolKind::coordinate: {
+        const auto place = std::find(s.free.begin(), s.free.end(), symbol.index);
+        if (symbol.order > 1 || place == s.free.end()) return Leaf{};
+        return Leaf::of_variable(1 + symbol.order * n + static_cast<std::size_t>(place - s.free.begin()));
+      }
+      case SymbolKind::integral:
+        for (std::size_t i = 0; i < s.integrals.size(); ++i) {
+          if (s.integrals[i].integral == symbol.index) return Leaf::of_variable(1 + 2 * n + i);
+        }
+        return Leaf{};
+      default: return Leaf{};
+    }
+  };
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Expressions as data that a run evaluates by itself. In: expressions on a Dag and what their symbols are. Out: tables
+// of the runtime (eom/expressions/code.hpp).
+#pragma once
+
+#include <eom/expressions/code.hpp>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "symbolic/dag.hpp"
+#include "system/equation_system.hpp"
+
+namespace eomgen::run {
+
+using eom::expressions::Table;
+
+/// What a symbol is: a number, a parameter, the place of a variable, another expression; or nothing that can be
+/// evaluated.
+struct Leaf {
+  enum class Kind { number, parameter, variable, expression, unknown } kind = Kind::unknown;
+  double number = 0;
+  std::size_t index = 0;
+  symbolic::Ref expression{};
+
+  static Leaf of(double value) { return {Kind::number, value, 0, {}}; }
+  static Leaf of_parameter(std::size_t index) { return {Kind::parameter, 0, index, {}}; }
+  static Leaf of_variable(std::size_t index) { return {Kind::variable, 0, index, {}}; }
+  static Leaf of_expression(symbolic::Ref e) { return {Kind::expression, 0, 0, e}; }
+};
+using Lookup = std::function<Leaf(const symbolic::Symbol&)>;
+
+/// Nothing where a symbol cannot be evaluated.
+std::optional<Table> table_of(const symbolic::Dag& dag, const std::vector<symbolic::Ref>& roots, const Lookup& lookup);
+
+/// Variables as a run has them (eom/hybrid/problem.hpp): t, free coordinates, their rates, integrals, inputs.
+Lookup variables_of(const system::EquationSystem& system);
+
+}  // namespace eomgen::run

@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "run/looked_at.hpp"
+
+#include <algorithm>
+#include <string>
+
+#include "run/expression_tables.hpp"
+#include "symbolic/calculus.hpp"
+
+namespace eomgen::run {
+namespace {
+
+using eom::hybrid::JumpFunctions;
+using symbolic::Op;
+using symbolic::Ref;
+using symbolic::SymbolKind;
+
+constexpr int high_power = 20;
+
+/// What is a bump of a function without tails, as itself, its slope or its inverse are; nothing of functions whose
+/// tails the error control sees.
+std::vector<Ref> bumps(symbolic::Dag& dag, Ref r) {
+  const symbolic::Node node = dag[r];
+  switch (node.op) {
+    case Op::exp: return {r, dag.call(Op::exp, dag.neg(node.args[0]))};
+    case Op::tanh: return {dag.sub(dag.one(), dag.power(r, 2))};
+    case Op::cosh: return {dag.div(dag.one(), r)};
+    case Op::sinh: return {dag.div(dag.one(), dag.add(dag.one(), dag.power(r, 2)))};
+    case Op::pow: return {r};
+    case Op::power: return node.payload >= high_power ? std::vector{r} : std::vector<Ref>{};
+    default: return {};
+  }
+}
+
+}  // namespace
+
+JumpFunctions jump_functions(const system::EquationSystem& s) {
+  using What = JumpFunctions::What;
+  symbolic::Dag& dag = *s.dag;
+  JumpFunctions result;
+  std::vector<Ref> roots;
+  const auto add = [&](Ref r, What what, const std::string& name = "") {
+    roots.push_back(r);
+    result.functions.push_back({what, name});
+  };
+  add(s.potential, What::potential);
+  for (const Ref psi : s.psi) add(psi, What::psi);
+  for (const Ref r : s.A) add(r, What::row);
+  for (const Ref r : s.b) add(r, What::rate);
+  for (const system::Output& output : s.outputs) {
+    using system::OutputKind;
+    if (output.kind == OutputKind::coordinate || output.kind == OutputKind::position)
+      add(output.value, What::place, output.name);
+    if (output.kind == OutputKind::velocity) add(output.value, What::velocity, output.name);
+  }
+  std::vector<Ref> energies{s.kinetic};
+  energies.insert(energies.end(), roots.begin(), roots.end());
+  if (!dag.has_kinks(energies)) return {};
+  const Ref lagrangian = dag.sub(s.kinetic, s.potential);
+  for (const std::uint32_t q : s.free)
+    add(symbolic::partial(dag, {SymbolKind::coordinate, q, 1})(lagrangian), What::momentum);
+  const Lookup variables = variables_of(s);
+  std::optional<Table> values = table_of(dag, roots, variables), mass = table_of(dag, s.M, variables);
+  if (!values || !mass) return {};
+  result.values = std::move(*values);
+  result.mass = std::move(*mass);
+  return result;
+}
+
+std::vector<Table> narrow_functions(const system::EquationSystem& s) {
+  std::vector<Ref> roots;
+  for (const auto* part : {&s.M, &s.f, &s.A, &s.b, &s.gamma}) roots.insert(roots.end(), part->begin(), part->end());
+  const auto of_state = [&s](Ref r) {
+    const std::vector<symbolic::Symbol> symbols = s.dag->symbols({r});
+    return std::any_of(symbols.begin(), symbols.end(),
+                       [](const symbolic::Symbol& symbol) { return symbol.kind == SymbolKind::coordinate; });
+  };
+  const Lookup variables = variables_of(s);
+  std::vector<Table> result;
+  for (const Ref r : s.dag->reachable(roots)) {
+    const std::vector<Ref> found = bumps(*s.dag, r);
+    if (found.empty() || !of_state(r)) continue;
+    for (const Ref bump : found) {
+      if (std::optional<Table> table = table_of(*s.dag, {bump}, variables)) result.push_back(std::move(*table));
+    }
+  }
+  return result;
+}
+
+std::vector<Table> bounded_events(const system::EquationSystem& s, const std::vector<std::optional<Ref>>& functions) {
+  const Lookup variables = variables_of(s);
+  std::vector<Table> result;
+  for (const std::optional<Ref>& function : functions) {
+    std::optional<Table> table = function ? table_of(*s.dag, {*function}, variables) : std::nullopt;
+    result.push_back(table ? std::move(*table) : Table{});
+  }
+  if (std::all_of(result.begin(), result.end(), [](const Table& table) { return table.empty(); })) return {};
+  return result;
+}
+
+}  // namespace eomgen::run

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: MIT
+// Intervals of values with intervals of slopes: where a function of one variable can be between two of its values. In:
+// operands. Out: bounds of the result and of its derivative, as wide as rounding is small beside them: they serve to
+// look closer, not to prove.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <optional>
+
+#include "eom/expressions/operations.hpp"
+
+namespace eom::expressions {
+
+struct Interval {
+  double low = 0, high = 0;
+
+  static constexpr Interval all() {
+    return {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+  }
+  bool has(double value) const { return low <= value && value <= high; }
+  bool is(double value) const { return low == value && high == value; }
+  double width() const { return high - low; }
+};
+
+namespace detail {
+
+// 0 times what is unbounded is 0: the slope of a constant factor.
+inline double times(double a, double b) { return a == 0 || b == 0 ? 0 : a * b; }
+
+inline Interval valid(Interval a) { return std::isnan(a.low) || std::isnan(a.high) ? Interval::all() : a; }
+
+}  // namespace detail
+
+inline Interval operator+(Interval a, Interval b) { return detail::valid({a.low + b.low, a.high + b.high}); }
+inline Interval operator-(Interval a, Interval b) { return detail::valid({a.low - b.high, a.high - b.low}); }
+inline Interval operator-(Interval a) { return {-a.high, -a.low}; }
+inline Interval operator*(Interval a, Interval b) {
+  const double p = detail::times(a.low, b.low), q = detail::times(a.low, b.high), r = detail::times(a.high, b.low),
+               s = detail::times(a.high, b.high);
+  return detail::valid({std::min({p, q, r, s}), std::max({p, q, r, s})});
+}
+inline Interval operator/(Interval a, Interval b) {
+  if (b.has(0)) return Interval::all();
+  return a * Interval{1 / b.high, 1 / b.low};
+}
+inline Interval hull(Interval a, Interval b) { return {std::min(a.low, b.low), std::max(a.high, b.high)}; }
+/// What both allow; a where they allow nothing together, which is rounding.
+inline Interval common(Interval a, Interval b) {
+  const Interval both{std::max(a.low, b.low), std::min(a.high, b.high)};
+  return both.low <= both.high ? both : a;
+}
+
+namespace detail {
+
+template <class F>
+Interval rising(F f, Interval a) {
+  return valid({f(a.low), f(a.high)});
+}
+
+inline Interval whole_power(Interval a, int n) {
+  const double low = std::pow(a.low, n), high = std::pow(a.high, n);
+  if (n % 2 == 1 || a.low >= 0) return valid({low, high});
+  if (a.high <= 0) return valid({high, low});
+  return valid({0, std::max(low, high)});
+}
+
+inline Interval sine(Interval a) {
+  constexpr double pi = std::numbers::pi;
+  if (!(a.width() < 2 * pi)) return {-1, 1};
+  // A maximum at pi/2 + 2 pi k, a minimum half a turn later.
+  const auto contains = [&](double place) {
+    return std::ceil((a.low - place) / (2 * pi)) <= std::floor((a.high - place) / (2 * pi));
+  };
+  const double at_low = std::sin(a.low), at_high = std::sin(a.high);
+  return {contains(-pi / 2) ? -1 : std::min(at_low, at_high), contains(pi / 2) ? 1 : std::max(at_low, at_high)};
+}
+
+inline Interval cosine(Interval a) {
+  constexpr double quarter = std::numbers::pi / 2;
+  return sine(a + Interval{quarter, quarter});
+}
+
+inline Interval square(Interval a) { return whole_power(a, 2); }
+
+inline bool has_pole_of_tan(Interval a) {
+  constexpr double pi = std::numbers::pi;
+  return !(a.width() < pi) || std::ceil((a.low - pi / 2) / pi) <= std::floor((a.high - pi / 2) / pi);
+}
+
+inline Interval within_one(Interval a) { return {std::clamp(a.low, -1.0, 1.0), std::clamp(a.high, -1.0, 1.0)}; }
+
+/// The values of a function of one argument; none where it has a pole or is not defined.
+inline std::optional<Interval> values(Op function, Interval a) {
+  const auto at = [function](double x) { return call(function, x); };
+  switch (function) {
+    case Op::sin: return sine(a);
+    case Op::cos: return cosine(a);
+    case Op::cosh: {
+      const double low = at(a.low), high = at(a.high);
+      return Interval{a.has(0) ? 1 : std::min(low, high), std::max(low, high)};
+    }
+    case Op::acos: return Interval{at(within_one(a).high), at(within_one(a).low)};
+    case Op::asin: return rising(at, within_one(a));
+    case Op::sqrt:
+      if (a.high < 0) return std::nullopt;
+      return Interval{at(std::max(0.0, a.low)), at(a.high)};
+    case Op::log:
+      if (!(a.high > 0)) return std::nullopt;
+      return Interval{a.low > 0 ? at(a.low) : -std::numeric_limits<double>::infinity(), at(a.high)};
+    case Op::tan:
+      if (has_pole_of_tan(a)) return std::nullopt;
+      return rising(at, a);
+    default: return rising(at, a);
+  }
+}
+
+/// `numbers` of slope_of.
+struct IntervalNumbers {
+  static Interval one() { return {1, 1}; }
+  static Interval two() { return {2, 2}; }
+  static Interval square(Interval a) { return detail::square(a); }
+};
+
+}  // namespace detail
+
+/// A value, and its slope along the one variable; slopes of what jumps are unbounded.
+struct Sloped {
+  Interval value, slope;
+};
+
+namespace sloped {
+
+inline Sloped product(const Sloped& a, const Sloped& b) {
+  return {a.value * b.value, a.slope * b.value + a.value * b.slope};
+}
+
+inline Sloped quotient(const Sloped& a, const Sloped& b) {
+  const Interval value = a.value / b.value;
+  return {value, (a.slope - value * b.slope) / b.value};
+}
+
+/// A function of one argument; not abs and sign, whose branch may be known.
+inline Sloped call(Op function, const Sloped& a) {
+  const std::optional<Interval> value = detail::values(function, a.value);
+  if (!value) return {Interval::all(), Interval::all()};
+  const auto [size, divides, falls] =
+      slope_of(derivative_of(function), a.value, *value, detail::IntervalNumbers{},
+               [](Op op, Interval x) { return detail::values(op, x).value_or(Interval::all()); });
+  const Interval slope = divides ? a.slope / size : size * a.slope;
+  return {*value, falls ? -slope : slope};
+}
+
+/// exponent: 2 and more.
+inline Sloped power(const Sloped& a, int exponent) {
+  const double factor = exponent;
+  return {detail::whole_power(a.value, exponent),
+          Interval{factor, factor} * detail::whole_power(a.value, exponent - 1) * a.slope};
+}
+
+inline Sloped pow(const Sloped& a, const Sloped& b) {
+  if (!(a.value.low > 0)) return {Interval::all(), Interval::all()};
+  return call(Op::exp, product(b, call(Op::log, a)));
+}
+
+inline Sloped atan2(const Sloped& y, const Sloped& x) {
+  const bool jumps = y.value.has(0) && x.value.low <= 0;
+  if (jumps) return {{-std::numbers::pi, std::numbers::pi}, Interval::all()};
+  const double a = std::atan2(y.value.low, x.value.low), b = std::atan2(y.value.low, x.value.high);
+  const double c = std::atan2(y.value.high, x.value.low), d = std::atan2(y.value.high, x.value.high);
+  const Interval size = detail::square(x.value) + detail::square(y.value);
+  return {{std::min({a, b, c, d}), std::max({a, b, c, d})}, (x.value * y.slope - y.value * x.slope) / size};
+}
+
+}  // namespace sloped
+}  // namespace eom::expressions

@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: MIT
+// The operations of expressions that a run evaluates by itself: inputs, event functions, what may jump. What they are
+// in binary64, and the forms of their derivatives.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace eom::expressions {
+
+enum class Op : std::uint8_t {
+  number,     // a[0]: place among the numbers of the table
+  variable,   // a[0]: place among the variables
+  parameter,  // a[0]: place among the parameters of the model
+  add,
+  sub,
+  mul,
+  div,
+  neg,
+  power,  // a[0] to the integer a[1], 2 and more
+  pow,    // a[0] ^ a[1], general
+  sqrt,
+  sin,
+  cos,
+  tan,
+  asin,
+  acos,
+  atan,
+  sinh,
+  cosh,
+  tanh,
+  exp,
+  log,
+  abs,
+  sign,
+  atan2,
+  min,
+  max,
+  select,  // a[0] < a[1] ? a[2] : a[3]
+};
+
+/// Its name as above.
+constexpr const char* name_of(Op op) {
+  constexpr std::array<const char*, 28> names{"number", "variable", "parameter", "add",   "sub",  "mul",  "div",
+                                              "neg",    "power",    "pow",       "sqrt",  "sin",  "cos",  "tan",
+                                              "asin",   "acos",     "atan",      "sinh",  "cosh", "tanh", "exp",
+                                              "log",    "abs",      "sign",      "atan2", "min",  "max",  "select"};
+  return names.at(static_cast<std::size_t>(op));
+}
+static_assert(static_cast<std::size_t>(Op::select) == 27);
+
+constexpr std::size_t operands(Op op) {
+  switch (op) {
+    case Op::number:
+    case Op::variable:
+    case Op::parameter: return 0;
+    case Op::add:
+    case Op::sub:
+    case Op::mul:
+    case Op::div:
+    case Op::pow:
+    case Op::atan2:
+    case Op::min:
+    case Op::max: return 2;
+    case Op::select: return 4;
+    default: return 1;
+  }
+}
+
+/// The value or the slope jumps where the operands say so: another expression on either side of that surface.
+constexpr bool is_kink(Op op) {
+  return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
+}
+/// Kinks whose surface is one operand, not two that are compared.
+constexpr bool of_one(Op op) { return op == Op::abs || op == Op::sign; }
+/// The function jumps there, and not its slope alone.
+constexpr bool jumps(Op op) { return op == Op::sign || op == Op::select; }
+
+/// A function of one argument in binary64; not-a-number or infinite where there is no value.
+inline double call(Op op, double x) {
+  switch (op) {
+    case Op::sqrt: return std::sqrt(x);
+    case Op::sin: return std::sin(x);
+    case Op::cos: return std::cos(x);
+    case Op::tan: return std::tan(x);
+    case Op::asin: return std::asin(x);
+    case Op::acos: return std::acos(x);
+    case Op::atan: return std::atan(x);
+    case Op::sinh: return std::sinh(x);
+    case Op::cosh: return std::cosh(x);
+    case Op::tanh: return std::tanh(x);
+    case Op::exp: return std::exp(x);
+    case Op::log: return std::log(x);
+    case Op::abs: return std::fabs(x);
+    case Op::sign: return x > 0 ? 1.0 : x < 0 ? -1.0 : x;
+    default: return std::nan("");
+  }
+}
+
+/// The form of dv/dx of v = f(x), beside its sign.
+enum class Slope : std::uint8_t {
+  none,             // several arguments, or constant away from a kink
+  other,            // g(x), g being `Derivative::other`
+  self,             // v
+  one_plus_v2,      // 1 + v^2
+  one_minus_v2,     // 1 - v^2
+  over_x,           // 1/x
+  over_2v,          // 1/(2 v)
+  over_root,        // 1/sqrt(1 - x^2)
+  over_one_plus_x2  // 1/(1 + x^2)
+};
+
+struct Derivative {
+  Slope form = Slope::none;
+  bool falls = false;  // it is minus what `form` says
+  Op other = Op::pow;  // of Slope::other
+};
+
+constexpr Derivative derivative_of(Op op) {
+  switch (op) {
+    case Op::sqrt: return {Slope::over_2v};
+    case Op::sin: return {Slope::other, false, Op::cos};
+    case Op::cos: return {Slope::other, true, Op::sin};
+    case Op::tan: return {Slope::one_plus_v2};
+    case Op::asin: return {Slope::over_root};
+    case Op::acos: return {Slope::over_root, true};
+    case Op::atan: return {Slope::over_one_plus_x2};
+    case Op::sinh: return {Slope::other, false, Op::cosh};
+    case Op::cosh: return {Slope::other, false, Op::sinh};
+    case Op::tanh: return {Slope::one_minus_v2};
+    case Op::exp: return {Slope::self};
+    case Op::log: return {Slope::over_x};
+    case Op::abs: return {Slope::other, false, Op::sign};
+    default: return {};
+  }
+}
+
+/// dv/dx is `size`, or 1/`size`; and minus that.
+template <class Number>
+struct SlopeOf {
+  Number size;
+  bool divides, falls;
+};
+
+/// The derivative of v = f(x), a function of one argument that has one. `numbers` gives one(), two() and square(a);
+/// call(op, a) is a function of one argument. Number has + - *.
+template <class Number, class Numbers, class Call>
+SlopeOf<Number> slope_of(const Derivative& derivative, const Number& x, const Number& v, const Numbers& numbers,
+                         const Call& call) {
+  const auto size = [&]() -> Number {
+    switch (derivative.form) {
+      case Slope::other: return call(derivative.other, x);
+      case Slope::self: return v;
+      case Slope::one_plus_v2: return numbers.one() + numbers.square(v);
+      case Slope::one_minus_v2: return numbers.one() - numbers.square(v);
+      case Slope::over_x: return x;
+      case Slope::over_2v: return numbers.two() * v;
+      case Slope::over_root: return call(Op::sqrt, numbers.one() - numbers.square(x));
+      case Slope::over_one_plus_x2: return numbers.one() + numbers.square(x);
+      case Slope::none: break;
+    }
+    return numbers.one() - numbers.one();
+  };
+  return {size(), derivative.form >= Slope::over_x, derivative.falls};
+}
+
+}  // namespace eom::expressions

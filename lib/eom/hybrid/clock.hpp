@@ -1,0 +1,267 @@
+// SPDX-License-Identifier: MIT
+// What time alone does in a run: functions of t, also through inputs, cost nothing to look at, and a pulse among them
+// is shorter than the steps that the motion before it allows. In: such functions, numbers for their parameters, a span
+// of time. Out: times at which a kink of one is crossed, and bounds of steps that follow the smooth ones.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <queue>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "eom/expressions/code.hpp"
+#include "eom/hybrid/inputs.hpp"
+#include "eom/hybrid/problem.hpp"
+#include "eom/run_types.hpp"
+
+namespace eom::hybrid {
+
+struct Clock {
+  std::vector<Break> breaks;                   // inside the span, ascending; without the jumps of tables
+  std::vector<StepBound> bounds;               // none: nothing is narrow beside the span
+  std::optional<double> unfollowed_from = {};  // a condition on time changes too often to be followed from there on
+};
+
+class ClockSearch {
+ public:
+  ClockSearch(const TimeFunctions& functions, std::span<const double> parameters, const std::vector<Signal>& inputs,
+              double t0, double t1)
+      : functions_(functions),
+        parameters_(parameters),
+        inputs_(inputs),
+        t0_(t0),
+        t1_(t1),
+        at_(1 + inputs.size()),
+        box_(1 + inputs.size()) {}
+
+  Clock run() {
+    if (functions_.empty()) return {};
+    for (const Signal& input : inputs_) {
+      for (const double t : input.times) {
+        if (t > t0_ && t < t1_) cuts_.push_back({t, t});
+      }
+    }
+    tidy(cuts_);
+    for (const expressions::Table& surface : functions_.surfaces) find_kink(surface);
+    for (const expressions::Table& term : functions_.terms) bound(expressions::Code(term, parameters_));
+    const auto narrow =
+        std::min_element(bounds_.begin(), bounds_.end(), [](const auto& a, const auto& b) { return a.step < b.step; });
+    if (narrow == bounds_.end() || narrow->step >= (t1_ - t0_) / 2) bounds_.clear();
+    std::erase_if(cuts_, [&](const Break& b) { return b.before == b.after; });
+    return {std::move(cuts_), std::move(bounds_), unfollowed_from_};
+  }
+
+ private:
+  using Code = expressions::Code;
+  using Sloped = expressions::Sloped;
+  static constexpr std::size_t most_boxes = 100'000;  // of one search for roots
+  static constexpr std::size_t most_breaks = 20'000;
+  static constexpr std::size_t most_cells = 2'000;  // of one smooth function
+  static constexpr double resolved = 0.5;           // change of the slope times the length of a cell, of the range
+  static constexpr double ripple = 1e-3;            // of the largest value of a term: a smaller range is none
+  static constexpr double steps_per_cell = 8;       // a sine is bounded to steps of half a period at least
+  static constexpr double shortest = 1e-12;         // of the span, in a search
+
+  struct Cell {
+    double a, b, unresolved;
+    bool operator<(const Cell& other) const { return unresolved < other.unresolved; }
+  };
+
+  static void tidy(std::vector<Break>& breaks) {
+    std::sort(breaks.begin(), breaks.end(), [](const Break& a, const Break& b) { return a.before < b.before; });
+    std::size_t kept = 0;
+    for (const Break& b : breaks) {
+      if (kept > 0 && b.before <= breaks[kept - 1].after)
+        breaks[kept - 1].after = std::max(breaks[kept - 1].after, b.after);
+      else
+        breaks[kept++] = b;
+    }
+    breaks.resize(kept);
+  }
+
+  /// The pieces between the cuts; branches of inner kinks are those in their middle.
+  template <class See>
+  void for_each_piece(See&& see) const {
+    double from = t0_;
+    for (const Break& cut : cuts_) {
+      if (cut.before > from) see(from, cut.before);
+      from = std::max(from, cut.after);
+    }
+    if (t1_ > from) see(from, t1_);
+  }
+
+  const std::vector<double>& at(double t, double within) {
+    at_[0] = t;
+    for (std::size_t i = 0; i < inputs_.size(); ++i) at_[1 + i] = in_segment(inputs_[i], within);
+    return at_;
+  }
+  const std::vector<Sloped>& box(double a, double b) {
+    at(a, (a + b) / 2);
+    box_[0] = {{a, b}, {1, 1}};
+    for (std::size_t i = 1; i < at_.size(); ++i) box_[i] = {{at_[i], at_[i]}, {0, 0}};
+    return box_;
+  }
+
+  void find_kink(const expressions::Table& surface) {
+    Code code(surface, parameters_);
+    std::vector<Break> found;
+    std::size_t boxes = 0;
+    for_each_piece([&](double a, double b) { find_roots(code, code.roots(), a, b, found, boxes); });
+    cuts_.insert(cuts_.end(), found.begin(), found.end());
+    tidy(cuts_);
+  }
+
+  void find_roots(Code& code, std::size_t operands, double from, double to, std::vector<Break>& found,
+                  std::size_t& boxes) {
+    const double middle = (from + to) / 2;
+    code.hold(at(middle, middle));
+    const auto value = [&](double t) {
+      code.values(at(t, middle), {});
+      const double a = code.value(at(t, middle), 0);
+      return operands == 1 ? a : a - code.value(at(t, middle), 1);
+    };
+    std::vector<std::pair<double, double>> open{{from, to}};
+    while (!open.empty()) {
+      const auto [a, b] = open.back();
+      open.pop_back();
+      if (++boxes > most_boxes || found.size() > most_breaks) {
+        tell(a);
+        return;
+      }
+      Sloped g = code.range(box(a, b), 0);
+      if (operands == 2) {
+        const Sloped other = code.range(box_, 1);
+        g = {g.value - other.value, g.slope - other.slope};
+      }
+      if (!g.value.has(0)) continue;
+      const double m = a + (b - a) / 2;
+      const bool last =
+          b - a <= std::max(shortest * (t1_ - t0_), 8 * std::numeric_limits<double>::epsilon() * std::abs(b)) ||
+          !(m > a && m < b);
+      if (last || !g.slope.has(0)) {
+        const double left = value(a), right = value(b);
+        if (left * right < 0)
+          found.push_back(between(value, a, left, b));
+        else if (left == 0 && a > from)
+          around(value, a, found);
+        continue;
+      }
+      if (g.value.is(0)) continue;
+      open.push_back({m, b});  // the earlier half is looked at first
+      open.push_back({a, m});
+    }
+  }
+
+  /// A root on the border of two boxes: where the function has a sign on both sides, and another one.
+  template <class Value>
+  void around(const Value& value, double t, std::vector<Break>& found) const {
+    const Break b = clear_of(value, t);
+    if (value(b.before) * value(b.after) < 0) found.push_back(b);
+  }
+
+  template <class Value>
+  static Break clear_of(const Value& value, double t) {
+    Break b{t, t};
+    for (int i = 0; i < 64 && value(b.before) == 0; ++i)
+      b.before = std::nextafter(b.before, -std::numeric_limits<double>::infinity());
+    for (int i = 0; i < 64 && value(b.after) == 0; ++i)
+      b.after = std::nextafter(b.after, std::numeric_limits<double>::infinity());
+    return b;
+  }
+
+  /// Where a sign changes, to the last digit.
+  template <class Value>
+  static Break between(const Value& value, double a, double left, double b) {
+    while (true) {
+      const double m = a + (b - a) / 2;
+      if (!(m > a && m < b)) return {a, b};
+      const double v = value(m);
+      if (v == 0) return clear_of(value, m);
+      (v * left > 0 ? a : b) = m;
+    }
+  }
+
+  void tell(double t) {
+    if (!unfollowed_from_) unfollowed_from_ = t;
+  }
+
+  void bound(expressions::Code code) {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    const auto see = [&](double v) {
+      if (std::isfinite(v)) low = std::min(low, v), high = std::max(high, v);
+    };
+    const auto cell = [&](double a, double b) {
+      const double m = a + (b - a) / 2;
+      code.hold(at(m, m));
+      for (const double t : {a, m, b}) see(code.value(at(t, m)));
+      const Sloped f = code.range(box(a, b));
+      const double bend = f.slope.width() * (b - a), rise = 2 * f.value.width();
+      const double unresolved = std::isfinite(bend) ? std::min(bend, rise) : rise;
+      return Cell{a, b, std::isnan(unresolved) ? std::numeric_limits<double>::infinity() : unresolved};
+    };
+    std::priority_queue<Cell> open;
+    for_each_piece([&](double a, double b) { open.push(cell(a, b)); });
+    std::vector<Cell> done;
+    const std::size_t pieces = open.size();
+    while (!open.empty()) {
+      const Cell top = open.top();
+      const double range = std::max(high - low, ripple * std::max(std::abs(low), std::abs(high)));
+      const double m = top.a + (top.b - top.a) / 2;
+      if (!(top.unresolved > resolved * range) || open.size() + done.size() > pieces + most_cells) break;
+      open.pop();
+      if (top.b - top.a <= shortest * (t1_ - t0_) || !(m > top.a && m < top.b)) {
+        done.push_back(top);
+        continue;
+      }
+      open.push(cell(top.a, m));
+      open.push(cell(m, top.b));
+    }
+    for (; !open.empty(); open.pop()) done.push_back(open.top());
+    std::sort(done.begin(), done.end(), [](const Cell& a, const Cell& b) { return a.a < b.a; });
+    std::vector<StepBound> own;
+    for (const Cell& c : done) {
+      const double step = steps_per_cell * (c.b - c.a);
+      if (own.empty() || own.back().step != step) own.push_back({c.a, step});
+    }
+    bounds_ = lower_of(bounds_, own);
+  }
+
+  /// The lower of two bounds, everywhere.
+  static std::vector<StepBound> lower_of(const std::vector<StepBound>& a, const std::vector<StepBound>& b) {
+    if (a.empty() || b.empty()) return a.empty() ? b : a;
+    std::vector<StepBound> result;
+    std::size_t i = 0, j = 0;
+    double of_a = std::numeric_limits<double>::infinity(), of_b = of_a;
+    while (i < a.size() || j < b.size()) {
+      const double t = i == a.size() ? b[j].t : j == b.size() ? a[i].t : std::min(a[i].t, b[j].t);
+      if (i < a.size() && a[i].t == t) of_a = a[i++].step;
+      if (j < b.size() && b[j].t == t) of_b = b[j++].step;
+      const double step = std::min(of_a, of_b);
+      if (result.empty() || result.back().step != step) result.push_back({t, step});
+    }
+    return result;
+  }
+
+  const TimeFunctions& functions_;
+  std::span<const double> parameters_;
+  const std::vector<Signal>& inputs_;
+  double t0_, t1_;
+  std::vector<Break> cuts_;
+  std::vector<StepBound> bounds_;
+  std::optional<double> unfollowed_from_;
+  std::vector<double> at_;
+  std::vector<Sloped> box_;
+};
+
+/// Of functions of time with these parameters and inputs; inputs that are no tables are in the functions.
+inline Clock look_at_time(const TimeFunctions& functions, std::span<const double> parameters,
+                          const std::vector<Signal>& inputs, double t0, double t1) {
+  return ClockSearch(functions, parameters, inputs, t0, t1).run();
+}
+
+}  // namespace eom::hybrid

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: MIT
+// The inputs of a run at a time. In: a Problem. Out: one number for each.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "eom/hybrid/problem.hpp"
+
+namespace eom::hybrid {
+
+class Inputs {
+ public:
+  explicit Inputs(const Problem& problem) : signals_(problem.inputs) {
+    for (const Signal& signal : signals_)
+      codes_.push_back(signal.expression.empty() ? expressions::Code()
+                                                 : expressions::Code(signal.expression, problem.parameters));
+  }
+
+  std::size_t size() const { return signals_.size(); }
+
+  /// Input i at t. Of a table: the value of the segment that `side` (a time inside the current segment) lies in.
+  double operator()(std::size_t i, double t, double side) const {
+    const Signal& signal = signals_[i];
+    if (codes_[i].roots() > 0) return codes_[i].value({&t, 1});
+    if (signal.times.empty()) return signal.function ? signal.function(t) : 0.0;
+    return in_segment(signal, side);
+  }
+
+ private:
+  std::span<const Signal> signals_;
+  std::vector<expressions::Code> codes_;
+};
+
+}  // namespace eom::hybrid

@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: MIT
+// Where energies, momenta or constraints jump: the velocity of a support at a kink of its motion, a step of a
+// potential. In: functions that may jump, and numbers for their parameters. Out: at a kink of time, velocities without
+// the impulses of constraints: the momenta dL/dqdot are the same before and after; at a kink of the state, what jumps
+// there, which the equations leave open.
+#pragma once
+
+#include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "eom/expressions/code.hpp"
+#include "eom/hybrid/problem.hpp"
+#include "eom/hybrid/text.hpp"
+
+namespace eom::hybrid {
+
+class Jumps {
+ public:
+  /// n free coordinates and so many integrals and inputs; breaks: there are kinks of time in the span.
+  Jumps(const JumpFunctions& of, std::size_t n, std::size_t integrals, std::size_t inputs,
+        std::span<const double> parameters, bool breaks)
+      : of_(of), n_(n), integrals_(integrals), inputs_(inputs) {
+    if (of.functions.empty()) return;
+    code_ = expressions::Code(of.values, parameters);
+    for (std::size_t k = 0; k < code_.kinks(); ++k) {
+      if (!code_.moves(k)) {
+        by_time_ = by_time_ || breaks;
+        continue;
+      }
+      if (!code_.jumps(k)) continue;
+      const bool known = std::any_of(surfaces_.begin(), surfaces_.end(),
+                                     [&](std::size_t other) { return code_.same_surface(k, other); });
+      if (!known) surfaces_.push_back(k);
+    }
+    if (by_time_) mass_ = expressions::Code(of.mass, parameters);
+  }
+  explicit Jumps(const Problem& problem)
+      : Jumps(problem.jumps, problem.n(), problem.code->integrals, problem.inputs.size(), problem.parameters,
+              !problem.breaks.empty()) {}
+
+  /// Nothing jumps anywhere, whatever the motion.
+  bool none() const { return !by_time_ && surfaces_.empty(); }
+  bool by_time() const { return by_time_; }
+
+  /// From just before a kink of time to just after it: changes velocities in `x` to what they are without impulses of
+  /// constraints.
+  Impulse cross(const Place& before, double after, const double* u_after, std::span<double> x) const {
+    Impulse told;
+    const double later = after + far * (std::abs(after) > 0 ? std::abs(after) : 1);
+    const auto at = [&](double t, const double* u) -> const std::vector<double>& {
+      return variables({t, before.x, u});
+    };
+    std::array<std::vector<double>, 3> values;
+    for (auto& v : values) v.resize(code_.roots());
+    code_.values(at(before.t, before.u), values[0]);
+    code_.values(at(after, u_after), values[1]);
+    code_.values(at(later, u_after), values[2]);
+    const Sizes size = sizes(values[0], values[1], before.x);
+    Eigen::VectorXd change = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(n_));
+    Eigen::Index row = 0;
+    bool momentum = false;
+    for (std::size_t i = 0; i < of_.functions.size(); ++i) {
+      const What what = of_.functions[i].what;
+      const double by = std::abs(values[1][i] - values[0][i]), on = std::abs(values[2][i] - values[1][i]);
+      const bool jump = by > std::max(rounding * size[static_cast<std::size_t>(what)], part_of_far * on) &&
+                        by > 1e-14 * std::max(std::abs(values[0][i]), std::abs(values[1][i]));
+      if (what == What::momentum) {
+        change(row++) = jump ? values[0][i] - values[1][i] : 0;
+        momentum = momentum || jump;
+      }
+      if (!jump) continue;
+      told.potential = told.potential || what == What::potential;
+      told.velocities = told.velocities || what != What::potential;
+      if (what == What::velocity && told.what.empty()) told.what = of_.functions[i].name;
+      if (what != What::psi && what != What::place) continue;
+      told.undetermined = name(i) + " jumps at t = " + printed(after, 15) + " by " +
+                          printed(values[1][i] - values[0][i], 6) +
+                          ", with an unbounded velocity: make it a motion that takes some time";
+      return told;
+    }
+    if (!momentum) return told;
+    const auto n = static_cast<Eigen::Index>(n_);
+    std::vector<double> M(n_ * n_);
+    mass_.values(at(after, u_after), M);
+    const Eigen::VectorXd moved =
+        Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd>(Eigen::Map<const Eigen::MatrixXd>(M.data(), n, n))
+            .solve(change);
+    for (std::size_t i = 0; i < n_; ++i) x[n_ + i] += moved(static_cast<Eigen::Index>(i));
+    return told;
+  }
+
+  /// Surfaces in the state where something may jump: above 0 on one side.
+  std::size_t surfaces() const { return surfaces_.size(); }
+  void values(const Place& at, double* g) const {
+    code_.values(variables(at), {});
+    for (std::size_t i = 0; i < surfaces_.size(); ++i) g[i] = code_.surface(surfaces_[i]);
+  }
+
+  /// What jumps at one of them, or "".
+  std::string cross(const Place& at, std::size_t surface) {
+    std::array<std::vector<double>, 2> sides;
+    for (const int side : {0, 1}) {
+      for (std::size_t k = 0; k < code_.kinks(); ++k) {
+        if (code_.same_surface(k, surfaces_[surface])) code_.hold(k, side == 0 ? -1 : 1);
+      }
+      auto& values = sides[static_cast<std::size_t>(side)];
+      values.resize(code_.roots());
+      code_.values(variables(at), values);
+    }
+    code_.release();
+    const Sizes size = sizes(sides[0], sides[1], at.x);
+    for (std::size_t i = 0; i < of_.functions.size(); ++i) {
+      const double change = sides[1][i] - sides[0][i];
+      if (!(std::abs(change) > rounding * size[static_cast<std::size_t>(of_.functions[i].what)])) continue;
+      return name(i) + " jumps by " + printed(change, 6) + " at t = " + printed(at.t, 15) +
+             ", where a branch of `if` or `sign` changes: the equations do not say what the impulse does there; make "
+             "it a steep but smooth step, tanh((x - a)/w) say, or a constraint with unilateral = true";
+    }
+    return "";
+  }
+
+ private:
+  using What = JumpFunctions::What;
+  static constexpr std::size_t kinds = 7;
+  using Sizes = std::array<double, kinds>;
+  static constexpr double rounding = 1e-9;     // of what jumps: a smaller difference is none
+  static constexpr double far = 1e-6;          // of the time: a change over so much
+  static constexpr double part_of_far = 1e-4;  // what changes by less than this part of it at the kink does not jump
+
+  const std::vector<double>& variables(const Place& at) const {
+    variables_.assign(1, at.t);
+    variables_.insert(variables_.end(), at.x.begin(), at.x.begin() + static_cast<std::ptrdiff_t>(2 * n_ + integrals_));
+    variables_.insert(variables_.end(), at.u, at.u + inputs_);
+    return variables_;
+  }
+
+  std::string name(std::size_t function) const {
+    switch (of_.functions[function].what) {
+      case What::potential: return "the potential energy";
+      case What::momentum: return "the kinetic energy";
+      case What::psi: return "the place where a constraint holds";
+      case What::row: return "the direction of a constraint";
+      case What::rate: return "the rate of a constraint";
+      default: return of_.functions[function].name;
+    }
+  }
+
+  /// Of each kind beside what its values are made of: a potential beside the kinetic energy, a constraint beside the
+  /// coordinates and rates.
+  Sizes sizes(const std::vector<double>& one, const std::vector<double>& other, std::span<const double> x) const {
+    Sizes size{};
+    const auto of = [&](What what) -> double& { return size[static_cast<std::size_t>(what)]; };
+    double energy = 0, position = 0, rate = 0;
+    for (std::size_t i = 0, k = 0; i < of_.functions.size(); ++i) {
+      const What what = of_.functions[i].what;
+      of(what) = std::max({of(what), std::abs(one[i]), std::abs(other[i])});
+      if (what == What::momentum) energy += std::abs(one[i] * x[n_ + k++]) / 2;
+    }
+    for (std::size_t i = 0; i < n_; ++i) {
+      position = std::max(position, std::abs(x[i]));
+      rate = std::max(rate, std::abs(x[n_ + i]));
+    }
+    of(What::potential) += energy;
+    of(What::place) += position;
+    of(What::velocity) += rate;
+    of(What::psi) += of(What::row) * position;
+    of(What::rate) += of(What::row) * rate;
+    return size;
+  }
+
+  const JumpFunctions& of_;
+  std::size_t n_, integrals_, inputs_;
+  bool by_time_ = false;
+  expressions::Code code_, mass_;
+  std::vector<std::size_t> surfaces_;  // kinks of code_, one of each surface
+  mutable std::vector<double> variables_;
+};
+
+}  // namespace eom::hybrid

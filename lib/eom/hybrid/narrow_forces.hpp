@@ -1,0 +1,129 @@
+// SPDX-License-Identifier: MIT
+// Forces that are narrow in the state: a barrier exp(-(x/w)^2) far below a step lies between the places at which the
+// step sees the equations, and its tails are below any tolerance. In: the functions of a system without tails, a step
+// with its dense output, the right-hand side. Out: a shorter step, where bounds of such a function leave room for
+// values that no sample has, and the path of the step does not satisfy the equations at one.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "eom/hybrid/variables.hpp"
+
+namespace eom::hybrid {
+
+class NarrowForces {
+ public:
+  explicit NarrowForces(const Problem& problem) : n_(problem.n()), variables_(step_variables(problem)) {
+    for (const expressions::Table& function : problem.bounded.narrow) codes_.emplace_back(function, problem.parameters);
+  }
+
+  bool any() const { return !codes_.empty(); }
+
+  /// The longest step that may be taken in its place; infinity where it may be taken as it is.
+  double longest(const StepView& step, const Sampling& sampling) const {
+    const double h = std::abs(step.t1 - step.t0);
+    double first = 1;
+    for (const expressions::Code& code : codes_) first = std::min(first, hidden(code, step, sampling).value_or(1));
+    if (first < 1) return first * h;
+    if (sampling.series && unsatisfied(step, sampling, 1, 1)) return h / 2;
+    return std::numeric_limits<double>::infinity();
+  }
+
+  /// The first step for which the bounds were too wide to tell; since the last call.
+  std::optional<double> unsure() const { return std::exchange(unsure_, std::nullopt); }
+
+ private:
+  static constexpr std::size_t most_boxes = 200;  // of a function in a step
+  static constexpr double shortest = 1e-9;        // of the step
+  static constexpr double nothing = 1e-100;       // in the units of the function
+  static constexpr double everything = 1e100;
+  static constexpr double of_values = 1e-3;   // beyond the samples: what smooth functions do between them
+  static constexpr double of_tolerance = 30;  // a path between the ends of a step is less accurate than these
+  static constexpr double difference = 1e-3;  // of a width, for slopes of the path
+  static constexpr double nearest = 1e-3;     // of a box
+
+  static double bounded(double v) { return std::clamp(v, -everything, everything); }
+
+  /// Where a function has a value that no sample of the step has, and the equations are not satisfied.
+  std::optional<double> hidden(const expressions::Code& code, const StepView& step, const Sampling& sampling) const {
+    using expressions::Interval;
+    const auto value = [&](const StepPlace& at) { return bounded(code.value(at.variables)); };
+    std::vector<std::pair<StepPlace, StepPlace>> open(1);
+    open[0].second.s = 1;
+    for (StepPlace* at : {&open[0].first, &open[0].second}) variables_.at(step, sampling, *at);
+    // The ends alone are what every method sees.
+    Interval seen =
+        expressions::hull({value(open[0].first), value(open[0].first)}, {value(open[0].second), value(open[0].second)});
+    for (std::size_t boxes = 0; !open.empty() && boxes < most_boxes; ++boxes) {
+      const auto [a, b] = std::move(open.back());
+      open.pop_back();
+      StepPlace m{(a.s + b.s) / 2, {}};
+      variables_.at(step, sampling, m);
+      const double middle = value(m), width = b.s - a.s;
+      expressions::Sloped range = code.range(variables_.box(a, m, b));
+      if (std::isfinite(range.slope.width()))
+        range.value = common(range.value, Interval{middle, middle} + range.slope * Interval{-0.5, 0.5});
+      range.value = {bounded(range.value.low), bounded(range.value.high)};
+      const double room =
+          std::max({seen.width(), of_values * std::max(std::abs(seen.low), std::abs(seen.high)), nothing});
+      const auto shown = [&](double v) { return v >= seen.low - room && v <= seen.high + room; };
+      if (shown(range.value.low) && shown(range.value.high)) continue;
+      if (!shown(middle)) {
+        if (unsatisfied(step, sampling, m.s, width)) return m.s;
+        // A bump has no slope at its top: its sides, however steep they are.
+        for (double beside = width / 4; beside > width * nearest; beside /= 4) {
+          if (unsatisfied(step, sampling, m.s - beside, beside) || unsatisfied(step, sampling, m.s + beside, beside))
+            return m.s - beside;
+        }
+        seen = hull(seen, {middle, middle});
+      }
+      if (width < shortest) continue;
+      open.emplace_back(m, b);
+      open.emplace_back(a, m);
+    }
+    if (!open.empty() && !unsure_) unsure_ = step.t0;
+    return std::nullopt;
+  }
+
+  /// Whether the accelerations of the step's path at s differ from those of the equations by more than tolerances
+  /// allow, if they do so for `width` of the step.
+  bool unsatisfied(const StepView& step, const Sampling& sampling, double s, double width) const {
+    const double h = step.t1 - step.t0, reach = difference * width, from = std::max(0.0, s - reach),
+                 to = std::min(1.0, s + reach);
+    for (std::vector<double>* x : {&x_, &before_, &after_, &dx_}) x->resize(step.x0.size());
+    const auto state = [&](double at, std::vector<double>& x) {
+      if (at >= 1)
+        x.assign(step.x1.begin(), step.x1.end());
+      else
+        step.interpolate(step.t0 + at * h, x);
+    };
+    state(s, x_);
+    state(from, before_);
+    state(to, after_);
+    if (sampling.derivative(step.t0 + s * h, x_.data(), dx_.data()) != 0) return true;
+    for (std::size_t i = n_; i < 2 * n_; ++i) {
+      const double slope = (after_[i] - before_[i]) / ((to - from) * h);
+      // Of a one-sided difference the path's own curvature is taken for a part of it.
+      const double size = std::max(std::abs(step.x0[i]), std::abs(step.x1[i]));
+      const double bend = from < s && to > s ? 0 : difference * std::abs(step.x1[i] - step.x0[i]);
+      if (!(std::abs(dx_[i] - slope) * width * std::abs(h) <=
+            of_tolerance * (sampling.atol + sampling.rtol * size) + bend))
+        return true;
+    }
+    return false;
+  }
+
+  std::size_t n_;
+  StepVariables variables_;
+  std::vector<expressions::Code> codes_;
+  mutable std::optional<double> unsure_;
+  mutable std::vector<double> x_, before_, after_, dx_;
+};
+
+}  // namespace eom::hybrid

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+// What the variables of a run's expressions are: t, free coordinates, their rates, integrals, inputs. In: places of one
+// step. Out: numbers there, and boxes between three of them.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "eom/expressions/code.hpp"
+#include "eom/hybrid/problem.hpp"
+
+namespace eom::hybrid {
+
+/// From 0 to 1 in the step.
+struct StepPlace {
+  double s = 0;
+  std::vector<double> variables;
+};
+
+class StepVariables {
+ public:
+  /// Of a model with so many states, without the work that a run integrates, and inputs.
+  StepVariables(std::size_t states, std::size_t inputs) : states_(states), inputs_(inputs) {}
+
+  void at(const StepView& step, const Sampling& sampling, StepPlace& place) const {
+    const double t = place.s >= 1 ? step.t1 : step.t0 + place.s * (step.t1 - step.t0);
+    x_.resize(step.x0.size());
+    if (place.s <= 0)
+      x_.assign(step.x0.begin(), step.x0.end());
+    else if (place.s >= 1)
+      x_.assign(step.x1.begin(), step.x1.end());
+    else
+      step.interpolate(t, x_);
+    place.variables.assign(1, t);
+    place.variables.insert(place.variables.end(), x_.begin(), x_.begin() + static_cast<std::ptrdiff_t>(states_));
+    if (inputs_ == 0) return;
+    const double* u = sampling.inputs(t);
+    place.variables.insert(place.variables.end(), u, u + inputs_);
+  }
+
+  /// Between a and b, with m midway: the control points of the parabola through the three, and some more.
+  const std::vector<expressions::Sloped>& box(const StepPlace& a, const StepPlace& m, const StepPlace& b) const {
+    constexpr double beyond = 0.05;  // of its width: what is not of second order within a box
+    box_.resize(a.variables.size());
+    for (std::size_t v = 0; v < box_.size(); ++v) {
+      const double x = a.variables[v], z = b.variables[v], control = 2 * m.variables[v] - (x + z) / 2;
+      const double bend = beyond * std::max(std::abs(control - x), std::abs(z - control)),
+                   low = std::min(2 * (control - x), 2 * (z - control)),
+                   high = std::max(2 * (control - x), 2 * (z - control));
+      const double loose = v == 0 ? 0 : 4 * bend;
+      box_[v] = {{std::min({x, z, control}) - bend, std::max({x, z, control}) + bend}, {low - loose, high + loose}};
+    }
+    return box_;
+  }
+
+ private:
+  std::size_t states_, inputs_;
+  mutable std::vector<double> x_;
+  mutable std::vector<expressions::Sloped> box_;
+};
+
+/// The variables of a model's expressions at the places of its steps.
+inline StepVariables step_variables(const Problem& problem) {
+  return {2 * problem.n() + problem.code->integrals, problem.inputs.size()};
+}
+
+}  // namespace eom::hybrid
