@@ -159,13 +159,13 @@ class Prescribed {
       for (const run::Signal& input : scene_.inputs)
         before.push_back(input(at.before, side)), after.push_back(input(at.after, side));
       const eom::hybrid::Impulse told = jumps.cross({at.before, x, before.data()}, at.after, after.data(), x);
-      if (told.undetermined.empty() && !told.velocities) continue;
+      if (!told.undetermined && !told.velocities) continue;
       result.outcome = eom::Outcome::jump_undetermined;
-      result.detail = !told.undetermined.empty() ? told.undetermined
-                                                 : fmt::format(
-                                                       "{} jumps at t = {:.15g}: the forces there are an impulse, "
-                                                       "which no row shows; make it a motion that takes some time",
-                                                       told.what.empty() ? "a velocity" : told.what, at.after);
+      result.detail = told.undetermined ? sentence(told.undetermined)
+                                        : fmt::format(
+                                              "{} jumps at t = {:.15g}: the forces there are an impulse, "
+                                              "which no row shows; make it a motion that takes some time",
+                                              told.what.empty() ? "a velocity" : told.what, at.after);
       return;
     }
   }

@@ -41,33 +41,34 @@ void take_choice(const RunRequest& request, const eom::Choice& choice, RunResult
 }
 
 /// Why the run ended, in the words of the command line.
-std::string told_end(const RunRequest& request, const eom::hybrid::RunResult& run) {
-  if (run.left_range && run.outcome == eom::Outcome::chart_left) {
-    const eom::hybrid::LeftRange& left = *run.left_range;
+std::string told_end(const eom::hybrid::RunResult& run) {
+  using Kind = eom::hybrid::Reason::Kind;
+  const eom::hybrid::Reason& reason = run.reason;
+  if (reason.kind == Kind::range) {
     return fmt::format(
         "{} leaves its range ({}, {}) between t = {} and {}: give it a wider one in [coordinates] if the equations "
         "hold beyond it, or take coordinates "
         "that do not end there (Cartesian ones, Euler parameters, an angle of another sequence)",
-        request.code.output_names[2 * left.coordinate], left.range.lower, left.range.upper, left.t0, left.t1);
+        reason.what, reason.lower, reason.upper, reason.from, reason.until);
   }
   if (run.outcome == eom::Outcome::max_steps) return run.detail + "; --max-steps allows more";
-  if (!run.open_balance) return run.detail;
+  if (reason.kind != Kind::balance) return run.detail;
   return fmt::format(
       "the energy changes by {:.2g} of itself more than the forces account for, and the error estimate does not "
       "explain it: something was passed over; compare with "
       "--max-step, a tighter --rtol or another solver",
-      *run.open_balance);
+      reason.amount);
 }
 
 /// The estimate by names; its doubts in the words of the command line.
 void tell_error(const RunRequest& request, const eom::hybrid::RunResult& run, RunResult& result) {
   const eom::hybrid::EndError& error = run.error;
   result.estimate_note = error.note;
-  if (error.doubt == eom::hybrid::Doubt::passed_over) {
+  if (error.doubt.kind == eom::hybrid::Doubt::Kind::passed_over) {
     result.estimate_note = fmt::format(
         "a step after t = {:.6g} goes over a force that is narrow in the state, and sees nothing of it: the estimate "
         "says nothing; give a shorter --step, or leave it out",
-        *error.passed_over);
+        error.doubt.t);
   }
   result.estimate_rhs_evaluations = error.rhs_evaluations;
   if (error.states.empty()) return;
@@ -108,7 +109,9 @@ RunResult integrate_scene(const RunRequest& request) {
     result.reason = {SolverReason::Basis::nothing_moves};
   }
   result.outcome = run.outcome;
-  result.detail = told_end(request, run);
+  result.cause = run.reason;
+  result.doubt = run.error.doubt;
+  result.detail = told_end(run);
   result.t = run.t;
   result.statistics = run.statistics;
   result.seconds_integrate = run.seconds;

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <atomic>
+#include <eom/hybrid/doubt.hpp>
 #include <eom/hybrid/problem.hpp>
 #include <eom/ode.hpp>
 #include <functional>
@@ -51,7 +52,9 @@ struct RunResult {
   std::string solver;   // the method that ended the run
   SolverReason reason;  // why it was taken
   eom::Outcome outcome = eom::Outcome::done;
-  std::string detail;
+  eom::hybrid::Reason cause;  // of the outcome, where it alone does not say it
+  eom::hybrid::Doubt doubt;   // of the estimate
+  std::string detail;         // the cause in the words of the command line, or ""
   double t = 0;
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;

@@ -222,9 +222,10 @@ TEST_CASE("hybrid: a coordinate that leaves its range ends the run with the step
   problem.ranges = {{-0.25, 1}};
   const RunResult result = run(problem);
   CHECK(result.outcome == eom::Outcome::chart_left);
-  REQUIRE(result.left_range);
-  CHECK(result.left_range->coordinate == 0);
-  CHECK(result.t == result.left_range->t0);
+  CHECK(result.reason.kind == Reason::Kind::range);
+  CHECK(result.reason.index == 0);
+  CHECK(result.t == result.reason.from);
+  CHECK(result.detail == sentence(result.reason));
   CHECK(result.state[0] >= -0.25);
 }
 

@@ -8,7 +8,6 @@
 #include <cstddef>
 
 #include "eom/hybrid/run_result.hpp"
-#include "eom/hybrid/text.hpp"
 
 namespace eom::hybrid {
 
@@ -41,7 +40,7 @@ inline void require_balance(const Problem& problem, RunResult& result) {
   for (std::size_t i = 0; i < problem.invariants.size(); ++i) {
     if (problem.invariants[i].output == problem.energy) open = std::max(open, result.invariants[i].max_relative_drift);
   }
-  const bool told = result.error.doubt != Doubt::none;  // the estimate itself says that it is not to be trusted
+  const bool told = bool(result.error.doubt);  // the estimate itself says that it is not to be trusted
   if (told || !(open > balance::always)) return;
   double allowed = problem.step > 0 ? 0 : balance::of_tolerance * problem.rtol;
   allowed = std::max(allowed, result.error.states.empty()
@@ -49,10 +48,7 @@ inline void require_balance(const Problem& problem, RunResult& result) {
                                   : balance::of_estimate * balance::relative_estimate(problem, result));
   if (open <= allowed) return;
   result.outcome = Outcome::balance_open;
-  result.open_balance = open;
-  result.detail = "the energy changes by " + printed(open, 2) +
-                  " of itself more than the forces account for, and the error estimate does not explain it: something "
-                  "was passed over; compare with shorter steps, a tighter rtol or another solver";
+  result.reason = {Reason::Kind::balance, result.t, open};
 }
 
 }  // namespace eom::hybrid

@@ -9,7 +9,6 @@
 #include <limits>
 #include <numbers>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -18,7 +17,6 @@
 #include "eom/hybrid/rounding.hpp"
 #include "eom/hybrid/run_result.hpp"
 #include "eom/hybrid/step_adequacy.hpp"
-#include "eom/hybrid/text.hpp"
 #include "eom/hybrid/unresolved_impulses.hpp"
 
 namespace eom::hybrid {
@@ -47,21 +45,12 @@ class EndEstimate {
     for (const double e : error_.states) error_.max = std::max(error_.max, e);
     if (first_.outcome == Outcome::stopped_by_event) error_.t = stop_;
     error_.rhs_evaluations = estimate.statistics.rhs_evaluations + impulses_.evaluations();
-    if (estimate.outcome != Outcome::done) {
-      error_.doubt = Doubt::tighter_run;
-      error_.note =
-          std::string("a tighter run ended with '") + name(estimate.outcome) + "'; the estimate is not to be trusted";
-    }
-    if (!same_end_)
-      doubt(Doubt::event_missed,
-            "a tighter run did not stop at the event: the ends that are compared are not of the same time");
+    if (estimate.outcome != Outcome::done) error_.doubt = {Doubt::Kind::tighter_run, 0, 0, estimate.outcome};
+    if (!same_end_) doubt({Doubt::Kind::event_missed});
     if (adequacy_ != nullptr) see_unresolved();
     impulses_.finish();
     see_impulses();
-    if (!estimate.converging)
-      doubt(Doubt::not_converging,
-            "steps of this size are too long for the method's order to show: shorter ones change the end by as much "
-            "again; the estimate is not to be trusted");
+    if (!estimate.converging) doubt({Doubt::Kind::not_converging});
     if (method_.needs.required.has(Feature::momenta)) see_frozen();
     error_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
@@ -69,10 +58,8 @@ class EndEstimate {
  private:
   static constexpr double worth_a_note = 1e-3;  // of a velocity
 
-  void doubt(Doubt doubt, const std::string& note) {
-    if (error_.doubt != Doubt::none) return;
-    error_.doubt = doubt;
-    error_.note = note;
+  void doubt(const Doubt& doubt) {
+    if (!error_.doubt) error_.doubt = doubt;
   }
 
   void at_least(std::size_t state, double estimate) {
@@ -120,9 +107,7 @@ class EndEstimate {
     ++estimate.runs;
     estimate.statistics += other.statistics;
     if (other.outcome != first_.outcome) {
-      error_.doubt = Doubt::rounded_start;
-      error_.note = std::string("from a start that differs in its last digits the run ends with '") +
-                    name(other.outcome) + "'; the estimate is not to be trusted";
+      error_.doubt = {Doubt::Kind::rounded_start, 0, 0, other.outcome};
       return;
     }
     align(first_.x, other.x);
@@ -146,9 +131,7 @@ class EndEstimate {
     if (!(adequacy_->largest() > StepAdequacy::unresolved)) return;
     const std::vector<double>& differences = adequacy_->differences();
     for (std::size_t i = 0; i < std::min(differences.size(), error_.states.size()); ++i) at_least(i, differences[i]);
-    doubt(Doubt::unresolved, "steps of this size do not resolve the motion: halving them moves states on the way by " +
-                                 printed(adequacy_->largest(), 2) +
-                                 " of their size; take shorter ones, or a solver that chooses its steps");
+    doubt({Doubt::Kind::unresolved, 0, adequacy_->largest()});
   }
 
   /// Where a force turns within one step, what it changes the velocity by in the wrong place is in the end, and not in
@@ -159,10 +142,7 @@ class EndEstimate {
     if (!(part > 0)) return;
     for (std::size_t i = 0; i < error_.states.size(); ++i) at_least(i, part * std::abs(first_.x[i]));
     if (part < worth_a_note) return;
-    doubt(Doubt::impulse,
-          "near t = " + printed(at, 6) + " a force turns within one step, which changes the velocity by up to " +
-              printed(part, 2) +
-              " of its size in the wrong place; take shorter steps, or a solver that chooses its steps");
+    doubt({Doubt::Kind::impulse, at, part});
   }
 
   /// Steps so short that positions move in their last digits only: constraints on positions are then met by rounding,
@@ -177,9 +157,7 @@ class EndEstimate {
     }
     if (problem_.code->active_constraints == 0 || !(rate > 0) || options_.fixed_step * rate >= digits * position)
       return;
-    doubt(Doubt::frozen, "steps of " + printed(options_.fixed_step, 3) +
-                             " move the positions by less than their last digits, so that the constraints say nothing "
-                             "about rates; the estimate is not to be trusted");
+    doubt({Doubt::Kind::frozen, 0, options_.fixed_step});
   }
 
   const Problem& problem_;

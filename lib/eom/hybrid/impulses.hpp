@@ -11,7 +11,6 @@
 
 #include "eom/hybrid/parts.hpp"
 #include "eom/hybrid/segments.hpp"
-#include "eom/hybrid/text.hpp"
 
 namespace eom::hybrid {
 
@@ -36,9 +35,9 @@ inline std::string changed_rates(const Problem& problem, const std::vector<doubl
   return names;
 }
 
-/// From the end of a segment to the start of the next one. Returns what is not determined, or "": `total` is as it was
-/// then.
-inline std::string cross_impulse(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
+/// From the end of a segment to the start of the next one. Returns what is not determined, or none: `total` is as it
+/// was then.
+inline Reason cross_impulse(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
   const Problem& problem = parts.problem;
   const double from = parts.outputs.energy(before.end, total.x.data());
   const double* at_end = parts.model.inputs(before.end);
@@ -47,22 +46,18 @@ inline std::string cross_impulse(Parts& parts, const Segment& before, Result& to
   const double side = parts.model.side(std::nextafter(before.next, problem.t1));
   const Impulse impulse =
       parts.events.jumps().cross({before.end, x, u.data()}, before.next, parts.model.inputs(before.next), total.x);
-  std::string open = impulse.undetermined;
+  Reason open = impulse.undetermined;
   if (!impulse.velocities && !impulse.potential) return open;
-  if (open.empty() && impulse.velocities && parts.contacts && any_contact_touches(parts))
-    open = "the velocity of a support jumps at t = " + printed(before.next) +
-           " while a contact touches: the equations do not say what the impulse does there; make it a motion that "
-           "takes some time";
+  if (!open && impulse.velocities && parts.contacts && any_contact_touches(parts))
+    open = {Reason::Kind::support_and_contact, before.next};
   total.t = before.next;
   parts.hold_sides(total.t, total.x.data(), true);
-  if (open.empty() && impulse.velocities && parts.rows.size() > 0) {
+  if (!open && impulse.velocities && parts.rows.size() > 0) {
     const StateProjection::Corrections largest = parts.projection.largest();
-    if (parts.projection(before.next, total.x.data()) != 0)
-      open = "the velocity of a support jumps at t = " + printed(before.next) +
-             ", and no velocities satisfy the constraints after it";
+    if (parts.projection(before.next, total.x.data()) != 0) open = {Reason::Kind::support_alone, before.next};
     parts.projection.undo(largest);
   }
-  if (!open.empty()) {
+  if (open) {
     parts.model.side(side);
     total.x = x;
     total.t = before.end;
@@ -76,15 +71,15 @@ inline std::string cross_impulse(Parts& parts, const Segment& before, Result& to
                            : impulse.velocities    ? "constraints"
                                                    : "potential";
   if (event) event({before.next, "impulse", what, done}, total.x);
-  return "";
+  return {};
 }
 
 /// Beyond what lies between two segments: sides of kinks are counted, and what jumps is told. Returns what is not
-/// determined there, or "".
-inline std::string begin_segment(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
+/// determined there, or none.
+inline Reason begin_segment(Parts& parts, const Segment& before, Result& total, const OnEvent& event) {
   const int sides = parts.model.mode();
   const bool kink = before.next > before.end;
-  std::string open;
+  Reason open;
   if (kink && parts.events.jumps().by_time()) open = cross_impulse(parts, before, total, event);
   total.t = before.next;
   if (!kink) return open;

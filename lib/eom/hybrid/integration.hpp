@@ -40,6 +40,8 @@ class Integration {
 
   Parts& parts() { return parts_; }
   const Choice& choice() const { return choice_; }  // of the solver auto, and its changes in the run
+  /// Why it ended, where the outcome alone does not say it.
+  const Reason& reason() const { return reason_; }
   /// Where fixed steps first went over a force that is narrow in the state.
   std::optional<double> passed_over() const { return passed_over_; }
   /// Where it could first not be told whether a step goes over one.
@@ -66,7 +68,8 @@ class Integration {
   std::optional<double> passed_over_;
   double fixed_step_ = 0;  // of the run
   bool stopped_ = false, exchange_due_ = false;
-  std::string jump_;        // what jumped that nothing says the consequences of
+  Reason jump_;             // what jumped that nothing says the consequences of
+  Reason reason_;           // of the end
   double last_step_ = 0;    // with its sign
   double passage_due_ = 0;  // length of a step over a place of lost rank, with its sign
   bool passing_ = false;    // it is being made
@@ -89,7 +92,8 @@ inline Result Integration::run(const Options& options, const Observer& observer,
   parts_.projection.forget();
   parts_.kinks.start();
   stopped_ = false;
-  jump_.clear();
+  jump_ = {};
+  reason_ = {};
   fixed_step_ = options.fixed_step;
   slow_slip_.start(fixed_step_);
   if (parts_.contacts)
@@ -113,10 +117,11 @@ inline Result Integration::run(const Options& options, const Observer& observer,
         options.max_steps - std::min(options.max_steps, total.statistics.steps + total.statistics.rejected);
     if (options.fixed_step > 0 && problem_.step > 0)
       segment.fixed_step = options.fixed_step * all[k].step / problem_.step;
-    if (jump_.empty()) integrate_until(all[k].end, segment, observer, event, total);
-    explain(parts_, jump_, total);
+    if (!jump_) integrate_until(all[k].end, segment, observer, event, total);
+    reason_ = explain(parts_, reason_, jump_, total);
     if (total.outcome != Outcome::done) break;
   }
+  total.detail = sentence(reason_);
   return total;
 }
 
@@ -134,7 +139,8 @@ inline bool Integration::start(Result& total, const OnEvent& event) {
   // It has to begin on the constraints, to rounding.
   if (requires_feature(problem_.solver, Feature::constraints) && parts_.projection(total.t, total.x.data()) != 0) {
     total.outcome = Outcome::inconsistent_start;
-    total.detail = "the start cannot be moved onto the constraints";
+    reason_ = {Reason::Kind::start, total.t};
+    total.detail = sentence(reason_);
     return false;
   }
   parts_.projection.forget();
@@ -205,7 +211,7 @@ inline bool Integration::go_on(const Result& part, double begin, double end, con
   const bool passed = passing_ && part.outcome == Outcome::done;
   const bool paused =
       (exchange_due_ || slow_slip_.due() || passage_due_ != 0) && part.outcome == Outcome::stopped_by_event;
-  if (stopped_ || !jump_.empty() || (parts_.contacts && parts_.contacts->ended()) || !(passed || paused)) return false;
+  if (stopped_ || jump_ || (parts_.contacts && parts_.contacts->ended()) || !(passed || paused)) return false;
   if (exchange_due_) {
     for (const std::string& whose : parts_.exchange_charts(total.t, total.x)) {
       if (event) event({total.t, "chart", whose}, total.x);
@@ -214,7 +220,7 @@ inline bool Integration::go_on(const Result& part, double begin, double end, con
   idle_ = total.t > begin ? 0 : idle_ + 1;
   if (idle_ >= events_without_progress) {
     total.outcome = Outcome::step_too_small;
-    total.detail = "slip starts and ends at t = " + printed(total.t) + " without time going on";
+    reason_ = {Reason::Kind::slip, total.t};
     return false;
   }
   total.outcome = Outcome::done;
@@ -227,7 +233,7 @@ inline AtEvent Integration::at_event(const EventPoint& point, const OnEvent& eve
   const EventFunctions& functions = parts_.events;
   if (i >= functions.first_jump()) {
     jump_ = parts_.events.jumps().cross({point.t, point.x, parts_.model.inputs(point.t)}, i - functions.first_jump());
-    return jump_.empty() ? AtEvent::go_on : AtEvent::stop;
+    return !jump_ ? AtEvent::go_on : AtEvent::stop;
   }
   if (i >= functions.first_contact()) return change_contact(point, event);
   if (i < functions.first_kink()) {

@@ -16,7 +16,6 @@
 
 #include "eom/expressions/code.hpp"
 #include "eom/hybrid/problem.hpp"
-#include "eom/hybrid/text.hpp"
 
 namespace eom::hybrid {
 
@@ -79,9 +78,7 @@ class Jumps {
       told.velocities = told.velocities || what != What::potential;
       if (what == What::velocity && told.what.empty()) told.what = of_.functions[i].name;
       if (what != What::psi && what != What::place) continue;
-      told.undetermined = name(i) + " jumps at t = " + printed(after, 15) + " by " +
-                          printed(values[1][i] - values[0][i], 6) +
-                          ", with an unbounded velocity: make it a motion that takes some time";
+      told.undetermined = {Reason::Kind::place_jumps, after, values[1][i] - values[0][i], name(i)};
       return told;
     }
     if (!momentum) return told;
@@ -102,8 +99,8 @@ class Jumps {
     for (std::size_t i = 0; i < surfaces_.size(); ++i) g[i] = code_.surface(surfaces_[i]);
   }
 
-  /// What jumps at one of them, or "".
-  std::string cross(const Place& at, std::size_t surface) {
+  /// What jumps at one of them, or none.
+  Reason cross(const Place& at, std::size_t surface) {
     std::array<std::vector<double>, 2> sides;
     for (const int side : {0, 1}) {
       for (std::size_t k = 0; k < code_.kinks(); ++k) {
@@ -118,11 +115,9 @@ class Jumps {
     for (std::size_t i = 0; i < of_.functions.size(); ++i) {
       const double change = sides[1][i] - sides[0][i];
       if (!(std::abs(change) > rounding * size[static_cast<std::size_t>(of_.functions[i].what)])) continue;
-      return name(i) + " jumps by " + printed(change, 6) + " at t = " + printed(at.t, 15) +
-             ", where a branch of `if` or `sign` changes: the equations do not say what the impulse does there; make "
-             "it a steep but smooth step, tanh((x - a)/w) say, or a constraint with unilateral = true";
+      return {Reason::Kind::branch_jumps, at.t, change, name(i)};
     }
-    return "";
+    return {};
   }
 
  private:

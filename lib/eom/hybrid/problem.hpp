@@ -17,6 +17,7 @@
 #include "eom/events/locator.hpp"
 #include "eom/expressions/code.hpp"
 #include "eom/hybrid/code.hpp"
+#include "eom/hybrid/reason.hpp"
 #include "eom/hybrid/signal.hpp"
 #include "eom/run_types.hpp"
 
@@ -78,8 +79,8 @@ struct Place {
 struct Impulse {
   bool velocities = false;  // they may have to jump: those of x did, and constraints move otherwise
   bool potential = false;
-  std::string what;          // the velocity of a place that jumps, or ""
-  std::string undetermined;  // a sentence: what jumps that no equation says the consequences of
+  std::string what;     // the velocity of a place that jumps, or ""
+  Reason undetermined;  // what jumps that no equation says the consequences of
 };
 
 /// Functions that may jump where the equations have kinks, which compiled code does not tell. Empty: nothing jumps.

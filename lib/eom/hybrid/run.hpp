@@ -40,7 +40,7 @@ inline void require_parameters(const Problem& problem, RunResult& result) {
                                      [](double value) { return std::isfinite(value); }))
     return;
   result.outcome = Outcome::not_finite;
-  result.detail = "a parameter is infinite or not a number";
+  result.reason = {Reason::Kind::parameter, result.t};
 }
 
 /// Throws std::invalid_argument for a solver that is not there, or that the code has not what it needs for (a series,
@@ -76,12 +76,12 @@ inline RunResult run(const Problem& problem) {
   Result end = moves ? integration.run(options, see, tell) : Result{Outcome::done, problem.t0, parts.start, {}, ""};
   RunResult result;
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  watch.finish(end);
+  result.reason = integration.reason();
+  watch.finish(end, result.reason);
   watch.report(result);
   result.choice = integration.choice();
   result.solver = result.choice.method != nullptr ? result.choice.method : problem.solver;
   result.outcome = end.outcome;
-  result.detail = end.detail;
   result.t = end.t;
   result.statistics = end.statistics;
   result.kink_crossings = parts.kinks.crossings();
@@ -93,13 +93,8 @@ inline RunResult run(const Problem& problem) {
   parts.outputs(end.t, end.x.data(), result.outputs);
   result.state = parts.own_state(end.t, end.x);
   require_parameters(problem, result);
-  result.error.passed_over = integration.passed_over();
-  if (result.error.passed_over) {
-    result.error.doubt = Doubt::passed_over;
-    result.error.note = "a step after t = " + printed(*result.error.passed_over, 6) +
-                        " goes over a force that is narrow in the state, and sees nothing of it: the estimate says "
-                        "nothing; give shorter steps, or let them be chosen";
-  }
+  if (const std::optional<double> passed_over = integration.passed_over())
+    result.error.doubt = {Doubt::Kind::passed_over, *passed_over};
   result.unsure_from = integration.unsure_from();
   const bool ended = result.ended();
   if (problem.estimate && ended && moves) {
@@ -108,6 +103,8 @@ inline RunResult run(const Problem& problem) {
     EndEstimate(problem, own, options, adequacy ? &*adequacy : nullptr, result.error).run();
   }
   if (ended) require_balance(problem, result);
+  result.detail = sentence(result.reason);
+  result.error.note = sentence(result.error.doubt);
   return result;
 }
 

@@ -15,7 +15,6 @@
 
 #include "eom/hybrid/parts.hpp"
 #include "eom/hybrid/run_result.hpp"
-#include "eom/hybrid/text.hpp"
 #include "eom/watch/drift.hpp"
 
 namespace eom::hybrid {
@@ -116,16 +115,14 @@ class RunWatch {
 
   /// Where a coordinate left its range, the run ends with the step before; where it was interrupted between two rows,
   /// with the last one. The end is a last row, unless it is on the grid already.
-  void finish(Result& end) {
+  void finish(Result& end, Reason& reason) {
     if (interrupted_) {
       end.outcome = Outcome::interrupted;
-      end.detail = "while rows were written";
+      reason = {Reason::Kind::rows, end_t_};
     }
     if (left_) {
       end.outcome = Outcome::chart_left;
-      end.detail = problem_.code->output_names[2 * left_->coordinate] + " leaves its range (" +
-                   printed(left_->range.lower) + ", " + printed(left_->range.upper) +
-                   ") between t = " + printed(left_->t0) + " and " + printed(left_->t1);
+      reason = *left_;
     }
     if (interrupted_ || left_) {
       end.t = end_t_;
@@ -136,7 +133,6 @@ class RunWatch {
 
   void report(RunResult& result) const {
     result.events = events_;
-    result.left_range = left_;
     if (left_) {  // what lay in the step that left the range is no result
       std::erase_if(result.events, [&](const Event& event) { return event.t > end_t_; });
     }
@@ -190,7 +186,8 @@ class RunWatch {
         beyond_.push_back(i);
         continue;
       }
-      left_ = LeftRange{i, range, view.t0, view.t1};
+      left_ = {Reason::Kind::range, view.t0,    0, problem_.code->output_names[2 * i], i, view.t0, view.t1,
+               range.lower,         range.upper};
       return true;
     }
     return false;
@@ -206,7 +203,7 @@ class RunWatch {
   double defect_ = 0;
   std::vector<Event> events_;
   std::vector<std::size_t> beyond_;  // coordinates whose range the equations do not need
-  std::optional<LeftRange> left_;
+  std::optional<Reason> left_;
   bool interrupted_ = false;
   double end_t_ = 0;
   std::vector<double> end_x_;

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+// Why an error estimate is not to be trusted, as values and as a sentence.
+#pragma once
+
+#include <string>
+
+#include "eom/hybrid/text.hpp"
+#include "eom/outcome.hpp"
+
+namespace eom::hybrid {
+
+/// What the estimate may miss, or had to be enlarged for; the first that was found.
+struct Doubt {
+  enum class Kind {
+    none,
+    passed_over,     // after t fixed steps go over a force that is narrow in the state
+    rounded_start,   // a start that differs in its last digits ends with another outcome: `other`
+    tighter_run,     // a tighter run ended with it
+    event_missed,    // a tighter run did not stop at the event
+    unresolved,      // fixed steps do not resolve the motion: halving them moves states by `amount` of their size
+    impulse,         // near t a force turns within one step, by `amount` of the velocity
+    not_converging,  // shorter fixed steps change the end by as much again
+    frozen           // steps of `amount` move positions in their last digits only
+  };
+  Kind kind = Kind::none;
+  double t = 0, amount = 0;
+  Outcome other = Outcome::done;
+
+  explicit operator bool() const { return kind != Kind::none; }
+};
+
+/// "" of none.
+inline std::string sentence(const Doubt& doubt) {
+  using Kind = Doubt::Kind;
+  switch (doubt.kind) {
+    case Kind::none: return "";
+    case Kind::passed_over:
+      return "a step after t = " + printed(doubt.t, 6) +
+             " goes over a force that is narrow in the state, and sees nothing of it: the estimate says nothing; give "
+             "shorter steps, or let them be chosen";
+    case Kind::rounded_start:
+      return std::string("from a start that differs in its last digits the run ends with '") + name(doubt.other) +
+             "'; the estimate is not to be trusted";
+    case Kind::tighter_run:
+      return std::string("a tighter run ended with '") + name(doubt.other) + "'; the estimate is not to be trusted";
+    case Kind::event_missed:
+      return "a tighter run did not stop at the event: the ends that are compared are not of the same time";
+    case Kind::unresolved:
+      return "steps of this size do not resolve the motion: halving them moves states on the way by " +
+             printed(doubt.amount, 2) + " of their size; take shorter ones, or a solver that chooses its steps";
+    case Kind::impulse:
+      return "near t = " + printed(doubt.t, 6) +
+             " a force turns within one step, which changes the velocity by up to " + printed(doubt.amount, 2) +
+             " of its size in the wrong place; take shorter steps, or a solver that chooses its steps";
+    case Kind::not_converging:
+      return "steps of this size are too long for the method's order to show: shorter ones change the end by as much "
+             "again; the estimate is not to be trusted";
+    case Kind::frozen:
+      return "steps of " + printed(doubt.amount, 3) +
+             " move the positions by less than their last digits, so that the constraints say nothing about rates; "
+             "the estimate is not to be trusted";
+  }
+  return "";
+}
+
+}  // namespace eom::hybrid

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: MIT
+// Why a run ended before its end, or its end is none, as values beside the outcome; and as a sentence.
+#pragma once
+
+#include <cstddef>
+#include <string>
+
+#include "eom/hybrid/text.hpp"
+
+namespace eom::hybrid {
+
+struct Reason {
+  enum class Kind {
+    none,
+    method,               // in the words of the method: `what`
+    start,                // it cannot be moved onto the constraints
+    parameter,            // one is infinite or not a number
+    rows,                 // interrupted while rows were written
+    range,                // the coordinate `what` leaves its range: lower to upper, between the times from and until
+    place_jumps,          // `what` by `amount`, with an unbounded velocity
+    branch_jumps,         // `what` by `amount`, at a surface in the state
+    support_and_contact,  // the velocity of a support jumps while a contact touches
+    support_alone,        // it does, and no velocities satisfy the constraints after it
+    no_friction,          // the law at the contact `what` has no solution
+    many_frictions,       // several
+    surface,              // the motion slides along a surface of the function `what`
+    slip,                 // slip starts and ends without time going on
+    chart,                // a step leads past where the coordinates fail
+    balance               // the energy changes by `amount` of itself more than the forces account for
+  };
+  Kind kind = Kind::none;
+  double t = 0, amount = 0;
+  std::string what = {};
+  std::size_t index = 0;  // of the coordinate, contact or function
+  double from = 0, until = 0, lower = 0, upper = 0;
+
+  explicit operator bool() const { return kind != Kind::none; }
+};
+
+/// "" of none.
+inline std::string sentence(const Reason& reason) {
+  using Kind = Reason::Kind;
+  const std::string at = " at t = " + printed(reason.t);
+  switch (reason.kind) {
+    case Kind::none: return "";
+    case Kind::method: return reason.what;
+    case Kind::start: return "the start cannot be moved onto the constraints";
+    case Kind::parameter: return "a parameter is infinite or not a number";
+    case Kind::rows: return "while rows were written";
+    case Kind::range:
+      return reason.what + " leaves its range (" + printed(reason.lower) + ", " + printed(reason.upper) +
+             ") between t = " + printed(reason.from) + " and " + printed(reason.until);
+    case Kind::place_jumps:
+      return reason.what + " jumps at t = " + printed(reason.t, 15) + " by " + printed(reason.amount, 6) +
+             ", with an unbounded velocity: make it a motion that takes some time";
+    case Kind::branch_jumps:
+      return reason.what + " jumps by " + printed(reason.amount, 6) + " at t = " + printed(reason.t, 15) +
+             ", where a branch of `if` or `sign` changes: the equations do not say what the impulse does there; make "
+             "it a steep but smooth step, tanh((x - a)/w) say, or a constraint with unilateral = true";
+    case Kind::support_and_contact:
+      return "the velocity of a support jumps" + at +
+             " while a contact touches: the equations do not say what the impulse does there; make it a motion that "
+             "takes some time";
+    case Kind::support_alone:
+      return "the velocity of a support jumps" + at + ", and no velocities satisfy the constraints after it";
+    case Kind::no_friction:
+    case Kind::many_frictions:
+      return "just after t = " + printed(reason.t) + " the law of friction at '" + reason.what + "' has " +
+             (reason.kind == Kind::no_friction ? "no solution" : "several solutions") +
+             ": friction changes its own normal force by more than that force (Painleve)";
+    case Kind::surface:
+      return "the motion slides along a surface of " + reason.what + ": on both sides it leads back to it," + at +
+             "; for dry friction use a constraint with friction, or a smooth law";
+    case Kind::slip: return "slip starts and ends" + at + " without time going on";
+    case Kind::chart:
+      return "a step just after t = " + printed(reason.t) +
+             " leads past where the coordinates fail: choose a shorter one";
+    case Kind::balance:
+      return "the energy changes by " + printed(reason.amount, 2) +
+             " of itself more than the forces account for, and the error estimate does not explain it: something "
+             "was passed over; compare with shorter steps, a tighter rtol or another solver";
+  }
+  return "";
+}
+
+}  // namespace eom::hybrid
