@@ -19,11 +19,12 @@ function(eomgen_take_precompiled target owner)
   endif()
 endfunction()
 
-# eomgen_stage(NAME [OWN_HEADERS] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
+# eomgen_stage(NAME [OWN_HEADERS] [COLD] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
 # Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: it precompiles others than the stages share.
+# COLD: no time is spent in it, and the compiler takes a quarter less of its own without the last optimisations.
 function(eomgen_stage name)
-  cmake_parse_arguments(ARG "OWN_HEADERS" "" "SOURCES;NEEDS;LINKS" ${ARGN})
+  cmake_parse_arguments(ARG "OWN_HEADERS;COLD" "" "SOURCES;NEEDS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})
   target_include_directories(eomgen_${name} PUBLIC ${PROJECT_SOURCE_DIR}/generator)
   target_link_libraries(eomgen_${name} PRIVATE eomgen_warnings)
@@ -31,6 +32,9 @@ function(eomgen_stage name)
     target_link_libraries(eomgen_${name} PUBLIC eomgen_${stage})
   endforeach()
   target_link_libraries(eomgen_${name} PUBLIC ${ARG_LINKS})
+  if(ARG_COLD)
+    target_compile_options(eomgen_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  endif()
   if(ARG_NEEDS AND NOT ARG_OWN_HEADERS)  # those without are tables
     eomgen_take_precompiled(eomgen_${name} eomgen_error)
   endif()
