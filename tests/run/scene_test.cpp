@@ -200,6 +200,21 @@ TEST_CASE("scene: a parameter that is declared positive stays positive") {
   CHECK(refusal(text, overrides) == "parameter 'L' is declared positive, and its value is -2");
 }
 
+TEST_CASE("scene: parameters and masses that binary64 does not hold are refused by name") {
+  const std::string text = rod + "initial = { x = 0, y = -2 }\n";
+  run::Overrides overrides;
+  overrides.values["m"] = symbolic::Rational(1) / cln::expt(cln::cl_RA(10), cln::cl_I(310));
+  CHECK(refusal(text, overrides) ==
+        "parameter 'm' is about 1e-310 here, which counts as 0: numbers of a run are from 2.2e-308 on");
+  overrides.values["m"] = cln::expt(cln::cl_RA(10), cln::cl_I(310));
+  CHECK(refusal(text, overrides) ==
+        "parameter 'm' is about 1e310 here, which no run can hold: its numbers end at 1.8e308");
+  std::string heavy = text;
+  heavy.replace(heavy.find("mass = \"m\""), 10, "mass = \"m*1e-200*1e-150\"");
+  CHECK(refusal(heavy) ==
+        "the mass of 'P' is about 1e-350 here, which counts as 0: numbers of a run are from 2.2e-308 on");
+}
+
 TEST_CASE("scene: masses and coefficients of friction that have no value at its parameters are told") {
   run::Overrides negative;
   negative.values["k"] = -1;
