@@ -142,8 +142,9 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
     while (model_.arena[id].op == Op::multiply && resolver_.coordinates_in(model_.arena[id].args[0]).empty())
       id = model_.arena[id].args[1];
     const Node& node = model_.arena[id];
-    if (node.op != Op::power || model_.arena[node.args[1]].op != Op::number || model_.arena[node.args[1]].value <= 1)
-      return;
+    if (node.op != Op::power || !resolver_.coordinates_in(node.args[1]).empty()) return;
+    const bool number = model_.arena[node.args[1]].op == Op::number;
+    if (number && model_.arena[node.args[1]].value <= 1) return;
     std::string base = of.is(Value::Kind::text) ? of.text : "";
     const std::size_t hat = base.rfind('^');
     base =
@@ -151,7 +152,11 @@ void ConstraintsReader::read_equations(Constraint& constraint, const Value& valu
             ? base.substr(1, hat - 2)
             : "";
     source_.fail(of.span,
-                 fmt::format("{} is a power: its gradient vanishes where it holds, so that it has no force", what),
+                 number
+                     ? fmt::format("{} is a power: its gradient vanishes where it holds, so that it has no force", what)
+                     : fmt::format("{} is a power: it holds where what is raised is 0, and its gradient has another "
+                                   "size there for every exponent, or vanishes",
+                                   what),
                  base.empty() ? "write what is raised to the power" : fmt::format("write \"{}\"", base));
   };
   const auto with_motion = [&](const Typed& typed, Span span) {

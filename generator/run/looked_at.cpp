@@ -16,12 +16,19 @@ using symbolic::Ref;
 using symbolic::SymbolKind;
 
 constexpr int high_power = 20;
+constexpr int steep_power = 4;  // in a denominator: 1/(1 + x^2) still has tails that are seen
 
 /// What is a bump of a function without tails, as itself, its slope or its inverse are; nothing of functions whose
 /// tails the error control sees.
 std::vector<Ref> bumps(symbolic::Dag& dag, Ref r) {
   const symbolic::Node node = dag[r];
+  const auto steep = [&](Ref part) { return dag[part].op == Op::power && dag[part].payload >= steep_power; };
   switch (node.op) {
+    case Op::div: {
+      const std::vector<Ref> parts = dag.reachable({node.args[1]});
+      if (std::none_of(parts.begin(), parts.end(), steep)) return {};
+      return {dag.div(dag.one(), node.args[1])};
+    }
     case Op::exp: return {r, dag.call(Op::exp, dag.neg(node.args[0]))};
     case Op::tanh: return {dag.sub(dag.one(), dag.power(r, 2))};
     case Op::cosh: return {dag.div(dag.one(), r)};

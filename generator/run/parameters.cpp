@@ -4,6 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
 #include "model/names.hpp"
 #include "run/scene.hpp"
@@ -28,6 +31,22 @@ void require_sign(const model::Parameter& p, const cln::cl_R& value, const model
       "scene", model.where(p.span),
       fmt::format("parameter '{}' is declared positive, and its value is {}", p.name, cln::double_approx(value)),
       "give it a positive value, or leave `positive` out of the model");
+}
+
+// Runs are in binary64: what is smaller than its normal numbers would count as 0 there, without a word.
+void require_normal(const std::string& what, const cln::cl_R& value, const Where& where) {
+  if (cln::zerop(value)) return;
+  const cln::cl_F written = cln::cl_float(value, cln::float_format(digits));
+  const auto size = cln::float_exponent(written);  // |value| < 2^size
+  const double power = std::log10(std::abs(cln::double_approx(cln::scale_float(written, -size)))) +
+                       static_cast<double>(size) * std::numbers::ln2 / std::numbers::ln10;
+  const bool small = size < std::numeric_limits<double>::min_exponent;
+  if (!small && size <= std::numeric_limits<double>::max_exponent) return;
+  throw Error("scene", where,
+              fmt::format("{} is about 1e{} here, {}", what, std::lround(power),
+                          small ? "which counts as 0: numbers of a run are from 2.2e-308 on"
+                                : "which no run can hold: its numbers end at 1.8e308"),
+              small ? "choose units in which it is larger" : "choose units in which it is smaller");
 }
 
 std::vector<Ref> parameter_formulas(Mechanics& m, const model::Scene& scene, const Overrides& overrides) {
@@ -87,7 +106,9 @@ std::vector<cln::cl_R> parameter_values(Mechanics& m, const std::vector<Ref>& fo
                     "check the numbers that it is computed from");
       }
       known[i] = true;
-      require_sign(m.model->parameters[i], values[i], *m.model);
+      const model::Parameter& p = m.model->parameters[i];
+      require_sign(p, values[i], *m.model);
+      require_normal(fmt::format("parameter '{}'", p.name), values[i], m.model->where(p.span));
     }
   }
   return values;
@@ -124,6 +145,7 @@ void require_masses(Mechanics& m, const std::vector<cln::cl_R>& values) {
   for (const Heavy& particle : all) {
     const std::string what = fmt::format("the mass of '{}'", m.model->places[particle.place].name);
     const auto mass = known_values(m, {mechanics::lower_scalar(m, particle.mass)}, values, what, particle.span);
+    if (mass) require_normal(what, mass->front(), m.model->where(particle.span));
     if (!mass || cln::plusp(mass->front())) continue;
     throw Error("scene", m.model->where(particle.span),
                 fmt::format("{} is {} here", what, cln::double_approx(mass->front())), "a mass is greater than 0");

@@ -239,9 +239,14 @@ class StartSolver {
     return rows_.worst(order) <= rounding;
   }
 
+  struct Broken {
+    std::size_t row;
+    double off, relative;  // to what the row is made of
+  };
+
   /// Of rates: the first constraint that cannot hold beside what is given and the constraints before it, and by how
   /// much it is off then.
-  std::pair<std::size_t, double> first_broken(const std::vector<std::size_t>& free) const {
+  std::optional<Broken> first_broken(const std::vector<std::size_t>& free) const {
     VectorXd residual;
     MatrixXd A;
     rows_.linearise(1, residual, A);
@@ -273,10 +278,10 @@ class StartSolver {
       const double off = residual(row) - columns.row(row).dot(move);
       const double size = std::abs(residual(row)) + columns.row(row).cwiseAbs().dot(move.cwiseAbs());
       if (beside.norm() <= rank_tolerance * columns.row(row).norm() && std::abs(off) > start_tolerance * size)
-        return {k, off};
+        return Broken{k, off, std::abs(off) / size};
       before.push_back(k);
     }
-    return {bound.size(), 0};
+    return std::nullopt;
   }
 
   [[noreturn]] void refuse_turn(const StartProblem::Turn& turn, double off) const {
@@ -291,12 +296,12 @@ class StartSolver {
     VectorXd residual;
     MatrixXd A;
     rows_.linearise(order, residual, A);
-    double off = residual(static_cast<Eigen::Index>(k));
-    if (order == 1 && !p_.turns.empty()) {
-      const auto [broken, by] = first_broken(free);
-      if (broken < rows_.of(1).size()) k = broken, off = by;
-    }
+    std::optional<Broken> broken;
+    if (order == 1 && !p_.turns.empty()) broken = first_broken(free);
+    if (broken) k = broken->row;
     const auto row = static_cast<Eigen::Index>(k);
+    const double off = broken ? broken->off : residual(row);
+    const double relative = broken ? broken->relative : rows_.relative(residual, A, order, row);
     const std::size_t bound = rows_.of(order)[k], turns = rows_.first_turn(), m = s_.active.size();
     if (bound >= turns) refuse_turn(p_.turns[(bound - turns) / 3], residual(row));
     const mechanics::Constraint& constraint =
@@ -330,8 +335,8 @@ class StartSolver {
     throw Error("scene", p_.mechanics.model->where(span),
                 fmt::format("the start breaks constraint '{}'{}: it is off by {:.6g} (relative {:.3g}, allowed {:.0e})",
                             constraint.label, order == 0 || !constraint.holonomic() ? "" : " in its rates", off,
-                            rows_.relative(residual, A, order, row), start_tolerance),
-                remedy);
+                            relative, start_tolerance),
+                broken ? "give consistent values, or leave out rates that follow from the angular velocity" : remedy);
   }
 
   static constexpr double rounding = 1e-14;  // of rows_.relative(): a few units in the last place of a sum of terms

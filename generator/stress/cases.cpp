@@ -13,6 +13,7 @@ namespace {
 using Exponents = std::array<int, 3>;  // of m, kg, s; rad is 1
 constexpr Exponents mass{0, 1, 0}, inertia{2, 1, 0}, stiffness{0, 1, -2}, torsion{2, 1, -2}, damping{0, 1, -1};
 
+constexpr double least = 1e-300;  // that a file may state
 constexpr double denormal = 1e-310;
 
 class Cases {
@@ -57,8 +58,7 @@ class Cases {
         for (const double factor : chosen({1e-9, 1e-6, 1e-3, 1e3, 1e6, 1e9}, {1e-6, 1e6})) scaled(p, factor);
       }
       if (!parameter.used) continue;
-      if (!quick_)
-        result_.push_back({.name = fmt::format("{} = {:g}", parameter.name, denormal), .value = {{p, denormal}}});
+      if (!quick_) result_.push_back({.name = fmt::format("{} = {:g}", parameter.name, least), .value = {{p, least}}});
       const double nan = std::numeric_limits<double>::quiet_NaN(), infinite = std::numeric_limits<double>::infinity();
       for (const double value : chosen({nan, infinite, -infinite}, {nan})) {
         result_.push_back(

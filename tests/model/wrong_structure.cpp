@@ -13,6 +13,11 @@ std::vector<WrongModel> wrong_structure() {
        pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"-m*(R - L)^2/2\"\n"), "14:13",
        "the constraint 'rod' is a power: its gradient vanishes where it holds, so that it has no force",
        "write what is raised to the power"},
+      {"a constraint that is a power whose exponent is a parameter",
+       pendulum({}, "[[constraint]]\nname = \"rod\"\nholonomic = \"(R - 1)^(L/L)\"\n"), "14:13",
+       "the constraint 'rod' is a power: it holds where what is raised is 0, and its gradient has another size there "
+       "for every exponent, or vanishes",
+       "write \"R - 1\""},
       {"an empty file", "", "1:1", "the model has no format", "add format = 1 at the top"},
       {"no format", pendulum({{"format = 1\n", ""}}), "1:1", "the model has no format", "add format = 1 at the top"},
       {"a format of the future", pendulum({{"format = 1", "format = 2"}}), "1:10", "the format '2' is not known",

@@ -123,7 +123,8 @@ TEST_CASE(
   };
   // A bump of any width throws back at 3 but for its own width; a step of 0.3 beyond 1/2 J is passed, and slows it
   // down.
-  for (const Case& c : {Case{"5*exp(-((x - 3)/1e-5)^2)", -4, -1}, Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1},
+  for (const Case& c : {Case{"5*exp(-((x - 3)/1e-5)^2)", -4, -1}, Case{"5/(1 + ((x - 3)/1e-5)^4)", -4, -1},
+                        Case{"0.3*tanh((x - 3)/1e-5) + 0.3", -4, -1},
                         Case{"0.2*tanh((x - 3)/1e-5) + 0.2", 3 + 7 * std::sqrt(0.2), std::sqrt(0.2)}}) {
     CAPTURE(std::string(c.potential));
     const test::Finished finished =

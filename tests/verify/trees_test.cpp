@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Trees of particles: which routes take them, and that what these give is what d'Alembert's principle asks.
 #include <doctest/doctest.h>
+#include <fmt/format.h>
 
+#include <ctime>
 #include <set>
 #include <string>
 
@@ -153,6 +155,21 @@ TEST_CASE("quasi-coordinates: the running sums of relative angles, and nothing w
     }
   }
   CHECK(of_chain("absolute").identity());
+}
+
+TEST_CASE("quasi-coordinates: hundreds of coordinates that positions use one by one are left as they are, at once") {
+  std::string text = "format = 1\n";
+  for (int i = 0; i < 333; ++i) {
+    text += fmt::format(
+        "[[particle]]\nname = \"P{0}\"\nmass = 1\nposition = {{ cartesian = [\"x{0}\", \"y{0}\", \"z{0}\"] }}\n", i);
+  }
+  const model::Model model = model::read_model_text(text, "free");
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  std::vector<mechanics::Vec3> positions;
+  for (const mechanics::PointMass& mass : m.masses) positions.push_back(mass.position);
+  const std::clock_t begin = std::clock();
+  CHECK(derive::quasi_coordinates(*m.dag, m.free, positions).identity());
+  CHECK(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC < 1);  // n^3 would take more
 }
 
 namespace {

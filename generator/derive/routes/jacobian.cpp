@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The jacobian route: no energy is formed. With J_i = dr/dq_i (the covariant basis, eq. (3.20)) and the acceleration
 // a = sum J_i qddot_i + a0, the equations are the components sum m a . J_i of the balance of momentum (2.68).
+#include <algorithm>
+
 #include "derive/equations.hpp"
 #include "derive/routes.hpp"
 
@@ -55,9 +57,15 @@ FullEquations equations(Mechanics& m, symbolic::Substitution* imposed, const std
     const Vec3 a0{bias(v[0]), bias(v[1]), bias(v[2])};
     const Ref mass_rate = bias(mass.mass);
     std::vector<Vec3> J;
-    for (std::size_t i = 0; i < n; ++i) J.push_back({by[i](r[0]), by[i](r[1]), by[i](r[2])});
+    std::vector<std::size_t> moves;  // coordinates that move it: of many particles each has few
     for (std::size_t i = 0; i < n; ++i) {
-      for (std::size_t k = i; k < n; ++k) {
+      J.push_back({by[i](r[0]), by[i](r[1]), by[i](r[2])});
+      if (std::any_of(J[i].begin(), J[i].end(), [&](Ref x) { return !dag.is_zero(x); })) moves.push_back(i);
+    }
+    for (auto from = moves.begin(); from != moves.end(); ++from) {
+      const std::size_t i = *from;
+      for (auto to = from; to != moves.end(); ++to) {
+        const std::size_t k = *to;
         Ref& entry = result.M[i * n + k];
         entry = dag.add(entry, dag.mul(mass.mass, dot(dag, J[i], J[k])));
         result.M[k * n + i] = entry;

@@ -108,14 +108,28 @@ class Rewriter {
   void note(Ref r) {
     const Form& form = forms_.at(r.id);
     if (!form.linear || is_zero(form.row)) return;
-    const auto found = std::find(rows_.begin(), rows_.end(), form.row);
+    const std::size_t found = place_of(form.row);
     const bool bare = dag_.is_zero(form.rest);
-    if (found == rows_.end()) {
+    if (found == rows_.size()) {
+      by_first_[first_of(form.row)].push_back(found);
       rows_.push_back(form.row);
       users_.push_back(bare ? r : sum_of(form.row));
     } else if (bare) {
-      users_[static_cast<std::size_t>(found - rows_.begin())] = r;
+      users_[found] = r;
     }
+  }
+
+  static std::size_t first_of(const Row& row) {
+    const auto first = std::find_if(row.begin(), row.end(), [](const Rational& x) { return !cln::zerop(x); });
+    return static_cast<std::size_t>(first - row.begin());
+  }
+  /// Among the rows; their number where it is none of them.
+  std::size_t place_of(const Row& row) const {
+    const auto same = by_first_.find(first_of(row));
+    if (same == by_first_.end()) return rows_.size();
+    const auto found =
+        std::find_if(same->second.begin(), same->second.end(), [&](std::size_t i) { return rows_[i] == row; });
+    return found == same->second.end() ? rows_.size() : *found;
   }
 
   Ref sum_of(const Row& row) {
@@ -129,8 +143,7 @@ class Rewriter {
   Ref use(Ref r, const std::vector<Symbol>& theta) {
     const Form& form = forms_.at(r.id);
     if (!form.linear || is_zero(form.row)) return result_.at(r.id);
-    const auto found = std::find(rows_.begin(), rows_.end(), form.row);
-    return dag_.add(dag_.symbol(theta[static_cast<std::size_t>(found - rows_.begin())]), form.rest);
+    return dag_.add(dag_.symbol(theta[place_of(form.row)]), form.rest);
   }
 
   Ref rewritten(Ref r, const std::vector<Symbol>& theta) {
@@ -148,6 +161,7 @@ class Rewriter {
   std::unordered_map<std::uint32_t, Form> forms_;
   std::unordered_map<std::uint32_t, Ref> result_;
   std::vector<Row> rows_;
+  std::map<std::size_t, std::vector<std::size_t>> by_first_;  // rows by their first entry that is not 0
   std::vector<Ref> users_;
 };
 
@@ -221,8 +235,9 @@ QuasiCoordinates quasi_coordinates(Dag& dag, const std::vector<std::uint32_t>& o
     result.value_rate.push_back(ddt(result.value.back()));
     by_form[order[a]] = result.theta.back();
   }
+  if (identity) return same;
   const auto inverted = inverse(result.S, n);
-  if (identity || !inverted) return same;
+  if (!inverted) return same;
   result.S_inverse = *inverted;
   for (Vec3& r : positions) {
     for (Ref& component : r) component = rewriter.rewrite(component, by_form);

@@ -63,6 +63,12 @@ class ContactModes {
     double approach(double t, std::span<const double> x, std::size_t j) const;
     double still() const { return self->velocities_.still(); }
   };
+  struct Met {
+    std::vector<std::size_t> contacts;
+    bool over = true;  // the bounces of all are as low as gaps are known
+  };
+  bool falls(double t, std::span<double> x, int mode, std::vector<double>& result);
+  Met meets(double t, std::span<double> x, std::size_t j, double time);
   void end_bounces(double& t, std::span<double> x, std::size_t j);
 
   /// As eom::Contacts asks for them: the mode is that of the contacts.
@@ -146,6 +152,7 @@ inline std::vector<ModeEvent> ContactModes::start(double t, std::span<double> x)
   const std::vector<Contact>& contacts = problem_.code->contacts;
   std::vector<double> g(rule_.functions());
   velocities_.forget();
+  switch_.reset();  // of a run before: what is a force in this mode was a gap in that one
   largest_gap_ = 0;
   restitution_.assign(contacts.size(), 0.0);
   if (two_directions_) velocities_.hold(t, x.data(), model_.inputs(t), 0);  // how much slip counts, before any is given
@@ -246,20 +253,71 @@ inline void ContactModes::adjust(double* g) {
   rule_.shift(g);
 }
 
+/// How fast the speed of each gap falls in `mode`; none where the right-hand side has no value.
+inline bool ContactModes::falls(double t, std::span<double> x, int mode, std::vector<double>& result) {
+  k_.resize(x.size()), middle_.resize(x.size());
+  if (rhs_(t, x.data(), mode, k_.data()) != 0) return false;
+  constexpr double h = 1e-6;
+  for (std::size_t i = 0; i < x.size(); ++i) middle_[i] = x[i] + h * k_[i];
+  const Motion motion{this};
+  result.assign(problem_.code->contacts.size(), 0.0);
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    if (!problem_.code->contacts[i].unilateral) continue;
+    result[i] = (motion.approach(t, x, i) - motion.approach(t + h, middle_, i)) / h;
+  }
+  return true;
+}
+
+/// What the last bounces of contact j, over after `time`, meet: other contacts that they lift, or reach by then, as in
+/// a corner.
+inline ContactModes::Met ContactModes::meets(double t, std::span<double> x, std::size_t j, double time) {
+  Met result;
+  const std::vector<Contact>& contacts = problem_.code->contacts;
+  int apart = mode();
+  for (std::size_t i = 0; i < contacts.size(); ++i)
+    if (contacts[i].unilateral) apart = with_contact_digit(apart, i, 3);
+  std::vector<double> fall, after(x.begin(), x.end());
+  if (!falls(t, x, apart, fall) || functions_(t, x.data(), apart, g_.data()) != 0 ||
+      velocities_.impact(t, after, model_.inputs(t), with_contact_digit(mode(), j, 0), j, restitution_[j]) != 0)
+    return result;
+  const Motion motion{this};
+  const double known = known_gap * largest_gap_;
+  for (std::size_t i = 0; i < contacts.size(); ++i) {
+    if (i == j || !contacts[i].unilateral) continue;
+    const bool touches = contact_digit(mode(), i) < 3;
+    const double gap = touches ? 0 : g_[contact_values * i + 3], away = motion.approach(t, after, i);
+    const bool alone = touches ? std::abs(away) <= velocities_.still()
+                               : gap > known && gap + (away - std::max(fall[i], 0.0) * time / 2) * time > 0;
+    if (alone) continue;
+    const double speed = std::max(std::abs(motion.approach(t, x, i)), std::abs(away));
+    result.over = result.over && fall[i] > 0 && speed * speed / (2 * fall[i]) <= known;
+    result.contacts.push_back(i);
+  }
+  return result;
+}
+
 /// Where the bounce that follows is lower than the gap is known, so are all after it: they are over after the sum of
-/// their times, in which the motion goes on as it begins, and the contact stays.
+/// their times, in which the motion goes on as it begins, and the contact stays. In a corner the others stay too, once
+/// their bounces are as low; until then none is left out.
 inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_t j) {
   const Motion motion{this};
   const double e = restitution_[j], up = -e * motion.approach(t, x, j);
-  k_.resize(x.size()), middle_.resize(x.size());
-  if (!(up > 0) || rhs_(t, x.data(), mode(), k_.data()) != 0) return;
-  const double h = 1e-6;
-  for (std::size_t i = 0; i < x.size(); ++i) middle_[i] = x[i] + h * k_[i];
-  const double falls = (motion.approach(t, x, j) - motion.approach(t + h, middle_, j)) / h;
-  if (!(falls > 0) || up * up / (2 * falls) > known_gap * largest_gap_) return;
-  if (motion.impact(t, x, with_contact_digit(mode(), j, 0), j, e) != 0 || rhs_(t, x.data(), mode(), k_.data()) != 0)
+  std::vector<double> fall;
+  if (!(up > 0) || !falls(t, x, mode(), fall)) return;
+  if (!(fall[j] > 0) || up * up / (2 * fall[j]) > known_gap * largest_gap_) return;
+  const double time = 2 * up / (fall[j] * (1 - e));
+  Met met = meets(t, x, j, time);
+  if (!met.contacts.empty()) {
+    if (!met.over) return;
+    met.contacts.push_back(j);
+    rule_.close_next(std::move(met.contacts));
     return;
-  const double time = 2 * up / (falls * (1 - e));
+  }
+  // One bounce as long as all of them: it ends at the height 0, where projecting does no work.
+  const double as_one = e / (1 - e);
+  if (motion.impact(t, x, with_contact_digit(mode(), j, 0), j, as_one) != 0 ||
+      rhs_(t, x.data(), mode(), k_.data()) != 0)
+    return;
   const std::size_t n = problem_.code->free.size();
   for (std::size_t i = 0; i < x.size(); ++i) x[i] += time * (k_[i] + (i < n ? time / 2 * k_[n + i] : 0));
   t += time;

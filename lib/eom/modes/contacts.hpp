@@ -82,6 +82,9 @@ class Contacts {
   std::size_t functions() const { return g_.size(); }
   std::span<const Mode> table() const { return table_; }
   void restitution(std::size_t contact, double e) { contacts_[contact].restitution = e; }
+  /// The next hit closes these contacts, whose bounces are over, at once: one after the other would lift the one
+  /// before.
+  void close_next(std::vector<std::size_t> contacts) { close_next_ = std::move(contacts); }
 
   /// Makes the functions those that are watched: the speed of slip in two directions, beyond the least one.
   void shift(double* g) const {
@@ -194,6 +197,13 @@ class Contacts {
   /// An impact at contact j, which is apart; it stays so if it bounces.
   Transition hit(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
     hits_[hit_++ % hits_.size()] = j;
+    if (const std::vector<std::size_t> all = std::exchange(close_next_, {}); !all.empty()) {
+      const std::vector<double> before(x.begin(), x.end());
+      int closed = mode;
+      for (const std::size_t i : all) closed = with_contact_digit(closed, i, 0);
+      if (motion_.close(t, x, closed) == 0) return {settled(t, x, closed), "contact", contacts_[j].name};
+      std::copy(before.begin(), before.end(), x.begin());  // more contacts than directions to move in
+    }
     const double speed = motion_.approach(t, x, j), e = bounces ? contacts_[j].restitution : 0;
     const bool away = e > 0 && -speed * e > motion_.still();
     if (speed < 0) {
@@ -285,6 +295,7 @@ class Contacts {
   std::array<std::size_t, 8> hits_{no_contact, no_contact, no_contact, no_contact,
                                    no_contact, no_contact, no_contact, no_contact};  // the last ones
   std::size_t hit_ = 0;
+  std::vector<std::size_t> close_next_;
   Rhs rhs_;
   Functions functions_;
   Motion motion_;
