@@ -80,9 +80,11 @@ bool energy_is_conserved(const Derived& derived) {
                      [](const conservation::Conserved& c) { return c.kind == OutputKind::energy; });
 }
 
+}  // namespace
+
 /// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
 /// contacts.
-run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, const run::Code& code) {
+run::EventRanges event_ranges(const Derived& derived, const run::Scene& scene, const run::Code& code) {
   const system::EquationSystem& system = derived.candidates.front();
   std::vector<std::optional<symbolic::Ref>> functions;
   for (const system::Event& event : system.events) functions.emplace_back(event.value);
@@ -97,8 +99,6 @@ run::EventRanges ranges_of(const Derived& derived, const run::Scene& scene, cons
   if (functions.empty()) return {};
   return run::EventRanges(system, functions, scene.parameters);
 }
-
-}  // namespace
 
 double row_interval(const run::Scene& scene) {
   return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
@@ -130,7 +130,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
   run.contacts = contact_outputs(system);
-  run.ranges = ranges_of(derived, scene, code);
+  run.ranges = event_ranges(derived, scene, code);
   run.narrow = run::NarrowForces(system, scene.parameters);
   run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return holds_beyond_range(derived, scene, code, coordinate, t, x);

@@ -76,6 +76,9 @@ std::vector<std::string> state_names(const Derived& derived);
 /// What the runner is asked for with compiled code: no rows.
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate);
 
+/// Bounds of its event functions, with the parameters of the scene.
+run::EventRanges event_ranges(const Derived& derived, const run::Scene& scene, const run::Code& code);
+
 /// The same compiled code once more, with other values: for sweeps and for tests over tolerances. Parameters, starts
 /// and outputs that the code was made for; what else `overrides` may change. No rows.
 run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);
