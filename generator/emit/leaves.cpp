@@ -61,9 +61,9 @@ std::string leaf_of_lanes(const Dialect& dialect, const EmissionContext& context
     case Slot::contact: {
       int power = 1;
       for (std::uint32_t j = 0; j < i / 2; ++j) power *= eom::contact_states;
-      return fmt::format("{}{}({}->mode, {})", dialect.lanes, i % 2 == 1 ? "presses" : "slides", block, power);
+      return fmt::format("{}{}({}, {})", dialect.lanes, i % 2 == 1 ? "presses" : "slides", block, power);
     }
-    case Slot::side: return fmt::format("{}side({}->mode, {})", dialect.lanes, block, program::first_kink_bit + 2 * i);
+    case Slot::side: return fmt::format("{}side({}, {})", dialect.lanes, block, program::first_kink_bit + 2 * i);
     default: break;
   }
   throw std::logic_error("this operand is no leaf");

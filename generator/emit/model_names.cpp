@@ -16,9 +16,10 @@ ModelNames model_names(const program::Program& program, const EmissionContext& c
       table.declare(prefix + name);
   }
   for (const char* name :
-       {"block",  "state",        "call",   "kernel", "lanes", "mask", "bits",   "memory", "load",   "store",
-        "at",     "all",          "select", "abs",    "sign",  "any",  "place",  "side",   "slides", "presses",
-        "sincos", "sincos_lanes", "far",    "alone",  "apart", "run",  "INLINE", "WIDTH",  "MOST"})
+       {"block", "state",  "call",    "kernel", "target",       "lanes",    "mask",     "bits",  "memory", "load",
+        "store", "at",     "all",     "select", "abs",          "sign",     "every",    "whole", "place",  "to",
+        "side",  "slides", "presses", "sincos", "sincos_lanes", "alone",    "apart",    "run",   "INLINE", "WIDTH",
+        "MOST",  "MET",    "LAST",    "NAMED",  "NAMED_FOR",    "NAMED_SO", "FOR_WIDTH"})
     table.declare(mangled_id(context.id) + "_batch_" + name);
   for (const Quantity& coordinate : context.coordinates) names.all_coordinates.push_back(identifier(coordinate.name));
   for (const std::uint32_t i : program.free) names.state.push_back(table.declare(context.coordinates.at(i).name));

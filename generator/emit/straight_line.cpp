@@ -54,7 +54,7 @@ class Printer {
     }
     write_results();
     if (parts() == 1)
-      text_.body = (in_lanes() ? left_begins(0) : unused_arguments() + using_declarations()) + loads(0) + body_;
+      text_.body = (in_lanes() ? fine_begins(0) : unused_arguments() + using_declarations()) + loads(0) + body_;
     else
       close_part(parts() - 1);
     if (in_lanes()) text_.library = expressions_.called();
@@ -71,7 +71,8 @@ class Printer {
     if (text_.near_first) text_.guarded = guarded_ = table_.declare("guarded");
     if (in_lanes()) {
       text_.block = table_.declare("block");
-      left_ = table_.declare("left");
+      text_.now = table_.declare("now");
+      fine_ = table_.declare("fine");
     }
     for (const auto& result : function_.results) {
       if (!result.is_test()) text_.results.push_back(table_.declare(result.name));
@@ -86,11 +87,11 @@ class Printer {
   }
   void close_part(std::size_t part) {
     const bool last = part + 1 == parts();
-    if (in_lanes()) {  // which lanes are left is handed on in the first entry of the array
+    if (in_lanes()) {  // which lanes are fine is handed on in the first entry of the array
       const std::string hand_on =
-          last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, left_);
-      text_.parts.push_back(fmt::format("  (void){}; (void){};\n", text_.block, text_.work) + left_begins(part) +
-                            loads(part) + body_ + hand_on);
+          last ? "" : fmt::format("  {}[0] = ({}){};\n  return 0;\n", text_.work, dialect_.real, fine_);
+      text_.parts.push_back(fmt::format("  (void){}; (void){}; (void){};\n", text_.block, text_.now, text_.work) +
+                            fine_begins(part) + loads(part) + body_ + hand_on);
     } else {
       text_.parts.push_back(all_arguments() + using_declarations() + loads(part) + body_ +
                             (last ? "" : "  return 0;\n"));
@@ -168,10 +169,7 @@ class Printer {
                        "      ") +
                "\n";
     }
-    body_ += fmt::format("  if ({0}any({0}far({1}))) {{\n", dialect_.lanes, reach);
-    for (const std::string& angle : angles)
-      body_ += wrapped(fmt::format("    {0} |= {1}far({1}abs({2}));", left_, dialect_.lanes, angle), "        ") + "\n";
-    body_ += "  }\n";
+    require(fmt::format("{} <= 65536.0", reach));
   }
   Expression from_pack(const Instruction& instruction) const {
     return {fmt::format("{}[{}]", instruction.op == Op::sin ? sine_ : cosine_, instruction.lane), Expression::atom};
@@ -200,9 +198,9 @@ class Printer {
       const std::string pivot = expressions_.in_lanes(test.pivot).text;
       const bool exact = test.scale.slot == Slot::constant && function_.constants[test.scale.index] == 0;
       if (in_lanes()) {
-        leave(exact ? fmt::format("{} == {}", pivot, dialect_.constant(0))
-                    : fmt::format("{0}abs({1}) <= {2}*{0}abs({3})", dialect_.lanes, pivot,
-                                  dialect_.value(program::pivot_tolerance), expressions_.in_lanes(test.scale).text));
+        require(exact ? fmt::format("{} != {}", pivot, dialect_.constant(0))
+                      : fmt::format("{0}abs({1}) > {2}*{0}abs({3})", dialect_.lanes, pivot,
+                                    dialect_.value(program::pivot_tolerance), expressions_.in_lanes(test.scale).text));
       } else if (exact) {
         line(fmt::format("if ({} == {}) return 1;", pivot, dialect_.constant(0)));
       } else {
@@ -246,13 +244,13 @@ class Printer {
     line(fmt::format("return {0} - {0} <= {1} ? 0 : 5;", finite, dialect_.constant(0)));
   }
 
-  /// Lanes that do not end as others do are left to the function of one state, which tells why.
+  /// Lanes that fail a test are left to the function of one state, which tells why.
   void results_of_lanes() {
     std::string finite;
     for (const program::Result& result : function_.results) {
       if (!result.is_test()) continue;
       for (const Operand& entry : result.entries)
-        leave(fmt::format("{} < {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
+        require(fmt::format("{} >= {}", expressions_.in_lanes(entry, true).text, dialect_.constant(0)));
     }
     for (std::size_t i = 0; is_rhs() && i < function_.results[0].entries.size(); ++i) {
       const std::size_t place = function_.places.empty() ? i : function_.places[i];
@@ -262,17 +260,17 @@ class Printer {
     if (!finite.empty()) {
       const std::string sum = table_.declare("finite");
       line(fmt::format("const {} {} = {};", dialect_.real, sum, finite));
-      line(fmt::format("{0} |= ~({1}mask)({2} - {2} <= {3});", left_, dialect_.lanes, sum, dialect_.constant(0)));
+      require(fmt::format("{0} - {0} <= {1}", sum, dialect_.constant(0)));
     }
     const std::string place = table_.declare("place");
-    line(fmt::format("const struct {0}block* {1} = {0}place({2}, {3});", dialect_.lanes, place, text_.block, left_));
+    line(fmt::format("const struct {0}target* {1} = {0}place({2}, {3});", dialect_.lanes, place, text_.block, fine_));
     const std::string step = table_.declare("step");
-    line(fmt::format("const size_t {0} = {1}->to_step;", step, place));
+    line(fmt::format("const size_t {0} = {1}->step;", step, place));
     for (std::size_t r = 0, k = 0; r < function_.results.size(); ++r) {
       const std::vector<Operand>& entries = function_.results[r].entries;
       if (function_.results[r].is_test()) continue;
       const std::string& to = text_.results[k];
-      body_ += fmt::format("  double* const {} = {}->to[{}];\n", to, place, k++);
+      body_ += fmt::format("  double* const {} = {}to({}, {}, {});\n", to, dialect_.lanes, place, text_.now, k++);
       if (entries.empty()) body_ += fmt::format("  (void){};\n", to);
       const bool optional = may_be_null(r);
       if (optional) body_ += fmt::format("  if ({}) {{\n", to);
@@ -284,14 +282,14 @@ class Printer {
       }
       if (optional) body_ += "  }\n";
     }
-    line(fmt::format("return {} != {};", place, text_.block));
+    line(fmt::format("return {} != &{}->target;", place, text_.block));
   }
-  void leave(const std::string& condition) {
-    line(fmt::format("{} |= ({}mask)({});", left_, dialect_.lanes, condition));
+  void require(const std::string& condition) {
+    line(fmt::format("{} &= ({}mask)({});", fine_, dialect_.lanes, condition));
   }
-  std::string left_begins(std::size_t part) const {
-    return part == 0 ? fmt::format("  {}mask {} = {{0}};\n", dialect_.lanes, left_)
-                     : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, left_, text_.work);
+  std::string fine_begins(std::size_t part) const {
+    return part == 0 ? fmt::format("  {0}mask {1} = {0}whole();\n", dialect_.lanes, fine_)
+                     : fmt::format("  {0}mask {1} = ({0}mask){2}[0];\n", dialect_.lanes, fine_, text_.work);
   }
 
   void end_where_negative(int code, const std::vector<Operand>& entries) {
@@ -336,7 +334,7 @@ class Printer {
   std::string loads(std::size_t part) const {
     std::string result;
     for (const auto& [slot, values] :
-         loaded(function_.name, uses_.leaves[part], names_, context_, dialect_, text_.block)) {
+         loaded(function_.name, uses_.leaves[part], names_, context_, dialect_, text_.block + ", " + text_.now)) {
       std::string list;
       for (const auto& [index, value] : values)
         list += fmt::format("{} {} = {}", list.empty() ? "  " + dialect_.declares() : ",",
@@ -355,7 +353,7 @@ class Printer {
   FunctionText text_;
   Uses uses_;
   std::size_t kept_count_ = 0;
-  std::string body_, section_, printed_section_, sine_, cosine_, guarded_, left_;
+  std::string body_, section_, printed_section_, sine_, cosine_, guarded_, fine_;
   std::size_t temporaries_ = 0;
 };
 

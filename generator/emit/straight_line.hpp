@@ -60,8 +60,8 @@ struct FunctionText {
   std::vector<std::string> parts;
   std::string work, code;  // names of the array and of what a part returns
   std::size_t work_size = 1;
-  // Of lanes: the name of the only argument, and functions of the C library that are called lane by lane.
-  std::string block;
+  // Of lanes: the names of the arguments, and functions of the C library that are called lane by lane.
+  std::string block, now;
   std::set<std::string> library;
 };
 

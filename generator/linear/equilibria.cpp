@@ -24,6 +24,7 @@ class Search {
         held_(std::in_place, flow_, request.held) {
     held_->targets = request.targets;
     find_turns();
+    result_.turns = turns_;
     for (const EulerSet& set : r_.euler) regular_.push_back(flow_.tape({set.regular}));
     const auto rounded = [](const std::vector<Precise>& list) {
       std::vector<double> numbers;

@@ -43,6 +43,7 @@ struct FoundPoint {
 
 struct SearchResult {
   Symmetry symmetry;               // at the start
+  std::vector<bool> turns;         // per coordinate of z: an angle, of which a turn more is the same place
   std::vector<std::size_t> held;   // entries of z that were held at their start values, since families leave them open
   bool released = false;           // with them held nothing was found; the points are members of their families
   std::vector<FoundPoint> points;  // in the order of their entries

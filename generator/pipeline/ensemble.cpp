@@ -7,6 +7,7 @@
 #include <cmath>
 #include <eom/ensemble/integrate.hpp>
 #include <eom/hybrid/balance.hpp>
+#include <eom/hybrid/event_ranges.hpp>
 #include <limits>
 #include <mutex>
 #include <optional>
@@ -68,7 +69,7 @@ std::string ranged(const Simulation& first, const run::Code& code) {
 
 class Runs {
  public:
-  Runs(const Simulation& first, const emit::LoadedBatch& batch, const EnsembleRuns& asked)
+  Runs(const Simulation& first, const emit::LoadedBatch* batch, const EnsembleRuns& asked)
       : first_(first),
         asked_(asked),
         graph_(first),
@@ -78,12 +79,23 @@ class Runs {
         energy_(asked.runs.size()) {
     states_ = 2 * code_.free.size();
     p_ = first.scene.parameters.size();
-    w_ = batch_.rhs_prepared != nullptr ? code_.prepared : 0;
+    w_ = batch_ != nullptr && batch_->rhs_prepared != nullptr ? code_.prepared : 0;
     u_ = first.scene.inputs.size();
     const auto place = [&](const char* name) {
       return static_cast<std::size_t>(std::find(code_.output_names.begin(), code_.output_names.end(), name) -
                                       code_.output_names.begin());
     };
+    for (std::size_t i = 0; i < first.derived->model.events.size(); ++i) {
+      const model::Event::Direction direction = first.derived->model.events[i].direction;
+      events_.push_back({direction == model::Event::Direction::up     ? eom::Direction::up
+                         : direction == model::Event::Direction::down ? eom::Direction::down
+                                                                      : eom::Direction::any,
+                         first.scene.stops[i] ? eom::Watch::breaking : eom::Watch::passing});
+    }
+    if (!events_.empty()) {
+      ranges_.resize(how_.size());
+      bounded_ = bounded_events(*first.derived, code_);
+    }
     kinetic_ = place("kinetic");
     potential_ = place("potential");
     const auto& conserved = first.derived->conserved;
@@ -94,6 +106,7 @@ class Runs {
 
   void run() {
     const run::Scene& scene = first_.scene;
+    if (!run::method_named(scene.solver).ensemble) return one_by_one();
     eom::EnsembleOptions options;
     options.rtol = scene.rtol;
     options.atol = scene.atol;
@@ -102,22 +115,90 @@ class Runs {
     if (scene.step > 0) options.max_steps = std::numeric_limits<std::size_t>::max();
     options.interrupt = asked_.interrupt;
     options.threads = asked_.threads;
-    const auto rhs = [this](std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
-                            double* dx, int* codes) {
-      const double* const w = p + p_ * stride;
-      const double* const u = u_ > 0 ? w + w_ * stride : nullptr;
-      constexpr int own = emit::own_time + emit::own_parameters + emit::own_inputs;
-      return w_ > 0 ? batch_.rhs_prepared(count, stride, t, x, p, w, u, nullptr, own + emit::own_prepared, dx, codes)
-                    : batch_.rhs(count, stride, t, x, p, u, nullptr, own, dx, codes);
-    };
-    eom::integrate_ensemble(
-        scene.solver, rhs, asked_.runs.size(), states_, p_ + w_ + u_, options,
-        [this](std::size_t member, eom::EnsembleStart& start) { begin(member, start); },
-        [this](const eom::EnsembleEnd& end) { finish(end); });
+    const auto start = [this](std::size_t member, eom::EnsembleStart& at) { begin(member, at); };
+    const auto done = [this](const eom::EnsembleEnd& end) { finish(end); };
+    const std::size_t rows = p_ + w_ + u_;
+    if (events_.empty())
+      eom::integrate_ensemble(scene.solver, Lanes{*this}, how_.size(), states_, rows, options, start, done);
+    else
+      eom::integrate_ensemble_events(
+          scene.solver, Lanes{*this}, how_.size(), states_, rows, options, events_,
+          [](std::size_t, const eom::EventPoint&) {}, start, done);
   }
 
  private:
   enum class How : char { together, alone, refused };
+
+  /// The functions of one state as a run alone calls them.
+  struct One {
+    const Runs& of;
+    const eom::hybrid::EventRanges* ranges;  // null where there are none
+    const double *p, *w, *u;                 // null where there are none
+    int operator()(double t, const double* x, double* dx) const {
+      return w != nullptr ? of.code_.rhs_prepared(t, x, p, w, u, 0, dx) : of.code_.rhs(t, x, p, u, 0, dx);
+    }
+    int events(double t, const double* x, double* values) const { return of.code_.events(t, x, p, u, 0, values); }
+    std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from,
+                                                    double to) const {
+      if (ranges == nullptr) return std::nullopt;
+      const eom::hybrid::Sampling sampling{[this](double) { return u; }, {}};
+      return ranges->first(step, i, side, from, to, sampling);
+    }
+  };
+
+  struct Lanes {
+    const Runs& of;
+    int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
+                   int* codes) const {
+      const double* const w = p + of.p_ * stride;
+      const double* const u = of.u_ > 0 ? w + of.w_ * stride : nullptr;
+      constexpr int own = emit::own_time + emit::own_parameters + emit::own_inputs;
+      return of.w_ > 0
+                 ? of.batch_->rhs_prepared(count, stride, t, x, p, w, u, nullptr, own + emit::own_prepared, dx, codes)
+                 : of.batch_->rhs(count, stride, t, x, p, u, nullptr, own, dx, codes);
+    }
+    One alone(std::size_t member, const double* p) const {
+      const double* const w = p + of.p_;
+      return {of, of.ranges_[member] ? &*of.ranges_[member] : nullptr, p, of.w_ > 0 ? w : nullptr,
+              of.u_ > 0 ? w + of.w_ : nullptr};
+    }
+  };
+
+  /// The scene of a run; nothing where it cannot begin, which has been told.
+  std::optional<run::Scene> scene_of(std::size_t member) {
+    graph_.tidy();
+    Derived& derived = *first_.derived;
+    try {
+      return run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
+                                asked_.values(asked_.runs[member]));
+    } catch (const Error& error) {
+      if (error.stage() != "scene") throw;
+      asked_.refused(asked_.runs[member], error.message());
+      return std::nullopt;
+    }
+  }
+
+  /// By methods that know no lanes: each thread makes one run after the other.
+  void one_by_one() {
+    eom::ensemble::in_threads(asked_.threads, how_.size(), [this](const auto& next) {
+      for (std::size_t member = 0; next(member);) {
+        if (stopped()) return;
+        std::optional<run::Scene> scene;
+        std::optional<run::RunRequest> request;
+        {
+          const std::lock_guard<std::mutex> guard(lock_);  // scenes are resolved in the model's own graph
+          scene = scene_of(member);
+          if (!scene) continue;
+          request.emplace(run_request(*first_.derived, *scene, code_, false));
+        }
+        request->interrupt = asked_.interrupt;
+        const run::RunResult result = run::integrate_scene(*request);
+        const std::lock_guard<std::mutex> guard(lock_);
+        if (!stopped()) asked_.done(asked_.runs[member], result);
+      }
+    });
+  }
+  bool stopped() const { return asked_.interrupt != nullptr && *asked_.interrupt; }
 
   /// A run that is not to be made side by side ends where it begins.
   void begin(std::size_t member, eom::EnsembleStart& start) {
@@ -125,24 +206,15 @@ class Runs {
     start.t0 = start.t1 = 0;
     std::fill(start.x.begin(), start.x.end(), 0.0);
     std::fill(start.p.begin(), start.p.end(), 0.0);
-    if (asked_.interrupt != nullptr && *asked_.interrupt) return;
-    graph_.tidy();
-    Derived& derived = *first_.derived;
-    std::optional<run::Scene> scene;
-    try {
-      scene = run::resolve_scene(derived.mechanics, derived.candidates.front(), derived.model.scene(first_.scene.name),
-                                 asked_.values(asked_.runs[member]));
-    } catch (const Error& error) {
-      if (error.stage() != "scene") throw;
-      how_[member] = How::refused;
-      asked_.refused(asked_.runs[member], error.message());
-      return;
-    }
+    if (stopped()) return;
+    how_[member] = How::refused;
+    const std::optional<run::Scene> scene = scene_of(member);
+    if (!scene) return;
     const auto finite = [](double value) { return std::isfinite(value); };
     how_[member] = How::alone;
     if (!stands_still(*scene) || !std::all_of(scene->parameters.begin(), scene->parameters.end(), finite)) return;
     std::copy(scene->parameters.begin(), scene->parameters.end(), start.p.begin());
-    if (w_ > 0 && batch_.model.prepare(start.p.data(), start.p.data() + p_) != 0) return;
+    if (w_ > 0 && batch_->model.prepare(start.p.data(), start.p.data() + p_) != 0) return;
     for (std::size_t i = 0; i < u_; ++i) start.p[p_ + w_ + i] = scene->inputs[i](scene->t0, scene->t0);
     for (std::size_t i = 0; i < code_.free.size(); ++i) {
       start.x[i] = scene->q[code_.free[i]];
@@ -151,6 +223,7 @@ class Runs {
     start.t0 = scene->t0;
     start.t1 = scene->t1;
     how_[member] = How::together;
+    if (!events_.empty()) ranges_[member].emplace(bounded_, eom::hybrid::StepVariables(states_, u_), scene->parameters);
     if (watches_energy_) energy_[member] = energy(outputs(start.t0, start.x, start.p)).first;
   }
 
@@ -166,10 +239,11 @@ class Runs {
 
   void finish(const eom::EnsembleEnd& end) {
     const std::size_t run = asked_.runs[end.member];
-    const bool stopped = end.outcome == eom::Outcome::interrupted || (asked_.interrupt != nullptr && *asked_.interrupt);
-    if (how_[end.member] == How::refused || stopped) return;
+    if (!events_.empty()) ranges_[end.member].reset();
+    if (how_[end.member] == How::refused || end.outcome == eom::Outcome::interrupted || stopped()) return;
     run::RunResult result;
-    if (how_[end.member] == How::together && end.outcome == eom::Outcome::done) {
+    const bool ended = end.outcome == eom::Outcome::done || end.outcome == eom::Outcome::stopped_by_event;
+    if (how_[end.member] == How::together && ended) {
       const std::vector<double> y = outputs(end.t, end.x, end.p);
       const auto [now, size] = energy(y);
       if (!watches_energy_ || std::abs(now - energy_[end.member]) <= doubtful_energy * size) {
@@ -184,17 +258,20 @@ class Runs {
     const std::lock_guard<std::mutex> guard(lock_);
     graph_.tidy();
     result = run_again(first_, asked_.values(run), false);
-    if (asked_.interrupt == nullptr || !*asked_.interrupt) asked_.done(run, result);
+    if (!stopped()) asked_.done(run, result);
   }
 
   const Simulation& first_;
   const EnsembleRuns& asked_;
   TidyGraph graph_;
   run::Code code_;
-  const emit::LoadedBatch& batch_;
+  const emit::LoadedBatch* batch_;  // null: runs are made one by one
   std::vector<How> how_;
-  std::vector<double> energy_;                      // at the start of each
-  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;  // rows: parameters, what is prepared of them, inputs
+  std::vector<double> energy_;                                   // at the start of each
+  std::vector<eom::EventFunction> events_;                       // of the model
+  std::vector<eom::expressions::Table> bounded_;                 // event functions
+  std::vector<std::optional<eom::hybrid::EventRanges>> ranges_;  // of those under way
+  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;               // rows: parameters, what is prepared of them, inputs
   std::size_t kinetic_ = 0, potential_ = 0;
   bool watches_energy_ = false;
   std::mutex lock_;
@@ -207,20 +284,9 @@ std::string ensemble_solver(const model::Scene& scene, const run::Overrides& ove
   return overrides.step || scene.step != model::no_node ? "rk4" : "dop853";
 }
 
-std::vector<const eom::MethodInfo*> ensemble_solvers() {
-  std::vector<const eom::MethodInfo*> result;
-  for (const eom::MethodInfo& method : eom::methods()) {
-    if (method.ensemble) result.push_back(&method);
-  }
-  return result;
-}
-
 std::string ensemble_obstacle(const Simulation& first) {
   const run::Code code = first.code.for_run();
-  if (!run::method_named(first.scene.solver).ensemble)
-    return fmt::format("solver '{}' is no explicit Runge-Kutta method", first.scene.solver);
   if (!code.contacts.empty()) return "the model has contacts with friction, or that can be left";
-  if (!first.derived->model.events.empty()) return "the model has events";
   if (!code.kinks.empty()) return "the equations have kinks (abs, sign, min, max, if), which are located";
   if (code.active_constraints > 0) return "constraints keep multipliers, and each step is projected onto them";
   if (first.charts != nullptr) return "coordinates that fail are exchanged for second charts";
@@ -234,8 +300,10 @@ std::string ensemble_obstacle(const Simulation& first) {
   return "";
 }
 
-Ensemble::Ensemble(const Simulation& first) : first_(first), batch_(compile_batch(first)) {}
+Ensemble::Ensemble(const Simulation& first) : first_(first) {
+  if (run::method_named(first.scene.solver).ensemble) batch_.emplace(compile_batch(first));
+}
 
-void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_, asked).run(); }
+void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_ ? &*batch_ : nullptr, asked).run(); }
 
 }  // namespace eomgen::pipeline

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many runs of a scene side by side in the lanes of vector registers (eom/ensemble), by threads. In: a run that has
+// Many runs of a scene by threads, in which explicit Runge-Kutta methods take some side by side in the lanes of vector
+// registers (eom/ensemble), and other methods one after the other. In: a run that has
 // been made, values for the others. Out: their results, to the last bit those that they have alone.
 #pragma once
 
 #include <atomic>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,12 +29,9 @@ struct EnsembleRuns {
 std::string ensemble_solver(const model::Scene& scene, const run::Overrides& overrides);
 
 /// Why the runs of this scene cannot be made side by side; empty where they can. Only a run alone looks after contacts,
-/// events, kinks, constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals, narrow
-/// forces, and solvers that are not explicit.
+/// kinks, constraints with multipliers, charts that are exchanged, ranges, inputs that move, integrals and narrow
+/// forces.
 std::string ensemble_obstacle(const Simulation& first);
-
-/// The solvers that integrate many runs at once.
-std::vector<const eom::MethodInfo*> ensemble_solvers();
 
 /// The code of a scene for many states, compiled once.
 class Ensemble {
@@ -44,7 +43,7 @@ class Ensemble {
 
  private:
   const Simulation& first_;
-  emit::LoadedBatch batch_;
+  std::optional<emit::LoadedBatch> batch_;
 };
 
 }  // namespace eomgen::pipeline

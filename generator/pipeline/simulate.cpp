@@ -81,9 +81,9 @@ bool energy_is_conserved(const Derived& derived) {
                      [](const conservation::Conserved& c) { return c.kind == OutputKind::energy; });
 }
 
-/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
-/// contacts.
-std::vector<eom::expressions::Table> ranges_of(const Derived& derived, const run::Code& code) {
+}  // namespace
+
+std::vector<eom::expressions::Table> bounded_events(const Derived& derived, const run::Code& code) {
   const system::EquationSystem& system = derived.candidates.front();
   std::vector<std::optional<symbolic::Ref>> functions;
   for (const system::Event& event : system.events) functions.emplace_back(event.value);
@@ -98,8 +98,6 @@ std::vector<eom::expressions::Table> ranges_of(const Derived& derived, const run
   if (functions.empty()) return {};
   return run::bounded_events(system, functions);
 }
-
-}  // namespace
 
 double row_interval(const run::Scene& scene) {
   return scene.every > 0 ? scene.every : scene.t1 > scene.t0 ? (scene.t1 - scene.t0) / default_rows : 1;
@@ -131,7 +129,7 @@ run::RunRequest run_request(const Derived& derived, const run::Scene& scene, con
     if (output.kind == OutputKind::redundant) run.redundant.push_back(output.name);
   }
   run.contacts = contact_outputs(system);
-  run.bounded = {ranges_of(derived, code), run::narrow_functions(system)};
+  run.bounded = {bounded_events(derived, code), run::narrow_functions(system)};
   run.beyond_range = [&derived, &scene, &code](std::uint32_t coordinate, double t, std::span<const double> x) {
     return holds_beyond_range(derived, scene, code, coordinate, t, x);
   };

@@ -76,6 +76,10 @@ std::vector<std::string> state_names(const Derived& derived);
 /// What the runner is asked for with compiled code: no rows.
 run::RunRequest run_request(const Derived& derived, const run::Scene& scene, const run::Code& code, bool estimate);
 
+/// Of the event functions of the code those that are functions of the state alone: events, surfaces of kinks, gaps of
+/// contacts.
+std::vector<eom::expressions::Table> bounded_events(const Derived& derived, const run::Code& code);
+
 /// The same compiled code once more, with other values: for sweeps and for tests over tolerances. Parameters, starts
 /// and outputs that the code was made for; what else `overrides` may change. No rows.
 run::RunResult run_again(const Simulation& simulation, const run::Overrides& overrides, bool estimate = true);

@@ -20,7 +20,7 @@ TEST_CASE(
   if (__builtin_cpu_supports("avx512f"))
     flags = {"-mavx512f"}, width = "8";
   else if (__builtin_cpu_supports("avx2"))
-    flags = {"-mavx2"}, width = "4";
+    flags = {"-mavx2", "-DEOM_BATCH_LANES=4"}, width = "4";
 #endif
   for (const Case& c : {Case{"P8_rough_helix", "1, 2, 3, 4, 5"}, Case{"stick_slip_belt", "1, 2"},
                         Case{"bilinear_oscillator", "256, 512"}, Case{"bouncing_ball", "1, 3"},

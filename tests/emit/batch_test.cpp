@@ -17,9 +17,9 @@ struct Width {
 
 /// What the processor of this machine can run.
 std::vector<Width> widths() {
-  std::vector<Width> all{{2, {}}, {1, {"-DEOM_BATCH_LANES=1"}}};
+  std::vector<Width> all{{2, {"-DEOM_BATCH_LANES=2"}}, {1, {"-DEOM_BATCH_LANES=1"}}};
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx2")) all.push_back({4, {"-mavx2"}});
+  if (__builtin_cpu_supports("avx2")) all.push_back({4, {"-mavx2", "-DEOM_BATCH_LANES=4"}});
   if (__builtin_cpu_supports("avx512f")) all.push_back({8, {"-mavx512f"}});
 #endif
   return all;
@@ -72,6 +72,19 @@ TEST_CASE(
   }
 }
 
+TEST_CASE("batch: compiled for any processor of its kind, it takes the widest registers of the one that it meets") {
+  const Example e = example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"});
+  const Folder folder;
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
+  int widest = widths().front().lanes;
+  for (const Width& width : widths()) widest = std::max(widest, width.lanes);
+  CHECK(wrong(folder.path, e, {widest, {}}, "0") == "");
+#if defined(__x86_64__) && defined(__GNUC__)
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+    CHECK(wrong(folder.path, e, {widest, {"-mavx2", "-mfma"}}, "0") == "");
+#endif
+}
+
 TEST_CASE("batch: a function of thousands of operations comes in parts") {
   constexpr std::uint32_t n = 22;
   std::vector<std::string> coordinates, parameters;
@@ -88,7 +101,7 @@ TEST_CASE("batch: a function of thousands of operations comes in parts") {
 }
 
 TEST_CASE("batch: hostile names, and every compiler there is") {
-  Example e = example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"left", "place", "step", "w_0", "dx"});
+  Example e = example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"fine", "place", "now", "w_0", "dx"});
   CHECK(wrong(e) == "");
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));

@@ -175,3 +175,123 @@ TEST_CASE(
   CHECK_THROWS_AS(ensemble("radau5", 1, {}), std::invalid_argument);
   CHECK_THROWS_AS(ensemble("rk4", 1, {}), std::invalid_argument);
 }
+
+namespace {
+
+/// The right-hand side of the members, alone too; crossings of the axis, and of a line that some members never reach.
+struct Members {
+  struct One {
+    const double* p;
+    int operator()(double t, const double* x, double* dx) const { return slopes(t, x, p, dx); }
+    int events(double, const double* x, double* values) const {
+      values[0] = x[1];
+      values[1] = x[0] + 0.2 * p[0];
+      values[2] = x[2] * x[2] + x[3] * x[3] - 0.9;  // passed twice in a step here and there
+      return p[1] == 3 ? 4 : 0;
+    }
+  };
+  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
+                 int* codes) const {
+    return batch(count, stride, t, x, p, dx, codes);
+  }
+  One alone(std::size_t, const double* p) const { return {p}; }
+};
+
+struct Seen {
+  double t, x0;
+  std::size_t function;
+  bool up;
+  bool operator==(const Seen&) const = default;
+};
+
+struct Watched {
+  End end;
+  std::vector<Seen> seen;
+};
+
+const eom::EventFunction watched_functions[] = {
+    {eom::Direction::any, eom::Watch::passing}, {eom::Direction::down}, {eom::Direction::up, eom::Watch::passing}};
+
+Seen seen(const eom::EventPoint& point) { return {point.t, point.x[0], point.crossing.function, point.crossing.up}; }
+
+std::vector<Watched> watched(const char* method, std::size_t members, const eom::EnsembleOptions& options) {
+  std::vector<Watched> all(members);
+  eom::integrate_ensemble_events(
+      method, Members{}, members, states, parameters, options, watched_functions,
+      [&](std::size_t member, const eom::EventPoint& point) { all[member].seen.push_back(seen(point)); }, start_of,
+      [&](const eom::EnsembleEnd& end) {
+        End& kept = all[end.member].end;
+        kept = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, kept.times + 1};
+      });
+  return all;
+}
+
+Watched watched_alone(const char* method, std::size_t member, const eom::EnsembleOptions& options) {
+  problems::State x(states), p(parameters);
+  eom::EnsembleStart start{0, 0, x, p};
+  start_of(member, start);
+  const Members::One one{p.data()};
+  Watched result;
+  const auto g = [&](double t, const double* at, double* values) { return one.events(t, at, values); };
+  const auto handler = [&](const eom::EventPoint& point) {
+    result.seen.push_back(seen(point));
+    return point.crossing.function == 1 ? eom::AtEvent::stop : eom::AtEvent::go_on;
+  };
+  const eom::Result end = eom::integrate_events(method, one, start.t0, x, start.t1, eom::options_of(options), g,
+                                                {std::begin(watched_functions), std::end(watched_functions)}, handler);
+  result.end = {end.outcome, end.t, end.x, end.statistics, 1};
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("ensemble: events of every member are those that it has alone, to the last bit, and so is its end") {
+  for (const char* method : {"rk4", "dopri5", "tsit5", "dop853"}) {
+    eom::EnsembleOptions options;
+    if (std::string(method) == "rk4") options.fixed_step = 0.02;
+    options.lanes = 13;
+    options.threads = 2;
+    const std::vector<Watched> all = watched(method, 120, options);
+    std::size_t told = 0, stopped = 0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      CAPTURE(std::string(method));
+      CAPTURE(i);
+      const Watched one = watched_alone(method, i, options);
+      CHECK(all[i].end.times == 1);
+      CHECK(all[i].end.outcome == one.end.outcome);
+      CHECK(all[i].end.t == one.end.t);
+      CHECK(all[i].end.x == one.end.x);
+      CHECK(all[i].end.statistics.steps == one.end.statistics.steps);
+      CHECK(all[i].end.statistics.rejected == one.end.statistics.rejected);
+      CHECK(all[i].end.statistics.rhs_evaluations == one.end.statistics.rhs_evaluations);
+      CHECK(all[i].end.statistics.dense_fallbacks == one.end.statistics.dense_fallbacks);
+      CHECK(all[i].seen == one.seen);
+      told += all[i].seen.size();
+      stopped += all[i].end.outcome == eom::Outcome::stopped_by_event ? 1 : 0;
+    }
+    CHECK(told > 100);
+    CHECK(stopped > 20);
+  }
+}
+
+TEST_CASE("ensemble: methods that know no lanes integrate each member by its functions of one state") {
+  for (const char* method : {"rodas", "radau5"}) {
+    eom::EnsembleOptions options;
+    options.rtol = 1e-6;
+    options.threads = 2;
+    std::vector<End> ends(60);
+    eom::integrate_ensemble(method, Members{}, ends.size(), states, parameters, options, start_of,
+                            [&](const eom::EnsembleEnd& end) {
+                              ends[end.member] = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, 1};
+                            });
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      CAPTURE(std::string(method));
+      CAPTURE(i);
+      const End one = alone(method, i, options);
+      CHECK(ends[i].outcome == one.outcome);
+      CHECK(ends[i].x == one.x);
+      CHECK(ends[i].statistics.jacobians == one.statistics.jacobians);
+    }
+  }
+  CHECK_THROWS_AS(watched("rodas", 1, {}), std::invalid_argument);
+}

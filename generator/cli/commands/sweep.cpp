@@ -30,8 +30,10 @@ int execute(const SweepOptions& options, const Common& common) {
   const bool whole = sweep.run();
   if (common.team != nullptr && !common.team->leads()) return 0;  // the first one tells
   Json found = document(options, model, sweep);
+  const std::optional<analysis::Basins> basins = options.basins ? sweep.basins() : std::nullopt;
   if (common.json) {
     if (options.statistics) found["statistics"] = to_json(sweep.statistics());
+    if (basins) found["basins"] = to_json(*basins);
     print_document(found);
   } else {
     std::string text = fmt::format("model  {}, scene {}\nruns   {}: {} done, {} failed", model.id, options.scene,
@@ -40,6 +42,7 @@ int execute(const SweepOptions& options, const Common& common) {
     if (found["resumed"] != 0) text += fmt::format(" ({} of them were there)", found["resumed"].get<std::size_t>());
     text += fmt::format("\nwrote  {}\n", found["file"].get<std::string>());
     if (options.statistics) text += "\n" + to_text(sweep.statistics());
+    if (basins) text += "\n" + to_text(*basins);
     print_readable(text, is_standard_output(options.out));
   }
   if (!whole) tell("interrupted: the same command goes on from the rows that are there\n");
@@ -64,6 +67,9 @@ Execute declare_sweep(Arguments& app) {
                  "every point of the grid");
   app.add_option("--shard", options->shard, "NUMBER/COUNT: only these runs; eomgen merge joins the tables");
   app.add_flag("--statistics", options->statistics, "mean, deviation, extremes and quantiles of every column");
+  app.add_option("--basins", options->basins,
+                 "how many runs ended at which equilibrium: so near in each coordinate and rate, in SI units")
+      .check(positive_number());
   add_scene(app, *options);
   add_solver(app, *options);
   add_fixed_step(app, *options);

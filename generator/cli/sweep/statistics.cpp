@@ -63,6 +63,62 @@ std::vector<ColumnStatistics> statistics_of_table(const std::string& header, std
   return result;
 }
 
+void read_basins(analysis::Basins& basins, const std::string& header, const EachRow& each_row) {
+  std::vector<std::string> names;
+  each_field(header, std::string::npos, [&](std::size_t, std::string_view name) { names.emplace_back(name); });
+  const auto place_of = [&](const std::string& name) {
+    return static_cast<std::size_t>(std::find(names.begin(), names.end(), name) - names.begin());
+  };
+  const std::size_t outcome = place_of("outcome");
+  std::vector<std::size_t> places;
+  for (const std::string& name : basins.names()) places.push_back(place_of(name));
+  std::vector<double> state(places.size());
+  each_row([&](std::string_view row) {
+    bool well = false;
+    each_field(row, names.size() - 1, [&](std::size_t k, std::string_view text) {
+      if (k == outcome) well = ended_well(text);
+      const auto place = std::find(places.begin(), places.end(), k);
+      if (place == places.end()) return;
+      double& value = state[static_cast<std::size_t>(place - places.begin())];
+      const auto [stop, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || stop != text.data() + text.size()) value = std::nan("");
+    });
+    if (well) basins.see(state);
+  });
+}
+
+namespace {
+
+const char* word(linear::Stability stability) {
+  return stability == linear::Stability::stable     ? "stable"
+         : stability == linear::Stability::unstable ? "unstable"
+                                                    : "unknown";
+}
+
+}  // namespace
+
+Json to_json(const analysis::Basins& basins) {
+  Json goals = Json::array();
+  for (const analysis::Basins::Goal& goal : basins.goals()) {
+    Json values = Json::object();
+    for (const auto& [name, value] : goal.values) values[name] = value;
+    goals.push_back({{"values", values}, {"stability", word(goal.stability)}, {"runs", goal.runs}});
+  }
+  return {{"within", basins.within()}, {"reached", goals}, {"elsewhere", basins.elsewhere()}};
+}
+
+std::string to_text(const analysis::Basins& basins) {
+  std::string text = fmt::format("reached, within {:g}\n", basins.within());
+  for (const analysis::Basins::Goal& goal : basins.goals()) {
+    text += fmt::format("{:>9} runs at", goal.runs);
+    for (const auto& [name, value] : goal.values) {
+      if (value != 0 || !name.ends_with("_dot")) text += fmt::format(" {} = {:.6g}", name, value);
+    }
+    text += fmt::format(" ({})\n", word(goal.stability));
+  }
+  return text + fmt::format("{:>9} runs elsewhere\n", basins.elsewhere());
+}
+
 Json to_json(const std::vector<ColumnStatistics>& columns) {
   Json list = Json::array();
   for (const ColumnStatistics& c : columns) {

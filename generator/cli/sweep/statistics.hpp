@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "analysis/sweep/basins.hpp"
 #include "analysis/sweep/statistics.hpp"
 #include "cli/json.hpp"
 
@@ -24,6 +25,11 @@ using EachRow = std::function<void(const std::function<void(std::string_view row
 std::vector<analysis::ColumnStatistics> statistics_of_table(const std::string& header, std::size_t rows,
                                                             const EachRow& each_row);
 
+/// The ends of the same rows.
+void read_basins(analysis::Basins& basins, const std::string& header, const EachRow& each_row);
+
+Json to_json(const analysis::Basins& basins);
+std::string to_text(const analysis::Basins& basins);
 Json to_json(const std::vector<analysis::ColumnStatistics>& columns);
 std::string to_text(const std::vector<analysis::ColumnStatistics>& columns);
 

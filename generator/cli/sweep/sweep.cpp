@@ -39,6 +39,16 @@ analysis::Shard shard_of(const SweepOptions& options, const analysis::Points& po
   return shard;
 }
 
+/// Equilibria move with parameters.
+void require_basins(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
+  if (!options.basins) return;
+  for (const std::string& name : points.names()) {
+    if (run::start_named(model, name)) continue;
+    throw Error("sweep", {}, fmt::format("--basins asks which equilibrium is reached, and these move with '{}'", name),
+                "vary starts alone, with --set for parameters, one sweep for each of their values");
+  }
+}
+
 void require_names(const analysis::Points& points, const SweepOptions& options, const model::Model& model) {
   const std::map<std::string, symbolic::Rational> set = overrides_of("sweep", options).values;
   for (const std::string& name : points.names()) {
@@ -53,6 +63,7 @@ void require_names(const analysis::Points& points, const SweepOptions& options, 
       throw Error("sweep", {}, fmt::format("'{}' is varied, and has a value by --set", name), "leave one of them out");
     }
   }
+  require_basins(points, options, model);
 }
 
 std::string key_of_table(const SweepOptions& options, const model::Model& model, std::uint64_t seed,
@@ -63,14 +74,7 @@ std::string key_of_table(const SweepOptions& options, const model::Model& model,
 void require_side_by_side(const pipeline::Simulation& first) {
   const std::string why = pipeline::ensemble_obstacle(first);
   if (why.empty()) return;
-  std::string remedy = "leave --ensemble out";
-  if (!run::method_named(first.scene.solver).ensemble) {
-    std::vector<std::string> solvers;
-    for (const eom::MethodInfo* method : pipeline::ensemble_solvers())
-      solvers.push_back(method->name + std::string(method->adaptive ? "" : " with --step"));
-    remedy += fmt::format(", or take --solver {}", fmt::join(solvers, ", "));
-  }
-  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why, remedy);
+  throw Error("sweep", {}, "the runs of this scene cannot be made side by side: " + why, "leave --ensemble out");
 }
 
 std::size_t threads_of(const SweepOptions& options) {
@@ -150,20 +154,32 @@ void Sweep::count() {
 }
 
 std::vector<analysis::ColumnStatistics> Sweep::statistics() const {
-  if (team_ != nullptr) {  // others have rows too, and the table has all
-    if (counts_.done + counts_.failed < runs()) return {};
-    const OpenFile table(::open(ledger_.place().c_str(), O_RDONLY | O_CLOEXEC));
-    return statistics_of_table(ledger_.header(), counts_.done + counts_.failed, [&table](const auto& take) {
-      std::size_t number = 0;
-      each_line(table, [&](std::string_view line, std::uint64_t) {
-        if (++number > 2) take(line);
-        return true;
-      });
-    });
-  }
-  const Rows& rows = ledger_.rows();
-  return statistics_of_table(ledger_.header(), rows.size(), [&rows](const auto& take) {
-    rows.each(0, rows.size(), [&take](std::size_t, std::string_view line) { take(line); });
+  if (team_ != nullptr && counts_.done + counts_.failed < runs()) return {};
+  return statistics_of_table(ledger_.header(), counts_.done + counts_.failed,
+                             [this](const auto& take) { each_row(take); });
+}
+
+std::optional<analysis::Basins> Sweep::basins() const {
+  if (counts_.done + counts_.failed < runs()) return std::nullopt;
+  analysis::SteadyRequest request;
+  request.model = load_model(options_.model);
+  request.scene = options_.scene;
+  request.overrides = overrides_of("sweep", options_);
+  request.seed = seed_;
+  analysis::Basins basins(analysis::steady_motions(request), *options_.basins);
+  read_basins(basins, ledger_.header(), [this](const auto& take) { each_row(take); });
+  return basins;
+}
+
+/// Of a team others have rows too, and the table has all.
+void Sweep::each_row(const std::function<void(std::string_view row)>& take) const {
+  if (team_ == nullptr)
+    return ledger_.rows().each(0, ledger_.rows().size(), [&take](std::size_t, std::string_view line) { take(line); });
+  const OpenFile table(::open(ledger_.place().c_str(), O_RDONLY | O_CLOEXEC));
+  std::size_t number = 0;
+  each_line(table, [&](std::string_view line, std::uint64_t) {
+    if (++number > 2) take(line);
+    return true;
   });
 }
 

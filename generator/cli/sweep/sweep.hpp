@@ -40,8 +40,11 @@ class Sweep {
   const Counts& counts() const { return counts_; }
   /// Of the rows that are there; of a team of all or none.
   std::vector<analysis::ColumnStatistics> statistics() const;
+  /// Which equilibrium the same rows came to; none where not all are there.
+  std::optional<analysis::Basins> basins() const;
 
  private:
+  void each_row(const std::function<void(std::string_view row)>& take) const;
   bool run_alone();
   bool run_by_team();
   void make_open_runs();

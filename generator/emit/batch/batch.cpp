@@ -70,7 +70,8 @@ class File {
         {"library", library()},
         {"contact_bits", std::to_string(eom::contact_bits)},
         {"contact_states", std::to_string(eom::contact_states)},
-        {"sincos", packs_ ? sincos() : ""}};
+        {"sincos", packs_ ? sincos() : ""},
+        {"names", named()}};
     return {{name_ + "_batch.c", rendered(skeleton::batch_model_batch_c, values, defined_)},
             {name_ + "_batch.h", rendered(skeleton::batch_model_batch_h, values, declared_)}};
   }
@@ -101,8 +102,10 @@ class File {
     const std::string head =
         wrapped(fmt::format("int {}_{}_batch({})", name_, function.name, batch_arguments(list)), "    ");
     declared_.push_back({{"purpose", purpose(function.name)}, {"prototype", head}});
-    defined_.push_back(
-        {{"definition", kernel(function, text) + adaptor(function, list) + driver(function, list, head)}});
+    defined_.push_back({{"adaptor", adaptor(function, list)},
+                        {"kernel", kernel(function, text)},
+                        {"many", driver(function, list)},
+                        {"entry", entry(function, list, head)}});
   }
 
   static bool takes(const std::vector<Argument>& list, Slot slot) {
@@ -122,17 +125,29 @@ class File {
     return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
   }
 
-  std::string kernel(const Function& function, const FunctionText& text) const {
-    const std::string full = fmt::format("{}{}", prefix_, function.name),
-                      argument = fmt::format("const struct {}block* {}", prefix_, text.block);
+  std::string kernel(const Function& function, const FunctionText& text) {
+    const std::string full = name_for_width(function.name), block = name_for_width(function.name + "_block"),
+                      arguments = fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.now),
+                      handed = fmt::format("{}, {}", text.block, text.now);
     std::string result = fmt::format("#if {}WIDTH > 1\n", prefix_);
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
-      result += fmt::format("__attribute__((noinline))\nstatic int {}_part{}({}, {}* {})\n{{\n{}}}\n\n", full, k + 1,
-                            argument, dialect_.real, text.work, text.parts[k]);
+      const std::string part = name_for_width(fmt::format("{}_part{}", function.name, k + 1));
+      result += fmt::format("__attribute__((noinline))\nstatic int {}({}, {}* {})\n{{\n{}}}\n\n", part, arguments,
+                            dialect_.real, text.work, text.parts[k]);
     }
-    const std::string body = text.parts.empty() ? text.body : calls_of_parts(full, text, text.block, dialect_.real);
-    return result +
-           fmt::format("static int {}({})\n{{\n{}}}\n#else\n#define {} NULL\n#endif\n\n", full, argument, body, full);
+    const std::string body = text.parts.empty() ? text.body : calls_of_parts(full, text, handed, dialect_.real);
+    result += fmt::format("{}INLINE int {}({})\n{{\n{}}}\n\n", prefix_, block, arguments, body);
+    return result + fmt::format(R"(static size_t {0}(const struct {1}block* block, size_t blocks)
+{{
+  size_t now;
+  for (now = 0; now < blocks && {2}(block, now) == 0; ++now) {{
+  }}
+  return now;
+}}
+#endif
+
+)",
+                                full, prefix_, block);
   }
 
   std::string adaptor(const Function& function, const std::vector<Argument>& list) const {
@@ -147,7 +162,7 @@ class File {
       else
         handed += fmt::format("{}state->from[{}]", a.kind == Argument::Kind::number ? "*" : "", place_of(a.slot));
     }
-    return fmt::format("static int {0}{1}_alone(const struct {0}state* state)\n{{\n{2}\n}}\n\n", prefix_, function.name,
+    return fmt::format("\nstatic int {0}{1}_alone(const struct {0}state* state)\n{{\n{2}\n}}\n", prefix_, function.name,
                        wrapped(fmt::format("  return {}_{}({});", name_, function.name, handed), "      "));
   }
   static std::size_t place_of(Slot slot) {
@@ -156,7 +171,8 @@ class File {
         std::begin(arrays));
   }
 
-  std::string driver(const Function& function, const std::vector<Argument>& list, const std::string& head) const {
+  /// NAME_FUNCTION_batch for registers of one width.
+  std::string driver(const Function& function, const std::vector<Argument>& list) {
     std::string body = fmt::format("  struct {}call call;\n", prefix_), numbers;
     const bool inputs = takes(list, Slot::input) && !context_.inputs.empty();
     if (inputs) {
@@ -168,9 +184,10 @@ class File {
       if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);
       return count;
     };
-    std::string fill =
-        fmt::format("  memset(&call, 0, sizeof call);\n  call.kernel = {0}{1};\n  call.one = {0}{1}_alone;\n", prefix_,
-                    function.name);
+    std::string fill = fmt::format(
+        "  memset(&call, 0, sizeof call);\n#if {0}WIDTH > 1\n  call.kernel = {0}{1};\n#endif\n"
+        "  call.one = {0}{1}_alone;\n",
+        prefix_, function.name);
     for (std::size_t k = 0; k < std::size(arrays); ++k) {
       const Array& array = arrays[k];
       if (!takes(list, array.slot)) continue;
@@ -196,24 +213,46 @@ class File {
                           size(result.entries.size()));
     }
     body += fmt::format("  double room[({}WIDTH + 1)*({})];\n", prefix_, numbers.empty() ? "1" : numbers);
+    const std::string head = wrapped(
+        fmt::format("static int {}({})", name_for_width(function.name + "_many"), batch_arguments(list)), "    ");
     return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,
                        prefix_);
   }
 
+  std::string entry(const Function& function, const std::vector<Argument>& list, const std::string& head) const {
+    std::string inputs, results;
+    for (const Argument& a : list) (a.kind == Argument::Kind::result ? results : inputs) += a.name + ", ";
+    return fmt::format("{}\n{{\n{}\n}}\n", head,
+                       wrapped(fmt::format("  {}FOR_WIDTH({}_many, (count, stride, {}own, {}codes));", prefix_,
+                                           function.name, inputs, results),
+                               "      "));
+  }
+
+  /// Of what is compiled for each width of registers: a name that is another one for each.
+  std::string name_for_width(const std::string& name) {
+    for_width_.insert(name);
+    return prefix_ + name;
+  }
+  std::string named() const {
+    std::set<std::string> names = for_width_;
+    names.insert(library_.begin(), library_.end());
+    names.insert({"lanes",  "mask",    "bits",   "memory",       "load",  "at",    "store", "all",
+                  "select", "abs",     "sign",   "every",        "whole", "place", "to",    "side",
+                  "slides", "presses", "sincos", "sincos_lanes", "apart", "run"});
+    std::string text;
+    for (const std::string& name : names) text += fmt::format("#define {0}{1} {0}NAMED({1})\n", prefix_, name);
+    return text;
+  }
+
   std::string sincos() const {
     constexpr const char* together = R"(
-/* Sines and cosines of the lanes of one angle, right up to 65536. Adds their sizes to `reach`. */
+/* Sines and cosines of the lanes of one angle, right up to 65536. Adds their sizes to `reach`: lanes in which that stays
+ * below it are fine. */
 {0}INLINE void {0}sincos({0}lanes angle, {0}lanes* sine, {0}lanes* cosine, {0}lanes* reach)
 {{
   {0}lanes size;
   {0}sincos_lanes(&angle, &size, sine, cosine);
   *reach += size;
-}}
-
-/* Beyond that, or not finite: left to the function of one state. */
-{0}INLINE {0}mask {0}far({0}lanes size)
-{{
-  return ~({0}mask)(size <= 65536.0);
 }}
 )";
     return sincos_lanes(prefix_, "static inline", "") + fmt::format(together, prefix_);
@@ -238,7 +277,7 @@ class File {
   ModelNames names_;
   Dialect dialect_;
   bool packs_ = false;
-  std::set<std::string> library_;
+  std::set<std::string> library_, for_width_;
   std::vector<std::vector<std::pair<std::string, std::string>>> defined_, declared_;
 };
 

@@ -17,7 +17,7 @@ namespace {
 std::vector<std::string> flags_of_processor() {
 #if defined(__x86_64__) && defined(__GNUC__)
   if (__builtin_cpu_supports("avx512f")) return {"-mavx512f"};
-  if (__builtin_cpu_supports("avx2")) return {"-mavx2"};
+  if (__builtin_cpu_supports("avx2")) return {"-mavx2", "-DEOM_BATCH_LANES=4"};  // no other width is compiled in
 #endif
   return {};
 }

@@ -3,83 +3,108 @@
 // ends, with the bits that integrate() gives it alone, whatever the number of lanes and threads.
 #pragma once
 
-#include <atomic>
 #include <cstddef>
-#include <exception>
-#include <mutex>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
-#include <thread>
-#include <vector>
+#include <tuple>
+#include <type_traits>
 
 #include "eom/ensemble/block.hpp"
+#include "eom/ensemble/events.hpp"
+#include "eom/ensemble/threads.hpp"
+#include "eom/ode.hpp"
 #include "eom/registry.hpp"
 
 namespace eom {
 namespace ensemble {
 
-/// Members from one counter; what one of the threads throws is thrown here when all have ended.
-template <class T, class Rhs, class Start, class Done>
-void by_threads(Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
-                const EnsembleOptions& options, Start& start, Done& done) {
-  std::atomic<std::size_t> counter{0};
-  std::exception_ptr thrown;
-  std::mutex lock;
-  const auto work = [&] {
-    try {
-      const auto next = [&](std::size_t& member) {
-        return (member = counter.fetch_add(1, std::memory_order_relaxed)) < members;
-      };
-      Block<T, Rhs, decltype(next), Start, Done>(rhs, states, parameters, options, next, start, done).run();
-    } catch (...) {
-      const std::lock_guard<std::mutex> guard(lock);
-      if (!thrown) thrown = std::current_exception();
-      counter = members;
-    }
-  };
-  const std::size_t asked = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
-  const std::size_t threads = std::max<std::size_t>(1, std::min(asked, members));
-  std::vector<std::thread> others;
-  for (std::size_t i = 1; i < threads; ++i) others.emplace_back(work);
-  work();
-  for (std::thread& thread : others) thread.join();
-  if (thrown) std::rethrow_exception(thrown);
-}
-
-}  // namespace ensemble
-
-/// Integrates `members` runs by an explicit Runge-Kutta method. rhs: as EnsembleRhs; start(member, EnsembleStart&)
-/// writes x, p, t0, t1; done(const EnsembleEnd&) sees each end, in no particular order. All three are called from
-/// `threads` threads at once. Throws std::invalid_argument for a method that is none of them, and for options that make
-/// no sense.
-template <class Rhs, class Start, class Done>
-void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
-                        std::size_t parameters, const EnsembleOptions& options, Start&& start, Done&& done) {
-  const bool fixed = options.fixed_step > 0;
+inline void check(const EnsembleOptions& options, std::size_t states) {
   if (states == 0 || options.quadratures >= states)
     throw std::invalid_argument(
         "eom::integrate_ensemble: there is no component of the state that steps could be chosen by");
-  if (!(options.rtol >= 0) || !(options.atol >= 0) || (!fixed && options.rtol + options.atol == 0) ||
+  if (!(options.rtol >= 0) || !(options.atol >= 0) || (!(options.fixed_step > 0) && options.rtol + options.atol == 0) ||
       !(options.max_step > 0) || !(options.initial_step >= 0) || !(options.fixed_step >= 0))
     throw std::invalid_argument(
         "eom::integrate_ensemble: tolerances and steps must not be negative, nor both tolerances 0");
-  const auto run = [&]<class T>(T*) {
+}
+
+/// By the explicit Runge-Kutta method of this name; false where there is none. make_watch() -> Unwatched, EventWatch.
+template <class Rhs, class Start, class Done, class MakeWatch>
+bool in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
+              const EnsembleOptions& options, Start& start, Done& done, const MakeWatch& make_watch) {
+  const auto by = [&]<class T>(T*) {
     if constexpr (explicit_rk::Tableau<T>) {
       if (method != T::name) return false;
-      if (T::error.empty() && !fixed)
+      if (T::error.empty() && !(options.fixed_step > 0))
         throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
                                     " needs EnsembleOptions::fixed_step");
-      ensemble::by_threads<T>(rhs, members, states, parameters, options, start, done);
+      in_threads(options.threads, members, [&](const auto& next) {
+        auto watch = make_watch();
+        Block<T, Rhs, decltype(next), Start, Done, decltype(watch)>(rhs, states, parameters, options, next, start, done,
+                                                                    watch)
+            .run();
+      });
       return true;
     }
     return false;
   };
-  const bool known = [&]<class... T>(std::tuple<T...>*) {
-    return (run(static_cast<T*>(nullptr)) || ...);
-  }(static_cast<Registry*>(nullptr));
-  if (!known)
-    throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
+  return detail::any_method(by);
+}
+
+/// Each member after the other in its thread, by any method, where no lanes are known.
+template <class Rhs, class Start, class Done>
+void one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
+                const EnsembleOptions& options, Start& start, Done& done) {
+  in_threads(options.threads, members, [&](const auto& next) {
+    const Options same = options_of(options);
+    std::vector<double> x(states), p(parameters);
+    for (std::size_t member = 0; next(member);) {
+      if (options.interrupt != nullptr && options.interrupt->load(std::memory_order_relaxed)) return;
+      EnsembleStart at{0, 0, x, p};
+      start(member, at);
+      auto one = rhs.alone(member, p.data());
+      const Result end = integrate(method, one, at.t0, x, at.t1, same);
+      done(EnsembleEnd{member, end.outcome, end.t, end.x, p, end.statistics});
+    }
+  });
+}
+
+}  // namespace ensemble
+
+/// Integrates `members` runs. rhs: as EnsembleRhs; start(member, EnsembleStart&) writes x, p, t0, t1; done(const
+/// EnsembleEnd&) sees each end, in no particular order. All three are called from `threads` threads at once. Explicit
+/// Runge-Kutta methods take many members side by side; others take them one by one in each thread, where
+/// rhs.alone(member, p) gives what integrate() takes for one. Throws std::invalid_argument for a method that is none of
+/// them, and for options that make no sense.
+template <class Rhs, class Start, class Done>
+void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
+                        std::size_t parameters, const EnsembleOptions& options, Start&& start, Done&& done) {
+  ensemble::check(options, states);
+  if (ensemble::in_lanes(method, rhs, members, states, parameters, options, start, done,
+                         [] { return ensemble::Unwatched{}; }))
+    return;
+  if constexpr (requires(const double* p) { rhs.alone(std::size_t{}, p); })
+    return ensemble::one_by_one(method, rhs, members, states, parameters, options, start, done);
+  throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
+                              " is no explicit Runge-Kutta method, and the right-hand side has no alone() for others");
+}
+
+/// The same with events, by an explicit Runge-Kutta method: rhs.alone(member, p) has events(t, x, values) -> code too,
+/// of as many as there are `functions`. told(member, const EventPoint&) hears of each crossing, from several threads at
+/// once; at a breaking one the member ends, as stopped_by_event.
+template <class Rhs, class Told, class Start, class Done>
+void integrate_ensemble_events(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
+                               std::size_t parameters, const EnsembleOptions& options,
+                               std::span<const EventFunction> functions, Told&& told, Start&& start, Done&& done) {
+  ensemble::check(options, states);
+  const auto alone = [&rhs](std::size_t member, const double* p) { return rhs.alone(member, p); };
+  const auto watch = [&] {
+    return ensemble::EventWatch(method, alone, functions, told, options, ensemble::slots_of(options));
+  };
+  if (!ensemble::in_lanes(method, rhs, members, states, parameters, options, start, done, watch))
+    throw std::invalid_argument("eom::integrate_ensemble_events: " + std::string(method) +
                                 " is no explicit Runge-Kutta method");
 }
 

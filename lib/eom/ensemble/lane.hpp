@@ -29,6 +29,7 @@ class Lane {
   bool at_end() const { return t_ == t_end_; }
   Outcome outcome() const { return outcome_; }
   void count(std::size_t evaluations) { statistics_.rhs_evaluations += evaluations; }
+  void fall_back() { ++statistics_.dense_fallbacks; }
   const Statistics& statistics() const { return statistics_; }
   double longest_step(const EnsembleOptions& options) const {
     return std::min(options.max_step, std::abs(t_end_ - t_start_));

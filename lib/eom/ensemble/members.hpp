@@ -2,12 +2,14 @@
 // What an ensemble is made of. In: where each member starts. Out: where it ended. Plain data and callables.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <cstddef>
 #include <functional>
 #include <limits>
 #include <span>
 
+#include "eom/ensemble/pack.hpp"
 #include "eom/run_types.hpp"
 
 namespace eom {
@@ -43,5 +45,28 @@ struct EnsembleOptions {
   std::size_t lanes = 32;   // members that a thread has under way
   std::size_t threads = 1;  // 0: one for each processor
 };
+
+namespace ensemble {
+
+/// Lanes of a thread: whole packs.
+inline std::size_t slots_of(const EnsembleOptions& options, std::size_t width = pack_width) {
+  return (std::max<std::size_t>(options.lanes, 1) + width - 1) / width * width;
+}
+
+}  // namespace ensemble
+
+/// Of a member alone.
+inline Options options_of(const EnsembleOptions& options) {
+  Options alone;
+  alone.rtol = options.rtol;
+  alone.atol = options.atol;
+  alone.initial_step = options.initial_step;
+  alone.max_step = options.max_step;
+  alone.fixed_step = options.fixed_step;
+  alone.max_steps = options.max_steps;
+  alone.quadratures = options.quadratures;
+  alone.interrupt = options.interrupt;
+  return alone;
+}
 
 }  // namespace eom

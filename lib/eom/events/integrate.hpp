@@ -67,34 +67,29 @@ class Run {
   }
 
   Result run() {
-    const int code = locator_.start(total_.t, total_.x.data(), g_, t1_ >= total_.t);
-    if (code != 0) {
-      total_.outcome = outcome_of_abi_code(code);
-      total_.detail = "an event function returned code " + std::to_string(code) + " at the start";
-      return total_;
-    }
+    if (!begin()) return total_;
     Options piece = options_;
     while (true) {
       piece.max_steps =
           options_.max_steps - std::min(options_.max_steps, total_.statistics.steps + total_.statistics.rejected);
-      cut_.reset();
       const Result part = integrate(
           method_, rhs_, total_.t, total_.x, t1_, piece, [this](const StepView& view) { return observe(view); },
           after_step_);
-      total_.statistics += part.statistics;
-      if (!cut_) {
-        total_.outcome = part.outcome;
-        total_.detail = part.detail;
-        total_.t = part.t;
-        total_.x = part.x;
-        return total_;
-      }
-      --total_.statistics.steps;  // the one that was cut
-      if (!take_event(piece)) return total_;
+      if (!go_on(part, piece)) return total_;
     }
   }
 
- private:
+  // Its parts, for who integrates the pieces himself.
+
+  /// False: the run ends where it starts.
+  bool begin() {
+    const int code = locator_.start(total_.t, total_.x.data(), g_, t1_ >= total_.t);
+    if (code == 0) return true;
+    total_.outcome = outcome_of_abi_code(code);
+    total_.detail = "an event function returned code " + std::to_string(code) + " at the start";
+    return false;
+  }
+
   /// After each accepted step: passing events are told, a breaking one ends the piece.
   bool observe(const StepView& view) {
     if (values_.empty()) return observer_(view);
@@ -120,6 +115,24 @@ class Run {
     return observer_(view);
   }
 
+  /// With a piece that has ended; false: the run has, with total(). Else the next piece begins there, with `piece`.
+  bool go_on(const Result& part, Options& piece) {
+    total_.statistics += part.statistics;
+    if (!cut_) {
+      total_.outcome = part.outcome;
+      total_.detail = part.detail;
+      total_.t = part.t;
+      total_.x = part.x;
+      return false;
+    }
+    --total_.statistics.steps;  // the one that was cut
+    const bool goes_on = take_event(piece);
+    cut_.reset();
+    return goes_on;
+  }
+  const Result& total() const { return total_; }
+
+ private:
   /// Goes from (t0, x0) to the crossing, in so many `parts`, until it stays where it is; `last` sees the final ones. x
   /// is the state there.
   template <class Last>

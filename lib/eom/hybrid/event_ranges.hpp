@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -16,9 +17,13 @@ namespace eom::hybrid {
 
 class EventRanges {
  public:
-  explicit EventRanges(const Problem& problem) : variables_(step_variables(problem)) {
-    for (const expressions::Table& function : problem.bounded.events)
-      codes_.push_back(function.empty() ? expressions::Code() : expressions::Code(function, problem.parameters));
+  explicit EventRanges(const Problem& problem)
+      : EventRanges(problem.bounded.events, step_variables(problem), problem.parameters) {}
+  EventRanges(const std::vector<expressions::Table>& functions, StepVariables variables,
+              std::span<const double> parameters)
+      : variables_(std::move(variables)) {
+    for (const expressions::Table& function : functions)
+      codes_.push_back(function.empty() ? expressions::Code() : expressions::Code(function, parameters));
   }
 
   /// Between which places of the step (from 0 to 1) function i first leaves its side.

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "analysis/sweep/basins.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace eomgen::analysis {
+
+Basins::Basins(const SteadyMotions& found, double within) : within_(within) {
+  const std::vector<std::string>& names = found.problem.flow->names();
+  const std::vector<std::size_t> ignored = linear::ignored_positions(found.search.symmetry);
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    if (std::find(ignored.begin(), ignored.end(), i) != ignored.end()) continue;
+    places.push_back(i);
+    names_.push_back(names[i]);
+    turns_.push_back(i < found.search.turns.size() && found.search.turns[i]);
+  }
+  for (const SteadyMotion& point : found.points) {
+    Goal goal;
+    for (std::size_t k = 0; k < places.size(); ++k) goal.values.emplace_back(names_[k], shown(point.l.z[places[k]]));
+    goal.stability = point.verdict.stability;
+    goals_.push_back(std::move(goal));
+  }
+}
+
+void Basins::see(const std::vector<double>& state) {
+  const auto goal = std::find_if(goals_.begin(), goals_.end(), [&](const Goal& g) { return is_at(g, state); });
+  ++(goal == goals_.end() ? elsewhere_ : goal->runs);
+}
+
+bool Basins::is_at(const Goal& goal, const std::vector<double>& state) const {
+  for (std::size_t k = 0; k < state.size(); ++k) {
+    const double difference = state[k] - goal.values[k].second;
+    const double distance = turns_[k] ? std::remainder(difference, 2 * std::numbers::pi) : difference;
+    if (!(std::abs(distance) <= within_)) return false;
+  }
+  return true;
+}
+
+}  // namespace eomgen::analysis

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: MIT
+// Events of members that are integrated side by side: each has its own locator, and a crossing is made exact by the
+// functions of one state, as integrate_events() does alone. In: steps of a member, its functions. Out: crossings to
+// whoever is told; a breaking one ends the member.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "eom/ensemble/members.hpp"
+#include "eom/events/integrate.hpp"
+
+namespace eom::ensemble {
+
+/// Alone: (size_t member, const double* p) -> what has operator()(t, x, dx), events(t, x, values) and, where it likes,
+/// hidden() of EventLocator. Told: (size_t member, const EventPoint&).
+template <class Alone, class Told>
+class EventWatch {
+ public:
+  static constexpr bool dense = true;
+
+  EventWatch(std::string_view method, Alone& alone, std::span<const EventFunction> functions, Told& told,
+             const EnsembleOptions& options, std::size_t slots)
+      : method_(method),
+        alone_(alone),
+        functions_(functions.begin(), functions.end()),
+        told_(told),
+        options_(options_of(options)),
+        slots_(slots) {}
+
+  Outcome begin(std::size_t slot, std::size_t member, const EnsembleStart& start) {
+    slots_[slot] = std::make_unique<Slot>(*this, member, start);
+    return slots_[slot]->run.begin() ? Outcome::done : slots_[slot]->run.total().outcome;
+  }
+  bool step(std::size_t slot, const StepView& view) { return slots_[slot]->run.observe(view); }
+  /// x: what end.x shows.
+  void end(std::size_t slot, EnsembleEnd& end, std::span<double> x) {
+    Options piece;
+    slots_[slot]->run.go_on({end.outcome, end.t, {x.begin(), x.end()}, end.statistics, ""}, piece);
+    const Result& total = slots_[slot]->run.total();
+    end.outcome = total.outcome;
+    end.t = total.t;
+    end.statistics = total.statistics;
+    std::copy(total.x.begin(), total.x.end(), x.begin());
+    slots_[slot].reset();
+  }
+
+ private:
+  using One = decltype(std::declval<Alone&>()(std::size_t{}, static_cast<const double*>(nullptr)));
+  struct Functions {
+    One& one;
+    int operator()(double t, const double* x, double* values) const { return one.events(t, x, values); }
+    auto hidden(const StepView& view, std::size_t i, int side, double from, double to) const requires requires {
+      one.hidden(view, i, side, from, to);
+    }
+    { return one.hidden(view, i, side, from, to); }
+  };
+  struct Handler {
+    Told& told;
+    std::size_t member;
+    AtEvent operator()(const EventPoint& point) const {
+      const bool ends = point.functions[point.crossing.function].watch == Watch::breaking;
+      told(member, point);
+      return ends ? AtEvent::stop : AtEvent::go_on;
+    }
+  };
+  struct Slot {
+    Slot(EventWatch& of, std::size_t member, const EnsembleStart& start)
+        : p(start.p.begin(), start.p.end()),
+          one(of.alone_(member, p.data())),
+          functions{one},
+          handler{of.told_, member},
+          run(of.method_, one, functions, of.functions_, start.t0, start.x, start.t1, of.options_, handler, observer,
+              after_step) {}
+    std::vector<double> p;
+    One one;
+    Functions functions;
+    Handler handler;
+    NoObserver observer;
+    NoProjection after_step;
+    events::Run<One, Functions, Handler, NoObserver, NoProjection> run;
+  };
+
+  std::string_view method_;
+  Alone& alone_;
+  std::vector<EventFunction> functions_;
+  Told& told_;
+  Options options_;
+  std::vector<std::unique_ptr<Slot>> slots_;
+};
+
+}  // namespace eom::ensemble
