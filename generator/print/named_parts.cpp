@@ -30,6 +30,7 @@ using symbolic::Vec3;
 
 constexpr std::size_t longest_numerator = 12;  // terms: beyond, one fraction multiplies out what stands apart
 constexpr std::size_t most_terms = 100;        // of a part that somebody reads
+constexpr std::size_t longest_energy = 24;     // terms: beyond, what forces have names for is shorter
 
 Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
 Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
@@ -84,7 +85,7 @@ class NamedParts {
       else
         define("kinetic energy", "", mark(letters_.T), m_.kinetic_given);
     }
-    if (is_used(m_.potential, SymbolKind::coordinate)) define("potential energy", "", mark(letters_.U), m_.potential);
+    if (is_used(m_.potential, SymbolKind::coordinate)) potential();
     for (const Equation& e : form_.equations) {
       const Ref Q = generalized_force(e.coordinate);
       if (!m_.dag->is_zero(Q)) force(e.coordinate, Q);
@@ -107,10 +108,31 @@ class NamedParts {
     return std::any_of(symbols.begin(), symbols.end(), [kind](const Symbol& s) { return s.kind == kind; });
   }
 
-  std::optional<Formula> read(Ref r) {
+  /// Force by force where it is long: springs by the lines between their ends.
+  void potential() {
+    const Formula letter = mark(letters_.U);
+    if (std::optional<Formula> written = read(m_.potential, longest_energy))
+      return define("potential energy", "", reading::relation({letter, *std::move(written)}));
+    std::vector<Formula> terms;
+    Ref rest = m_.potential;
+    for (std::uint32_t j = 0; j < m_.potential_by_force.size(); ++j) {
+      const Ref energy = m_.potential_by_force[j];
+      if (m_.dag->is_zero(energy) || read(energy, longest_energy)) continue;
+      std::optional<Formula> spring = forces_.spring(j);
+      if (!spring) return define("potential energy", "", letter, m_.potential);
+      terms.push_back(*std::move(spring));
+      rest = m_.dag->sub(rest, energy);
+    }
+    const std::optional<Formula> others = read(rest, longest_energy);
+    if (!others || terms.empty()) return define("potential energy", "", letter, m_.potential);
+    if (!reading::is_zero(*others)) terms.insert(terms.begin(), *others);
+    define("potential energy", "", reading::relation({letter, reading::sum(std::move(terms))}));
+  }
+
+  std::optional<Formula> read(Ref r, std::size_t most = most_terms) {
     try {
       const Sum sum = reading::read(m_, value(r));
-      if (sum.size() <= most_terms) return arranged(sum);
+      if (sum.size() <= most) return arranged(sum);
       why_ = "it has " + std::to_string(sum.size()) + " terms";
       return std::nullopt;
     } catch (const work::OverBudget& over) {

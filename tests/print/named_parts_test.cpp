@@ -290,7 +290,7 @@ spring = { between = ["A", "G"], stiffness = "k" }
     roles.insert(s.role + " " + s.name);
   }
   for (const char* role :
-       {"position A", "position G", "line force 1", "force force 1", "point thrust", "force thrust"}) {
+       {"position A", "position G", "line force 1", "line force 3", "force force 1", "point thrust", "force thrust"}) {
     CAPTURE(std::string(role));
     CHECK(roles.contains(role));
   }
