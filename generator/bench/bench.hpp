@@ -2,6 +2,7 @@
 // True error against run time: every solver that fits a scene, over tolerances or step sizes, against a reference.
 #pragma once
 
+#include <eom/output/svg_plot.hpp>
 #include <functional>
 #include <string>
 #include <vector>
@@ -47,8 +48,8 @@ std::vector<Row> measure(const Request& request);
 /// The fastest for errors of 1e-3, 1e-6, 1e-9, 1e-12, in a sentence.
 std::string advice(const std::vector<Row>& rows);
 
-/// Error over time, one line per solver, as SVG.
-std::string diagram(const std::vector<Row>& rows, const std::string& title);
+/// Error over time, one line per solver.
+eom::Plot diagram(const std::vector<Row>& rows, const std::string& title);
 
 /// Processor and number of its cores that this system tells of.
 struct Machine {

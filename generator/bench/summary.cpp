@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <eom/ode.hpp>
-#include <eom/output/svg_plot.hpp>
 #include <fstream>
 #include <thread>
 
@@ -62,12 +61,13 @@ std::string advice(const std::vector<Row>& rows) {
   return "For true errors along the whole run take" + text + "." + stiffness(rows);
 }
 
-std::string diagram(const std::vector<Row>& rows, const std::string& title) {
+eom::Plot diagram(const std::vector<Row>& rows, const std::string& title) {
   eom::Plot plot;
   plot.title = title;
   plot.x_label = "median run time in s";
   plot.y_label = "true error at the end, relative";
   plot.log_x = plot.log_y = true;
+  plot.height = 560;
   for (const Row& row : rows) {
     if (plot.series.empty() || plot.series.back().name != row.solver) {
       plot.series.emplace_back();
@@ -78,7 +78,7 @@ std::string diagram(const std::vector<Row>& rows, const std::string& title) {
     plot.series.back().x.push_back(row.seconds);
     plot.series.back().y.push_back(row.error);
   }
-  return eom::svg(plot);
+  return plot;
 }
 
 Machine machine() {

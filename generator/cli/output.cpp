@@ -68,10 +68,14 @@ void require_ending(const Place& place) {
   if (place.ending.empty()) return;
   const std::string ending = lowered(fs::path(place.path).extension().string());
   if (ending == place.ending || (place.ending == ".html" && ending == ".htm")) return;
-  if (std::find(telling_endings.begin(), telling_endings.end(), ending) == telling_endings.end()) return;
-  const std::string stem = fs::path(place.path).replace_extension(place.ending).string();
-  refuse(place, fmt::format("this option writes {}, and the name says {}", place.ending.substr(1), ending.substr(1)),
-         "name it " + stem);
+  const bool chooses = !place.or_ending.empty();
+  const bool tells = std::find(telling_endings.begin(), telling_endings.end(), ending) != telling_endings.end();
+  if (chooses ? ending.size() < 2 || ending == place.or_ending : !tells) return;
+  const auto named = [&](const std::string& other) { return fs::path(place.path).replace_extension(other).string(); };
+  refuse(place,
+         fmt::format("this option writes {}{}, and the name says {}", place.ending.substr(1),
+                     chooses ? " or " + place.or_ending.substr(1) : "", ending.substr(1)),
+         "name it " + named(place.ending) + (chooses ? " or " + named(place.or_ending) : ""));
 }
 
 void require_writable(const Place& place, const std::string& model_file) {

@@ -27,6 +27,7 @@ void tell(std::string_view text) noexcept;
 /// is no place.
 struct Place {
   std::string option, path, ending;  // "--out", "a.csv", ".csv"; an empty ending: any
+  std::string or_ending = {};        // where the ending chooses the format: this or the first, and no other
 };
 
 /// Throws Error unless every one of `places` can be written to, is none of the others and not the model's own file, and

@@ -37,12 +37,24 @@ struct Range {
 
 }  // namespace
 
+TextPlot text_plot(const eom::Plot& plot) {
+  TextPlot result{plot.y_label, plot.x_label, {}, {}, plot.log_x, plot.log_y};
+  for (const eom::PlotSeries& series : plot.series) result.curves.push_back({series.name, &series.x, &series.y});
+  for (const eom::PlotMark& mark : plot.marks) result.marks.push_back(mark.x);
+  return result;
+}
+
 std::string in_characters(const TextPlot& plot, std::size_t columns) {
+  const auto place_of = [](double value, bool logarithmic) { return logarithmic ? std::log10(value) : value; };
+  const auto label = [](double place, bool logarithmic) {
+    return fmt::format("{:.{}g}", logarithmic ? std::pow(10, place) : place, logarithmic ? 2 : 4);
+  };
   const std::size_t wide = std::max<std::size_t>(columns, margin + 24) - margin - 2;
   Range x, y;
   const auto see = [&](const TextCurve& curve, auto&& take) {
     for (std::size_t i = 0; i < curve.x->size(); ++i) {
-      if (std::isfinite((*curve.x)[i]) && std::isfinite((*curve.y)[i])) take((*curve.x)[i], (*curve.y)[i]);
+      const double a = place_of((*curve.x)[i], plot.log_x), b = place_of((*curve.y)[i], plot.log_y);
+      if (std::isfinite(a) && std::isfinite(b)) take(a, b);
     }
   };
   for (const TextCurve& curve : plot.curves) see(curve, [&](double a, double b) { x.see(a), y.see(b); });
@@ -54,26 +66,31 @@ std::string in_characters(const TextPlot& plot, std::size_t columns) {
     for (std::string& line : field) line[x.cell(mark, wide)] = ':';
   }
   const std::size_t known = std::string(letters).size();
-  std::string legend;
+  std::vector<std::string> legend;  // lines
   for (std::size_t k = 0; k < plot.curves.size(); ++k) {
     const char letter = letters[k % known];
-    if (!plot.curves[k].name.empty())
-      legend += fmt::format("{}{} {}", legend.empty() ? "" : "   ", letter, plot.curves[k].name);
+    if (!plot.curves[k].name.empty()) {
+      const std::string entry = fmt::format("{} {}", letter, plot.curves[k].name);
+      if (legend.empty() || legend.back().size() + 3 + entry.size() > columns)
+        legend.push_back(entry);
+      else
+        legend.back() += "   " + entry;
+    }
     see(plot.curves[k], [&](double a, double b) { field[rows - 1 - y.cell(b, rows)][x.cell(a, wide)] = letter; });
   }
   std::string text = plot.y_label + "\n";
-  if (!legend.empty()) text += legend + "\n";
+  for (const std::string& line : legend) text += line + "\n";
   for (std::size_t r = 0; r < rows; ++r) {
     const bool told = r % 5 == 0;
     const double value = y.high - (y.high - y.low) * static_cast<double>(r) / static_cast<double>(rows - 1);
     std::string line = fmt::format(
-        "{:>{}} {}{}", told ? fmt::format("{:.4g}", std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value) : "",
+        "{:>{}} {}{}", told ? label(std::fabs(value) < 1e-12 * (y.high - y.low) ? 0.0 : value, plot.log_y) : "",
         margin - 1, told ? '+' : '|', field[r]);
     line.erase(line.find_last_not_of(' ') + 1);
     text += line + "\n";
   }
   text += std::string(margin, ' ') + "+" + std::string(wide, '-') + "\n";
-  const std::string low = fmt::format("{:.4g}", x.low), high = fmt::format("{:.4g}", x.high);
+  const std::string low = label(x.low, plot.log_x), high = label(x.high, plot.log_x);
   std::string below = std::string(margin + 1, ' ') + low;
   const std::size_t end = margin + 1 + wide - high.size(),
                     middle = margin + 1 + (wide - std::min(wide, plot.x_label.size())) / 2;

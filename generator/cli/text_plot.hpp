@@ -2,6 +2,7 @@
 // A plot in characters, for a terminal: ASCII, one letter for each curve.
 #pragma once
 
+#include <eom/output/svg_plot.hpp>
 #include <string>
 #include <vector>
 
@@ -15,10 +16,14 @@ struct TextCurve {
 struct TextPlot {
   std::string y_label, x_label;
   std::vector<TextCurve> curves;
-  std::vector<double> marks;  // events, columns of ':'
+  std::vector<double> marks = {};  // events, columns of ':'
+  bool log_x = false, log_y = false;
 };
+/// The curves of a plot, which has to outlive this.
+TextPlot text_plot(const eom::Plot& plot);
 
-/// Lines of at most `columns` characters. Values that are not finite are left out.
+/// Lines of at most `columns` characters. Values that are not finite, or have no logarithm on a
+/// logarithmic axis, are left out.
 std::string in_characters(const TextPlot& plot, std::size_t columns);
 
 }  // namespace eomgen::cli

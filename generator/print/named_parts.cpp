@@ -2,6 +2,8 @@
 // Equations that are too long to be written out, by parts that have names: sum m r_ddot . dr/dq + H_dot . domega/dqdot
 // = -dU/dq + Q + lambda dpsi/dq, eqs. (3.20), (9.39), and what each of these letters stands for. Angular velocities
 // are quasi-velocities: their components along the axes in which the inertia stands have names of their own.
+// Generalised forces that are too long are F . ds/dq of the forces F at points s that they come from, M . domega/dqdot
+// of moments.
 #include <algorithm>
 #include <optional>
 
@@ -9,6 +11,7 @@
 #include "mechanics/imposition.hpp"
 #include "print/formulas.hpp"
 #include "print/letters.hpp"
+#include "print/named_forces.hpp"
 
 namespace eomgen::print {
 namespace {
@@ -27,6 +30,7 @@ using symbolic::Vec3;
 
 constexpr std::size_t longest_numerator = 12;  // terms: beyond, one fraction multiplies out what stands apart
 constexpr std::size_t most_terms = 100;        // of a part that somebody reads
+constexpr std::size_t longest_energy = 24;     // terms: beyond, what forces have names for is shorter
 
 Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
 Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
@@ -52,7 +56,14 @@ class NamedParts {
         form_(form),
         letters_(*m_.model, two_),
         imposed_(two_ ? mechanics::impose(m_) : symbolic::Substitution(*m_.dag, {})),
-        out_(out) {}
+        out_(out),
+        forces_(m_, {[this](Ref r) { return read(r); },
+                     [this, &given](model::NodeId node, Ref r) {
+                       return !two_ || value(r) == r ? reading::as_written(*given.model, node) : std::nullopt;
+                     },
+                     [this](const std::string& role, const std::string& name, Formula formula) {
+                       define(role, name, std::move(formula));
+                     }}) {}
 
   void equations() {
     for (const bool of_motion : {true, false}) {
@@ -74,12 +85,10 @@ class NamedParts {
       else
         define("kinetic energy", "", mark(letters_.T), m_.kinetic_given);
     }
-    if (is_used(m_.potential, SymbolKind::coordinate)) define("potential energy", "", mark(letters_.U), m_.potential);
+    if (is_used(m_.potential, SymbolKind::coordinate)) potential();
     for (const Equation& e : form_.equations) {
       const Ref Q = generalized_force(e.coordinate);
-      if (!m_.dag->is_zero(Q))
-        define("generalised force", m_.model->coordinates[e.coordinate].name, mark("Q", {coordinate(e.coordinate, 0)}),
-               Q);
+      if (!m_.dag->is_zero(Q)) force(e.coordinate, Q);
     }
   }
 
@@ -99,10 +108,31 @@ class NamedParts {
     return std::any_of(symbols.begin(), symbols.end(), [kind](const Symbol& s) { return s.kind == kind; });
   }
 
-  std::optional<Formula> read(Ref r) {
+  /// Force by force where it is long: springs by the lines between their ends.
+  void potential() {
+    const Formula letter = mark(letters_.U);
+    if (std::optional<Formula> written = read(m_.potential, longest_energy))
+      return define("potential energy", "", reading::relation({letter, *std::move(written)}));
+    std::vector<Formula> terms;
+    Ref rest = m_.potential;
+    for (std::uint32_t j = 0; j < m_.potential_by_force.size(); ++j) {
+      const Ref energy = m_.potential_by_force[j];
+      if (m_.dag->is_zero(energy) || read(energy, longest_energy)) continue;
+      std::optional<Formula> spring = forces_.spring(j);
+      if (!spring) return define("potential energy", "", letter, m_.potential);
+      terms.push_back(*std::move(spring));
+      rest = m_.dag->sub(rest, energy);
+    }
+    const std::optional<Formula> others = read(rest, longest_energy);
+    if (!others || terms.empty()) return define("potential energy", "", letter, m_.potential);
+    if (!reading::is_zero(*others)) terms.insert(terms.begin(), *others);
+    define("potential energy", "", reading::relation({letter, reading::sum(std::move(terms))}));
+  }
+
+  std::optional<Formula> read(Ref r, std::size_t most = most_terms) {
     try {
       const Sum sum = reading::read(m_, value(r));
-      if (sum.size() <= most_terms) return arranged(sum);
+      if (sum.size() <= most) return arranged(sum);
       why_ = "it has " + std::to_string(sum.size()) + " terms";
       return std::nullopt;
     } catch (const work::OverBudget& over) {
@@ -121,12 +151,15 @@ class NamedParts {
                                                                           : reading::arrange(sum);
   }
 
-  /// Q_i, friction among it; in approach II of the eliminated coordinates too that follow this one.
-  Ref generalized_force(std::uint32_t i) {
+  /// Q_i, friction among it; in approach II of the eliminated coordinates too that follow this one. `rest`: without
+  /// forces that have a vector.
+  Ref generalized_force(std::uint32_t i, bool rest = false) {
     symbolic::Dag& dag = *m_.dag;
     const auto along = [&](std::uint32_t k) {
       Ref sum = dag.zero();
-      for (const std::vector<Ref>& force : m_.force_components) sum = dag.add(sum, force[k]);
+      for (std::size_t j = 0; j < m_.force_components.size(); ++j) {
+        if (!rest || !NamedForces::are_vectors(m_.model->forces[j])) sum = dag.add(sum, m_.force_components[j][k]);
+      }
       for (const mechanics::Contact& contact : m_.contacts) {
         for (std::uint32_t a = 0; a < contact.dimensions(); ++a)
           sum = dag.add(sum, dag.mul(contact.tangents[a][k], dag.symbol({SymbolKind::friction, contact.first + a, 0})));
@@ -141,6 +174,37 @@ class NamedParts {
       }
     }
     return value(sum);
+  }
+
+  void force(std::uint32_t i, Ref Q) {
+    const std::string& name = m_.model->coordinates[i].name;
+    const Formula letter = mark("Q", {coordinate(i, 0)});
+    if (std::optional<Formula> written = read(Q))
+      return define("generalised force", name, reading::relation({letter, *std::move(written)}));
+    const std::string why = why_;
+    std::vector<Formula> terms;
+    for (std::uint32_t j = 0; j < m_.model->forces.size(); ++j) {
+      const model::Force& force = m_.model->forces[j];
+      const std::vector<Ref>& components = m_.force_components[j];
+      const bool acts = std::any_of(components.begin(), components.end(), [&](Ref r) { return !m_.dag->is_zero(r); });
+      if (!acts || !NamedForces::are_vectors(force)) continue;
+      for (std::uint32_t k = 0; k < force.effects.size(); ++k) {
+        if (!forces_.work(j, k, i, terms)) {
+          out_.push_back(left_out("parts", name, "generalised force", why));
+          return;
+        }
+      }
+    }
+    const Ref rest = generalized_force(i, true);
+    if (!m_.dag->is_zero(rest)) {
+      const std::optional<Formula> written = read(rest);
+      if (!written) {
+        out_.push_back(left_out("parts", name, "generalised force", why));
+        return;
+      }
+      terms.push_back(*written);
+    }
+    define("generalised force", name, reading::relation({letter, reading::sum(std::move(terms))}));
   }
 
   Formula equation(std::uint32_t i) {
@@ -263,6 +327,7 @@ class NamedParts {
   symbolic::Substitution imposed_;
   std::vector<Statement>& out_;
   std::string why_;  // the last that was not read
+  NamedForces forces_;
 };
 
 }  // namespace

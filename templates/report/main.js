@@ -24,7 +24,7 @@ if (data.parts.places.length === 0) canvas.hidden = true;
 
 function take(next, find) {
   motion = next;
-  scene.take(motion, live ? live.sizes : data.sizes, find);
+  scene.take(motion, live ? live.sizes : data.sizes, find, {code: surfaceCode, p: live ? live.p : Float64Array.from(data.p)});
   player.take(motion, data.speed);
   plots.take(motion);
   player.jump(Math.min(player.at, player.t1));
@@ -84,6 +84,22 @@ function checkbox(text, key) {
   return label;
 }
 
+// What the colours of forces mean; shown with them.
+function legend() {
+  const place = document.createElement("span"), kinds = {applied: "applied", constraint: "of constraints", friction: "of friction"};
+  place.className = "legend";
+  place.hidden = true;
+  for (const kind in kinds) {
+    if (!data.parts.arrows.some((arrow) => arrow.kind === kind)) continue;
+    const entry = document.createElement("span");
+    entry.textContent = "\u2192 " + kinds[kind];
+    entry.style.color = forceColours[kind];
+    place.append(entry);
+  }
+  tools.addEventListener("change", () => { place.hidden = !scene.shown.forces; });
+  return place;
+}
+
 function panel() {
   const place = document.createElement("div"), sliders = [];
   place.className = "panel";
@@ -125,6 +141,8 @@ function panel() {
 
 tools.append(button("+", "Zoom in (+)", () => { scene.camera.zoom *= 1.25; redraw(); }), button("\u2212", "Zoom out (-)", () => { scene.camera.zoom /= 1.25; redraw(); }),
              button("View", "The first view (0)", () => { scene.camera.home(); redraw(); }), checkbox("traces", "traces"), checkbox("axes", "axes"), checkbox("names", "names"));
+if (data.parts.surfaces.length + data.parts.contacts.length > 0) tools.append(checkbox("surfaces", "surfaces"));
+if (data.parts.arrows.length > 0) tools.append(checkbox("forces", "forces"), legend());
 const help = document.createElement("p");
 help.className = "quiet";
 help.textContent = live ? "Drag a point to place it and let go; drag beside it to turn the view, with shift to move it." : "Drag to turn the view, with shift to move it. This page replays the run and does not compute: " + data.reason + ".";
@@ -134,6 +152,7 @@ keys(canvas, player, scene.camera, redraw);
 take(recorded, true);
 if (live) panel();
 fitFormulas();
+for (const folded of document.querySelectorAll("details")) folded.addEventListener("toggle", fitFormulas);
 window.addEventListener("resize", () => { redraw(); fitFormulas(); });
 matchMedia("(prefers-color-scheme: dark)").addEventListener("change", redraw);
 player.jump(player.t0);

@@ -1,24 +1,24 @@
-// Bodies as polygons in their own axes, from what the model says of their shape, or from their inertia: of homogeneous bodies with the same mass
+// Bodies as polygons in their own axes, with their outsides to the left of their edges, from what the model says of their shape, or from their inertia: of homogeneous bodies with the same mass
 // and moments the sphere, the cylinder about the axis of two equal moments, the box.
 function boxFaces(a, b, c) {
   const corner = (k) => [(k & 1 ? a : -a) / 2, (k & 2 ? b : -b) / 2, (k & 4 ? c : -c) / 2];
-  return [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]].map((face) => face.map(corner));
+  return [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]].map((face) => face.map(corner));
 }
 
-// About the third axis; a stripe on the caps shows how it turns.
+// About the third axis; the sides are one smooth surface.
 function cylinderFaces(radius, length) {
   const sides = 28, ring = (z) => Array.from({length: sides}, (_, k) => [radius * Math.cos(2 * Math.PI * k / sides), radius * Math.sin(2 * Math.PI * k / sides), z]);
   const top = ring(length / 2), bottom = ring(-length / 2), faces = [top, bottom.slice().reverse()];
-  for (let k = 0; k < sides; ++k) faces.push([bottom[k], bottom[(k + 1) % sides], top[(k + 1) % sides], top[k]]);
+  for (let k = 0; k < sides; ++k) faces.push(Object.assign([bottom[k], bottom[(k + 1) % sides], top[(k + 1) % sides], top[k]], {smooth: true}));
   return faces;
 }
 
 // Axes as rows (right-handed) with the k-th axis of `axes` third.
 function aboutAxis(axes, k) { return [axes[(k + 1) % 3], axes[(k + 2) % 3], axes[k]]; }
 
-function placed(faces, axes) {
-  return faces.map((face) => face.map((r) => plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2]))));
-}
+// The same faces elsewhere, as smooth as they were.
+function moved(faces, to) { return faces.map((face) => Object.assign(face.map(to), {smooth: face.smooth})); }
+function placed(faces, axes) { return moved(faces, (r) => plus(plus(scaled(axes[0], r[0]), scaled(axes[1], r[1])), scaled(axes[2], r[2]))); }
 
 function shapeOfInertia(mass, inertia) {
   if (!(mass > 0) || inertia.length !== 9) return null;
@@ -57,10 +57,10 @@ function shapeOfModel(drawn, sizes) {
   const lengths = drawn.lengths.map((i) => sizes[i]), at = drawn.at.length === 3 ? drawn.at.map((i) => sizes[i]) : [0, 0, 0];
   if (lengths.some((length) => !Number.isFinite(length))) return null;
   const axes = aboutAxis([[1, 0, 0], [0, 1, 0], [0, 0, 1]], drawn.axis), reach = Math.hypot(...at);
-  const made = (faces, radius) => ({kind: drawn.kind, faces: placed(faces, axes).map((face) => face.map((r) => plus(r, at))), radius: radius + reach, at});
+  const made = (faces, radius) => ({kind: drawn.kind, faces: moved(placed(faces, axes), (r) => plus(r, at)), radius: radius + reach, at});
   switch (drawn.kind) {
     case "sphere": return {kind: "sphere", faces: [], radius: lengths[0], at};
-    case "box": return {kind: "box", faces: boxFaces(...lengths).map((face) => face.map((r) => plus(r, at))), radius: Math.hypot(...lengths) / 2 + reach, at};
+    case "box": return {kind: "box", faces: moved(boxFaces(...lengths), (r) => plus(r, at)), radius: Math.hypot(...lengths) / 2 + reach, at};
     case "cylinder": return made(cylinderFaces(lengths[0], lengths[1]), Math.hypot(lengths[0], lengths[1] / 2));
     case "disk": return made(cylinderFaces(lengths[0], 0.03 * lengths[0]), lengths[0]);
     case "rod": return made(cylinderFaces(0.02 * lengths[0], lengths[0]), lengths[0] / 2);

@@ -102,7 +102,10 @@ TEST_CASE("places that cannot be, and two results for one place, are refused bef
   refused({"run", "p.toml", "--out", ""}, "names no file");
   refused({"report", "p.toml", "--out", ""}, "names no file");
   refused({"run", "p.toml", "--out", "x.png"}, "this option writes csv, and the name says png");
-  refused({"run", "p.toml", "--plot", "x.PDF"}, "this option writes svg, and the name says pdf");
+  refused({"run", "p.toml", "--plot", "x.PDF"}, "this option writes svg or png, and the name says pdf");
+  refused({"run", "p.toml", "--plot", "x.data"}, "this option writes svg or png, and the name says data");
+  refused({"bench", "p.toml", "--plot", "x.eps"}, "this option writes svg or png, and the name says eps");
+  refused({"stress", "p.toml", "--plot", "x.csv"}, "this option writes svg or png, and the name says csv");
   refused({"report", "p.toml", "-o", "x.pdf"}, "this option writes html, and the name says pdf");
   refused({"sweep", "p.toml", "--grid", "k=1,2", "-o", "x.json"}, "this option writes csv");
   refused({"bench", "p.toml", "--csv", "x.svg"}, "this option writes csv, and the name says svg");

@@ -13,6 +13,7 @@ async function open(page, width) {
   frame.style.cssText = "border: 0; width: " + width + "px; height: 900px";
   frame.srcdoc = page.replace("<head>", "<head>" + listen);
   await new Promise((done) => { frame.addEventListener("load", done); document.body.prepend(frame); });
+  for (const folded of frame.contentDocument.querySelectorAll("details")) folded.open = true;  // so that all is measured
   await later(50);
   return frame;
 }
@@ -85,6 +86,24 @@ function cornerOff(report, csv, name) {
   return far;
 }
 
+// Surfaces of constraints: how many lines, and how far their ends are at most from being as far from the origin as the particle is (of a sphere about it).
+function surfaces(report) {
+  const {scene} = report, y = scene.now, lines = scene.surfaces.flatMap((surface) => surface.find(report.player.at, y)), place = scene.surfaces[0].place;
+  const radius = Math.hypot(...scene.placeAt(y, place));
+  return {lines: lines.length, off: Math.max(...lines.flat().map((r) => Math.abs(Math.hypot(...r) - radius)))};
+}
+
+// Pixels that forces add to the drawing when they are asked for, by the box that a reader ticks.
+function forces(page, report) {
+  const box = [...page.querySelectorAll("label")].find((label) => label.textContent.trim() === "forces"), canvas = page.getElementById("scene");
+  if (!box) return 0;
+  const before = picture(canvas).sum;
+  box.querySelector("input").click();
+  const shown = !page.querySelector(".legend").hidden, after = picture(canvas).sum;
+  box.querySelector("input").click();
+  return {drawn: shown && before !== after, taken_back: picture(canvas).sum === before, arrows: report.data.parts.arrows.length};
+}
+
 async function wait(condition) {
   for (let k = 0; k < 30000 && !condition(); ++k) await later(20);
   return condition();
@@ -145,6 +164,9 @@ async function look(entry) {
         report.live.states.forEach((state, k) => { at.end[state.name] = x[k]; });
         at.rows = old;
       }
+      report.player.jump(report.player.t0 + 0.37 * (report.player.t1 - report.player.t0));
+      at.forces = forces(page, report);
+      if (report.scene.surfaces.length > 0) at.surfaces = surfaces(report);
       at.live = report.live !== null;
       if (width === widths[0] && entry.drag) at.drag = await drag(frame, report, entry.drag);
     }

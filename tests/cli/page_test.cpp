@@ -21,6 +21,8 @@ namespace {
 constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
+constexpr double on_the_sphere =
+    1e-3;  // of a radius of 1: where a line of a surface crosses a cell is found by secants
 
 // A box in free flight, drawn as it is said to be, with a point at one of its corners.
 const char* const brick = R"(format = 1
@@ -55,6 +57,7 @@ struct Case {
   double value = 0;
   std::string drag = {};    // a place that is taken by hand
   std::string corner = {};  // a point that is a corner of a drawn body
+  bool sphere = false;      // its particle is on a sphere about the origin
 };
 
 std::string replaced(std::string text, const std::string& what, const std::string& with) {
@@ -149,6 +152,15 @@ void check(const Json& found, const Case& c, const Json& wanted) {
     CHECK(at["plays"] == true);
     CHECK(at["curves"] >= 4);
     CHECK(at["live"] == c.live);
+    // What acts on the satellite is a moment, which is no arrow.
+    CHECK((at["forces"] == 0) == (c.model == "R7_satellite"));
+    if (at["forces"] != 0) {
+      CHECK(at["forces"]["drawn"] == true);
+      CHECK(at["forces"]["taken_back"] == true);
+    }
+    if (!c.sphere) continue;
+    CHECK(at["surfaces"]["lines"] > 500);
+    CHECK(at["surfaces"]["off"] < on_the_sphere);
   }
   const Json& wide = found["widths"]["1280"];
   CHECK(wide["furthest"] < a_pixel);
@@ -189,7 +201,7 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
   folder.write("chain_10.toml", replaced(source("models/S6_chain_6.toml"), "n = 6", "n = 10"));
   folder.write("brick.toml", brick);
   const std::vector<Case> list{{"brick.toml", true, "a", 0.5, "", "corner"},
-                               {"P7_moving_sphere", true, "m", 2},
+                               {"P7_moving_sphere", true, "m", 2, "", "", true},
                                {"S5_double_pendulum", true, "m2", 1.5, "P2"},
                                {"R6_rolling_disk", true, "R", 0.25},
                                {"R7_satellite"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plots of `run`: panels by units, phase planes, events, estimated errors, characters.
+// Plots of `run`: panels by units, phase planes, events, estimated errors, characters; of `bench` and `stress` as well.
 #include <doctest/doctest.h>
 
 #include <sstream>
@@ -21,6 +21,15 @@ std::string plotted(const Folder& folder, Words words) {
   words.insert(words.end(), {"--plot", "plot.svg"});
   expect(0, folder, words);
   return folder.read("plot.svg");
+}
+
+// Printable, and no line longer than a terminal is wide.
+void check_characters(const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    CHECK(line.size() <= 80);
+    for (const char c : line) CHECK((c >= ' ' && c <= '~'));
+  }
 }
 
 }  // namespace
@@ -98,14 +107,80 @@ TEST_CASE("plot: characters fit into eighty columns and show each curve with a l
       expect(0, folder, {"run", "S5_double_pendulum", "--plot", "-", "--plot-of", "theta1", "--plot-of", "theta2"}).out;
   CHECK(contains(text, "* theta1   + theta2"));
   CHECK(contains(text, "t in s"));
+  check_characters(text);
   std::istringstream lines(text);
   std::size_t drawn = 0;
   for (std::string line; std::getline(lines, line);) {
-    CHECK(line.size() <= 80);
-    for (const char c : line) CHECK((c >= ' ' && c <= '~'));
     if (contains(line, "|") && (contains(line, "*") || contains(line, "+"))) ++drawn;
   }
   CHECK(drawn > 8);
+}
+
+TEST_CASE("plot: bench draws errors over run times, one line for each solver, on logarithmic axes") {
+  const Folder folder;
+  const Words bench{"bench", "P2_planar_pendulum", "--t-end", "1", "--solver", "tsit5,rk4", "--seconds", "1000000000"};
+  const auto plotted = [&](const std::string& place) {
+    Words words = bench;
+    words.insert(words.end(), {"--plot", place});
+    return expect(0, folder, words);
+  };
+  plotted("b.svg");
+  const std::string svg = folder.read("b.svg");
+  CHECK(contains(svg, ">Planar pendulum with both constraint forces</text>"));
+  CHECK(contains(svg, ">tsit5</text>"));
+  CHECK(contains(svg, ">rk4</text>"));
+  CHECK(contains(svg, ">median run time in s</text>"));
+  CHECK(contains(svg, "10<tspan"));
+  CHECK(count(svg, "<path") == 2);
+  plotted("b.png");
+  CHECK(folder.read("b.png").starts_with("\x89PNG"));
+  const ChildResult text = plotted("-");
+  CHECK(contains(text.out, "* rk4   + tsit5"));
+  check_characters(text.out);
+  CHECK(contains(text.err, "reference"));  // the table has gone aside
+}
+
+TEST_CASE("plot: stress draws each verdict of its table, told apart by shape as well as by colour") {
+  const Folder folder;
+  folder.write("hostile.toml", R"(format = 1
+title = "<b> & \"both\""
+[parameters]
+k = "2 N/m"
+[[particle]]
+name = "P"
+mass = "1 kg"
+position = ["x", 0, 0]
+[coordinates]
+x = "m"
+[[force]]
+name = "spring"
+generalized = { x = "-k*x" }
+[scene.default]
+t = [0, 1]
+initial = { x = 0.1 }
+)");
+  const auto plotted = [&](const std::string& place, const Words& more) {
+    Words words{"stress", "hostile.toml", "--quick",        "--steps", "300", "--seconds",
+                "1e6",    "--solver",     "dopri5,rk4,ggl", "--plot",  place};
+    words.insert(words.end(), more.begin(), more.end());
+    return expect(0, folder, words).out;
+  };
+  const Json found = Json::parse(plotted("s.svg", {"--json"}));
+  const std::string svg = folder.read("s.svg");
+  CHECK(contains(svg, "<title>&lt;b&gt; &amp; &quot;both&quot;</title>"));
+  CHECK_FALSE(contains(svg, "<b>"));
+  CHECK(found["kept"].get<std::size_t>() > 3);
+  CHECK(found["told"].get<std::size_t>() > 3);
+  CHECK(count(svg, ": kept, ") == found["kept"].get<std::size_t>());
+  CHECK(count(svg, ": told, ") == found["told"].get<std::size_t>());
+  CHECK(count(svg, "height=\"13\" fill=\"#0b6ab0\"") == found["kept"].get<std::size_t>() + 1);  // and the legend
+  CHECK(count(svg, "height=\"4\" fill=\"#e08e0b\"") == found["told"].get<std::size_t>() + 1);
+  plotted("s.png", {});
+  CHECK(folder.read("s.png").starts_with("\x89PNG"));
+  const std::string text = plotted("-", {});
+  check_characters(text);
+  CHECK(contains(text, "+ " + std::to_string(found["kept"].get<int>()) + " kept"));
+  CHECK(contains(text, "as it is"));
 }
 
 TEST_CASE("plot: names that there are not, and what is no phase plane, are refused with what to do") {

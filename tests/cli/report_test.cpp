@@ -103,6 +103,14 @@ TEST_CASE(
   CHECK(highest == 1);
 }
 
+TEST_CASE("report: a page runs a model with kinks, whether or not it has events") {
+  const Folder folder;
+  expect(0, folder, {"report", "bilinear_oscillator", "-o", "page.html", "--t-end", "1"});
+  const Json found = motion(folder.read("page.html"));
+  CHECK(found["reason"] == "");
+  CHECK(found["live"]["event_count"] == 1);  // x, where max and min turn
+}
+
 TEST_CASE("report: what a scene asks for in J and is no energy has a panel of its own beside that of the energies") {
   const Folder folder;
   folder.write("pushed.toml", R"toml(format = 1

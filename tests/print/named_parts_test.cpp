@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <set>
 
 #include "derive/routes/lagrange.hpp"
 #include "print/formulas.hpp"
@@ -171,7 +172,7 @@ bool is_plain(const model::Model& model) {
 }  // namespace
 
 TEST_CASE("named parts: with what they are said to be, the equations are those of motion") {
-  int models = 0, with_axes_of_their_own = 0;
+  int models = 0, with_axes_of_their_own = 0, by_forces = 0;
   for (const auto& entry : std::filesystem::directory_iterator(test::source_folder() + "/models")) {
     if (entry.path().extension() != ".toml") continue;
     const model::Model model = model::read_model(entry.path().string());
@@ -219,10 +220,13 @@ TEST_CASE("named parts: with what they are said to be, the equations are those o
       CHECK(std::abs(found - expected) < allowed * size);
     }
     ++models;
+    by_forces +=
+        std::any_of(statements.begin(), statements.end(), [](const Statement& part) { return part.role == "force"; });
     for (const mechanics::Spin& spin : m.spins) with_axes_of_their_own += spin.carrier != spin.w ? 1 : 0;
   }
   CHECK(models > 15);
   CHECK(with_axes_of_their_own > 2);  // turning otherwise than their bodies
+  CHECK(by_forces > 0);               // whose generalised forces are too long
 }
 
 TEST_CASE("named parts: forms that are too long have them, also for the constraint forces of approach I") {
@@ -242,5 +246,52 @@ TEST_CASE("named parts: forms that are too long have them, also for the constrai
     CHECK(count("axes") == 3);
     CHECK(count("angular velocity") == 4);
     CHECK(count("rate of the angular momentum") == 1);
+  }
+}
+
+// A damper, a force, a force and a moment at once, a spring among them, all from a body in a Rodrigues vector.
+TEST_CASE("named parts: generalised forces that are too long are those of forces and moments that have names") {
+  const std::string text = R"toml(format = 1
+[parameters]
+m = "1 kg"
+c = "2 N*s/m"
+k = "3 N/m"
+f = "4 N"
+[[body]]
+name = "B"
+mass = "m"
+inertia = { principal = ["0.3 kg*m^2", "0.4 kg*m^2", "0.5 kg*m^2"] }
+position = { cartesian = ["x", "y", "z"] }
+rotation = { rodrigues = ["l1", "l2", "l3"] }
+[[point]]
+name = "A"
+on = "B"
+at = [0.1, 0.2, 0.3]
+[[point]]
+name = "G"
+position = "0.5*E1 - 2*E3"
+[[force]]
+damper = { between = ["A", "G"], coefficient = "c" }
+[[force]]
+name = "thrust"
+on = "A"
+force = "f*(B.e1 + 2*B.e3)"
+[[force]]
+spring = { between = ["A", "G"], stiffness = "k" }
+)toml";
+  const model::Model model = model::read_model_text(text, "forces.toml");
+  mechanics::Mechanics m = mechanics::build_mechanics(model);
+  const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);
+  std::vector<Statement> statements;
+  print::add_equations_by_parts(m, form, statements);
+  std::set<std::string> roles;
+  for (const Statement& s : statements) {
+    CHECK(s.left_out.empty());
+    roles.insert(s.role + " " + s.name);
+  }
+  for (const char* role :
+       {"position A", "position G", "line force 1", "line force 3", "force force 1", "point thrust", "force thrust"}) {
+    CAPTURE(std::string(role));
+    CHECK(roles.contains(role));
   }
 }

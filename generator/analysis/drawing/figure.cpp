@@ -14,6 +14,7 @@
 #include "analysis/drawing/parts.hpp"
 #include "analysis/drawing/sketch.hpp"
 #include "analysis/drawing/solids.hpp"
+#include "analysis/drawing/wheels.hpp"
 #include "error.hpp"
 #include "reading/reading.hpp"
 #include "symbolic/evaluate.hpp"
@@ -30,6 +31,15 @@ constexpr double seen_sideways = 0.2;       // of a length that is seen from its
 constexpr int arc_strokes = 16;
 constexpr double least_turn = 0.02;  // rad
 
+struct Placed {
+  std::size_t place;
+  std::vector<Solid> solids;
+  std::function<Point(const Point&)> world;  // from its own axes
+};
+struct Rod {  // between places, -1 the origin
+  long from, to;
+};
+
 class Drawer {
  public:
   Drawer(mechanics::Mechanics& mechanics, const run::Scene& scene)
@@ -43,6 +53,7 @@ class Drawer {
                   "start the default scene where every position has one");
     }
     sizes_ = sizes_of(drawing_, *m_.dag, scene_.parameters);
+    look_elsewhere();
     find_solids();
     std::optional<Point> down;
     if (const auto g = falling(m_, scene_.parameters)) down = Point(g->data());
@@ -50,11 +61,11 @@ class Drawer {
     Sketch sketch(view, extent());
     axes(sketch);
     for (const DrawnContact& contact : parts_.contacts) ground(sketch, contact);
-    for (std::size_t i = 0; i < parts_.places.size(); ++i) link(sketch, i);
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-      const auto world = world_of(parts_.bodies[i]);
-      for (const Solid& solid : solids_[i]) sketch.solid(solid, world);
+    for (const Rod& rod : links()) link(sketch, rod);
+    for (const Placed& placed : solids_) {
+      for (const Solid& solid : placed.solids) sketch.solid(solid, placed.world);
     }
+    for (const DrawnCoupling& coupling : parts_.couplings) analysis::draw(sketch, wheels(coupling));
     for (const DrawnLine& spring : parts_.springs) sketch.coil(point(spring.a), point(spring.b));
     for (const DrawnLine& damper : parts_.dampers) sketch.damper(point(damper.a), point(damper.b));
     for (const DrawnJoint& joint : parts_.joints) {
@@ -123,45 +134,64 @@ class Drawer {
     return axes_of(body).transpose() * (spot - point(parts_.places[body.place].at));
   }
 
+  /// Of bodies, and of particles that [draw] gives a shape, whose axes are the fixed ones.
   void find_solids() {
     for (const DrawnBody& body : parts_.bodies) {
-      std::vector<Solid>& solids = solids_.emplace_back();
-      bool stated = false;
-      for (const DrawnShape& shape : parts_.shapes) {
-        if (shape.place != body.place) continue;
-        stated = true;
-        if (auto solid = solid_of_shape(shape, sizes_)) solids.push_back(*solid);
-      }
-      if (stated) continue;
+      solids_.push_back({body.place, shapes_of(body.place), world_of(body)});
+      if (!solids_.back().solids.empty() || is_drawn(body.place)) continue;
       std::optional<Solid> solid = solid_of_inertia(body, sizes_);
       if (!solid) solid = bar_of_inertia(body, sizes_, attached(body));
-      if (solid) solids.push_back(*solid);
+      if (solid) solids_.back().solids.push_back(*solid);
     }
+    for (std::size_t i = 0; i < parts_.places.size(); ++i) {
+      const auto is_this = [i](const DrawnBody& body) { return body.place == i; };
+      if (!is_drawn(i) || std::any_of(parts_.bodies.begin(), parts_.bodies.end(), is_this)) continue;
+      const Point centre = point(parts_.places[i].at);
+      solids_.push_back({i, shapes_of(i), [centre](const Point& r) -> Point { return centre + r; }});
+    }
+  }
+  bool is_drawn(std::size_t place) const {
+    return std::any_of(parts_.shapes.begin(), parts_.shapes.end(),
+                       [place](const DrawnShape& shape) { return shape.place == place; });
+  }
+  std::vector<Solid> shapes_of(std::size_t place) const {
+    std::vector<Solid> result;
+    for (const DrawnShape& shape : parts_.shapes) {
+      if (shape.place != place) continue;
+      if (auto solid = solid_of_shape(shape, sizes_)) result.push_back(*solid);
+    }
+    return result;
   }
 
   std::vector<std::size_t> spots() const {
     std::vector<std::size_t> result;
     for (const DrawnPlace& place : parts_.places) result.push_back(place.at);
     for (const DrawnJoint& joint : parts_.joints) result.push_back(joint.at);
-    for (const DrawnContact& contact : parts_.contacts) result.push_back(contact.at);
+    for (const DrawnContact& contact : parts_.contacts) result.insert(result.end(), {contact.at, contact.foot});
     for (const auto* lines : {&parts_.springs, &parts_.dampers}) {
       for (const DrawnLine& line : *lines) result.insert(result.end(), {line.a, line.b});
     }
     return result;
   }
   bool has_origin() const {
-    return std::any_of(parts_.places.begin(), parts_.places.end(), [](const DrawnPlace& p) { return p.from == -1; });
+    return std::any_of(parts_.places.begin(), parts_.places.end(), [](const DrawnPlace& p) { return p.from == -1; }) ||
+           std::any_of(parts_.rods.begin(), parts_.rods.end(), [](const DrawnRod& rod) { return rod.a == -1; });
   }
 
-  /// What is in a plane at the start may leave it later: two other states tell.
-  std::vector<Point> points_of_view() const {
-    std::vector<Point> result;
-    for (int state = 0; state < 3; ++state) {
+  /// Two other states, which tell what a plane holds only at the start, and what length changes.
+  void look_elsewhere() {
+    for (int state = 1; state < 3; ++state) {
       std::vector<double> q = scene_.q;
       for (std::size_t i = 0; i < q.size(); ++i)
         q[i] += state * (0.31 + 0.17 * std::sin(static_cast<double>(i + 1))) * (1 + std::abs(q[i]));
-      const std::vector<double> there = state == 0 ? at_start_ : values(q);
-      for (const std::size_t i : spots()) {
+      elsewhere_.push_back(values(q));
+    }
+  }
+  std::vector<Point> points_of_view() const {
+    std::vector<Point> result;
+    for (const std::size_t i : spots()) {
+      result.push_back(point(i));
+      for (const std::vector<double>& there : elsewhere_) {
         if (at(there, i).allFinite()) result.push_back(at(there, i));
       }
     }
@@ -173,9 +203,9 @@ class Drawer {
     std::vector<Point> result;
     for (const std::size_t i : spots()) result.push_back(point(i));
     if (has_origin()) result.push_back(Point::Zero());
-    for (std::size_t i = 0; i < parts_.bodies.size(); ++i) {
-      const auto world = world_of(parts_.bodies[i]);
-      for (const Solid& solid : solids_[i]) {
+    for (const Placed& placed : solids_) {
+      const auto& world = placed.world;
+      for (const Solid& solid : placed.solids) {
         for (const std::vector<Point>& face : solid.faces) {
           for (const Point& r : face) result.push_back(world(r));
         }
@@ -206,7 +236,7 @@ class Drawer {
   /// The plane that something touches.
   void ground(Sketch& sketch, const DrawnContact& contact) const {
     if (contact.tangents) {
-      const Point here = point(contact.at), a = point((*contact.tangents)[0]), b = point((*contact.tangents)[1]);
+      const Point here = point(contact.foot), a = point((*contact.tangents)[0]), b = point((*contact.tangents)[1]);
       const double reach = 0.3 * (sketch.high() - sketch.low()).norm() / sketch.scale();
       const Point u = reach * a.normalized(), v = reach * b.normalized();
       if (u.allFinite() && v.allFinite()) {
@@ -217,28 +247,66 @@ class Drawer {
     sketch.dot(sketch.on_paper(point(contact.at)), 1, true);
   }
 
-  /// A rod or thread, unless a spring is drawn there.
-  void link(Sketch& sketch, std::size_t i) const {
-    const DrawnPlace& place = parts_.places[i];
-    if (!place.from) return;
-    const Point from = foot(place), here = point(place.at);
+  /// What leads to places, and what holds two of them apart.
+  std::vector<Rod> links() const {
+    std::vector<Rod> result;
+    for (std::size_t i = 0; i < parts_.places.size(); ++i) {
+      if (parts_.places[i].from) result.push_back({*parts_.places[i].from, static_cast<long>(i)});
+    }
+    for (const DrawnRod& rod : parts_.rods) result.push_back({rod.a, rod.b});
+    return result;
+  }
+  Point at_place(const std::vector<double>& there, long place) const {
+    return place < 0 ? Point(Point::Zero()) : at(there, parts_.places[static_cast<std::size_t>(place)].at);
+  }
+  /// A rod or thread, unless a spring is drawn there; dashed where its length changes.
+  void link(Sketch& sketch, const Rod& rod) const {
+    const Point from = at_place(at_start_, rod.from), here = at_place(at_start_, rod.to);
     const auto near = [](const Point& a, const Point& b) { return (a - b).norm() < 1e-9 * (1 + a.norm()); };
     const bool sprung = std::any_of(parts_.springs.begin(), parts_.springs.end(), [&](const DrawnLine& spring) {
       const Point a = point(spring.a), b = point(spring.b);
       return (near(a, from) && near(b, here)) || (near(b, from) && near(a, here));
     });
-    if (!sprung) sketch.line(from, here, Weight::strong);
+    if (sprung) return;
+    const double length = (here - from).norm();
+    bool rigid = std::none_of(parts_.surfaces.begin(), parts_.surfaces.end(), [&](const DrawnSurface& surface) {
+      return surface.touched && static_cast<long>(surface.place) == rod.to;
+    });
+    for (const std::vector<double>& there : elsewhere_) {
+      const double other = (at_place(there, rod.to) - at_place(there, rod.from)).norm();
+      rigid = rigid && !(std::abs(other - length) > 1e-6 * length);
+    }
+    // A constraint that is not built in holds what other states do not know of.
+    const bool held = std::any_of(parts_.rods.begin(), parts_.rods.end(),
+                                  [&](const DrawnRod& other) { return other.a == rod.from && other.b == rod.to; });
+    if (rigid || held)
+      sketch.line(from, here, Weight::strong);
+    else
+      sketch.dashes(sketch.on_paper(from), sketch.on_paper(here));
+  }
+
+  WheelPair wheels(const DrawnCoupling& coupling) const {
+    WheelPair pair;
+    for (std::size_t k = 0; k < 2; ++k) {
+      pair.centres[k] = point(parts_.places[coupling.of[k]].at);
+      pair.axes[k] = point(coupling.axes[k]);
+      for (const DrawnShape& shape : parts_.shapes) {
+        if (shape.place == coupling.of[k] && (shape.kind == "disk" || shape.kind == "cylinder"))
+          pair.radii[k].push_back(sizes_[shape.lengths[0]]);
+      }
+    }
+    pair.ratio = sizes_[coupling.ratio];
+    pair.carried = coupling.carried;
+    return pair;
   }
 
   void spot(Sketch& sketch, std::size_t i) const {
     const DrawnPlace& place = parts_.places[i];
     const PlanePoint at = sketch.on_paper(point(place.at));
     if (place.from == -1) sketch.dot(sketch.on_paper(Point::Zero()), 1.2, false);
-    if (std::string_view(place.kind) == "particle") return sketch.dot(at, 2.4, true);
-    const auto body =
-        std::find_if(parts_.bodies.begin(), parts_.bodies.end(), [&](const auto& b) { return b.place == i; });
     const bool is_solid =
-        body != parts_.bodies.end() && !solids_[static_cast<std::size_t>(body - parts_.bodies.begin())].empty();
+        std::any_of(solids_.begin(), solids_.end(), [i](const Placed& p) { return p.place == i && !p.solids.empty(); });
+    if (std::string_view(place.kind) == "particle") return sketch.dot(at, is_solid ? 0.8 : 2.4, true);
     sketch.dot(at, std::string_view(place.kind) == "body" && !is_solid ? 2.4 : 0.8, true);
   }
 
@@ -303,7 +371,8 @@ class Drawer {
   Drawing drawing_;
   const DrawnParts& parts_;
   std::vector<double> at_start_, sizes_;
-  std::vector<std::vector<Solid>> solids_;  // per body
+  std::vector<std::vector<double>> elsewhere_;
+  std::vector<Placed> solids_;
 };
 
 }  // namespace

@@ -45,9 +45,12 @@ Drawing::Drawing(mechanics::Mechanics& mechanics)
   bodies();
   forces();
   joints();
+  pivots();
   contacts();
   couplings();
   shapes();
+  surfaces();
+  rods();
 }
 
 void Drawing::add_outputs(system::EquationSystem& system) const {
@@ -140,12 +143,20 @@ void Drawing::contacts() {
     Vec3 at = *mechanics_.place_position[contact.place];
     const Vec3 arm = mechanics::lower_vector(mechanics_, contact.arm);
     for (std::size_t k = 0; k < 3; ++k) at[k] = mechanics_.dag->add(at[k], arm[k]);
+    Vec3 foot = at;
     std::optional<std::array<std::size_t, 2>> tangents;
     if (contact.other_place == 0 && contact.tangents[0] != model::no_node && contact.tangents[1] != model::no_node) {
       const std::size_t t1 = vector(contact.tangents[0]), t2 = vector(contact.tangents[1]);
       tangents = {t1, t2};
+      symbolic::Dag& dag = *mechanics_.dag;
+      const Vec3 normal = symbolic::cross(dag, mechanics::lower_vector(mechanics_, contact.tangents[0]),
+                                          mechanics::lower_vector(mechanics_, contact.tangents[1]));
+      // The last equation is the height over the plane.
+      const Ref height = mechanics::lower_scalar(mechanics_, constraint.psi.back());
+      foot = symbolic::subtract(dag, at, symbolic::scale(dag, height, normal));
     }
-    parts_.contacts.push_back({constraint.name, vector(at), tangents});
+    const std::size_t point = vector(at);
+    parts_.contacts.push_back({constraint.name, point, tangents, tangents ? vector(foot) : point});
   }
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What is drawn of a model, on a page and in a figure. In: its mechanics. Out: vectors (positions, axes of bodies, ends
-// of springs, points of joints and contacts, axes of gears) as outputs, which the code of a page is to have, and as
-// expressions; and where each part of the drawing finds its numbers among them.
+// of springs, points of joints and contacts, axes of gears, coordinates that constraints bind) as outputs, which the
+// code of a page is to have, and as expressions; and where each part of the drawing finds its numbers among them.
 #pragma once
 
 #include <array>
@@ -32,7 +32,7 @@ struct DrawnLine {
   std::size_t a, b;  // its ends
 };
 struct DrawnJoint {
-  std::string name;
+  std::string name;  // empty: of a body whose position turns with it
   std::size_t at;
   std::array<std::optional<std::size_t>, 2> of;  // places of its bodies; none: the ground
 };
@@ -40,6 +40,23 @@ struct DrawnContact {
   std::string name;
   std::size_t at;
   std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
+  std::size_t foot;  // the same point moved onto the plane: what is not touched yet is above it
+};
+/// What holonomic constraints leave to a particle whose position is of two or three coordinates that they bind.
+struct DrawnSurface {
+  std::string name;  // of the constraints
+  std::size_t place;
+  std::size_t at;                          // a vector: its coordinates
+  std::vector<std::uint32_t> coordinates;  // of the model
+  std::optional<std::size_t> integrals;    // a vector: the first integrals over time
+  bool touched = false;                    // with friction, or one side only
+  bool moves = false;                      // with time
+  std::vector<symbolic::Ref> psi;          // of these coordinates, time and parameters
+  symbolic::Vec3 position;
+};
+/// Two places, -1 the origin, at a distance that coordinates or a constraint hold.
+struct DrawnRod {
+  long a, b;
 };
 /// Two bodies that turn together, about axes of their own.
 struct DrawnCoupling {
@@ -64,6 +81,8 @@ struct DrawnParts {
   std::vector<DrawnContact> contacts;
   std::vector<DrawnCoupling> couplings;
   std::vector<DrawnShape> shapes;
+  std::vector<DrawnSurface> surfaces;
+  std::vector<DrawnRod> rods;
 };
 
 class Drawing {
@@ -93,6 +112,11 @@ class Drawing {
   void contacts();
   void couplings();
   void shapes();
+  void surfaces();
+  void rods();
+  bool is_rod(std::uint32_t constraint, std::uint32_t a, std::uint32_t b);
+  bool is_rigid(std::uint32_t a, std::uint32_t b);
+  void pivots();
 
   mechanics::Mechanics& mechanics_;
   const model::Model& model_;

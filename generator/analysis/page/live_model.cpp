@@ -47,10 +47,9 @@ class Live {
     for (const program::Function& function : s_.program.functions) {
       if (function.name == "rhs" || function.name == "mass" || function.name == "constraints")
         program.functions.push_back(function);
-      if (function.name == "events" && !program.events.empty()) program.functions.push_back(function);
+      if (function.name == "events" && s_.program.event_count() > 0) program.functions.push_back(function);
       if (function.name == "outputs") program.functions.push_back(program::restricted(function, chosen()));
     }
-    if (program.events.empty()) program.kinks.clear();
     program.outputs = outputs_;
     program.reactions.clear();
     program.functions.push_back(setup());

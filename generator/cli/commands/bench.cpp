@@ -10,6 +10,7 @@
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/plot_file.hpp"
 #include "cli/shared_options.hpp"
 #include "cli/usage.hpp"
 
@@ -17,7 +18,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options : SceneOptions {
-  std::string model, csv, svg, approach = "auto", form = "auto";
+  std::string model, csv, plot, approach = "auto", form = "auto";
   std::vector<std::string> solvers;
   double seconds = 10;
   bool no_libraries = false;
@@ -38,7 +39,8 @@ class Status {
 int execute(const Options& options, const Common& common) {
   std::vector<Place> places;
   if (!options.csv.empty()) places.push_back({"--out", options.csv, ".csv"});
-  if (!options.svg.empty()) places.push_back({"--plot", options.svg, ".svg"});
+  const PlotFile plot(options.plot);
+  if (plot.wanted()) places.push_back(plot.place());
   require_places(places, locate_model(options.model), common.json);
   Status status;
   analysis::BenchmarkRequest request;
@@ -59,12 +61,11 @@ int execute(const Options& options, const Common& common) {
   const BenchReport report{found, "code compiled with -O2"};
   if (!options.csv.empty()) write_text(options.csv, report.csv());
   const model::Model& model = *request.model;
-  if (!options.svg.empty())
-    write_text(options.svg, bench::diagram(found.rows, model.title.empty() ? model.id : model.title));
+  if (plot.wanted()) plot.write(bench::diagram(found.rows, model.title.empty() ? model.id : model.title));
   if (common.json) {
     print_document(report.json());
   } else {
-    print_readable(report.text(), is_standard_output(options.csv) || is_standard_output(options.svg));
+    print_readable(report.text(), is_standard_output(options.csv) || is_standard_output(options.plot));
   }
   if (Interrupt::flag()) return 3;
   return found.conclusive() ? 0 : 1;
@@ -84,7 +85,8 @@ Execute declare_bench(Arguments& app) {
       .show_preset();
   app.add_flag("--no-libraries", options->no_libraries, "without the solvers of other libraries");
   app.add_place("-o,--out,--csv", options->csv, "the table as a CSV file");
-  app.add_place("--plot,--svg", options->svg, "error over run time as an SVG plot");
+  app.add_place("--plot,--svg", options->plot,
+                "error over run time, SVG or PNG by its ending; - draws it with characters");
   add_approach(app, options->approach);
   add_form(app, options->form);
   return [options](const Common& common) { return execute(*options, common); };

@@ -7,8 +7,10 @@
 #include <optional>
 #include <set>
 
+#include "analysis/drawing/forces.hpp"
 #include "analysis/equations.hpp"
 #include "analysis/page/live_model.hpp"
+#include "analysis/page/surface_code.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/examination.hpp"
 #include "cli/locate.hpp"
@@ -90,7 +92,12 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
     if (items.empty()) continue;
     html.heading(3, title);
     std::string before;
+    std::vector<print::Item> derivatives;  // of constraints: behind the equations for who asks for them
     for (const print::Item& item : items) {
+      if (key == "constraints" && item.role.ends_with("time derivative") && item.left_out.empty()) {
+        derivatives.push_back(item);
+        continue;
+      }
       if (!item.left_out.empty()) {
         html.paragraph(fmt::format("Left out, {}: {}.", item.name.empty() ? item.key : item.name, item.left_out),
                        "quiet");
@@ -104,6 +111,13 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
       before = what;
       add_formula(html, item.mathml, room);
     }
+    if (derivatives.empty()) continue;
+    html.markup("<details><summary>Their time derivatives</summary>");
+    for (const print::Item& item : derivatives) {
+      html.paragraph(item.name + ", " + item.role, "quiet");
+      add_formula(html, item.mathml, room);
+    }
+    html.markup("</details>");
   }
   if (conserved.empty()) return;
   html.heading(3, "Conserved");
@@ -174,12 +188,18 @@ int execute(const Options& options, const Common& common) {
   request.rows = rows_of_a_page;
   request.with = {"mass"};  // a point that is dragged moves the lightest most
   std::optional<analysis::Drawing> drawing;
+  std::optional<analysis::DrawnForces> forces;
   std::vector<std::string> outputs;  // what the page draws and plots beside the state
   std::vector<Panel> curves;
   request.prepare = [&](pipeline::Derived& derived) {
     drawing.emplace(derived.mechanics);
-    for (system::EquationSystem& candidate : derived.candidates) drawing->add_outputs(candidate);
+    forces.emplace(derived.mechanics, *drawing);
+    for (system::EquationSystem& candidate : derived.candidates) {
+      drawing->add_outputs(candidate);
+      forces->add_outputs(candidate);
+    }
     outputs = drawing->outputs();
+    outputs.insert(outputs.end(), forces->outputs().begin(), forces->outputs().end());
     curves = panels(
         derived.candidates.front().outputs,
         run::expand_outputs(derived.mechanics, derived.candidates.front(), derived.model.scene(options.scene).outputs));
@@ -200,15 +220,17 @@ int execute(const Options& options, const Common& common) {
   std::set<std::string> set;
   for (const auto& [name, value] : request.overrides.values) set.insert(name);
   const analysis::LiveModel live = analysis::live_model(simulation, *drawing, outputs, set);
-  const Json moving = recorded.json(simulation, *drawing, live, outputs, curves);
+  const analysis::SurfaceCode surfaces = analysis::surface_code(simulation, *drawing);
+  const Json moving = recorded.json(simulation, *drawing, forces->list(), live, outputs, curves);
   Html html;
   add_head(html, model, !moving.is_null());
   add_equations(html, simulation.derived->mechanics, simulation.derived->conserved);
   add_run(html, simulation, run, recorded.plots(curves));
   add_model(html, model, to_json(model, analysis::examine(simulation.derived->shared)));
   add_certificate(html, simulation.certificate);
-  write_text(file, page({model.title.empty() ? model.id : model.title, html.text(),
-                         moving.is_null() ? "" : moving.dump(), live.script, live.name}));
+  write_text(file,
+             page({model.title.empty() ? model.id : model.title, html.text(), moving.is_null() ? "" : moving.dump(),
+                   live.script, live.name, surfaces.script, surfaces.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1},

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <fmt/format.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
-#include <filesystem>
 #include <optional>
 
 #include "analysis/sensitivities.hpp"
@@ -15,8 +12,7 @@
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
 #include "cli/panels.hpp"
-#include "cli/picture/png_file.hpp"
-#include "cli/picture/svg_picture.hpp"
+#include "cli/plot_file.hpp"
 #include "cli/run_plot.hpp"
 #include "cli/run_report.hpp"
 #include "cli/shared_options.hpp"
@@ -130,26 +126,11 @@ std::vector<std::string> plotted_outputs(const Options& options, pipeline::Deriv
                         : run::expand_outputs(derived.mechanics, derived.candidates.front(), wanted);
 }
 
-constexpr double pixels_of_a_unit = 2;  // of a PNG: sharp where screens are fine
-
-bool is_png(const std::string& path) {
-  std::string ending = std::filesystem::path(path).extension().string();
-  std::transform(ending.begin(), ending.end(), ending.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return ending == ".png";
-}
-
-std::size_t terminal_columns() {
-  constexpr std::size_t usual = 80, most = 160;
-  winsize size{};
-  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return usual;
-  return std::min<std::size_t>(size.ws_col, most);
-}
-
 int execute(const Options& options, const Common& common) {
   std::vector<Place> places;
   if (!options.out.empty()) places.push_back({"--out", options.out, ".csv"});
-  if (!options.plot.empty()) places.push_back({"--plot", options.plot, is_png(options.plot) ? ".png" : ".svg"});
+  const PlotFile plot(options.plot);
+  if (plot.wanted()) places.push_back(plot.place());
   require_places(places, locate_model(options.model), common.json);
   pipeline::SimulationRequest request;
   request.model = load_model(options.model);
@@ -171,16 +152,16 @@ int execute(const Options& options, const Common& common) {
   request.interrupt = &Interrupt::flag();
   request.max_steps = options.max_steps;
   std::optional<Rows> rows;
-  if (!options.plot_of.empty() && options.plot.empty()) {
+  if (!options.plot_of.empty() && !plot.wanted()) {
     throw Error("run", {}, "--plot-of says what is plotted, and there is no plot",
                 "add --plot F.svg, or --plot - for characters");
   }
   request.prepare = [&options](pipeline::Derived& derived) { return plotted_outputs(options, derived); };
-  if (!options.out.empty() || !options.plot.empty()) {
+  if (!options.out.empty() || plot.wanted()) {
     request.begin = [&](const pipeline::Derived& derived, const run::Scene& scene,
                         const std::vector<std::string>& names) {
       std::vector<Panel> panels;
-      if (!options.plot.empty())
+      if (plot.wanted())
         panels = options.plot_of.empty() ? coordinate_panels(derived.candidates.front().outputs)
                                          : chosen_panels(derived.candidates.front().outputs, options.plot_of);
       rows.emplace(options.out, panels, options.yes, derived, scene, names);
@@ -193,13 +174,12 @@ int execute(const Options& options, const Common& common) {
   if (rows) rows->finish(simulation.result.outcome);
   std::vector<WrittenFile> files;
   if (rows && rows->table() != nullptr) files.push_back({options.out, rows->table()->rows(), rows->table()->bytes()});
-  if (!options.plot.empty()) {
+  if (plot.wanted()) {
     const std::string title = model.title.empty() ? model.id : model.title;
-    const bool terminal = options.plot == "-";
-    std::string plot = terminal ? rows->plot().characters(title, simulation.result, terminal_columns())
-                                : rows->plot().svg(title, simulation.result);
-    if (is_png(options.plot)) plot = png(drawn(plot, pixels_of_a_unit));
-    files.push_back({options.plot, std::nullopt, write_text(options.plot, plot)});
+    const std::uint64_t bytes =
+        plot.write([&] { return rows->plot().svg(title, simulation.result); },
+                   [&](std::size_t columns) { return rows->plot().characters(title, simulation.result, columns); });
+    files.push_back({options.plot, std::nullopt, bytes});
   }
   const eom::Outcome outcome = simulation.result.outcome;
   const bool ended = outcome == eom::Outcome::done || outcome == eom::Outcome::stopped_by_event;

@@ -3,15 +3,17 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "analysis/stress_test.hpp"
 #include "cli/commands/commands.hpp"
 #include "cli/interrupt.hpp"
 #include "cli/locate.hpp"
 #include "cli/output.hpp"
+#include "cli/plot_file.hpp"
 #include "cli/shared_options.hpp"
+#include "cli/stress_plot.hpp"
 #include "cli/usage.hpp"
 
 namespace eomgen::cli {
@@ -20,7 +22,7 @@ namespace {
 using stress::Verdict;
 
 struct Options : SceneOptions {
-  std::string model;
+  std::string model, plot;
   std::vector<std::string> solvers;
   double seconds = 60;
   std::size_t steps = 20000;
@@ -80,61 +82,71 @@ Json document(const model::Model& model, const analysis::StressFindings& found) 
           {"verdict", found.count(Verdict::unreported) == 0 ? "pass" : "fail"}};
 }
 
-void print_audit(const Json& audit) {
+std::string audited(const Json& audit) {
   const auto value = [](const Json& v, const char* format) {
     return v.is_null() ? std::string("none") : fmt::format(fmt::runtime(format), v.get<double>());
   };
-  fmt::print("denominator audit, {} states\n", audit["states"].get<std::size_t>());
+  std::string out = fmt::format("denominator audit, {} states\n", audit["states"].get<std::size_t>());
   for (const auto& [key, what] : {std::pair{"mass_condition", "condition of the mass matrix"},
                                   {"scaled_mass_condition", "with its diagonal scaled to 1"},
                                   {"pivot_cancellation", "largest cancellation in a pivot"},
                                   {"digits_lost", "digits lost, of 16"}}) {
     const Json& extreme = audit[key];
     if (!extreme.is_null())
-      fmt::print("  {:<32}{:>10}  {}\n", what, value(extreme["value"], "{:.3g}"), extreme["case"].get<std::string>());
+      out += fmt::format("  {:<32}{:>10}  {}\n", what, value(extreme["value"], "{:.3g}"),
+                         extreme["case"].get<std::string>());
   }
-  if (!audit["denominators"].empty()) fmt::print("  {:<32}{:>10}\n", "divided by, zero where", "least");
+  if (!audit["denominators"].empty()) out += fmt::format("  {:<32}{:>10}\n", "divided by, zero where", "least");
   for (const Json& d : audit["denominators"]) {
-    fmt::print("  {:<32}{:>10}  {}; {}\n", d["zero"].get<std::string>(), value(d["smallest"], "{:.2g}"),
-               d["case"].get<std::string>(), d["test"].get<std::string>());
+    out += fmt::format("  {:<32}{:>10}  {}; {}\n", d["zero"].get<std::string>(), value(d["smallest"], "{:.2g}"),
+                       d["case"].get<std::string>(), d["test"].get<std::string>());
   }
-  fmt::print("\n");
+  return out + "\n";
 }
 
-void print_readable(const Json& found, const std::vector<std::string>& solvers) {
-  fmt::print("model  {}, scene {}\n\n  {:<28}", found["model"].get<std::string>(), found["scene"].get<std::string>(),
-             "case");
-  for (const std::string& solver : solvers) fmt::print(" {:>9}", solver);
+std::string readable(const Json& found, const std::vector<std::string>& solvers) {
+  std::string out = fmt::format("model  {}, scene {}\n\n  {:<28}", found["model"].get<std::string>(),
+                                found["scene"].get<std::string>(), "case");
+  const auto entry = [](const std::string& solver, const std::string& text) {
+    return fmt::format(" {:>{}}", text, std::max<std::size_t>(9, solver.size()));
+  };
+  for (const std::string& solver : solvers) out += entry(solver, solver);
   std::string test;
   std::size_t column = 0;
   for (const Json& row : found["rows"]) {
     if (row["case"] != test) {
       test = row["case"].get<std::string>();
-      fmt::print("\n  {:<28}", test);
+      out += fmt::format("\n  {:<28}", test);
       column = 0;
     }
-    for (; column < solvers.size() && solvers[column] != row["solver"]; ++column) fmt::print(" {:>9}", "-");
+    for (; column < solvers.size() && solvers[column] != row["solver"]; ++column) out += entry(solvers[column], "-");
     ++column;
-    fmt::print(" {:>9}", row["verdict"] == "silent" ? "SILENT" : row["verdict"].get<std::string>());
+    out += entry(row["solver"].get<std::string>(),
+                 row["verdict"] == "silent" ? "SILENT" : row["verdict"].get<std::string>());
   }
-  fmt::print("\n\n");
+  out += "\n\n";
   for (const Json& l : found["left_out"])
-    fmt::print("left out: {}: {}\n", l["case"].get<std::string>(), l["reason"].get<std::string>());
-  print_audit(found["denominator_audit"]);
+    out += fmt::format("left out: {}: {}\n", l["case"].get<std::string>(), l["reason"].get<std::string>());
+  out += audited(found["denominator_audit"]);
   for (const Json& row : found["rows"]) {
     if (row["verdict"] != "silent") continue;
     const auto shown = [&](const char* key) {
       return row[key].is_null() ? std::string("none") : fmt::format("{:.2e}", row[key].get<double>());
     };
-    fmt::print("silent: {}, {}: error {}, estimate {}, condition {}, outcome {} {}\n", row["case"].get<std::string>(),
-               row["solver"].get<std::string>(), shown("error"), shown("estimate"), shown("condition"),
-               row["outcome"].get<std::string>(), row["note"].get<std::string>());
+    out +=
+        fmt::format("silent: {}, {}: error {}, estimate {}, condition {}, outcome {} {}\n",
+                    row["case"].get<std::string>(), row["solver"].get<std::string>(), shown("error"), shown("estimate"),
+                    shown("condition"), row["outcome"].get<std::string>(), row["note"].get<std::string>());
   }
-  fmt::print("{}: {} kept, {} told, {} silent\n", found["verdict"].get<std::string>(), found["kept"].get<std::size_t>(),
-             found["told"].get<std::size_t>(), found["silent"].get<std::size_t>());
+  out += fmt::format("{}: {} kept, {} told, {} silent\n", found["verdict"].get<std::string>(),
+                     found["kept"].get<std::size_t>(), found["told"].get<std::size_t>(),
+                     found["silent"].get<std::size_t>());
+  return out;
 }
 
 int execute(const Options& options, const Common& common) {
+  const PlotFile plot(options.plot);
+  if (plot.wanted()) require_places({plot.place()}, locate_model(options.model), common.json);
   analysis::StressRequest request;
   request.model = load_model(options.model);
   request.scene = options.scene;
@@ -151,10 +163,14 @@ int execute(const Options& options, const Common& common) {
   const Interrupt interrupt;
   if (terminal) tell(fmt::format("\r{:60}\r", ""));
   const Json found = document(*request.model, findings);
+  const model::Model& model = *request.model;
+  const StressPlot verdicts{findings, model.title.empty() ? model.id : model.title};
+  if (plot.wanted())
+    plot.write([&] { return verdicts.svg(); }, [&](std::size_t columns) { return verdicts.characters(columns); });
   if (common.json) {
     print_document(found);
   } else {
-    print_readable(found, findings.solvers);
+    print_readable(readable(found, findings.solvers), is_standard_output(options.plot));
   }
   return Interrupt::flag() ? 3 : found["verdict"] == "pass" ? 0 : 1;
 }
@@ -174,6 +190,7 @@ Execute declare_stress(Arguments& app) {
   app.add_option("--seconds", options->seconds, "a guard: what takes longer is interrupted, and told")
       .check(positive_number())
       .show_preset();
+  app.add_place("--plot", options->plot, "the verdicts, SVG or PNG by its ending; - draws them with characters");
   app.add_flag("--quick", options->quick, "a few variations of each kind");
   return [options](const Common& common) { return execute(*options, common); };
 }

@@ -71,6 +71,15 @@ class Painter {
         },
         colour);
   }
+  void rectangle(Point corner, double width, double height, const Colour& colour) {
+    const Point a = placed(corner), b = placed({corner.first + width, corner.second + height});
+    each(
+        a.first, b.first, a.second, b.second,
+        [&](double x, double y) {
+          return 0.5 + std::min({x - a.first, b.first - x, y - a.second, b.second - y});
+        },
+        colour);
+  }
   void disk(Point centre, double radius, const Colour& colour) {
     centre = placed(centre);
     radius *= scale_;
@@ -197,6 +206,9 @@ class Reader {
       if (name == "title") at = svg_.find("</title>", end);
       if (name == "svg") painter_.shift(tag.number("y"));
       if (name == "g") group_ = colour_of(tag.get("fill"), group_);
+      if (name == "rect" && tag.get("width").find('%') == std::string::npos)  // all of it is the paper, which is white
+        painter_.rectangle({tag.number("x"), tag.number("y")}, tag.number("width"), tag.number("height"),
+                           colour_of(tag.get("fill"), ink));
       if (name == "line")
         painter_.polyline({{tag.number("x1"), tag.number("y1")}, {tag.number("x2"), tag.number("y2")}},
                           tag.number("stroke-width", 1), numbers(tag.get("stroke-dasharray")),

@@ -7,18 +7,22 @@
 #include <kainjow/mustache.hpp>
 #include <stdexcept>
 
+#include "cli/report_skeletons/camera_js.hpp"
 #include "cli/report_skeletons/controls_js.hpp"
 #include "cli/report_skeletons/drag_js.hpp"
 #include "cli/report_skeletons/fit_js.hpp"
 #include "cli/report_skeletons/integrator_js.hpp"
 #include "cli/report_skeletons/linear_js.hpp"
+#include "cli/report_skeletons/links_js.hpp"
 #include "cli/report_skeletons/main_js.hpp"
 #include "cli/report_skeletons/motion_js.hpp"
 #include "cli/report_skeletons/page_css.hpp"
 #include "cli/report_skeletons/page_html.hpp"
+#include "cli/report_skeletons/pencil_js.hpp"
 #include "cli/report_skeletons/plots_js.hpp"
 #include "cli/report_skeletons/scene_js.hpp"
 #include "cli/report_skeletons/shapes_js.hpp"
+#include "cli/report_skeletons/surfaces_js.hpp"
 #include "print/notation.hpp"
 
 namespace eomgen::cli {
@@ -75,11 +79,16 @@ std::string page(const PageParts& parts) {
   all.set("body", parts.body);
   all.set("motion", inside_of_script(parts.motion));
   // The target escapes what the model says; a script may hold nothing that ends it.
-  all.set("model", parts.model.empty() ? "return null;" : parts.model + "return " + parts.name + ";");
+  const auto returned = [](const std::string& script, const std::string& name) {
+    return script.empty() ? "return null;" : script + "return " + name + ";";
+  };
+  all.set("model", returned(parts.model, parts.name));
+  all.set("surfaces", returned(parts.surfaces, parts.surfaces_name));
   std::string scripts;
   for (const char* script :
-       {report::linear_js, report::integrator_js, report::motion_js, report::shapes_js, report::scene_js,
-        report::plots_js, report::drag_js, report::controls_js, report::fit_js, report::main_js}) {
+       {report::linear_js, report::integrator_js, report::motion_js, report::shapes_js, report::camera_js,
+        report::pencil_js, report::links_js, report::surfaces_js, report::scene_js, report::plots_js, report::drag_js,
+        report::controls_js, report::fit_js, report::main_js}) {
     scripts += script;
   }
   all.set("scripts", scripts);

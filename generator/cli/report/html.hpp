@@ -27,8 +27,10 @@ struct PageParts {
   std::string title;  // escaped here
   std::string body;
   std::string motion;  // JSON for the script; empty: the page has none
-  std::string model;   // JavaScript of the target javascript, or empty
-  std::string name;    // of the constant that it defines
+  // JavaScript of the target javascript, or empty, and the name of the constant that it defines: the model, and the
+  // equations of what is drawn of constraints.
+  std::string model, name;
+  std::string surfaces, surfaces_name;
 };
 
 /// The whole page: the skeleton of templates/report with its style and scripts.

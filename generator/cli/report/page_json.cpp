@@ -28,7 +28,7 @@ Json line(const analysis::DrawnLine& l) { return {{"a", l.a}, {"b", l.b}}; }
 
 }  // namespace
 
-Json to_json(const analysis::DrawnParts& parts) {
+Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene) {
   Json result;
   result["places"] = list_of(parts.places, [](const analysis::DrawnPlace& p) -> Json {
     return {{"name", p.name}, {"kind", p.kind}, {"from", or_null(p.from)}, {"at", p.at}};
@@ -42,7 +42,7 @@ Json to_json(const analysis::DrawnParts& parts) {
     return {{"name", j.name}, {"at", j.at}, {"of", Json::array({or_null(j.of[0]), or_null(j.of[1])})}};
   });
   result["contacts"] = list_of(parts.contacts, [](const analysis::DrawnContact& c) -> Json {
-    return {{"name", c.name}, {"at", c.at}, {"tangents", or_null(c.tangents)}};
+    return {{"name", c.name}, {"at", c.at}, {"tangents", or_null(c.tangents)}, {"foot", c.foot}};
   });
   result["couplings"] = list_of(parts.couplings, [](const analysis::DrawnCoupling& c) -> Json {
     return {{"name", c.name}, {"of", c.of}, {"axes", c.axes}, {"ratio", c.ratio}, {"carried", c.carried}};
@@ -50,7 +50,38 @@ Json to_json(const analysis::DrawnParts& parts) {
   result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) -> Json {
     return {{"place", s.place}, {"kind", s.kind}, {"lengths", s.lengths}, {"axis", s.axis}, {"at", s.at}};
   });
+  std::size_t count = 0;
+  result["surfaces"] = list_of(parts.surfaces, [&](const analysis::DrawnSurface& s) -> Json {
+    const auto of_unit = [&](const char* unit) {
+      return list_of(s.coordinates, [&](std::uint32_t c) -> Json { return model.coordinates[c].unit.text == unit; });
+    };
+    std::vector<double> lower, upper;
+    for (const std::uint32_t c : s.coordinates) {
+      lower.push_back(scene.lower[c]);
+      upper.push_back(scene.upper[c]);
+    }
+    return {{"name", s.name},
+            {"place", s.place},
+            {"at", s.at},
+            {"columns", s.coordinates},
+            {"bound", s.psi.size()},
+            {"angles", of_unit("rad")},
+            {"lengths", of_unit("m")},
+            {"lower", bounds(lower)},
+            {"upper", bounds(upper)},
+            {"integrals", or_null(s.integrals)},
+            {"touched", s.touched},
+            {"moves", s.moves},
+            {"equations", "surface_" + std::to_string(++count)}};
+  });
+  result["rods"] = list_of(parts.rods, [](const analysis::DrawnRod& r) { return Json::array({r.a, r.b}); });
   return result;
+}
+
+Json to_json(const std::vector<analysis::DrawnForce>& forces) {
+  return list_of(forces, [](const analysis::DrawnForce& f) -> Json {
+    return {{"name", f.name}, {"kind", f.kind}, {"at", f.at}, {"value", f.value}};
+  });
 }
 
 Json to_json(const analysis::LiveStart& start) {

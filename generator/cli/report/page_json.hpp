@@ -2,13 +2,16 @@
 // What a page draws and runs, as its script reads it.
 #pragma once
 
+#include "analysis/drawing/forces.hpp"
 #include "analysis/drawing/parts.hpp"
 #include "analysis/page/live_model.hpp"
 #include "cli/json.hpp"
 
 namespace eomgen::cli {
 
-Json to_json(const analysis::DrawnParts& parts);
+/// The bounds of coordinates are those of the scene.
+Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene);
+Json to_json(const std::vector<analysis::DrawnForce>& forces);
 Json to_json(const analysis::LiveStart& start);
 
 }  // namespace eomgen::cli

@@ -63,8 +63,8 @@ Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) con
 }
 
 Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
-                          const analysis::LiveModel& live, const std::vector<std::string>& outputs,
-                          const std::vector<Panel>& panels) const {
+                          const std::vector<analysis::DrawnForce>& forces, const analysis::LiveModel& live,
+                          const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const {
   if (t_.size() < 2) return nullptr;
   const model::Model& model = simulation.derived->model;
   const std::vector<std::string> states = pipeline::state_names(*simulation.derived);
@@ -88,6 +88,8 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
   const double span = t_.back() - t_.front();
   const auto down = analysis::falling(simulation.derived->mechanics, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
+  Json parts = to_json(drawing.parts(), model, simulation.scene);
+  parts["arrows"] = to_json(forces);
   return {{"t", times},
           {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},
           {"y", is_live ? Json(nullptr) : rows(outputs, digits_of_screens)},
@@ -95,7 +97,8 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
           {"t1", simulation.scene.t1},
           {"speed", span / std::clamp(span, least_seconds, most_seconds)},
           {"down", down ? Json(*down) : Json(nullptr)},
-          {"parts", to_json(drawing.parts())},
+          {"parts", parts},
+          {"p", simulation.scene.parameters},
           {"sizes", sizes},
           {"panels", curves},
           {"events", events},

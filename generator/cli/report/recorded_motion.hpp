@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "analysis/drawing/forces.hpp"
 #include "analysis/page/live_model.hpp"
 #include "cli/json.hpp"
 #include "cli/panels.hpp"
@@ -22,7 +23,8 @@ class RecordedMotion {
 
   /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
   /// which the script computes the rest; else all `outputs`.
-  Json json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing, const analysis::LiveModel& live,
+  Json json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
+            const std::vector<analysis::DrawnForce>& forces, const analysis::LiveModel& live,
             const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
 
  private:

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cli/plot_file.hpp"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+
+#include "cli/picture/png_file.hpp"
+#include "cli/picture/svg_picture.hpp"
+#include "cli/text_plot.hpp"
+
+namespace eomgen::cli {
+namespace {
+
+constexpr double pixels_of_a_unit = 2;  // of a PNG: sharp where screens are fine
+
+std::size_t terminal_columns() {
+  constexpr std::size_t usual = 80, most = 160;
+  winsize size{};
+  if (::ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0 || size.ws_col == 0) return usual;
+  return std::min<std::size_t>(size.ws_col, most);
+}
+
+bool is_png(const std::string& path) {
+  std::string ending = std::filesystem::path(path).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return ending == ".png";
+}
+
+}  // namespace
+
+std::uint64_t PlotFile::write(const std::function<std::string()>& svg,
+                              const std::function<std::string(std::size_t columns)>& characters) const {
+  if (path_ == "-") return write_text(path_, characters(terminal_columns()));
+  const std::string drawing = svg();
+  return write_text(path_, is_png(path_) ? png(drawn(drawing, pixels_of_a_unit)) : drawing);
+}
+
+std::uint64_t PlotFile::write(const eom::Plot& plot) const {
+  return write([&] { return eom::svg(plot); },
+               [&](std::size_t columns) { return plot.title + "\n\n" + in_characters(text_plot(plot), columns); });
+}
+
+}  // namespace eomgen::cli

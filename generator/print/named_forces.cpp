@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "print/named_forces.hpp"
+
+#include <algorithm>
+
+#include "print/formulas.hpp"
+#include "print/vector_formula.hpp"
+
+namespace eomgen::print {
+
+using reading::Form;
+using reading::Formula;
+using reading::mark;
+using symbolic::Ref;
+using symbolic::Vec3;
+using Acts = model::Effect::Acts;
+
+namespace {
+
+Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
+Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
+Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
+
+/// The second effect of force 3 has F_(3 2).
+std::vector<Formula> lower_index(std::uint32_t j, std::uint32_t k) {
+  return k == 0 ? std::vector<Formula>{index(j + 1)} : std::vector<Formula>{index(j + 1), index(k + 1)};
+}
+
+}  // namespace
+
+bool NamedForces::are_vectors(const model::Force& force) {
+  return std::all_of(force.effects.begin(), force.effects.end(),
+                     [](const model::Effect& e) { return e.acts != Acts::work && e.acts != Acts::component; });
+}
+
+bool NamedForces::work(std::uint32_t j, std::uint32_t k, std::uint32_t i, std::vector<Formula>& terms) {
+  const model::Effect& effect = m_.model->forces[j].effects[k];
+  if (effect.acts == Acts::acceleration || effect.acts == Acts::potential) return true;  // in U
+  const std::vector<Formula> of = lower_index(j, k);
+  const bool moment = effect.acts == Acts::moment;
+  const Formula F = mark(moment ? "bold M" : "bold F", of), s = mark("bold s", of);
+  if (moment && std::none_of(m_.spins.begin(), m_.spins.end(),
+                             [&](const mechanics::Spin& spin) { return spin.frame == effect.index; }))
+    return false;
+  if (!std::count(effects_.begin(), effects_.end(), std::pair(j, k))) {
+    const std::string& name = m_.model->forces[j].name;
+    if (effect.acts == Acts::damping) {
+      const std::optional<Formula> between = line(j, k), c = scalar(effect.value);
+      if (!between || !c) return false;
+      const Formula part = reading::fraction(dot_product(s, dotted(s)), dot_product(s, s));
+      words_.define("force", name, reading::relation({F, reading::negative(reading::product({*c, part, s}))}));
+    } else {
+      const std::optional<Formula> value = vector(effect.value), at = moment ? std::optional(F) : vector(effect.at);
+      if (!value || !at) return false;
+      if (!moment) words_.define("point", name, reading::relation({s, *at}));
+      words_.define(moment ? "moment" : "force", name, reading::relation({F, *value}));
+    }
+    effects_.emplace_back(j, k);
+  }
+  terms.push_back(dot_product(
+      F, moment ? partial(mark("bold omega", {index(effect.index)}), coordinate(i, 1)) : partial(s, coordinate(i, 0))));
+  return true;
+}
+
+std::optional<Formula> NamedForces::line(std::uint32_t j, std::uint32_t k) {
+  const model::Force& force = m_.model->forces[j];
+  const model::Effect& effect = force.effects[k];
+  const std::optional<Formula> a = vector(effect.at), b = vector(effect.other);
+  if (!a || !b) return std::nullopt;
+  Formula s = mark("bold s", lower_index(j, k));
+  std::vector<Formula> terms{*a};
+  if (!reading::is_zero(*b)) terms.push_back(reading::negative(*b));
+  words_.define("line", force.name, reading::relation({s, reading::sum(std::move(terms))}));
+  return s;
+}
+
+std::optional<Formula> NamedForces::spring(std::uint32_t j) {
+  const model::Force& force = m_.model->forces[j];
+  const model::NodeId stiffness = force.value("stiffness"), length = force.value("length");
+  std::vector<Formula> terms;
+  for (std::uint32_t k = 0; k < force.effects.size(); ++k) {
+    const model::Effect& effect = force.effects[k];
+    if (effect.acts == Acts::acceleration) return std::nullopt;
+    if (effect.acts != Acts::potential) continue;  // no energy
+    if (effect.other == model::no_node || stiffness == model::no_node) return std::nullopt;
+    const std::optional<Formula> s = line(j, k), c = scalar(stiffness),
+                                 free = length == model::no_node ? reading::number(0) : scalar(length);
+    if (!s || !c || !free) return std::nullopt;
+    Formula square = dot_product(*s, *s);
+    if (!reading::is_zero(*free)) {
+      Formula distance = reading::wrap(Form::call, {square});
+      distance.op = symbolic::Op::sqrt;
+      square = reading::wrap(Form::power,
+                             {reading::sum({std::move(distance), reading::negative(*free)}), reading::number(2)});
+    }
+    // One number in front.
+    if (c->form == Form::number)
+      terms.push_back(reading::product({reading::number(c->number / 2), std::move(square)}));
+    else
+      terms.push_back(
+          reading::product({reading::fraction(reading::number(1), reading::number(2)), *c, std::move(square)}));
+  }
+  if (terms.empty()) return std::nullopt;
+  return reading::sum(std::move(terms));
+}
+
+// As its author wrote it, unless constraints would have to be built into that.
+std::optional<Formula> NamedForces::scalar(model::NodeId node) {
+  const Ref lowered = mechanics::lower_scalar(m_, node);
+  if (std::optional<Formula> written = words_.as_written(node, lowered)) return written;
+  return words_.read(lowered);
+}
+
+// By names, and what these stand for; else along E1, E2, E3.
+std::optional<Formula> NamedForces::vector(model::NodeId node) {
+  VectorFormula by_names(m_, [this](model::NodeId factor) { return scalar(factor); });
+  if (std::optional<Formula> formula = by_names(node)) {
+    for (const std::uint32_t place : by_names.places()) {
+      if (!point(place)) return std::nullopt;
+    }
+    return formula;
+  }
+  const Vec3 components = mechanics::lower_vector(m_, node);
+  std::vector<Formula> written, axes;
+  for (std::uint32_t k = 0; k < 3; ++k) {
+    const std::optional<Formula> component = words_.read(components[k]);
+    if (!component) return std::nullopt;
+    written.push_back(*component);
+    axes.push_back(mark("E", {index(k + 1)}));
+  }
+  std::vector<Formula> sum;
+  for (std::size_t k = 0; k < 3; ++k) {
+    if (!reading::is_zero(written[k])) sum.push_back(reading::product({written[k], axes[k]}));
+  }
+  return reading::sum(std::move(sum));
+}
+
+// r of a place that no mass is at.
+bool NamedForces::point(std::uint32_t place) {
+  const auto is_there = [place](const mechanics::PointMass& mass) { return mass.place == place; };
+  if (std::any_of(m_.masses.begin(), m_.masses.end(), is_there) || std::count(points_.begin(), points_.end(), place))
+    return true;
+  points_.push_back(place);
+  const std::optional<Formula> written = vector(m_.model->places[place].position);
+  if (written)
+    words_.define("position", m_.model->places[place].name, reading::relation({mark("r", {index(place)}), *written}));
+  return written.has_value();
+}
+
+}  // namespace eomgen::print
