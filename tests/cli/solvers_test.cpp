@@ -3,6 +3,8 @@
 // schemas and the pages say what it says.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <eom/registry.hpp>
 #include <fstream>
 #include <set>
@@ -95,6 +97,24 @@ TEST_CASE("solvers: every method of the registry integrates the pendulum on a ro
     folder.write("model.toml", scene(method.name));
     CHECK(document(folder, {"run", "model.toml", "--no-error-estimate"})["solver"] == method.name);
   }
+}
+
+TEST_CASE("solvers: rodas has its order in Euler parameters too, where its Jacobian is needed off the unit sphere") {
+  const Folder folder;
+  const auto end = [&](const Words& how) {
+    Words words{"run", "R17_follower_force", "--t-end", "1", "--no-error-estimate"};
+    words.insert(words.end(), how.begin(), how.end());
+    return document(folder, words)["final"];
+  };
+  const Json exact = end({"--solver", "dop853", "--rtol", "1e-13", "--atol", "1e-15"});
+  const auto error = [&](const std::string& step) {
+    const Json final = end({"--solver", "rodas", "--step", step});
+    double largest = 0;
+    for (const char* e : {"e0", "e1", "e2", "e3"})
+      largest = std::max(largest, std::abs(final[e].get<double>() - exact[e].get<double>()));
+    return largest;
+  };
+  CHECK(std::log2(error("0.02") / error("0.01")) == doctest::Approx(5).epsilon(0.04));  // 3 with slopes on it alone
 }
 
 TEST_CASE("solvers: the schema of runs and the pages name the registry's methods") {
