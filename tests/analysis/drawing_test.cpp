@@ -169,6 +169,30 @@ TEST_CASE("figure: rods stand at the angles of the start, with arcs and lengths 
   }
 }
 
+TEST_CASE("figure: a line whose length changes is no rod; particles have their shapes, wheels their pitch circles") {
+  // The radius of a sphere that grows; a pendulum; a coordinate that is free.
+  CHECK(strokes(*shipped("P7_moving_sphere").figure, Figure::Weight::strong).empty());
+  CHECK(strokes(*shipped("P1_spherical_pendulum").figure, Figure::Weight::strong).size() == 1);
+  CHECK(strokes(*shipped("G1_spherical").figure, Figure::Weight::strong).empty());
+  CHECK(strokes(*shipped("S6_chain_6").figure, Figure::Weight::strong).size() == 6);
+  const auto particle = [](const std::string& draw) {
+    return strokes(
+        *drawn(model::read_model_text("format = 1\n[[particle]]\nname = \"P\"\nmass = \"1 kg\"\nposition = { "
+                                      "cartesian = [\"x\", \"y\", \"z\"] }\n" +
+                                          draw,
+                                      "model.toml"))
+             .figure,
+        Figure::Weight::plain);
+  };
+  CHECK(particle("").empty());
+  CHECK(particle("[draw]\nP = { box = [1, 2, 3] }\n").size() == 9);
+  CHECK(
+      particle("[draw]\nP = { mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2, 3], [1, 2, 4]] }\n")
+          .size() == 5);
+  // Two circles of 40 strokes for each pair of gears, and two straight lines of the belt.
+  CHECK(strokes(*shipped("geared_hoist").figure, Figure::Weight::plain).size() >= 2 * 2 * 40 + 2);
+}
+
 TEST_CASE("figure: of a body the edges that it does not hide itself") {
   // A box seen from above and the side shows three faces: nine edges.
   analysis::Solid solid;
