@@ -238,10 +238,11 @@ const char* name(Event::Direction direction);  // "any", "up", "down"
 /// A shape of [draw], about its middle along the own axes of a body; of a particle along E1 E2 E3.
 struct Drawn {
   std::uint32_t place = 0;
-  std::string kind;  // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z
+  std::string kind;  // sphere R; box a, b, c; cylinder R, L; disk R; rod L; arrow x, y, z; mesh x, y, z of each point
   std::vector<NodeId> lengths;
-  std::uint32_t axis = 2;  // that a cylinder, disk or rod is about
-  std::vector<NodeId> at;  // of its middle; none: 0
+  std::vector<std::vector<std::uint32_t>> faces;  // of a mesh: its points, from 0; none: it is convex
+  std::uint32_t axis = 2;                         // that a cylinder, disk or rod is about
+  std::vector<NodeId> at;                         // of its middle; none: 0
   Span span;
 };
 

@@ -11,7 +11,11 @@ namespace {
 
 constexpr const char* form =
     "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod "
-    "= \"L\" } or { arrow = [\"x\", \"y\", \"z\"] }";
+    "= \"L\" }, { arrow = [\"x\", \"y\", \"z\"] } or { mesh = [[\"x\", \"y\", \"z\"], ..] }";
+constexpr const char* points_form = "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them";
+constexpr const char* faces_form =
+    "give each face as the numbers of its points in their order, [1, 2, 3], counted from 1";
+constexpr std::size_t fewest_points = 4, most_points = 60, most_faces = 200;
 
 struct DrawnShape {
   std::string_view key;
@@ -55,7 +59,7 @@ Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   as(Value::Kind::table, value, what, form);
   Keys keys{what, {}};
   for (const DrawnShape& shape : shapes) keys.known.push_back(shape.key);
-  for (const char* key : {"axis", "at"}) keys.known.emplace_back(key);
+  for (const char* key : {"mesh", "faces", "axis", "at"}) keys.known.emplace_back(key);
   check_keys(value, keys);
   Drawn drawn;
   drawn.place = place;
@@ -69,6 +73,13 @@ Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
     drawn.kind = shape.key;
     drawn.lengths = drawn_lengths(*lengths, shape.lengths, what, shape.key != "arrow");
   }
+  const Value *mesh = value.find("mesh"), *faces = value.find("faces");
+  if (mesh != nullptr && !drawn.kind.empty())
+    source_.fail(mesh->span, fmt::format("{} is both '{}' and 'mesh'", what, drawn.kind),
+                 "draw one of them, or give an array of tables");
+  if (faces != nullptr && mesh == nullptr)
+    source_.fail(faces->span, fmt::format("{} has faces, and no points for them", what), form);
+  if (mesh != nullptr) read_mesh(drawn, *mesh, faces, what);
   if (drawn.kind.empty()) source_.fail(value.span, fmt::format("{} has no shape", what), form);
   if (const Value* axis = value.find("axis")) {
     const char* remedy = "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about";
@@ -79,6 +90,37 @@ Drawn DrawReader::drawn_shape(std::uint32_t place, const Value& value) {
   }
   if (const Value* at = value.find("at")) drawn.at = drawn_lengths(*at, 3, what, false);
   return drawn;
+}
+
+void DrawReader::read_mesh(Drawn& drawn, const Value& points, const Value* faces, const std::string& what) {
+  drawn.kind = "mesh";
+  as(Value::Kind::array, points, fmt::format("the mesh in {}", what), points_form);
+  const std::size_t count = points.items.size();
+  if (count < fewest_points || count > most_points)
+    source_.fail(points.span, fmt::format("{} has {} points", what, count), points_form);
+  for (const Value& point : points.items) {
+    const std::vector<NodeId> lengths = drawn_lengths(point, 3, what, false);
+    drawn.lengths.insert(drawn.lengths.end(), lengths.begin(), lengths.end());
+  }
+  if (faces == nullptr) return;
+  as(Value::Kind::array, *faces, fmt::format("the faces in {}", what), faces_form);
+  if (faces->items.empty() || faces->items.size() > most_faces)
+    source_.fail(faces->span, fmt::format("{} has {} faces", what, faces->items.size()),
+                 fmt::format("give 1 to {} of them, or none: then it is convex", most_faces));
+  for (const Value& face : faces->items) {
+    as(Value::Kind::array, face, fmt::format("a face in {}", what), faces_form);
+    if (face.items.size() < 3)
+      source_.fail(face.span, fmt::format("a face in {} has {} points", what, face.items.size()), faces_form);
+    drawn.faces.emplace_back();
+    for (const Value& number : face.items) {
+      as(Value::Kind::integer, number, fmt::format("a point of a face in {}", what), faces_form);
+      const long point = number.text.size() > 3 ? 0 : std::stol(number.text);
+      if (point < 1 || point > static_cast<long>(count))
+        source_.fail(number.span, fmt::format("{} has no point {}", what, number.text),
+                     fmt::format("its points are 1 to {}", count));
+      drawn.faces.back().push_back(static_cast<std::uint32_t>(point - 1));
+    }
+  }
 }
 
 std::vector<NodeId> DrawReader::drawn_lengths(const Value& value, std::size_t count, const std::string& what,

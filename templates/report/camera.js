@@ -37,7 +37,8 @@ class Camera {
     const [[left, right], [bottom, top]] = [0, 1].map((k) => [Math.min(...across.map((p) => p[k] - p[2])), Math.max(...across.map((p) => p[k] + p[2]))]);
     this.centre = plus(this.centre, plus(scaled(this.right, (left + right) / 2), scaled(this.above, (bottom + top) / 2)));
     this.half = [(right - left) / 2, (top - bottom) / 2];
-    this.size = Math.hypot(...this.half) || 1;
+    if (!(Math.hypot(...this.half) > 0)) this.half = [0.5, 0.5];  // a single point
+    this.size = Math.hypot(...this.half);
   }
   home() {
     this.zoom = 1;

@@ -75,8 +75,9 @@ class Scene {
       if (shape.kind === "sphere") items.push({depth: camera.depth(world(shape.at || origin)), paint: () => pencil.ball(world(shape.at || origin), this.axesOf(body, y), shape.radius, colour)});
       if (shape.kind === "arrow") items.push({depth: camera.depth(world(origin)), paint: () => pencil.arrow(world(shape.at), world(shape.tip), colour, 3)});
       for (const face of shape.faces) {
-        const points = face.map(world), normal = unit(cross(minus(points[1], points[0]), minus(points[2], points[0])));
-        if (dot(normal, camera.toward) < -1e-9) continue;  // behind what is seen of the same solid
+        const points = face.map(world), outwards = unit(cross(minus(points[1], points[0]), minus(points[2], points[0]))), facing = dot(outwards, camera.toward);
+        if (facing < -1e-9 && !face.open) continue;  // behind what is seen of the same solid
+        const normal = facing < 0 ? scaled(outwards, -1) : outwards;
         const middle = scaled(points.reduce(plus, origin), 1 / points.length), fill = mixed(colour, pencil.paper, 0.62 - 0.5 * Math.max(0, dot(normal, lit)));
         items.push({depth: camera.depth(middle), paint: () => pencil.face(points, fill, face.smooth ? fill : colour)});
       }
@@ -84,7 +85,7 @@ class Scene {
     if (this.shown.axes && body.axes !== null) items.push({depth: Infinity, paint: () => this.ownAxes(body, index, y)});
   }
   ownAxes(body, index, y) {
-    const {pencil, camera} = this, centre = this.placeAt(y, body.place), reach = Math.max(0.05 * camera.size, ...this.shapes[index].map((shape) => 1.1 * shape.radius));
+    const {pencil, camera} = this, centre = this.placeAt(y, body.place), reach = Math.max(30 / camera.scale(), ...this.shapes[index].map((shape) => 1.1 * shape.radius));
     const named = this.shown.names && this.parts.bodies.length < 4 && reach * camera.scale() > 45;
     this.axesOf(body, y).forEach((e, k) => {
       const drawn = pencil.arrow(centre, plus(centre, scaled(e, reach)), this.colour(body.place), 1.3);
@@ -135,21 +136,22 @@ class Scene {
     this.pencil.segments(lines, this.pencil.rule, 1);
   }
 
-  // At the origin where that is seen, else in the corner: off the canvas, or behind a body.
+  // At the origin where there is room for them, else in the corner: off the canvas, or in the middle of a body.
   showAxes() {
-    const {pencil, camera} = this, [x, y] = camera.project(origin), length = 40, room = 24;
+    const {pencil, camera} = this, [x, y] = camera.project(origin), length = 40;
+    const along = fixedAxes.map((e) => [length * dot(camera.right, e), -length * dot(camera.above, e)]);
+    const isInside = ([dx, dy]) => x + 1.5 * dx > 12 && y + 1.5 * dy > 12 && x + 1.5 * dx < camera.width - 12 && y + 1.5 * dy < camera.height - 12;
     const covered = this.solids.some((body, index) => this.shapes[index].some((shape) => this.covers(body, shape, [x, y])));
-    const seen = !covered && x > room && y > room && x < camera.width - room && y < camera.height - room, foot = seen ? [x, y] : [62, camera.height - 66];
-    fixedAxes.forEach((e, k) => {
-      const along = [dot(camera.right, e), -dot(camera.above, e)];
-      const drawn = pencil.arrow(foot, [foot[0] + length * along[0], foot[1] + length * along[1]], pencil.quiet, 1.3);
+    const foot = !covered && along.every(isInside) ? [x, y] : [62, camera.height - 66];
+    along.forEach(([dx, dy], k) => {
+      const drawn = pencil.arrow(foot, [foot[0] + dx, foot[1] + dy], pencil.quiet, 1.3);
       if (this.shown.names) pencil.name("E" + (k + 1), drawn, pencil.quiet);
     });
   }
 
   covers(body, shape, [x, y]) {
     const [cx, cy] = this.camera.project(this.placeAt(this.now, body.place));
-    return Math.hypot(cx - x, cy - y) < 0.8 * shape.radius * this.camera.scale();
+    return Math.hypot(cx - x, cy - y) < 0.5 * shape.radius * this.camera.scale();
   }
 
   // Forces as arrows from where they act, all in one scale, by which the greatest are a quarter of the picture; a rare peak (an impact) does not make the others vanish.
@@ -185,7 +187,6 @@ class Scene {
       });
     }
     for (const {at, toward} of this.supports) pencil.support(at(y), toward);
-    this.showAxes();
     for (const {from, to, rigid} of this.links) {
       const a = this.placeAt(y, from), b = this.placeAt(y, to);
       items.push({depth: Math.min(camera.depth(a), camera.depth(b)) - 1e-9, paint: () => (rigid ? pencil.line([a, b], pencil.ink, 2.5, 0.75) : pencil.dashed([a, b], pencil.quiet, 1))});
@@ -210,6 +211,7 @@ class Scene {
     for (const contact of parts.contacts) items.push({depth: Infinity, paint: () => pencil.dot(this.position(y, contact.at), 3, pencil.ink)});
     items.sort((a, b) => (a.depth < b.depth ? -1 : a.depth > b.depth ? 1 : 0));
     for (const item of items) item.paint();
+    this.showAxes();
     if (this.shown.forces) this.showForces(y);
     if (this.shown.names) {
       parts.places.forEach((place, i) => {

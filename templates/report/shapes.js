@@ -52,6 +52,36 @@ function barOfInertia(mass, inertia, spot) {
   return {kind: "bar", faces: placed(cylinderFaces(0.025 * length, length), [side, cross(along, side), along]), radius: length / 2};
 }
 
+// The faces of the smallest convex polyhedron around points; of points in a plane the polygon around them.
+function hullFaces(points) {
+  const size = Math.max(...points.map((p) => Math.hypot(...minus(p, points[0])))), least = 1e-9 * size, found = new Set(), faces = [];
+  for (let i = 0; i < points.length; ++i) for (let j = i + 1; j < points.length; ++j) for (let k = j + 1; k < points.length; ++k) {
+    let normal = cross(minus(points[j], points[i]), minus(points[k], points[i]));
+    if (!(Math.hypot(...normal) > least * size)) continue;
+    normal = unit(normal);
+    const heights = points.map((p) => dot(normal, minus(p, points[i]))), high = Math.max(...heights), plane = points.map((_, l) => l).filter((l) => Math.abs(heights[l]) <= least);
+    if ((Math.min(...heights) < -least && high > least) || found.has(plane.join())) continue;
+    found.add(plane.join());
+    faces.push(polygonAround(plane.map((l) => points[l]), high > least ? scaled(normal, -1) : normal));
+  }
+  return faces;
+}
+// Around points of a plane: from the outermost always the next that leaves all others to the left.
+function polygonAround(points, normal) {
+  const along = acrossTo(normal), first = points.reduce((best, p) => (dot(along, p) < dot(along, best) ? p : best)), ring = [];
+  for (let at = first; ring.length <= points.length;) {
+    ring.push(at);
+    let next = at;
+    for (const p of points) {
+      const step = minus(p, at), best = minus(next, at), turn = dot(normal, cross(best, step)), none = 1e-6 * Math.hypot(...best) * Math.hypot(...step);
+      if (p !== at && (next === at || turn < -none || (turn <= none && Math.hypot(...step) > Math.hypot(...best)))) next = p;
+    }
+    at = next;
+    if (at === first || Math.hypot(...minus(at, first)) === 0) break;
+  }
+  return ring;
+}
+
 // What [draw] says: kind, the place of its lengths among the sizes, the axis that it is about, where its middle is.
 function shapeOfModel(drawn, sizes) {
   const lengths = drawn.lengths.map((i) => sizes[i]), at = drawn.at.length === 3 ? drawn.at.map((i) => sizes[i]) : [0, 0, 0];
@@ -64,6 +94,13 @@ function shapeOfModel(drawn, sizes) {
     case "cylinder": return made(cylinderFaces(lengths[0], lengths[1]), Math.hypot(lengths[0], lengths[1] / 2));
     case "disk": return made(cylinderFaces(lengths[0], 0.03 * lengths[0]), lengths[0]);
     case "rod": return made(cylinderFaces(0.02 * lengths[0], lengths[0]), lengths[0] / 2);
+    case "mesh": {
+      const points = Array.from({length: lengths.length / 3}, (_, k) => plus(at, lengths.slice(3 * k, 3 * k + 3)));
+      // Faces that the model gives have no outside: both sides are seen.
+      const faces = drawn.faces.length > 0 ? drawn.faces.map((face) => Object.assign(face.map((k) => points[k]), {open: true})) : hullFaces(points);
+      if (faces.length === 1) faces[0].open = true;
+      return {kind: "mesh", faces, radius: Math.max(...points.map((p) => Math.hypot(...p)))};
+    }
     case "arrow": return {kind: "arrow", faces: [], radius: Math.hypot(...lengths) + reach, at, tip: plus(at, lengths)};
   }
   return null;

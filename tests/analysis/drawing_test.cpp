@@ -128,6 +128,27 @@ TEST_CASE("solids: homogeneous bodies are found from their mass and moments, tur
   CHECK(extent(*analysis::bar_of_inertia(link, link_sizes, {-1, 0, 0})).x() == doctest::Approx(2));
 }
 
+TEST_CASE("solids: the hull of points has the faces around them, each once and with its outside to the left") {
+  std::vector<Point> points;
+  for (unsigned k = 0; k < 8; ++k) points.emplace_back(k & 1u ? 1 : -1, k & 2u ? 2 : -2, k & 4u ? 3 : -3);
+  points.emplace_back(0.2, 0.3, 0.1);  // inside, in a face, on an edge, a corner once more
+  points.emplace_back(0.5, 0.5, 3);
+  points.emplace_back(1, 2, 0);
+  points.emplace_back(1, 2, 3);
+  const std::vector<std::vector<Point>> faces = analysis::hull(points);
+  REQUIRE(faces.size() == 6);
+  double surface = 0;
+  for (const std::vector<Point>& face : faces) {
+    CHECK(face.size() == 4);
+    const Point across = (face[1] - face[0]).cross(face[2] - face[1]);
+    CHECK(across.dot(face[0]) > 0);  // the middle is inside
+    surface += across.norm();
+  }
+  CHECK(surface == doctest::Approx(2 * (2 * 4 + 4 * 6 + 2 * 6)));
+  CHECK(analysis::hull({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0.5, 0.5, 0}}).size() == 1);
+  CHECK(analysis::hull({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}).empty());
+}
+
 TEST_CASE("figure: rods stand at the angles of the start, with arcs and lengths beside them") {
   const Figure figure = shipped("S5_double_pendulum").figure.value();
   const std::vector<Figure::Stroke> rods = strokes(figure, Figure::Weight::strong);
@@ -146,6 +167,30 @@ TEST_CASE("figure: rods stand at the angles of the start, with arcs and lengths 
       return dot.filled && std::hypot(dot.at[0] - rod.to[0], dot.at[1] - rod.to[1]) < rounding;
     }));
   }
+}
+
+TEST_CASE("figure: a line whose length changes is no rod; particles have their shapes, wheels their pitch circles") {
+  // The radius of a sphere that grows; a pendulum; a coordinate that is free.
+  CHECK(strokes(*shipped("P7_moving_sphere").figure, Figure::Weight::strong).empty());
+  CHECK(strokes(*shipped("P1_spherical_pendulum").figure, Figure::Weight::strong).size() == 1);
+  CHECK(strokes(*shipped("G1_spherical").figure, Figure::Weight::strong).empty());
+  CHECK(strokes(*shipped("S6_chain_6").figure, Figure::Weight::strong).size() == 6);
+  const auto particle = [](const std::string& draw) {
+    return strokes(
+        *drawn(model::read_model_text("format = 1\n[[particle]]\nname = \"P\"\nmass = \"1 kg\"\nposition = { "
+                                      "cartesian = [\"x\", \"y\", \"z\"] }\n" +
+                                          draw,
+                                      "model.toml"))
+             .figure,
+        Figure::Weight::plain);
+  };
+  CHECK(particle("").empty());
+  CHECK(particle("[draw]\nP = { box = [1, 2, 3] }\n").size() == 9);
+  CHECK(
+      particle("[draw]\nP = { mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2, 3], [1, 2, 4]] }\n")
+          .size() == 5);
+  // Two circles of 40 strokes for each pair of gears, and two straight lines of the belt.
+  CHECK(strokes(*shipped("geared_hoist").figure, Figure::Weight::plain).size() >= 2 * 2 * 40 + 2);
 }
 
 TEST_CASE("figure: of a body the edges that it does not hide itself") {

@@ -71,17 +71,16 @@ function furthest(report, csv) {
 
 // Frames are drawn in the browser's time, timers run in a time of their own, which passes faster.
 // How far, in pixels, the nearest drawn corner of a body is from the place of this name in the rows of the run, at most.
+// Of the shape from which it is the farthest.
 function cornerOff(report, csv, name) {
   const column = csv.columns.indexOf(name + ".position1"), {scene} = report;
   let far = 0;
   for (const row of csv.rows) {
     const y = report.motion().at(row[0]), wanted = scene.camera.project(row.slice(column, column + 3));
-    let nearest = Infinity;
-    scene.solids.forEach((body, index) => scene.shapes[index].forEach((shape) => shape.faces.forEach((face) => face.map(scene.worldOf(body, y)).forEach((r) => {
-      const p = scene.camera.project(r);
-      nearest = Math.min(nearest, Math.hypot(p[0] - wanted[0], p[1] - wanted[1]));
-    }))));
-    far = Math.max(far, nearest);
+    scene.solids.forEach((body, index) => scene.shapes[index].forEach((shape) => {
+      const off = shape.faces.flatMap((face) => face.map(scene.worldOf(body, y))).map((r) => scene.camera.project(r)).map((p) => Math.hypot(p[0] - wanted[0], p[1] - wanted[1]));
+      far = Math.max(far, Math.min(...off));
+    }));
   }
   return far;
 }
@@ -150,7 +149,7 @@ async function look(entry) {
       report.player.play(false);
       at.curves = page.querySelectorAll("#plots.drawn path").length;
       if (width === widths[0] && entry.csv) at.furthest = furthest(report, entry.csv);
-      if (width === widths[0] && entry.corner) at.corner = cornerOff(report, entry.csv, entry.corner);
+      if (width === widths[0] && entry.corner) Object.assign(at, {corner: cornerOff(report, entry.csv, entry.corner), faces: report.scene.shapes[0].map((shape) => shape.faces.length)});
       if (width === widths[0] && entry.slider && report.live) {
         const range = [...page.querySelectorAll(".slider input[type=number]")].find((input) => input.dataset.name === entry.slider.name);
         range.value = entry.slider.value;

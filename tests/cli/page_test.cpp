@@ -24,7 +24,8 @@ constexpr double a_pixel = 1;
 constexpr double on_the_sphere =
     1e-3;  // of a radius of 1: where a line of a surface crosses a cell is found by secants
 
-// A box in free flight, drawn as it is said to be, with a point at one of its corners.
+// A box in free flight, drawn as it is said to be, with a point at one of its corners: as a box, by its corners and a
+// point inside, by two of its faces.
 const char* const brick = R"(format = 1
 title = "Brick & <b>hostile</b> \"name\" </script>"
 [parameters]
@@ -44,7 +45,10 @@ at = ["a/2", "0.15 m", "-0.05 m"]
 [[force]]
 gravity = "-g*E3"
 [draw]
-brick = { box = ["a", "0.3 m", "0.1 m"] }
+brick = [{ box = ["a", "0.3 m", "0.1 m"] },
+  { mesh = [["-a/2", -0.15, -0.05], ["a/2", -0.15, -0.05], ["-a/2", 0.15, -0.05], ["a/2", 0.15, -0.05], ["-a/2", -0.15, 0.05],
+      ["a/2", -0.15, 0.05], ["-a/2", 0.15, 0.05], ["a/2", 0.15, 0.05], ["a/10", 0, 0], [0, 0, 0.05]] },
+  { mesh = [["a/2", 0.15, -0.05], ["a/2", -0.15, -0.05], ["-a/2", -0.15, -0.05], [0, 0, "a"]], faces = [[1, 2, 3], [1, 2, 4]] }]
 [scene.default]
 t = [0, 1]
 initial = { psi_dot = 2, theta_dot = 0.7, phi_dot = 4, x_dot = 1, z_dot = 4 }
@@ -164,7 +168,10 @@ void check(const Json& found, const Case& c, const Json& wanted) {
   }
   const Json& wide = found["widths"]["1280"];
   CHECK(wide["furthest"] < a_pixel);
-  if (!c.corner.empty()) CHECK(wide["corner"] < a_pixel);
+  if (!c.corner.empty()) {
+    CHECK(wide["corner"] < a_pixel);
+    CHECK(wide["faces"] == Json{6, 6, 2});
+  }
   if (!c.drag.empty()) {
     CHECK(wide["drag"]["moved"] > 5);
     CHECK(wide["drag"]["nearer"] == true);

@@ -33,7 +33,10 @@ constexpr const char* inertias_are =
     "sphere = \"R\" }";
 constexpr const char* shapes_are =
     "write { sphere = \"R\" }, { box = [\"a\", \"b\", \"c\"] }, { cylinder = [\"R\", \"L\"] }, { disk = \"R\" }, { rod "
-    "= \"L\" } or { arrow = [\"x\", \"y\", \"z\"] }";
+    "= \"L\" }, { arrow = [\"x\", \"y\", \"z\"] } or { mesh = [[\"x\", \"y\", \"z\"], ..] }";
+constexpr const char* points_are = "give its points as [[\"x\", \"y\", \"z\"], ..], from 4 to 60 of them";
+constexpr const char* faces_are =
+    "give each face as the numbers of its points in their order, [1, 2, 3], counted from 1";
 const std::string angles = "{ euler = \"313\", angles = [\"phi\", \"theta\", \"psi\"] }";
 const std::string moments = "{ principal = [\"J\", \"J\", \"J\"] }";
 
@@ -54,6 +57,21 @@ std::vector<WrongModel> wrong_bodies() {
        "what is drawn is made of numbers and parameters"},
       {"a drawing of no size", top({}, "[draw]\nB = { sphere = 0 }\n"), "15:16",
        "a length in the drawing of 'B' is not greater than 0", "give a length"},
+      {"a mesh of three points", top({}, "[draw]\nB = { mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }\n"), "15:14",
+       "the drawing of 'B' has 3 points", points_are},
+      {"a mesh of pairs", top({}, "[draw]\nB = { mesh = [[0, 0], [1, 0], [0, 1], [1, 1]] }\n"), "15:15",
+       "the drawing of 'B' has 2 lengths here", "give 3 of them"},
+      {"a face without its point",
+       top({}, "[draw]\nB = { mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2, 5]] }\n"), "15:76",
+       "the drawing of 'B' has no point 5", "its points are 1 to 4"},
+      {"a face of a line",
+       top({}, "[draw]\nB = { mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[1, 2]] }\n"), "15:69",
+       "a face in the drawing of 'B' has 2 points", faces_are},
+      {"faces of no mesh", top({}, "[draw]\nB = { sphere = \"1 m\", faces = [[1, 2, 3]] }\n"), "15:31",
+       "the drawing of 'B' has faces, and no points for them", shapes_are},
+      {"a mesh that is a sphere",
+       top({}, "[draw]\nB = { sphere = \"1 m\", mesh = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]] }\n"), "15:30",
+       "the drawing of 'B' is both 'sphere' and 'mesh'", "draw one of them, or give an array of tables"},
       {"a drawing about no axis", top({}, "[draw]\nB = { disk = \"1 m\", axis = \"E3\" }\n"), "15:28",
        "there is no own axis 'E3'",
        "write axis = \"e1\", \"e2\" or \"e3\": its own axis that a cylinder, disk or rod is about"},

@@ -270,7 +270,7 @@ class Drawer {
     if (sprung) return;
     const double length = (here - from).norm();
     bool rigid = std::none_of(parts_.surfaces.begin(), parts_.surfaces.end(), [&](const DrawnSurface& surface) {
-      return surface.touched && static_cast<long>(surface.place) == rod.to;
+      return (surface.touched || surface.moves) && static_cast<long>(surface.place) == rod.to;
     });
     for (const std::vector<double>& there : elsewhere_) {
       const double other = (at_place(there, rod.to) - at_place(there, rod.from)).norm();

@@ -174,7 +174,7 @@ void Drawing::couplings() {
 
 void Drawing::shapes() {
   for (const model::Drawn& drawn : model_.drawn) {
-    DrawnShape shape{drawn.place - 1, drawn.kind, {}, drawn.axis, {}};
+    DrawnShape shape{drawn.place - 1, drawn.kind, {}, drawn.axis, {}, drawn.faces};
     for (const model::NodeId length : drawn.lengths) shape.lengths.push_back(size(length));
     for (const model::NodeId x : drawn.at) shape.at.push_back(size(x));
     parts_.shapes.push_back(std::move(shape));

@@ -71,7 +71,8 @@ struct DrawnShape {
   std::string kind;                  // as [draw] has it
   std::vector<std::size_t> lengths;  // sizes
   std::size_t axis;
-  std::vector<std::size_t> at;  // sizes; none: the middle of the body
+  std::vector<std::size_t> at;                    // sizes; none: the middle of the body
+  std::vector<std::vector<std::uint32_t>> faces;  // of a mesh
 };
 struct DrawnParts {
   std::vector<DrawnPlace> places;

@@ -8,6 +8,7 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <set>
 
 namespace eomgen::analysis {
 namespace {
@@ -125,6 +126,7 @@ void Sketch::solid(const Solid& solid, const std::function<Point(const Point&)>&
     }
     return path(points, Weight::plain);
   }
+  if (solid.open) return wire(solid, world);
   struct Edge {
     Point from, to, normal;
     bool seen;
@@ -144,6 +146,17 @@ void Sketch::solid(const Solid& solid, const std::function<Point(const Point&)>&
       const Edge& edge = other->second;
       if (edge.seen != seen || (seen && edge.normal.dot(normal) < sharp)) line(edge.from, edge.to, Weight::plain);
       open.erase(other);
+    }
+  }
+  for (const auto& [ends, edge] : open) line(edge.from, edge.to, Weight::plain);  // of one face alone
+}
+
+void Sketch::wire(const Solid& solid, const std::function<Point(const Point&)>& world) {
+  std::set<std::pair<std::array<double, 3>, std::array<double, 3>>> drawn;
+  for (const std::vector<Point>& face : solid.faces) {
+    for (std::size_t k = 0; k < face.size(); ++k) {
+      const Point &a = face[k], &b = face[(k + 1) % face.size()];
+      if (drawn.insert(std::minmax(key(a), key(b))).second) line(world(a), world(b), Weight::plain);
     }
   }
 }

@@ -45,6 +45,8 @@ class Sketch {
     PlanePoint at;
     std::variant<std::string, reading::Formula> text;
   };
+  /// All edges, of a solid that may hide some of its own anywhere.
+  void wire(const Solid& solid, const std::function<Point(const Point&)>& world);
   void cover(const PlanePoint& p);
   void place_labels();
 

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <set>
 
 namespace eomgen::analysis {
 namespace {
@@ -69,6 +70,30 @@ Axes inertia_of(const DrawnBody& body, const std::vector<double>& sizes) {
   return result;
 }
 
+// Around points of a plane, to the left of its edges as `normal` sees it: from the outermost point always the next that
+// leaves all others to the left.
+std::vector<Point> polygon(const std::vector<Point>& points, const std::vector<std::size_t>& in_plane,
+                           const Point& normal) {
+  const Point along = normal.unitOrthogonal();
+  const std::size_t first = *std::min_element(in_plane.begin(), in_plane.end(), [&](std::size_t a, std::size_t b) {
+    return along.dot(points[a]) < along.dot(points[b]);
+  });
+  std::vector<Point> result;
+  for (std::size_t at = first; result.size() <= in_plane.size();) {
+    result.push_back(points[at]);
+    std::size_t next = at;
+    for (const std::size_t l : in_plane) {
+      const Point step = points[l] - points[at], best = points[next] - points[at];
+      const double turn = normal.dot(best.cross(step));
+      const double none = equal * best.norm() * step.norm();
+      if (l != at && (next == at || turn < -none || (turn <= none && step.norm() > best.norm()))) next = l;
+    }
+    at = next;
+    if (at == first || (points[at] - points[first]).norm() == 0) break;
+  }
+  return result;
+}
+
 }  // namespace
 
 std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<double>& sizes) {
@@ -79,6 +104,17 @@ std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<d
   const Axes axes = about(Axes::Identity(), static_cast<int>(shape.axis));
   if (shape.kind == "arrow") {
     solid.tip = solid.at + Point(l[0], l[1], l[2]);
+    return solid;
+  }
+  if (shape.kind == "mesh") {
+    std::vector<Point> points;
+    for (std::size_t k = 0; k + 2 < l.size(); k += 3) points.push_back(solid.at + Point(l[k], l[k + 1], l[k + 2]));
+    for (const std::vector<std::uint32_t>& face : shape.faces) {
+      solid.faces.emplace_back();
+      for (const std::uint32_t i : face) solid.faces.back().push_back(points[i]);
+    }
+    solid.open = !shape.faces.empty();
+    if (!solid.open) solid.faces = hull(points);
     return solid;
   }
   if (std::any_of(l.begin(), l.end(), [](double length) { return !(length > 0); })) return std::nullopt;
@@ -93,6 +129,35 @@ std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<d
   else
     solid.faces = moved(cylinder(rod_radius * l[0], l[0]), axes, solid.at);
   return solid;
+}
+
+std::vector<std::vector<Point>> hull(const std::vector<Point>& points) {
+  double size = 0;
+  for (const Point& p : points) size = std::max(size, (p - points[0]).norm());
+  const double least = 1e-9 * size;
+  Faces faces;
+  std::set<std::vector<std::size_t>> found;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (std::size_t j = i + 1; j < points.size(); ++j) {
+      for (std::size_t k = j + 1; k < points.size(); ++k) {
+        Point normal = (points[j] - points[i]).cross(points[k] - points[i]);
+        if (!(normal.norm() > least * size)) continue;
+        normal.normalize();
+        double low = 0, high = 0;
+        std::vector<std::size_t> in_plane;
+        for (std::size_t l = 0; l < points.size(); ++l) {
+          const double height = normal.dot(points[l] - points[i]);
+          low = std::min(low, height);
+          high = std::max(high, height);
+          if (std::abs(height) <= least) in_plane.push_back(l);
+        }
+        if ((low < -least && high > least) || !found.insert(in_plane).second) continue;
+        if (high > least) normal = -normal;
+        faces.push_back(polygon(points, in_plane, normal));
+      }
+    }
+  }
+  return faces;
 }
 
 std::optional<Solid> solid_of_inertia(const DrawnBody& body, const std::vector<double>& sizes) {

@@ -17,7 +17,12 @@ struct Solid {
   Point at = Point::Zero();               // of a ball its middle, of an arrow its foot
   double ball = 0;                        // radius
   std::optional<Point> tip;               // of an arrow
+  bool open = false;                      // faces have no outside: of a mesh that says which it has
 };
+
+/// The faces of the smallest convex polyhedron around points, with their outsides to the left of their edges; of points
+/// in a plane the polygon around them, of points in a line none.
+std::vector<std::vector<Point>> hull(const std::vector<Point>& points);
 
 /// Nothing where a length is unknown.
 std::optional<Solid> solid_of_shape(const DrawnShape& shape, const std::vector<double>& sizes);

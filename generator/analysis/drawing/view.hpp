@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From where a system is looked at, without perspective, so that lengths can be compared. The page of `report` finds
-// its view by the same rules (templates/report/scene.js).
+// its view by the same rules (templates/report/camera.js).
 #pragma once
 
 #include <Eigen/Core>

@@ -48,7 +48,8 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
     return {{"name", c.name}, {"of", c.of}, {"axes", c.axes}, {"ratio", c.ratio}, {"carried", c.carried}};
   });
   result["shapes"] = list_of(parts.shapes, [](const analysis::DrawnShape& s) -> Json {
-    return {{"place", s.place}, {"kind", s.kind}, {"lengths", s.lengths}, {"axis", s.axis}, {"at", s.at}};
+    return {{"place", s.place}, {"kind", s.kind}, {"lengths", s.lengths},
+            {"axis", s.axis},   {"at", s.at},     {"faces", s.faces}};
   });
   std::size_t count = 0;
   result["surfaces"] = list_of(parts.surfaces, [&](const analysis::DrawnSurface& s) -> Json {
