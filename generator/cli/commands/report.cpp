@@ -30,8 +30,14 @@ struct Options : SceneOptions {
   std::string model, out;
 };
 
-constexpr double rows_of_a_page = 400;
+constexpr double most_rows = 400, least_rows = 120, most_values = 20000;   // of a motion
 constexpr std::size_t longest_formula = 60000, longest_formulas = 350000;  // bytes of MathML
+constexpr std::size_t largest_page = 980000, of_its_own = 90000;           // bytes; of scripts and style
+
+/// Between rows the page has cubics: many coordinates need no more numbers than few.
+double rows_of_a_page(const model::Model& model) {
+  return std::clamp(most_values / (2 * static_cast<double>(model.coordinates.size())), least_rows, most_rows);
+}
 
 std::string text(const Json& value) {
   return value.is_null() ? "" : value.is_string() ? value.get<std::string>() : value.dump();
@@ -77,10 +83,12 @@ void add_formula(Html& html, const std::string& mathml, std::size_t& room) {
   html.formula(mathml);
 }
 
-void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved) {
+/// `taken`: bytes of the rest of the page.
+void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved,
+                   std::size_t taken) {
   const reading::ReadingForm form = analysis::form_to_show(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
-  std::size_t room = longest_formulas;
+  std::size_t room = std::min(longest_formulas, taken < largest_page ? largest_page - taken : 0);
   const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},
                                                                   {"energies", "Energies"},
                                                                   {"equations", "Equations of motion"},
@@ -185,7 +193,7 @@ int execute(const Options& options, const Common& common) {
   request.scene = options.scene;
   request.seed = common.seed;
   request.overrides = overrides_of("report", options);
-  request.rows = rows_of_a_page;
+  request.rows = rows_of_a_page(*request.model);
   request.with = {"mass"};  // a point that is dragged moves the lightest most
   std::optional<analysis::Drawing> drawing;
   std::optional<analysis::DrawnForces> forces;
@@ -222,15 +230,16 @@ int execute(const Options& options, const Common& common) {
   const analysis::LiveModel live = analysis::live_model(simulation, *drawing, outputs, set);
   const analysis::SurfaceCode surfaces = analysis::surface_code(simulation, *drawing);
   const Json moving = recorded.json(simulation, *drawing, forces->list(), live, outputs, curves);
-  Html html;
+  const std::string motion = moving.is_null() ? "" : moving.dump();
+  Html html, rest;
   add_head(html, model, !moving.is_null());
-  add_equations(html, simulation.derived->mechanics, simulation.derived->conserved);
-  add_run(html, simulation, run, recorded.plots(curves));
-  add_model(html, model, to_json(model, analysis::examine(simulation.derived->shared)));
-  add_certificate(html, simulation.certificate);
-  write_text(file,
-             page({model.title.empty() ? model.id : model.title, html.text(), moving.is_null() ? "" : moving.dump(),
-                   live.script, live.name, surfaces.script, surfaces.name}));
+  add_run(rest, simulation, run, recorded.plots(curves));
+  add_model(rest, model, to_json(model, analysis::examine(simulation.derived->shared)));
+  add_certificate(rest, simulation.certificate);
+  add_equations(html, simulation.derived->mechanics, simulation.derived->conserved,
+                of_its_own + rest.text().size() + motion.size() + live.script.size() + surfaces.script.size());
+  write_text(file, page({model.title.empty() ? model.id : model.title, html.text() + rest.text(), motion, live.script,
+                         live.name, surfaces.script, surfaces.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1},
