@@ -195,7 +195,7 @@ class Body {
   }
 
   bool same(double a, double b) const {
-    return context_.single_error ? static_cast<float>(a) == static_cast<float>(b) : a == b;
+    return suffix_.empty() ? a == b : static_cast<float>(a) == static_cast<float>(b);
   }
 
   /// The first state is that of the defaults.

@@ -45,6 +45,19 @@ TEST_CASE("single precision: C passes its self test, computes no double, and the
   }
 }
 
+TEST_CASE("single precision: the header of templates holds its self test too, in double precision") {
+  Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "l1", "l2", "g"});
+  const emit::TestVector& first = e.context.tests[0];  // the defaults, which are no numbers of single precision
+  e.context.start_time = first.t;
+  for (std::size_t i = 0; i < first.p.size(); ++i) e.context.parameters[i].value = first.p[i];
+  emit::make_single(e.program, e.context);
+  const Folder folder;
+  emit::write_files(folder.path, emit::emit(e.program, e.context, "cpp"));
+  std::ofstream(folder.path + "/use.cpp") << "#include \"two.hpp\"\nint main() { return eom::two::selftest(); }\n";
+  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", folder.path + "/use"}, {folder.path + "/use.cpp"}) == "");
+  CHECK(emit::run_process({folder.path + "/use"}).status == 0);
+}
+
 TEST_CASE("single precision: targets that know double precision alone are refused, and numbers beyond it") {
   for (const char* target : {"batch", "python", "javascript"}) CHECK_THROWS_AS(emit::require_single(target), Error);
   for (const char* target : {"c", "cpp", "cuda"}) CHECK_NOTHROW(emit::require_single(target));
