@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,7 @@ struct EmissionContext {
   std::vector<double> start;  // x at the start of the default scene
   std::vector<TestVector> tests;
   std::shared_ptr<const RunText> run = {};  // where it was asked for
+  std::optional<double> single_error = {};  // of single precision, where that was asked for (single_precision.hpp)
 };
 
 /// NAME of the C ABI: the model's id as an identifier that no target reserves.

@@ -59,8 +59,8 @@ constexpr std::string_view runtime[] = {
     "Run", "Statistics", "StepEnds", "StepView", "System", "Transition", "Watch", "WatchedSurface", "WithJacobian", "WithTaylor", "all_features", "chart_bits",
     "charts_of", "code_jump", "code_no_convergence", "code_not_finite", "constrained", "contact_allows", "contact_bits",
     "contact_digit", "contact_leaf", "contact_modes", "contact_states", "contact_values", "detail", "device", "divergence_bound",
-    "eligible", "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "find_method", "first_chart_bit", "hybrid", "implicit", "integrate",
-    "integrate_ensemble", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
+    "eligible", "ensemble", "estimate_error", "events", "events_without_progress", "explicit_rk", "expressions", "find_method", "first_chart_bit", "hybrid", "implicit", "integrate",
+    "integrate_ensemble", "integrate_ensemble_events", "integrate_events", "integrate_modes", "max_charts", "max_contacts", "methods", "mode_of_charts", "modes", "name",
     "no_jacobian_here", "no_time_derivative_here", "outcome_of_abi_code", "plot", "slips_on", "smallest_step_in_ulps", "svg",
     "system_of", "taylor", "to_text", "variational", "with_contact_digit"};
 

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "abi/functions.hpp"
+#include "emit/single_precision.hpp"
 #include "emit/text.hpp"
 #include "numeric/numbers.hpp"
 #include "program/abi_values.hpp"
@@ -19,7 +20,9 @@ namespace {
 
 constexpr int digits = 40;
 // Of the largest entry: what is wrong by less is not looked for.
-constexpr double relative_tolerance = 1e-11;
+constexpr double relative_tolerance = 1e-11, single_relative_tolerance = 1e-5;
+// Nothing smaller is a number of single precision.
+constexpr double single_least_number = 1e-37;
 // Of the first-order bound of rounding.
 constexpr double caution = 16;
 constexpr int taylor_order = 4;
@@ -46,7 +49,7 @@ program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& 
 
 /// Rounded once, with what rounding may change; nothing where a number is not finite.
 std::optional<FunctionValues> rounded(const std::string& function, const program::AbiResults& results,
-                                      const std::vector<std::vector<double>>& bounds) {
+                                      const std::vector<std::vector<double>>& bounds, bool single) {
   constexpr double largest_number = 1e290, least_number = 1e-290;
   FunctionValues values{function, 0, {}, {}};
   for (std::size_t r = 0; r < results.size(); ++r) {
@@ -60,17 +63,19 @@ std::optional<FunctionValues> rounded(const std::string& function, const program
       off = std::max(off, bounds[r][i]);
     }
     // Two digits say enough; upwards.
-    const double tolerance = std::max({relative_tolerance * largest, caution * off, least_number});
+    const double tolerance =
+        single ? std::max({single_relative_tolerance * largest, single_by_double * caution * off, single_least_number})
+               : std::max({relative_tolerance * largest, caution * off, least_number});
     values.tolerances.push_back(std::stod(fmt::format("{:.1e}", 1.05 * tolerance)));
   }
   return values;
 }
 
 std::optional<FunctionValues> values_at(const program::Program& program, const std::string& function,
-                                        const program::AbiArguments& arguments) {
+                                        const program::AbiArguments& arguments, bool single) {
   const std::optional<program::AbiResults> results = program::abi_values(program, function, arguments, digits);
   if (!results) return std::nullopt;
-  return rounded(function, *results, program::abi_bounds(program, function, arguments));
+  return rounded(function, *results, program::abi_bounds(program, function, arguments), single);
 }
 
 std::size_t entries(const program::Program& program, const std::string& function) {
@@ -86,7 +91,8 @@ std::size_t entries(const program::Program& program, const std::string& function
 bool is_held(std::size_t count, std::size_t index) { return (index + 1) * count <= most_values || index == 1; }
 
 /// The state in other charts, bit after bit as NAME_chart does.
-void add_charts(const program::Program& program, const program::AbiArguments& arguments, TestVector& vector) {
+void add_charts(const program::Program& program, const program::AbiArguments& arguments, bool single,
+                TestVector& vector) {
   for (unsigned mask = 0; mask < 1u << program.charts.size(); ++mask) {
     const int to = eom::mode_of_charts(mask), from = arguments.at.mode & eom::chart_bits;
     if (to == from) continue;
@@ -110,7 +116,7 @@ void add_charts(const program::Program& program, const program::AbiArguments& ar
     if (std::any_of(at.x.begin(), at.x.end(), at_half_a_turn)) continue;
     // Formulas of a few sines: what they lose is far below this.
     const std::vector<std::vector<double>> bounds{std::vector<double>(at.x.size(), 1e-14)};
-    if (const auto found = rounded("chart", {at.x}, bounds)) {
+    if (const auto found = rounded("chart", {at.x}, bounds, single)) {
       vector.functions.push_back(*found);
       vector.functions.back().to = to;
     }
@@ -121,6 +127,11 @@ std::string comment(const Dialect& dialect, const std::string& text) {
   return dialect.line_comments ? "// " + text : "/* " + text + " */";
 }
 
+/// C++ knows both, and holds its templates in double precision.
+std::string real_of(const EmissionContext& context, const Dialect& dialect) {
+  return context.single_error && dialect.real == "float" ? "float" : "double";
+}
+
 class Body {
  public:
   Body(const program::Program& program, const EmissionContext& context, const SelfTestNames& names,
@@ -129,6 +140,8 @@ class Body {
         context_(context),
         names_(names),
         dialect_(dialect),
+        real_(real_of(context, dialect)),
+        suffix_(real_ == "float" ? "f" : ""),
         at_p_(1 + program.state_count()),
         at_u_(at_p_ + context.parameters.size()) {}
 
@@ -147,9 +160,12 @@ class Body {
   }
 
  private:
-  static std::string list(const std::vector<double>& values) {
+  std::string list(const std::vector<double>& values) const {
     std::string text;
-    for (const double value : values) text += (text.empty() ? "" : ", ") + decimal(value);
+    for (const double value : values) {
+      const double kept = suffix_.empty() ? value : static_cast<double>(static_cast<float>(value));
+      text += (text.empty() ? "" : ", ") + decimal(kept) + suffix_;
+    }
     return text;
   }
 
@@ -163,7 +179,7 @@ class Body {
     }
     rows.erase(rows.size() - 2);
     text_ += fmt::format("  {}\n", comment(dialect_, "t, x, p, u of each state"));
-    text_ += fmt::format("  static const double points[{}][{}] = {{\n{}}};\n", context_.tests.size(),
+    text_ += fmt::format("  static const {} points[{}][{}] = {{\n{}}};\n", real_, context_.tests.size(),
                          at_u_ + context_.inputs.size(), rows);
     with_modes_ = std::any_of(context_.tests.begin(), context_.tests.end(),
                               [](const TestVector& test) { return test.mode != 0; });
@@ -171,16 +187,22 @@ class Body {
       text_ +=
           wrapped(fmt::format("  static const int modes[{}] = {{{}}};", context_.tests.size(), modes), "      ") + "\n";
     const TestVector& first = context_.tests.front();
-    starts_ = first.x == context_.start && first.mode == 0 && first.t == context_.start_time;
-    for (std::size_t i = 0; i < first.p.size(); ++i) starts_ = starts_ && first.p[i] == context_.parameters[i].value;
-    for (std::size_t i = 0; i < first.u.size(); ++i) starts_ = starts_ && first.u[i] == context_.inputs[i].value;
+    starts_ = first.mode == 0 && same(first.t, context_.start_time) && first.x.size() == context_.start.size();
+    for (std::size_t i = 0; starts_ && i < first.x.size(); ++i) starts_ = same(first.x[i], context_.start[i]);
+    for (std::size_t i = 0; i < first.p.size(); ++i)
+      starts_ = starts_ && same(first.p[i], context_.parameters[i].value);
+    for (std::size_t i = 0; i < first.u.size(); ++i) starts_ = starts_ && same(first.u[i], context_.inputs[i].value);
+  }
+
+  bool same(double a, double b) const {
+    return suffix_.empty() ? a == b : static_cast<float>(a) == static_cast<float>(b);
   }
 
   /// The first state is that of the defaults.
   void defaults() {
     if (!starts_) return;
     const std::size_t n = program_.state_count(), count = context_.parameters.size();
-    text_ += fmt::format("  {{\n    double x[{}], p[{}];\n    int i;\n    {}(x, p);\n", n,
+    text_ += fmt::format("  {{\n    {} x[{}], p[{}];\n    int i;\n    {}(x, p);\n", real_, n,
                          std::max<std::size_t>(1, count), names_.called("defaults"));
     text_ +=
         fmt::format("    for (i = 0; i < {}; ++i) {{\n      if (!(x[i] == points[0][1 + i])) return 1;\n    }}\n", n);
@@ -225,18 +247,18 @@ class Body {
     text_ += wrapped(fmt::format("    static const int at[{}] = {{{}}};", rows.size(), states), "        ") + "\n";
     const bool empty = std::all_of(shape.begin(), shape.end(), [](const auto& array) { return array.empty(); });
     if (!empty)
-      text_ += fmt::format("    static const double expected[{}][{}] = {{\n{}}};\n", rows.size(), width, numbers);
+      text_ += fmt::format("    static const {} expected[{}][{}] = {{\n{}}};\n", real_, rows.size(), width, numbers);
     text_ += fmt::format("    for (int k = 0; k < {}; ++k) {{\n", rows.size());
     text_ += "      const int state = at[k];\n";
-    text_ += fmt::format("      const double* const point = points[state];\n");
+    text_ += fmt::format("      const {}* const point = points[state];\n", real_);
     std::string arrays;
     for (std::size_t r = 0; r < shape.size(); ++r) {
-      text_ += fmt::format("      double y{}[{}] = {{0}};\n", r + 1, std::max<std::size_t>(1, shape[r].size()));
+      text_ += fmt::format("      {} y{}[{}] = {{0}};\n", real_, r + 1, std::max<std::size_t>(1, shape[r].size()));
       arrays += fmt::format(", y{}", r + 1);
     }
     const std::size_t prepared = program_.prepared_count();
     if (abi::find(function)->takes(abi::Input::prepared))
-      text_ += fmt::format("      double w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", prepared,
+      text_ += fmt::format("      {} w[{}];\n      if ({}(point + {}, w) != 0) return state + 1;\n", real_, prepared,
                            names_.called("prepare"), at_p_);
     text_ += wrapped(fmt::format("      if ({}({}{}) != 0) return state + 1;", names_.called(function),
                                  arguments(function, to), arrays),
@@ -280,6 +302,7 @@ class Body {
   const EmissionContext& context_;
   const SelfTestNames& names_;
   const Dialect& dialect_;
+  std::string real_, suffix_;
   std::size_t at_p_, at_u_;
   bool with_modes_ = false, starts_ = false;
   std::string text_;
@@ -291,21 +314,22 @@ std::optional<TestVector> test_vector(const program::Program& program, const Emi
                                       std::size_t index) {
   const program::AbiArguments arguments = arguments_of(at, context);
   const bool smooth = (at.mode & ~eom::chart_bits) == 0, own = (at.mode & eom::chart_bits) == 0;
+  const bool single = context.single_error.has_value();
   at.functions.clear();
-  const std::optional<FunctionValues> rhs = values_at(program, "rhs", arguments);
+  const std::optional<FunctionValues> rhs = values_at(program, "rhs", arguments, single);
   if (!rhs) return std::nullopt;
   for (const std::string& name : program::abi_function_names(program)) {
     const bool of_mode = abi::find(name + "_in") == nullptr;
     if (!of_mode && !smooth) continue;
     if (name != "rhs" && !is_held(entries(program, name), index)) continue;
-    std::optional<FunctionValues> values = name == "rhs" ? rhs : values_at(program, name, arguments);
+    std::optional<FunctionValues> values = name == "rhs" ? rhs : values_at(program, name, arguments, single);
     if (!values) continue;
     if (of_mode || own) at.functions.push_back(*values);
     if (of_mode || program.charts.empty()) continue;
     values->function += "_in";
     at.functions.push_back(*values);
   }
-  if (smooth) add_charts(program, arguments, at);
+  if (smooth) add_charts(program, arguments, single, at);
   return at;
 }
 
@@ -318,11 +342,11 @@ std::string selftest_body(const program::Program& program, const EmissionContext
 std::string selftest_comparison(const EmissionContext& context, const SelfTestNames& names, const Dialect& dialect) {
   if (context.tests.empty()) return "";
   return fmt::format(
-      "{}\n{} int {}(int count, const double* got, const double* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
+      "{}\n{} int {}(int count, const {}* got, const {}* expected){}{{\n  for (int i = 0; i < count; ++i) {{\n"
       "    if (!({}(got[i] - expected[i + 1]) <= expected[0])) return 1;\n  }}\n  return 0;\n}}\n\n",
       comment(dialect, "Whether values are off the expected ones by more than expected[0]."),
-      dialect.line_comments ? "inline" : "static", names.differs, dialect.line_comments ? " " : "\n",
-      dialect.line_comments ? "std::fabs" : "fabs");
+      dialect.line_comments ? "inline" : "static", names.differs, real_of(context, dialect), real_of(context, dialect),
+      dialect.line_comments ? " " : "\n", dialect.line_comments ? "std::fabs" : "fabs");
 }
 
 }  // namespace eomgen::emit

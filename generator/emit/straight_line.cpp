@@ -200,13 +200,13 @@ class Printer {
       if (in_lanes()) {
         require(exact ? fmt::format("{} != {}", pivot, dialect_.constant(0))
                       : fmt::format("{0}abs({1}) > {2}*{0}abs({3})", dialect_.lanes, pivot,
-                                    dialect_.value(program::pivot_tolerance), expressions_.in_lanes(test.scale).text));
+                                    dialect_.value(dialect_.pivot_tolerance), expressions_.in_lanes(test.scale).text));
       } else if (exact) {
         line(fmt::format("if ({} == {}) return 1;", pivot, dialect_.constant(0)));
       } else {
         expressions_.call(dialect_.absolute);
         line(fmt::format("if ({0}({1}) <= {2}*{0}({3})) return 1;", dialect_.absolute, pivot,
-                         dialect_.value(program::pivot_tolerance), expressions_.size_of(test.scale).text));
+                         dialect_.value(dialect_.pivot_tolerance), expressions_.size_of(test.scale).text));
       }
     }
   }

@@ -20,7 +20,8 @@ struct Dialect {
   std::string (*value)(double);                        // of a default
   std::string pi;
   std::string absolute;  // name of the function |x|
-  std::string kernels;   // prefix of the kernels' names
+  double pivot_tolerance = program::pivot_tolerance;
+  std::string kernels;  // prefix of the kernels' names
   // Sines and cosines of near angles first, without a call in between that would make the compiler keep what it has in
   // memory; the function starts again where an angle turns out to be far (FunctionText::near_first).
   bool near_first = false;

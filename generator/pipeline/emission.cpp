@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "abi/functions.hpp"
+#include "emit/single_precision.hpp"
 #include "error.hpp"
 #include "model/names.hpp"
 #include "numeric/numbers.hpp"
@@ -115,6 +116,7 @@ void require_target(const std::string& target, const std::vector<std::string>& b
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {
   require_target(request.target);
   require_with(request.with);
+  if (request.single) emit::require_single(request.target);
   const auto derived = derive_model(std::move(model), request.approach, request.form);
   const run::Scene scene =
       run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});
@@ -132,6 +134,8 @@ Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionReq
   require_pass(result.certificate, derived->model);
   emit::EmissionContext context = emission_context(*derived, result.program, scene, result.certificate);
   if (has(request.with, "run")) context.run = run_text(*derived, scene, result.program);
+  if (request.single) emit::make_single(result.program, context);
+  result.single_error = context.single_error;
   result.files = emit::emit(result.program, context, request.target);
   result.seconds = derived->seconds;
   return result;

@@ -15,6 +15,7 @@ struct EmissionRequest {
   std::vector<std::string> outputs;  // of the function outputs, beside what "outputs" in `with` brings
   std::vector<std::string> fix;      // parameters that become numbers
   std::uint64_t seed = 1;
+  bool single = false;  // single precision
 };
 
 /// What `with` may hold: functions beside rhs; "energy"; "outputs", those of the default scene; "charts", second ones;
@@ -28,6 +29,7 @@ struct Emission {
   std::vector<emit::EmittedFile> files;
   program::Program program;
   verify::Certificate certificate;
+  std::optional<double> single_error = {};  // emit::EmissionContext::single_error
   Timings seconds;
 };
 

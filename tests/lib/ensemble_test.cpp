@@ -237,8 +237,9 @@ Watched watched_alone(const char* method, std::size_t member, const eom::Ensembl
     result.seen.push_back(seen(point));
     return point.crossing.function == 1 ? eom::AtEvent::stop : eom::AtEvent::go_on;
   };
-  const eom::Result end = eom::integrate_events(method, one, start.t0, x, start.t1, eom::options_of(options), g,
-                                                {std::begin(watched_functions), std::end(watched_functions)}, handler);
+  const eom::Result end =
+      eom::integrate_events(method, one, start.t0, x, start.t1, eom::ensemble::options_of(options), g,
+                            {std::begin(watched_functions), std::end(watched_functions)}, handler);
   result.end = {end.outcome, end.t, end.x, end.statistics, 1};
   return result;
 }

@@ -18,7 +18,7 @@ namespace eomgen::cli {
 namespace {
 
 struct Options {
-  std::string model, folder, target = "cpp", approach = "auto", form = "auto";
+  std::string model, folder, target = "cpp", approach = "auto", form = "auto", real = "double";
   std::vector<std::string> with, fix, outputs;
   bool print_name = false;
 };
@@ -87,7 +87,8 @@ int execute(const Options& options, const Common& common) {
                                           options.with,
                                           options.outputs,
                                           options.fix,
-                                          common.seed};
+                                          common.seed,
+                                          options.real == "float"};
   if (options.target == analysis::document_target) return emit_document(options, common);
   double reading = 0;
   const auto model = load_model(options.model, &reading);
@@ -104,21 +105,22 @@ int execute(const Options& options, const Common& common) {
                        {"approach", system::name(t.approach)},
                        {"form", system::name(t.form)},
                        {"operations", to_json(t.operations)}});
-    const Json document{{"format", 1},
-                        {"files", files},
-                        {"route", program.route},
-                        {"approach", system::name(program.approach)},
-                        {"form", system::name(program.form)},
-                        {"tried", tried},
-                        {"operations", to_json(program.functions.front().operations)},
-                        {"hoisted", hoisted(program)},
-                        {"certificate", certificate.summary()},
-                        {"seconds",
-                         {{"read", reading},
-                          {"derive", seconds.derive},
-                          {"optimise", seconds.optimise},
-                          {"verify", seconds.verify},
-                          {"print", seconds.print}}}};
+    Json document{{"format", 1},
+                  {"files", files},
+                  {"route", program.route},
+                  {"approach", system::name(program.approach)},
+                  {"form", system::name(program.form)},
+                  {"tried", tried},
+                  {"operations", to_json(program.functions.front().operations)},
+                  {"hoisted", hoisted(program)},
+                  {"certificate", certificate.summary()},
+                  {"seconds",
+                   {{"read", reading},
+                    {"derive", seconds.derive},
+                    {"optimise", seconds.optimise},
+                    {"verify", seconds.verify},
+                    {"print", seconds.print}}}};
+    if (emission.single_error) document["single_error"] = *emission.single_error;
     print_document(document);
     return 0;
   }
@@ -137,6 +139,9 @@ int execute(const Options& options, const Common& common) {
                with_form(t.form));
   }
   fmt::print("certificate {}\n", certificate.summary());
+  if (emission.single_error)
+    fmt::print("single      off by {:.1e} of the size of rhs at most, at the states of the self test\n",
+               *emission.single_error);
   for (const std::string& file : files) fmt::print("wrote {}\n", file);
   return 0;
 }
@@ -158,6 +163,9 @@ Execute declare_emit(Arguments& app) {
                      fmt::join(abi::asked_for(), ", ")))
       .one_of(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");
+  app.add_option("--real", options->real, "double, or float: single precision, for the targets c, cpp and cuda")
+      .show_preset()
+      .one_of({"double", "float"});
   add_approach(app, options->approach);
   add_form(app, options->form);
   app.add_flag("--print-name", options->print_name,

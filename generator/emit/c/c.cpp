@@ -10,8 +10,10 @@
 #include "emit/run/run_header.hpp"
 #include "emit/self_test.hpp"
 #include "emit/signature.hpp"
+#include "emit/single_precision.hpp"
 #include "emit/taylor.hpp"
 #include "emit/text.hpp"
+#include "error.hpp"
 #include "program/taylor.hpp"
 #include "skeletons/c_model_c.hpp"
 #include "skeletons/c_model_h.hpp"
@@ -34,30 +36,30 @@ std::string head_of(const std::string& name, const std::string& arguments) {
 }
 
 /// The prototype with the argument names of docs/abi.md, whatever the model's own names are.
-std::string prototype(const std::string& name, const FilePart& part) {
+std::string prototype(const std::string& name, const FilePart& part, const std::string& real) {
   if (part.function == nullptr) return head_of(name, part.arguments);
-  return head_of(name, argument_list(abi_arguments(part.function->name), "double"));
+  return head_of(name, argument_list(abi_arguments(part.function->name), real));
 }
 
 /// The function; where it tries near angles first, what it is made of and the one for far angles before it.
 std::string definition(const std::string& name, const program::Function& function, FunctionText text,
-                       const ModelNames& names, bool internal) {
+                       const ModelNames& names, const std::string& real, bool internal) {
   const char* linkage = internal ? "static " : "";
-  const auto head = [&](const std::string& what) { return function_head(what, function, text, names, "double"); };
+  const auto head = [&](const std::string& what) { return function_head(what, function, text, names, real); };
   if (!text.parts.empty()) {
     const std::string guard = text.near_first ? fmt::format("int {}, ", text.guarded) : "";
-    const std::string list = guard + argument_list(arguments(function.name, text, names), "double");
+    const std::string list = guard + argument_list(arguments(function.name, text, names), real);
     std::string parts;
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
       parts += fmt::format(
-          "#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\nstatic int {}_part{}({}, double* "
+          "#if defined(__GNUC__)\n__attribute__((noinline))\n#endif\nstatic int {}_part{}({}, {}* "
           "{})\n{{\n{}}}\n\n",
-          name, k + 1, list, text.work, text.parts[k]);
+          name, k + 1, list, real, text.work, text.parts[k]);
     }
     const std::string handed = (text.near_first ? text.guarded + ", " : "") + argument_names(function, text, names);
-    text.body = calls_of_parts(name, text, handed, "double");
+    text.body = calls_of_parts(name, text, handed, real);
     text.parts.clear();
-    return parts + definition(name, function, text, names, internal);
+    return parts + definition(name, function, text, names, real, internal);
   }
   if (!text.near_first) return fmt::format("{}{}\n{{\n{}}}\n", linkage, head(name), text.body);
   const std::string arguments = argument_names(function, text, names);
@@ -91,13 +93,18 @@ std::string sizes(const std::string& name, const program::Program& program, cons
 std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionContext& context) {
   require_consistent(program, context);
   const std::string name = mangled_id(context.id);
-  Dialect dialect = c_dialect();
+  const bool single = context.single_error.has_value();
+  Dialect dialect = single ? single_dialect() : c_dialect();
   dialect.kernels = name + "_";
-  dialect.near_first = true;
+  dialect.near_first = !single;
+  if (single && (program.taylor || context.run)) {
+    throw Error("emit", {}, "the Taylor series and the header of a run know double precision alone",
+                "leave taylor and run out of --with, or --real float");
+  }
   const ModelNames names = model_names(program, context);
   std::vector<std::vector<std::pair<std::string, std::string>>> functions, declared;
   bool packs = false;
-  for (const FilePart& part : file_parts(program, name + "_", "double")) {
+  for (const FilePart& part : file_parts(program, name + "_", dialect.real)) {
     const std::string full = fmt::format("{}_{}", name, part.name);
     std::string text;
     if (part.function == nullptr) {
@@ -105,11 +112,12 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
     } else {
       const FunctionText printed = print_function(*part.function, names, context, dialect);
       packs = packs || printed.packs > 0;
-      text = definition(full, *part.function, printed, names, part.internal);
+      text = definition(full, *part.function, printed, names, dialect.real, part.internal);
     }
     if (part.internal) text = fmt::format("/* {} */\n", comment_text(part.purpose)) + text;
     functions.push_back({{"definition", text}});
-    if (!part.internal) declared.push_back({{"purpose", part.purpose}, {"prototype", prototype(full, part)}});
+    if (!part.internal)
+      declared.push_back({{"purpose", part.purpose}, {"prototype", prototype(full, part, dialect.real)}});
   }
   if (program.taylor) {
     const TaylorText text = print_taylor(program, names, context, dialect, name + "_");
@@ -120,9 +128,13 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},
-      {"includes",
-       packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>" : "#include <math.h>"},
-      {"kernels", packs ? sincos_kernel(name + "_", "static inline", "") + "\n" : ""},
+      {"includes", single                    ? "#include <math.h>\n#include <tgmath.h>"
+                   : packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>"
+                                             : "#include <math.h>"},
+      {"real", dialect.real},
+      {"kernels", packs && single ? single_sincos(name + "_")
+                  : packs         ? sincos_kernel(name + "_", "static inline", "") + "\n"
+                                  : ""},
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},
       {"defaults", defaults_body(program, context, dialect)},

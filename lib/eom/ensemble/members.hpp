@@ -53,8 +53,6 @@ inline std::size_t slots_of(const EnsembleOptions& options, std::size_t width = 
   return (std::max<std::size_t>(options.lanes, 1) + width - 1) / width * width;
 }
 
-}  // namespace ensemble
-
 /// Of a member alone.
 inline Options options_of(const EnsembleOptions& options) {
   Options alone;
@@ -68,5 +66,7 @@ inline Options options_of(const EnsembleOptions& options) {
   alone.interrupt = options.interrupt;
   return alone;
 }
+
+}  // namespace ensemble
 
 }  // namespace eom
