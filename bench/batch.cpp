@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <ctime>
 #include <fstream>
 #include <string>
 #include <vector>
@@ -54,11 +54,11 @@ struct Case {
 
 template <class Run>
 double nanoseconds_per_state(std::size_t calls, const Run& run) {
-  run();  // what ran before it is out of the caches
-  const auto start = std::chrono::steady_clock::now();
+  run();                                    // what ran before it is out of the caches
+  const std::clock_t start = std::clock();  // of the processor: others may use it too
   for (std::size_t k = 0; k < calls; ++k) run();
-  const std::chrono::duration<double, std::nano> elapsed = std::chrono::steady_clock::now() - start;
-  return elapsed.count() / static_cast<double>(calls * count);
+  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  return 1e9 * seconds / static_cast<double>(calls * count);
 }
 
 double median(std::vector<double> values) {
