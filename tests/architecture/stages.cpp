@@ -52,7 +52,7 @@ std::vector<Stage> parse_stages(const std::string& folder, const std::string& cm
         list = &stage.needs;
       else if (*word == "LINKS")
         list = &stage.links;
-      else if (*word == "OWN_HEADERS")
+      else if (*word == "OWN_HEADERS" || *word == "COLD")
         continue;  // how it is compiled, not what it knows
       else if (list == nullptr)
         throw std::runtime_error("eomgen_stage: what is " + *word + " in " + folder);
