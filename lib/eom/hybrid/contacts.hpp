@@ -248,7 +248,7 @@ inline void ContactModes::adjust(double* g) {
         problem_.code->contacts[j].dimensions == 2 ? std::hypot(value[0], value[2]) : std::abs(value[0]);
     if (problem_.code->contacts[j].dimensions > 0 && std::isfinite(slip)) velocities_.see_slip(slip);
     if (problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3 && std::isfinite(value[3]))
-      largest_gap_ = std::max(largest_gap_, std::abs(value[3]));
+      largest_gap_ = std::max(largest_gap_, value[3]);  // not what trial steps reach below the surface
   }
   rule_.shift(g);
 }
