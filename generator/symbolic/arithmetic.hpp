@@ -12,7 +12,6 @@
 #include <stdexcept>
 
 #include "symbolic/dag.hpp"
-#include "symbolic/runtime_operations.hpp"
 
 namespace eomgen::symbolic {
 

@@ -11,6 +11,7 @@
 
 #include <array>
 #include <cstdint>
+#include <eom/expressions/operations.hpp>
 #include <map>
 #include <optional>
 #include <set>
@@ -22,41 +23,22 @@ namespace eomgen::symbolic {
 
 using Rational = cln::cl_RA;
 
+/// The leaves, then the operations of expressions that a run evaluates, in their order. power: args[0] to the integer
+/// payload (>= 2; negative powers are 1/x^n as div).
 enum class Op : std::uint8_t {
   constant,  // payload: index into the constants
   pi,
   symbol,  // payload: index into the symbols
-  add,
-  sub,
-  mul,
-  div,
-  neg,
-  power,  // args[0] to the integer payload (>= 2; negative powers are 1/x^n as div)
-  pow,    // args[0] ^ args[1], general
-  sqrt,
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  sinh,
-  cosh,
-  tanh,
-  exp,
-  log,
-  abs,
-  sign,
-  atan2,
-  min,
-  max,
-  select,  // args[0] < args[1] ? args[2] : args[3]
+  EOM_OPERATIONS(EOM_OPERATION_ENUMERATOR)
 };
 
+/// The same operation there. Not for leaves: constants, pi and symbols are numbers, variables or parameters there.
+constexpr eom::expressions::Op runtime_op(Op op) { return static_cast<eom::expressions::Op>(op); }
+constexpr Op function_at(eom::expressions::Op op) { return static_cast<Op>(op); }
+static_assert(runtime_op(Op::add) == eom::expressions::Op::add, "as many leaves here as there");
+
 /// The value or the slope jumps where the operands say so: another expression on either side of that surface.
-constexpr bool is_kink(Op op) {
-  return op == Op::abs || op == Op::sign || op == Op::min || op == Op::max || op == Op::select;
-}
+constexpr bool is_kink(Op op) { return eom::expressions::is_kink(runtime_op(op)); }
 
 enum class SymbolKind : std::uint8_t {
   time,

@@ -9,7 +9,6 @@
 #include <cstdint>
 
 #include "symbolic/dag.hpp"
-#include "symbolic/runtime_operations.hpp"
 
 namespace eomgen::symbolic {
 

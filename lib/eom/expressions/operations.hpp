@@ -10,63 +10,39 @@
 
 namespace eom::expressions {
 
+/// The operations after the leaves, each with its number of operands. The generator's graph is made of the same list
+/// (symbolic/dag.hpp). power: a[0] to the integer a[1], 2 and more; pow: a[0] ^ a[1], general;
+/// select: a[0] < a[1] ? a[2] : a[3].
+// clang-format off
+#define EOM_OPERATIONS(OPERATION)                                                             \
+  OPERATION(add, 2) OPERATION(sub, 2) OPERATION(mul, 2) OPERATION(div, 2) OPERATION(neg, 1)   \
+  OPERATION(power, 1) OPERATION(pow, 2) OPERATION(sqrt, 1)                                    \
+  OPERATION(sin, 1) OPERATION(cos, 1) OPERATION(tan, 1)                                       \
+  OPERATION(asin, 1) OPERATION(acos, 1) OPERATION(atan, 1)                                    \
+  OPERATION(sinh, 1) OPERATION(cosh, 1) OPERATION(tanh, 1)                                    \
+  OPERATION(exp, 1) OPERATION(log, 1) OPERATION(abs, 1) OPERATION(sign, 1)                    \
+  OPERATION(atan2, 2) OPERATION(min, 2) OPERATION(max, 2) OPERATION(select, 4)
+// clang-format on
+#define EOM_OPERATION_ENUMERATOR(name, operands) name,
+#define EOM_OPERATION_TEXT(name, operands) #name,
+#define EOM_OPERATION_OPERANDS(name, operands) operands,
+
 enum class Op : std::uint8_t {
   number,     // a[0]: place among the numbers of the table
   variable,   // a[0]: place among the variables
   parameter,  // a[0]: place among the parameters of the model
-  add,
-  sub,
-  mul,
-  div,
-  neg,
-  power,  // a[0] to the integer a[1], 2 and more
-  pow,    // a[0] ^ a[1], general
-  sqrt,
-  sin,
-  cos,
-  tan,
-  asin,
-  acos,
-  atan,
-  sinh,
-  cosh,
-  tanh,
-  exp,
-  log,
-  abs,
-  sign,
-  atan2,
-  min,
-  max,
-  select,  // a[0] < a[1] ? a[2] : a[3]
+  EOM_OPERATIONS(EOM_OPERATION_ENUMERATOR)
 };
 
 /// Its name as above.
 constexpr const char* name_of(Op op) {
-  constexpr std::array<const char*, 28> names{"number", "variable", "parameter", "add",   "sub",  "mul",  "div",
-                                              "neg",    "power",    "pow",       "sqrt",  "sin",  "cos",  "tan",
-                                              "asin",   "acos",     "atan",      "sinh",  "cosh", "tanh", "exp",
-                                              "log",    "abs",      "sign",      "atan2", "min",  "max",  "select"};
+  constexpr std::array names{"number", "variable", "parameter", EOM_OPERATIONS(EOM_OPERATION_TEXT)};
   return names.at(static_cast<std::size_t>(op));
 }
-static_assert(static_cast<std::size_t>(Op::select) == 27);
 
 constexpr std::size_t operands(Op op) {
-  switch (op) {
-    case Op::number:
-    case Op::variable:
-    case Op::parameter: return 0;
-    case Op::add:
-    case Op::sub:
-    case Op::mul:
-    case Op::div:
-    case Op::pow:
-    case Op::atan2:
-    case Op::min:
-    case Op::max: return 2;
-    case Op::select: return 4;
-    default: return 1;
-  }
+  constexpr std::array<std::size_t, 28> counts{0, 0, 0, EOM_OPERATIONS(EOM_OPERATION_OPERANDS)};
+  return counts.at(static_cast<std::size_t>(op));
 }
 
 /// The value or the slope jumps where the operands say so: another expression on either side of that surface.
