@@ -73,8 +73,7 @@ void bind_time(const Scene& scene, Problem& problem) {
 
 std::vector<eom::hybrid::Signal> signals_of(const Scene& scene) {
   std::vector<eom::hybrid::Signal> signals;
-  for (const Signal& signal : scene.inputs)
-    signals.push_back({{}, signal.jumps(), signal.values(), signal.expression()});
+  for (const Signal& signal : scene.inputs) signals.push_back(signal.of_run());
   return signals;
 }
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <eom/expressions/code.hpp>
+#include <eom/hybrid/signal.hpp>
 #include <vector>
 
 #include "symbolic/dag.hpp"
@@ -24,14 +25,12 @@ class Signal {
   double operator()(double t, double side_of) const;
   /// Whether it changes between its jumps.
   bool moves() const;
-  const std::vector<double>& jumps() const { return time_; }
-  const std::vector<double>& values() const { return value_; }               // from each jump on
-  const eom::expressions::Table& expression() const { return expression_; }  // of t; empty where it is a table
+  const std::vector<double>& jumps() const { return signal_.times; }
+  const eom::hybrid::Signal& of_run() const { return signal_; }
 
  private:
-  eom::expressions::Table expression_;
-  eom::expressions::Code code_;
-  std::vector<double> time_, value_;
+  eom::hybrid::Signal signal_;
+  eom::expressions::Code code_;  // of its expression, with numbers for the parameters
 };
 
 }  // namespace eomgen::run
