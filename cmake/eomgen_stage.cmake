@@ -22,7 +22,8 @@ endfunction()
 # eomgen_stage(NAME [OWN_HEADERS] [COLD] SOURCES a.cpp ... NEEDS other_stage ... LINKS external::target ...)
 # One static library per stage. NEEDS is the dependency rule: a stage sees only what it names.
 # Headers are included as "stage/file.hpp" from generator/. OWN_HEADERS: it precompiles others than the stages share.
-# COLD: no time is spent in it, and the compiler takes a quarter less of its own without the last optimisations.
+# COLD: no time is spent in it, no integrator compiled; the compiler takes a quarter less of its own without the last
+# optimisations.
 function(eomgen_stage name)
   cmake_parse_arguments(ARG "OWN_HEADERS;COLD" "" "SOURCES;NEEDS;LINKS" ${ARGN})
   add_library(eomgen_${name} STATIC ${ARG_SOURCES})

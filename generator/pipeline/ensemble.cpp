@@ -9,6 +9,7 @@
 #include <eom/hybrid/balance.hpp>
 #include <eom/hybrid/event_ranges.hpp>
 #include <limits>
+#include <memory>
 #include <mutex>
 #include <optional>
 
@@ -159,8 +160,7 @@ class Runs {
     }
     One alone(std::size_t member, const double* p) const {
       const double* const w = p + of.p_;
-      return {of, of.ranges_[member] ? &*of.ranges_[member] : nullptr, p, of.w_ > 0 ? w : nullptr,
-              of.u_ > 0 ? w + of.w_ : nullptr};
+      return {of, of.ranges_[member].get(), p, of.w_ > 0 ? w : nullptr, of.u_ > 0 ? w + of.w_ : nullptr};
     }
   };
 
@@ -223,7 +223,10 @@ class Runs {
     start.t0 = scene->t0;
     start.t1 = scene->t1;
     how_[member] = How::together;
-    if (!events_.empty()) ranges_[member].emplace(bounded_, eom::hybrid::StepVariables(states_, u_), scene->parameters);
+    if (!events_.empty()) {
+      const eom::hybrid::StepVariables variables(states_, u_);
+      ranges_[member] = std::make_unique<eom::hybrid::EventRanges>(bounded_, variables, scene->parameters);
+    }
     if (watches_energy_) energy_[member] = energy(outputs(start.t0, start.x, start.p)).first;
   }
 
@@ -267,11 +270,11 @@ class Runs {
   run::Code code_;
   const emit::LoadedBatch* batch_;  // null: runs are made one by one
   std::vector<How> how_;
-  std::vector<double> energy_;                                   // at the start of each
-  std::vector<eom::EventFunction> events_;                       // of the model
-  std::vector<eom::expressions::Table> bounded_;                 // event functions
-  std::vector<std::optional<eom::hybrid::EventRanges>> ranges_;  // of those under way
-  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;               // rows: parameters, what is prepared of them, inputs
+  std::vector<double> energy_;                                     // at the start of each
+  std::vector<eom::EventFunction> events_;                         // of the model
+  std::vector<eom::expressions::Table> bounded_;                   // event functions
+  std::vector<std::unique_ptr<eom::hybrid::EventRanges>> ranges_;  // of those under way
+  std::size_t states_ = 0, p_ = 0, w_ = 0, u_ = 0;                 // rows: parameters, what is prepared of them, inputs
   std::size_t kinetic_ = 0, potential_ = 0;
   bool watches_energy_ = false;
   std::mutex lock_;
