@@ -26,6 +26,9 @@ Formula dotted(Formula letter, int order) {
   result.order = order;
   return result;
 }
+Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
+Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
+Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
 
 namespace {
 

@@ -24,6 +24,12 @@ inline Statement left_out(std::string key, std::string name, std::string role, s
 reading::Formula coordinate(std::uint32_t i, std::uint8_t order);
 /// A letter with dots over it.
 reading::Formula dotted(reading::Formula letter, int order = 1);
+/// A number below a letter.
+reading::Formula index(std::uint32_t i);
+/// d of/d by
+reading::Formula partial(reading::Formula of, reading::Formula by);
+/// a . b
+reading::Formula dot_product(reading::Formula a, reading::Formula b);
 
 struct Item;  // render.hpp
 std::vector<Item> render(const mechanics::Mechanics& mechanics, const std::vector<Statement>& statements);

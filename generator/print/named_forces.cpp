@@ -17,10 +17,6 @@ using Acts = model::Effect::Acts;
 
 namespace {
 
-Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
-Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
-Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
-
 /// The second effect of force 3 has F_(3 2).
 std::vector<Formula> lower_index(std::uint32_t j, std::uint32_t k) {
   return k == 0 ? std::vector<Formula>{index(j + 1)} : std::vector<Formula>{index(j + 1), index(k + 1)};

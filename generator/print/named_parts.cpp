@@ -32,10 +32,6 @@ constexpr std::size_t longest_numerator = 12;  // terms: beyond, one fraction mu
 constexpr std::size_t most_terms = 100;        // of a part that somebody reads
 constexpr std::size_t longest_energy = 24;     // terms: beyond, what forces have names for is shorter
 
-Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
-Formula partial(Formula of, Formula by) { return reading::wrap(Form::partial, {std::move(of), std::move(by)}); }
-Formula dot_product(Formula a, Formula b) { return reading::wrap(Form::dot_product, {std::move(a), std::move(b)}); }
-
 /// Of a vector that is 0, 0.
 Formula linear_combination(const std::vector<Formula>& components, const std::vector<Formula>& vectors) {
   std::vector<Formula> terms;

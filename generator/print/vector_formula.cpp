@@ -15,8 +15,6 @@ using Terms = std::optional<std::vector<Formula>>;
 
 namespace {
 
-Formula index(std::uint32_t i) { return reading::number(static_cast<long>(i)); }
-
 /// factor * term; signs come first, and what is nothing is nothing.
 void add(std::vector<Formula>& terms, const Formula& factor, const Formula& term) {
   const bool minus = factor.form == Form::negative, minus_too = term.form == Form::negative;
