@@ -91,9 +91,7 @@ print::SteadyFinding finding(const SteadyProblem& p, const SteadyMotion& motion)
   }
   result.zeros = motion.l.spectrum.zeros;
   result.family = motion.family;
-  result.stability = motion.verdict.stability == linear::Stability::stable     ? "stable"
-                     : motion.verdict.stability == linear::Stability::unstable ? "unstable"
-                                                                               : "stability unknown";
+  result.stability = linear::in_words(motion.verdict.stability);
   result.reason = motion.verdict.reason;
   return result;
 }

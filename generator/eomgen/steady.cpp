@@ -22,15 +22,6 @@ std::vector<std::complex<double>> eigenvalues(const linear::Spectrum& spectrum) 
   return result;
 }
 
-const char* name(linear::Stability stability) {
-  switch (stability) {
-    case linear::Stability::stable: return "stable";
-    case linear::Stability::unstable: return "unstable";
-    case linear::Stability::unknown: break;
-  }
-  return "unknown";
-}
-
 }  // namespace
 
 Linearisation Model::linearise(const LineariseOptions& options, const Task& task) const {
@@ -70,7 +61,7 @@ SteadyMotions Model::steady_motions(const SteadyOptions& options, const Task& ta
       motion.kind = linear::name(from.l.kind);
       const std::vector<std::string>& names = found.problem.flow->names();
       for (std::size_t i = 0; i + 1 < from.l.z.size(); ++i) motion.state[names[i]] = analysis::shown(from.l.z[i]);
-      motion.stability = name(from.verdict.stability);
+      motion.stability = linear::name(from.verdict.stability);
       motion.reason = from.verdict.reason;
       motion.eigenvalues = eigenvalues(from.l.spectrum);
       motion.family = from.family;

@@ -6,6 +6,20 @@
 #include "symbolic/calculus.hpp"
 
 namespace eomgen::linear {
+
+const char* name(Stability stability) {
+  switch (stability) {
+    case Stability::stable: return "stable";
+    case Stability::unstable: return "unstable";
+    case Stability::unknown: break;
+  }
+  return "unknown";
+}
+
+std::string in_words(Stability stability) {
+  return (stability == Stability::unknown ? "stability " : "") + std::string(name(stability));
+}
+
 namespace {
 
 constexpr int nothing = 60;  // of numbers that are known to more than 100 digits

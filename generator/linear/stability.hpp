@@ -4,11 +4,18 @@
 // (docs/theory.md, "Steady motions").
 #pragma once
 
+#include <string>
+
 #include "linear/quantities.hpp"
 
 namespace eomgen::linear {
 
 enum class Stability { stable, unstable, unknown };
+
+/// "stable", "unstable", "unknown"
+const char* name(Stability stability);
+/// "stable", "unstable", "stability unknown"
+std::string in_words(Stability stability);
 
 struct Verdict {
   Stability stability = Stability::unknown;

@@ -28,15 +28,6 @@ Json to_json(const linear::Verdict& verdict) {
   return verdict.stability == linear::Stability::stable;
 }
 
-const char* to_text(const linear::Verdict& verdict) {
-  switch (verdict.stability) {
-    case linear::Stability::stable: return "stable";
-    case linear::Stability::unstable: return "unstable";
-    case linear::Stability::unknown: break;
-  }
-  return "stability unknown";
-}
-
 Json to_json(const analysis::SteadyMotions& found, const Options& options) {
   const std::vector<std::string>& names = found.problem.flow->names();
   Json points = Json::array(), held = Json::array();
@@ -67,8 +58,8 @@ Json to_json(const analysis::SteadyMotions& found, const Options& options) {
 }
 
 std::string text(const analysis::SteadyMotion& point, const std::vector<std::string>& names) {
-  std::string out =
-      fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), to_text(point.verdict), point.verdict.reason);
+  std::string out = fmt::format("\n{}, {}: {}\n", linear::name(point.l.kind), linear::in_words(point.verdict.stability),
+                                point.verdict.reason);
   if (point.family > 0)
     out += fmt::format("  one of a family of {} dimension{}\n", point.family, point.family == 1 ? "" : "s");
   if (point.l.off > 0)

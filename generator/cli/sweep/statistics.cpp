@@ -87,22 +87,12 @@ void read_basins(analysis::Basins& basins, const std::string& header, const Each
   });
 }
 
-namespace {
-
-const char* word(linear::Stability stability) {
-  return stability == linear::Stability::stable     ? "stable"
-         : stability == linear::Stability::unstable ? "unstable"
-                                                    : "unknown";
-}
-
-}  // namespace
-
 Json to_json(const analysis::Basins& basins) {
   Json goals = Json::array();
   for (const analysis::Basins::Goal& goal : basins.goals()) {
     Json values = Json::object();
     for (const auto& [name, value] : goal.values) values[name] = value;
-    goals.push_back({{"values", values}, {"stability", word(goal.stability)}, {"runs", goal.runs}});
+    goals.push_back({{"values", values}, {"stability", linear::name(goal.stability)}, {"runs", goal.runs}});
   }
   return {{"within", basins.within()}, {"reached", goals}, {"elsewhere", basins.elsewhere()}};
 }
@@ -114,7 +104,7 @@ std::string to_text(const analysis::Basins& basins) {
     for (const auto& [name, value] : goal.values) {
       if (value != 0 || !name.ends_with("_dot")) text += fmt::format(" {} = {:.6g}", name, value);
     }
-    text += fmt::format(" ({})\n", word(goal.stability));
+    text += fmt::format(" ({})\n", linear::name(goal.stability));
   }
   return text + fmt::format("{:>9} runs elsewhere\n", basins.elsewhere());
 }
