@@ -53,6 +53,7 @@ struct Motion {
   std::vector<std::vector<double>> rows;  // columns.size() each
   std::vector<std::pair<std::string, double>> final;
   std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty where none was made
+  std::string estimate_note;                                   // why the estimate is not to be trusted, or ""
   std::vector<Invariant> invariants;
   double power_balance = 0, constraint_drift = 0;  // as `eomgen run` shows them
   std::size_t steps = 0, rhs_evaluations = 0;

@@ -109,7 +109,6 @@ RunResult integrate_scene(const RunRequest& request) {
     result.reason = {SolverReason::Basis::nothing_moves};
   }
   result.outcome = run.outcome;
-  result.cause = run.reason;
   result.doubt = run.error.doubt;
   result.detail = told_end(run);
   result.t = run.t;

@@ -52,9 +52,8 @@ struct RunResult {
   std::string solver;   // the method that ended the run
   SolverReason reason;  // why it was taken
   eom::Outcome outcome = eom::Outcome::done;
-  eom::hybrid::Reason cause;  // of the outcome, where it alone does not say it
-  eom::hybrid::Doubt doubt;   // of the estimate
-  std::string detail;         // the cause in the words of the command line, or ""
+  std::string detail;        // the cause in the words of the command line, or ""
+  eom::hybrid::Doubt doubt;  // of the estimate
   double t = 0;
   eom::Statistics statistics;
   double seconds_integrate = 0, seconds_estimate = 0;
@@ -62,7 +61,7 @@ struct RunResult {
   std::vector<double> state;  // at the end, in the model's own charts: also what is no output
   std::vector<std::pair<std::string, double>> error_estimate;  // per state, then "max"; empty if not asked for
   std::size_t estimate_rhs_evaluations = 0;
-  std::string estimate_note;  // where the estimate itself could not be made as told
+  std::string estimate_note;  // the doubt in the words of the command line, or ""
   std::vector<Invariant> invariants;
   double power_balance = 0;     // largest |E - E(0) - W| relative to the energies exchanged
   double constraint_drift = 0;  // largest |psi|, or |f . qdot + b| of a constraint on velocities, at the end of a step

@@ -90,7 +90,7 @@ class Judgement {
     }
     if (kept)
       row.verdict = Verdict::kept;
-    else if (row.error - reference_->uncertainty <= told_within * row.estimate || !result.estimate_note.empty())
+    else if (row.error - reference_->uncertainty <= told_within * row.estimate || result.doubt)
       row.verdict = Verdict::reported;
     else
       row.verdict = Verdict::unreported;
