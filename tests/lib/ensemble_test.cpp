@@ -28,6 +28,23 @@ int slopes(double t, const double* x, const double* p, double* dx) {
   return 0;
 }
 
+/// Their derivatives, of the first m components, by columns.
+int jacobian(double t, const double* x, const double* p, std::size_t m, double* dfdx, double* dfdt) {
+  if (p[1] == 3 && x[0] < 0.4) return 2;
+  const double r2 = x[0] * x[0] + x[1] * x[1], r3 = r2 * std::sqrt(r2), r5 = r2 * r3;
+  double all[states][states] = {{0, 0, 1, 0}, {0, 0, 0, 1}};
+  for (std::size_t i = 0; i < 2; ++i) {
+    for (std::size_t j = 0; j < 2; ++j) all[2 + i][j] = p[0] * (3 * x[i] * x[j] / r5 - (i == j ? 1 / r3 : 0));
+  }
+  if (p[1] == 4) all[3][0] = all[3][1] = 0;
+  if (p[1] == 5) all[0][0] = x[0] * 40, all[0][2] = 0;
+  for (std::size_t j = 0; j < m; ++j) {
+    for (std::size_t i = 0; i < m; ++i) dfdx[i + m * j] = all[i][j];
+    dfdt[j] = j == 3 && p[1] == 4 ? -0.5 / std::sqrt(1 - t) : 0;
+  }
+  return 0;
+}
+
 int batch(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
           int* codes) {
   int first = 0;
@@ -72,6 +89,48 @@ std::vector<End> ensemble(const char* method, std::size_t members, const eom::En
                           });
   return ends;
 }
+
+/// Crossings of the axis, of a line that some members never reach, and of a speed, twice in a step here and there.
+int event_functions(const double* x, const double* p, double* values) {
+  values[0] = x[1];
+  values[1] = x[0] + 0.2 * p[0];
+  values[2] = x[2] * x[2] + x[3] * x[3] - 0.9;
+  return p[1] == 3 ? 4 : 0;
+}
+
+/// The members with their Jacobians, of one state too; m components are no quadratures.
+struct WithJacobians {
+  std::size_t m = states;
+  struct One {
+    const double* p;
+    std::size_t m;
+    int operator()(double t, const double* x, double* dx) const { return slopes(t, x, p, dx); }
+    int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {
+      return ::jacobian(t, x, p, m, dfdx, dfdt);
+    }
+    int events(double, const double* x, double* values) const { return event_functions(x, p, values); }
+  };
+  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
+                 int* codes) const {
+    return batch(count, stride, t, x, p, dx, codes);
+  }
+  int jacobian(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dfdx,
+               double* dfdt, int* codes) const {
+    int first = 0;
+    for (std::size_t s = 0; s < count; ++s) {
+      double one[states], own[parameters], result[states * states], by_t[states];
+      for (std::size_t i = 0; i < states; ++i) one[i] = x[i * stride + s];
+      for (std::size_t i = 0; i < parameters; ++i) own[i] = p[i * stride + s];
+      codes[s] = ::jacobian(t[s], one, own, m, result, by_t);
+      if (first == 0) first = codes[s];
+      if (codes[s] != 0) continue;
+      for (std::size_t i = 0; i < m * m; ++i) dfdx[i * stride + s] = result[i];
+      for (std::size_t i = 0; i < m; ++i) dfdt[i * stride + s] = by_t[i];
+    }
+    return first;
+  }
+  One alone(std::size_t, const double* p) const { return {p, m}; }
+};
 
 End alone(const char* method, std::size_t member, const eom::EnsembleOptions& options) {
   problems::State x(states), p(parameters);
@@ -131,6 +190,51 @@ TEST_CASE("ensemble: fixed steps, of every method") {
   for (const char* method : {"rk4", "dopri5", "tsit5", "dop853"}) same_as_alone(method, options, 60);
 }
 
+TEST_CASE("ensemble: Rosenbrock steps of members side by side have the bits that they have alone") {
+  struct Case {
+    double rtol, fixed_step;
+    std::size_t quadratures, lanes, threads;
+  };
+  for (const Case& c : {Case{1e-8, 0, 0, 32, 1}, {1e-3, 0, 0, 13, 2}, {1e-6, 0, 1, 64, 2}, {1e-6, 0.05, 0, 7, 1}}) {
+    CAPTURE(c.rtol);
+    CAPTURE(c.quadratures);
+    eom::EnsembleOptions options;
+    options.rtol = c.rtol;
+    options.atol = 1e-3 * c.rtol;
+    options.fixed_step = c.fixed_step;
+    options.quadratures = c.quadratures;
+    options.lanes = c.lanes;
+    options.threads = c.threads;
+    const WithJacobians rhs{states - c.quadratures};
+    std::vector<End> ends(200);
+    eom::integrate_ensemble("rodas", rhs, ends.size(), states, parameters, options, start_of,
+                            [&](const eom::EnsembleEnd& end) {
+                              End& kept = ends[end.member];
+                              kept = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, kept.times + 1};
+                            });
+    std::size_t rejected = 0;
+    for (std::size_t i = 0; i < ends.size(); ++i) {
+      CAPTURE(i);
+      problems::State x(states), p(parameters);
+      eom::EnsembleStart start{0, 0, x, p};
+      start_of(i, start);
+      auto alone = rhs.alone(i, p.data());
+      const eom::Result one = eom::integrate("rodas", alone, start.t0, x, start.t1, eom::ensemble::options_of(options));
+      CHECK(ends[i].times == 1);
+      CHECK(ends[i].outcome == one.outcome);
+      CHECK(ends[i].t == one.t);
+      CHECK(ends[i].x == one.x);
+      CHECK(ends[i].statistics.steps == one.statistics.steps);
+      CHECK(ends[i].statistics.rejected == one.statistics.rejected);
+      CHECK(ends[i].statistics.rhs_evaluations == one.statistics.rhs_evaluations);
+      CHECK(ends[i].statistics.jacobians == one.statistics.jacobians);
+      CHECK(ends[i].statistics.factorisations == one.statistics.factorisations);
+      rejected += one.statistics.rejected;
+    }
+    CHECK((c.fixed_step > 0 || rejected > 100));
+  }
+}
+
 TEST_CASE("ensemble: the members of the test end in many ways") {
   std::vector<int> seen(16);
   for (const End& end : ensemble("dop853", 300, {})) ++seen[static_cast<std::size_t>(end.outcome)];
@@ -178,17 +282,12 @@ TEST_CASE(
 
 namespace {
 
-/// The right-hand side of the members, alone too; crossings of the axis, and of a line that some members never reach.
+/// The right-hand side of the members, alone too.
 struct Members {
   struct One {
     const double* p;
     int operator()(double t, const double* x, double* dx) const { return slopes(t, x, p, dx); }
-    int events(double, const double* x, double* values) const {
-      values[0] = x[1];
-      values[1] = x[0] + 0.2 * p[0];
-      values[2] = x[2] * x[2] + x[3] * x[3] - 0.9;  // passed twice in a step here and there
-      return p[1] == 3 ? 4 : 0;
-    }
+    int events(double, const double* x, double* values) const { return event_functions(x, p, values); }
   };
   int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
                  int* codes) const {
@@ -214,10 +313,12 @@ const eom::EventFunction watched_functions[] = {
 
 Seen seen(const eom::EventPoint& point) { return {point.t, point.x[0], point.crossing.function, point.crossing.up}; }
 
-std::vector<Watched> watched(const char* method, std::size_t members, const eom::EnsembleOptions& options) {
+template <class Rhs>
+std::vector<Watched> watched(const char* method, const Rhs& rhs, std::size_t members,
+                             const eom::EnsembleOptions& options) {
   std::vector<Watched> all(members);
   eom::integrate_ensemble_events(
-      method, Members{}, members, states, parameters, options, watched_functions,
+      method, rhs, members, states, parameters, options, watched_functions,
       [&](std::size_t member, const eom::EventPoint& point) { all[member].seen.push_back(seen(point)); }, start_of,
       [&](const eom::EnsembleEnd& end) {
         End& kept = all[end.member].end;
@@ -226,11 +327,12 @@ std::vector<Watched> watched(const char* method, std::size_t members, const eom:
   return all;
 }
 
-Watched watched_alone(const char* method, std::size_t member, const eom::EnsembleOptions& options) {
+template <class Rhs>
+Watched watched_alone(const char* method, const Rhs& rhs, std::size_t member, const eom::EnsembleOptions& options) {
   problems::State x(states), p(parameters);
   eom::EnsembleStart start{0, 0, x, p};
   start_of(member, start);
-  const Members::One one{p.data()};
+  auto one = rhs.alone(member, p.data());
   Watched result;
   const auto g = [&](double t, const double* at, double* values) { return one.events(t, at, values); };
   const auto handler = [&](const eom::EventPoint& point) {
@@ -246,33 +348,48 @@ Watched watched_alone(const char* method, std::size_t member, const eom::Ensembl
 
 }  // namespace
 
+namespace {
+
+template <class Rhs>
+void events_as_alone(const char* method, const Rhs& rhs, const eom::EnsembleOptions& options) {
+  const std::vector<Watched> all = watched(method, rhs, 120, options);
+  std::size_t told = 0, stopped = 0;
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    CAPTURE(std::string(method));
+    CAPTURE(i);
+    const Watched one = watched_alone(method, rhs, i, options);
+    CHECK(all[i].end.times == 1);
+    CHECK(all[i].end.outcome == one.end.outcome);
+    CHECK(all[i].end.t == one.end.t);
+    CHECK(all[i].end.x == one.end.x);
+    CHECK(all[i].end.statistics.steps == one.end.statistics.steps);
+    CHECK(all[i].end.statistics.rejected == one.end.statistics.rejected);
+    CHECK(all[i].end.statistics.rhs_evaluations == one.end.statistics.rhs_evaluations);
+    CHECK(all[i].end.statistics.dense_fallbacks == one.end.statistics.dense_fallbacks);
+    CHECK(all[i].seen == one.seen);
+    told += all[i].seen.size();
+    stopped += all[i].end.outcome == eom::Outcome::stopped_by_event ? 1 : 0;
+  }
+  CHECK(told > 100);
+  CHECK(stopped > 20);
+}
+
+}  // namespace
+
 TEST_CASE("ensemble: events of every member are those that it has alone, to the last bit, and so is its end") {
   for (const char* method : {"rk4", "dopri5", "tsit5", "dop853"}) {
     eom::EnsembleOptions options;
     if (std::string(method) == "rk4") options.fixed_step = 0.02;
     options.lanes = 13;
     options.threads = 2;
-    const std::vector<Watched> all = watched(method, 120, options);
-    std::size_t told = 0, stopped = 0;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      CAPTURE(std::string(method));
-      CAPTURE(i);
-      const Watched one = watched_alone(method, i, options);
-      CHECK(all[i].end.times == 1);
-      CHECK(all[i].end.outcome == one.end.outcome);
-      CHECK(all[i].end.t == one.end.t);
-      CHECK(all[i].end.x == one.end.x);
-      CHECK(all[i].end.statistics.steps == one.end.statistics.steps);
-      CHECK(all[i].end.statistics.rejected == one.end.statistics.rejected);
-      CHECK(all[i].end.statistics.rhs_evaluations == one.end.statistics.rhs_evaluations);
-      CHECK(all[i].end.statistics.dense_fallbacks == one.end.statistics.dense_fallbacks);
-      CHECK(all[i].seen == one.seen);
-      told += all[i].seen.size();
-      stopped += all[i].end.outcome == eom::Outcome::stopped_by_event ? 1 : 0;
-    }
-    CHECK(told > 100);
-    CHECK(stopped > 20);
+    events_as_alone(method, Members{}, options);
   }
+  eom::EnsembleOptions options;
+  options.rtol = 1e-6;
+  options.lanes = 13;
+  events_as_alone("rodas", WithJacobians{}, options);
+  options.quadratures = 1;
+  events_as_alone("rodas", WithJacobians{3}, options);
 }
 
 TEST_CASE("ensemble: methods that know no lanes integrate each member by its functions of one state") {
@@ -294,5 +411,5 @@ TEST_CASE("ensemble: methods that know no lanes integrate each member by its fun
       CHECK(ends[i].statistics.jacobians == one.statistics.jacobians);
     }
   }
-  CHECK_THROWS_AS(watched("rodas", 1, {}), std::invalid_argument);
+  CHECK_THROWS_AS(watched("rodas", Members{}, 1, {}), std::invalid_argument);
 }

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "eom/ensemble/lu_lanes.hpp"
 #include "support/tolerances.hpp"
 
 namespace {
@@ -75,4 +76,38 @@ TEST_CASE("lu: a real system with its known solution; a singular matrix and one 
   CHECK_FALSE(lu.factor());
   fill(std::numeric_limits<double>::quiet_NaN(), 2, 2, 4);
   CHECK_FALSE(lu.factor());
+}
+
+TEST_CASE("lu: lanes have the bits that each system has alone, with pivots of their own, and singular ones are told") {
+  constexpr std::size_t width = eom::ensemble::pack_width, lanes = 3 * width;
+  std::mt19937 generator(7);
+  std::uniform_real_distribution<double> value(-1, 1);
+  for (const std::size_t n : std::initializer_list<std::size_t>{1, 2, 5, 12}) {
+    CAPTURE(n);
+    std::vector<double> a(n * n * lanes), pivots(n * lanes), b(n * lanes), regular(lanes);
+    for (double& entry : a) entry = value(generator) < -0.6 ? 0 : value(generator);
+    for (double& entry : b) entry = value(generator);
+    for (std::size_t i = 0; i < n * n; ++i) a[i * lanes + 1] = 0;
+    a[2] = std::numeric_limits<double>::quiet_NaN();
+    const std::vector<double> matrix = a, right = b;
+    eom::ensemble::LuLanes<width> together(n, lanes, a.data(), pivots.data());
+    for (std::size_t l = 0; l < lanes; l += width) {
+      together.factor(l, regular.data());
+      together.solve(l, b.data());
+    }
+    CHECK(regular[1] == 0);
+    for (std::size_t l = 0; l < lanes; ++l) {
+      CAPTURE(l);
+      eom::Lu<double> alone(n);
+      std::vector<double> x(n);
+      for (std::size_t j = 0; j < n; ++j) {
+        x[j] = right[j * lanes + l];
+        for (std::size_t i = 0; i < n; ++i) alone(i, j) = matrix[(i + n * j) * lanes + l];
+      }
+      REQUIRE((regular[l] != 0) == alone.factor());
+      if (regular[l] == 0) continue;
+      alone.solve(x.data());
+      for (std::size_t i = 0; i < n; ++i) CHECK(b[i * lanes + l] == x[i]);
+    }
+  }
 }

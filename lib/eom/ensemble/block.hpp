@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Some members of an ensemble side by side, each with its own time, step, error and end, by an explicit Runge-Kutta
-// method. In: a tableau, derivatives of many states, members, who watches them. Out: the end of each, with the bits
-// that explicit_rk/step.hpp and drive.hpp give it alone. A lane whose member has ended gets the next one. Allocates in
-// the constructor only.
+// Some members of an ensemble side by side, each with its own time, step, error and end. In: a method for lanes,
+// members, who watches them. Out: the end of each, with the bits that the method and drive.hpp give it alone. A lane
+// whose member has ended gets the next one. Allocates in the constructor only.
 #pragma once
 
 #include <algorithm>
@@ -11,11 +10,9 @@
 #include <utility>
 #include <vector>
 
-#include "eom/ensemble/explicit_lanes.hpp"
 #include "eom/ensemble/lane.hpp"
 #include "eom/ensemble/members.hpp"
 #include "eom/ensemble/pack.hpp"
-#include "eom/explicit_rk/tableau.hpp"
 
 namespace eom::ensemble {
 
@@ -24,17 +21,18 @@ struct Unwatched {
   static constexpr bool dense = false;
 };
 
-/// T: a tableau. Rhs: as EnsembleRhs. Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done:
-/// (const EnsembleEnd&). Watch: Unwatched, or what has begin(slot, start, member) -> Outcome, step(slot, StepView) ->
-/// bool, false where the member ends there, and end(slot, EnsembleEnd&, t), which may change the end; a member keeps
-/// its slot, of which there are as many as lanes.
-template <class T, class Rhs, class Next, class Start, class Done, class Watch = Unwatched,
-          std::size_t width = pack_width>
-class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
-  using Lanes = ExplicitLanes<T, Rhs, Watch::dense, width>;
+/// Lanes: on LaneRows, with adaptive_method, end_known and order, steps() of a lane at its start, attempt(),
+/// interpolate(lane, t, x), and where it likes first_step(lane), begin_slopes(), end_slopes(), prepare_dense(), move(),
+/// accept(). Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done: (const EnsembleEnd&). Watch:
+/// Unwatched, or what has begin(slot, start, member) -> Outcome, step(slot, StepView) -> bool, false where the member
+/// ends there, and end(slot, EnsembleEnd&, t), which may change the end; a member keeps its slot, of which there are as
+/// many as lanes.
+template <class Lanes, class Next, class Start, class Done, class Watch = Unwatched>
+class Block : Lanes {
   static constexpr bool watched = Watch::dense;
 
  public:
+  template <class Rhs>
   Block(Rhs& rhs, std::size_t states, std::size_t parameters, const EnsembleOptions& options, Next& next, Start& start,
         Done& done, Watch& watch)
       : Lanes(rhs, states, parameters, options),
@@ -66,12 +64,11 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
   using Lanes::carry_;
   using Lanes::codes_;
   using Lanes::end_known;
-  using Lanes::end_slopes;
   using Lanes::error_;
   using Lanes::evaluate;
+  using Lanes::f0_;
   using Lanes::failed_;
   using Lanes::h_;
-  using Lanes::k_;
   using Lanes::lane_;
   using Lanes::lanes_;
   using Lanes::n_;
@@ -81,7 +78,6 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
   using Lanes::options_;
   using Lanes::p_;
   using Lanes::p_count_;
-  using Lanes::rhs_;
   using Lanes::scratch_;
   using Lanes::size_;
   using Lanes::slope_;
@@ -108,7 +104,7 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
     const std::size_t l = lane_.size();
     EnsembleStart start{0, 0, {one_x_, n_}, {one_p_, p_count_}};
     start_(member, start);
-    lane_.emplace_back(member, start.t0, start.t1, T::control, T::order);
+    lane_.emplace_back(member, start.t0, start.t1, this->steps());
     for (std::size_t i = 0; i < n_; ++i) x0_[i * stride_ + l] = one_x_[i], carry_[i * stride_ + l] = 0;
     for (std::size_t i = 0; i < p_count_; ++i) p_[i * stride_ + l] = one_p_[i];
     if constexpr (watched) {
@@ -157,7 +153,7 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
   void begin(std::size_t first) {
     const std::size_t count = lane_.size() - first;
     for (std::size_t l = first; l < lane_.size(); ++l) t_[l] = lane_[l].t();
-    evaluate(first, count, t_, x0_, k_);
+    this->begin_slopes(first, count);
     for (std::size_t l = first; l < lane_.size(); ++l) {
       failed_[l] = 0;
       if (lane_[l].at_end() || lane_[l].outcome() != Outcome::done) {  // nothing is to be done: nothing was evaluated
@@ -166,16 +162,20 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
       } else if (codes_[l] != 0) {
         failed_[l] = 1;
         lane_[l].end(outcome_of_abi_code(codes_[l]));
-      } else if (!finite(x0_, l) || !finite(k_, l)) {
+      } else if (!finite(x0_, l) || !finite(f0_, l)) {
         failed_[l] = 1;
         lane_[l].end(Outcome::not_finite);
       } else if (!adaptive()) {
         failed_[l] = lane_[l].plan_fixed_steps(options_) ? 0 : 1;
       } else if (options_.initial_step > 0) {
         lane_[l].start_with(options_.initial_step, options_);
+      } else if constexpr (requires { this->first_step(l); }) {
+        lane_[l].start_with(this->first_step(l), options_);
       }
     }
-    if (adaptive() && !(options_.initial_step > 0)) first_steps(first, count);
+    if constexpr (!requires { this->first_step(first); }) {
+      if (adaptive() && !(options_.initial_step > 0)) first_steps(first, count);
+    }
     for (std::size_t l = lane_.size(); l-- > first;) {
       if (failed_[l] != 0) leave(l);
     }
@@ -183,13 +183,13 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
 
   void first_steps(std::size_t first, std::size_t count) {
     for (std::size_t l = first; l < first + count; ++l) {
-      const double size_x = norm(l, x0_), size_f = norm(l, k_);
+      const double size_x = norm(l, x0_), size_f = norm(l, f0_);
       double h0 = size_x < 1e-5 || size_f < 1e-5 ? 1e-6 : 0.01 * size_x / size_f;
       h0 = std::min(h0, lane_[l].longest_step(options_));
       h_[l] = h0;
       t_[l] = lane_[l].t() + lane_[l].direction() * h0;
       for (std::size_t i = 0; i < n_; ++i)
-        x1_[i * stride_ + l] = x0_[i * stride_ + l] + lane_[l].direction() * h0 * k_[i * stride_ + l];
+        x1_[i * stride_ + l] = x0_[i * stride_ + l] + lane_[l].direction() * h0 * f0_[i * stride_ + l];
     }
     evaluate(first, count, t_, x1_, stage_);
     for (std::size_t l = first; l < first + count; ++l) {
@@ -197,15 +197,15 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
         lane_[l].count(static_cast<std::size_t>(-1));
         continue;
       }
-      lane_[l].start_with(codes_[l] != 0 || !finite(stage_, l) ? 0.01 * h_[l] : first_step(l), options_);
+      lane_[l].start_with(codes_[l] != 0 || !finite(stage_, l) ? 0.01 * h_[l] : euler_step(l), options_);
     }
   }
-  double first_step(std::size_t l) {
-    const double size_f = norm(l, k_);
-    for (std::size_t i = 0; i < n_; ++i) scratch_[i * stride_ + l] = stage_[i * stride_ + l] - k_[i * stride_ + l];
+  double euler_step(std::size_t l) {
+    const double size_f = norm(l, f0_);
+    for (std::size_t i = 0; i < n_; ++i) scratch_[i * stride_ + l] = stage_[i * stride_ + l] - f0_[i * stride_ + l];
     const double size_change = norm(l, scratch_) / h_[l];
     const double largest = std::max(size_f, size_change);
-    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h_[l]) : std::pow(0.01 / largest, 1.0 / T::order);
+    const double h1 = largest <= 1e-15 ? std::max(1e-6, 1e-3 * h_[l]) : std::pow(0.01 / largest, 1.0 / Lanes::order);
     return std::min(100 * h_[l], h1);
   }
   double norm(std::size_t l, const double* rows) const {
@@ -231,9 +231,8 @@ class Block : ExplicitLanes<T, Rhs, Watch::dense, width> {
   }
 
   void decide() {
-    if constexpr (!end_known)  // of lanes that will not be accepted too, for which nothing is counted
-      rhs_(lane_.size(), stride_, t_, x1_, p_, end_slopes(), codes_.data());
-    this->examine(end_slopes());
+    if constexpr (!end_known) this->end_slopes();
+    this->examine();
     for (std::size_t l = 0; l < lane_.size(); ++l) {
       const double error = adaptive() ? error_[l] : 0;
       const int code = failed_[l] != 0 ? failed_[l] : !std::isfinite(error) || state_[l] != 0 ? code_not_finite : 0;

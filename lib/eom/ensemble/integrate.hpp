@@ -13,6 +13,8 @@
 
 #include "eom/ensemble/block.hpp"
 #include "eom/ensemble/events.hpp"
+#include "eom/ensemble/explicit_lanes.hpp"
+#include "eom/ensemble/rosenbrock_lanes.hpp"
 #include "eom/ensemble/threads.hpp"
 #include "eom/ode.hpp"
 #include "eom/registry.hpp"
@@ -30,27 +32,29 @@ inline void check(const EnsembleOptions& options, std::size_t states) {
         "eom::integrate_ensemble: tolerances and steps must not be negative, nor both tolerances 0");
 }
 
-/// By the explicit Runge-Kutta method of this name; false where there is none. make_watch() -> Unwatched, EventWatch.
+/// By the method of this name, if it has lanes; false where it has none. make_watch() -> Unwatched, EventWatch.
 template <class Rhs, class Start, class Done, class MakeWatch>
 bool in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
               const EnsembleOptions& options, Start& start, Done& done, const MakeWatch& make_watch) {
+  using Watch = decltype(make_watch());
   const auto by = [&]<class T>(T*) {
-    if constexpr (explicit_rk::Tableau<T>) {
-      if (method != T::name) return false;
-      if (T::error.empty() && !(options.fixed_step > 0))
+    if constexpr (requires { typename LanesOf<T, Rhs, Watch::dense>::type; }) {
+      using Chosen = LanesOf<T, Rhs, Watch::dense>;
+      if (method != T::name || !Chosen::takes(options)) return false;
+      if (!eom::detail::is_adaptive<T>() && !(options.fixed_step > 0))
         throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
                                     " needs EnsembleOptions::fixed_step");
       in_threads(options.threads, members, [&](const auto& next) {
-        auto watch = make_watch();
-        Block<T, Rhs, decltype(next), Start, Done, decltype(watch)>(rhs, states, parameters, options, next, start, done,
-                                                                    watch)
+        Watch watch = make_watch();
+        Block<typename Chosen::type, decltype(next), Start, Done, Watch>(rhs, states, parameters, options, next, start,
+                                                                         done, watch)
             .run();
       });
       return true;
     }
     return false;
   };
-  return detail::any_method(by);
+  return eom::detail::any_method(by);
 }
 
 /// Each member after the other in its thread, by any method, where no lanes are known.

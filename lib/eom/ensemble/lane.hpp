@@ -9,19 +9,15 @@
 #include <limits>
 
 #include "eom/ensemble/members.hpp"
-#include "eom/explicit_rk/controller.hpp"
 
 namespace eom::ensemble {
 
+/// Steps: after_accepted(h, error), after_rejected(h, error), after_failed(h) give the next step's size.
+template <class Steps>
 class Lane {
  public:
-  Lane(std::size_t member, double t0, double t1, const explicit_rk::StepControl& control, int order)
-      : member_(member),
-        t_start_(t0),
-        t_(t0),
-        t_end_(t1),
-        direction_(t1 < t0 ? -1.0 : 1.0),
-        controller_(control, order) {}
+  Lane(std::size_t member, double t0, double t1, const Steps& steps)
+      : member_(member), t_start_(t0), t_(t0), t_end_(t1), direction_(t1 < t0 ? -1.0 : 1.0), steps_(steps) {}
 
   std::size_t member() const { return member_; }
   double t() const { return t_; }
@@ -29,7 +25,10 @@ class Lane {
   bool at_end() const { return t_ == t_end_; }
   Outcome outcome() const { return outcome_; }
   void count(std::size_t evaluations) { statistics_.rhs_evaluations += evaluations; }
+  void count_matrix() { ++statistics_.jacobians; }
+  void count_factorisation() { ++statistics_.factorisations; }
   void fall_back() { ++statistics_.dense_fallbacks; }
+  Steps& steps() { return steps_; }
   const Statistics& statistics() const { return statistics_; }
   double longest_step(const EnsembleOptions& options) const {
     return std::min(options.max_step, std::abs(t_end_ - t_start_));
@@ -64,21 +63,20 @@ class Lane {
 
   /// Whether the run goes on.
   bool accept(double t_next, double error, const EnsembleOptions& options) {
-    if (fixed_steps_ == 0)
-      h_ = std::min(controller_.after_accepted(std::abs(t_next - t_), error), longest_step(options));
+    if (fixed_steps_ == 0) h_ = std::min(steps_.after_accepted(std::abs(t_next - t_), error), longest_step(options));
     t_ = t_next;
     ++statistics_.steps;
     return t_ != t_end_;
   }
   bool reject(double h, double error) {
     ++statistics_.rejected;
-    h_ = controller_.after_rejected(std::abs(h), error);
+    h_ = steps_.after_rejected(std::abs(h), error);
     return h_ >= smallest_step(t_) || end(Outcome::step_too_small);
   }
   bool retry(int code) {
     ++statistics_.rejected;
     const bool adaptive = fixed_steps_ == 0;
-    h_ = controller_.after_failed(adaptive ? std::min(h_, std::abs(t_end_ - t_)) : 0);
+    h_ = steps_.after_failed(adaptive ? std::min(h_, std::abs(t_end_ - t_)) : 0);
     return (adaptive && h_ >= smallest_step(t_)) || end(outcome_of_abi_code(code));
   }
   bool end(Outcome outcome) {
@@ -95,7 +93,7 @@ class Lane {
   std::size_t member_;
   double t_start_, t_, t_end_, direction_;
   double h_ = 0, fixed_steps_ = 0;
-  explicit_rk::Controller controller_;
+  Steps steps_;
   Statistics statistics_;
   Outcome outcome_ = Outcome::done;
 };

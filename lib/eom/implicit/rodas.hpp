@@ -6,6 +6,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -31,7 +32,7 @@ class Rodas : public Base {
 
   Rodas(System& system, std::span<const double> x, const Options& options)
       : Base(system, x, options, Jacobian::Differences::central),
-        controller_({0.9, 0, 0.2, 6}, order),
+        controller_(control()),
         lu_(m_),
         work_((T::stages + 1 + 3 + 4) * n_) {
     double* next = work_.data();
@@ -79,18 +80,27 @@ class Rodas : public Base {
     const double s = (t - t0_) / h_;
     motion_at(s, x);
     for (std::size_t i = m_; i < n_; ++i) {
-      // the integral of the cubic through the derivatives at the nodes
-      const double g0 = rates_[i], g1 = rates_[n_ + i], g2 = rates_[2 * n_ + i], g3 = rates_[3 * n_ + i];
-      const double d01 = (g1 - g0) / node, d12 = (g2 - g1) / (1 - 2 * node), d23 = (g3 - g2) / node;
-      const double d012 = (d12 - d01) / (1 - node), d123 = (d23 - d12) / (1 - node), d = d123 - d012;
-      const double of_1 = d01 - node * d012 + 0.2 * d, of_2 = d012 - d;  // node (1 - node) = 1/5
-      x[i] = x0_[i] + h_ * s * (g0 + s * (of_1 / 2 + s * (of_2 / 3 + s * d / 4)));
+      const double rates[4]{rates_[i], rates_[n_ + i], rates_[2 * n_ + i], rates_[3 * n_ + i]};
+      x[i] = quadrature(s, x0_[i], h_, rates);
     }
   }
 
- private:
+  static explicit_rk::Controller control() { return {{0.9, 0, 0.2, 6}, order}; }
+
+  /// The dense output of one component at s = (t - t0)/h; bend: of the three rows of its weights.
+  static double motion(double s, double x0, double x1, const std::array<double, 3>& bend) {
+    return (1 - s) * x0 + s * (x1 + (1 - s) * (bend[0] + s * (bend[1] + s * bend[2])));
+  }
+  /// Of a quadrature: the integral of the cubic through its derivatives at Lobatto's nodes 0, node, 1 - node, 1.
+  static double quadrature(double s, double x0, double h, const double (&g)[4]) {
+    const double d01 = (g[1] - g[0]) / node, d12 = (g[2] - g[1]) / (1 - 2 * node), d23 = (g[3] - g[2]) / node;
+    const double d012 = (d12 - d01) / (1 - node), d123 = (d23 - d12) / (1 - node), d = d123 - d012;
+    const double of_1 = d01 - node * d012 + 0.2 * d, of_2 = d012 - d;  // node (1 - node) = 1/5
+    return x0 + h * s * (g[0] + s * (of_1 / 2 + s * (of_2 / 3 + s * d / 4)));
+  }
   static constexpr double node = 0.2763932022500210303590826;  // (1 - 1/sqrt 5)/2
 
+ private:
   bool factor() {
     ++counts_.factorisations;
     for (std::size_t j = 0; j < m_; ++j)
@@ -119,10 +129,8 @@ class Rodas : public Base {
   }
 
   void motion_at(double s, double* x) const {
-    for (std::size_t i = 0; i < m_; ++i) {
-      const double bend = dense_[i] + s * (dense_[n_ + i] + s * dense_[2 * n_ + i]);
-      x[i] = (1 - s) * x0_[i] + s * (x1_[i] + (1 - s) * bend);
-    }
+    for (std::size_t i = 0; i < m_; ++i)
+      x[i] = motion(s, x0_[i], x1_[i], {dense_[i], dense_[n_ + i], dense_[2 * n_ + i]});
   }
 
   int integrate_quadratures() {
