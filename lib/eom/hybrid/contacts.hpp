@@ -43,7 +43,7 @@ class ContactModes {
   bool slow_slip(double t, const double* x, double h, bool now);
   /// A crossing of one of the functions; what is to be told of it.
   AtEvent take(double& t, std::span<double> x, const Crossing& crossing, std::span<EventFunction> functions);
-  const ModeEvent* told() const { return told_ ? &*told_ : nullptr; }
+  std::span<const ModeEvent> told() const { return told_; }
   /// Where the run was ended by a contact.
   std::optional<Outcome> ended() const;
   const std::string& detail() const { return switch_->detail; }
@@ -103,7 +103,7 @@ class ContactModes {
   Rule rule_;
   std::vector<double> g_, k_, middle_;
   std::optional<modes::Switch<Rule>> switch_;
-  std::optional<ModeEvent> told_;
+  std::vector<ModeEvent> told_;  // of the last crossing
 };
 
 inline ContactModes::ContactModes(const Problem& problem, Model& model, ConstraintRows& rows, Changed changed)
@@ -326,7 +326,7 @@ inline void ContactModes::end_bounces(double& t, std::span<double> x, std::size_
 
 inline AtEvent ContactModes::take(double& t, std::span<double> x, const Crossing& crossing,
                                   std::span<EventFunction> functions) {
-  const std::size_t before = switch_->events.size();
+  const auto before = static_cast<std::ptrdiff_t>(switch_->events.size());
   const std::size_t j = crossing.function / contact_values;
   const bool hits =
       crossing.function % contact_values == 3 && problem_.code->contacts[j].unilateral && contact_digit(mode(), j) >= 3;
@@ -336,8 +336,7 @@ inline AtEvent ContactModes::take(double& t, std::span<double> x, const Crossing
   if (e > 0) rule_.restitution(j, e);
   rows_.mode(switch_->mode);
   if (answer == AtEvent::restart) hold(t, x.data());
-  told_.reset();
-  if (switch_->events.size() > before) told_ = switch_->events.back();
+  told_.assign(switch_->events.begin() + before, switch_->events.end());
   return answer;
 }
 

@@ -251,8 +251,9 @@ inline AtEvent Integration::change_contact(const EventPoint& point, const OnEven
   crossing.function -= parts_.events.first_contact();
   const AtEvent answer = parts_.contacts->take(point.t, point.x, crossing, parts_.events.of_contacts(point.functions));
   parts_.model.contact_mode(parts_.contacts->mode());
-  if (const ModeEvent* told = parts_.contacts->told(); told != nullptr && event)
-    event({told->t, told->kind, told->name}, point.x);
+  if (event) {
+    for (const ModeEvent& told : parts_.contacts->told()) event({told.t, told.kind, told.name}, point.x);
+  }
   if (answer != AtEvent::restart) return answer;
   parts_.hold_sides(point.t, point.x.data(), true);
   slow_slip_.due(slow_slip_.due() || slow_slip_.changes_at(point.t, point.x.data()));

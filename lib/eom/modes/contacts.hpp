@@ -141,7 +141,8 @@ class Contacts {
     }
     if (alone) return hit(point.t, point.x, with_contact_digit(point.mode, j, 3), j, false);
     if (const int code = motion_.close(point.t, point.x, mode); code != 0) return failed(point, code);
-    return Transition{settled(point.t, point.x, mode), "contact", contacts_[j].name};
+    const std::vector<std::string> also = closed_beside(j, point.mode, mode);
+    return Transition{settled(point.t, point.x, mode), "contact", contacts_[j].name, Outcome::done, also};
   }
 
  private:
@@ -194,6 +195,16 @@ class Contacts {
     return {with_contact_digit(point.mode, j, 3), "lose_contact", contacts_[j].name};
   }
 
+  /// Names of others than j that are apart in one mode and touch in the next.
+  std::vector<std::string> closed_beside(std::size_t j, int before, int after) const {
+    std::vector<std::string> names;
+    for (std::size_t i = 0; i < contacts_.size(); ++i) {
+      if (i != j && contacts_[i].unilateral && contact_digit(before, i) == 3 && contact_digit(after, i) < 3)
+        names.push_back(contacts_[i].name);
+    }
+    return names;
+  }
+
   /// An impact at contact j, which is apart; it stays so if it bounces.
   Transition hit(double t, std::span<double> x, int mode, std::size_t j, bool bounces = true) {
     hits_[hit_++ % hits_.size()] = j;
@@ -201,7 +212,8 @@ class Contacts {
       const std::vector<double> before(x.begin(), x.end());
       int closed = mode;
       for (const std::size_t i : all) closed = with_contact_digit(closed, i, 0);
-      if (motion_.close(t, x, closed) == 0) return {settled(t, x, closed), "contact", contacts_[j].name};
+      if (motion_.close(t, x, closed) == 0)
+        return {settled(t, x, closed), "contact", contacts_[j].name, Outcome::done, closed_beside(j, mode, closed)};
       std::copy(before.begin(), before.end(), x.begin());  // more contacts than directions to move in
     }
     const double speed = motion_.approach(t, x, j), e = bounces ? contacts_[j].restitution : 0;

@@ -49,9 +49,10 @@ struct ModePoint {
 
 /// What the rule answers.
 struct Transition {
-  int mode = 0;                      // the next one; may be the same
-  std::string kind = {}, name = {};  // recorded: "slip", "stick", "contact", ... and whose; kind empty: not recorded
-  Outcome outcome = Outcome::done;   // another one ends the run here: stopped_by_event, friction_no_solution, ...
+  int mode = 0;                        // the next one; may be the same
+  std::string kind = {}, name = {};    // recorded: "slip", "stick", "contact", ... and whose; kind empty: not recorded
+  Outcome outcome = Outcome::done;     // another one ends the run here: stopped_by_event, friction_no_solution, ...
+  std::vector<std::string> also = {};  // of what else the same is recorded
 };
 
 struct ModeEvent {
@@ -128,7 +129,10 @@ class Switch {
       if (!next) return end_chattering(*at);
     }
     if (!next) next = rule_(here);
-    if (!next->kind.empty()) events.push_back({t, next->kind, next->name, mode, next->mode});
+    if (!next->kind.empty()) {
+      events.push_back({t, next->kind, next->name, mode, next->mode});
+      for (const std::string& name : next->also) events.push_back({t, next->kind, name, mode, next->mode});
+    }
     mode = next->mode;
     watch(functions);
     if (next->outcome == Outcome::done) return AtEvent::restart;
