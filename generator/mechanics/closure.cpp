@@ -320,7 +320,10 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
     }
     if (size < small(closed_digits)) {
       gap_ = rest > small(closed_digits - 8) ? cln::double_approx(rest) : 0;
-      return gap_ == 0;
+      if (gap_ != 0) return false;
+      for (const auto* others : {&all_, &rates_})
+        values(*others, at);  // of velocities alone too: throws without a value
+      return true;
     }
     const std::size_t r = chosen.kept.size();
     std::vector<std::vector<cl_R>> gram(r, std::vector<cl_R>(r));
