@@ -101,7 +101,7 @@ Expression Expressions::of(const Instruction& instruction) {
   switch (instruction.op) {
     case Op::add: return sum(o);
     case Op::mul: return product(o);
-    case Op::div: return {fmt::format("{}/{}", first_factor(o[0]), name(1)), Expression::product};
+    case Op::div: return rounded({fmt::format("{}/{}", first_factor(o[0]), name(1)), Expression::product});
     case Op::abs: return call(dialect_.absolute, o);
     case Op::min: return conditional(name(1), name(0), name(1), name(0));
     case Op::max: return conditional(name(0), name(1), name(1), name(0));
@@ -110,8 +110,13 @@ Expression Expressions::of(const Instruction& instruction) {
       const std::string zero = dialect_.constant(0), one = dialect_.constant(1);
       return {fmt::format("({0} > {1} ? {2} : {0} < {1} ? -{2} : {1})", name(0), zero, one), Expression::atom};
     }
-    default: return call(symbolic::function_of(instruction.op).code, o);
+    default: return rounded(call(symbolic::function_of(instruction.op).code, o));
   }
+}
+
+Expression Expressions::rounded(Expression value) const {
+  if (dialect_.rounding.empty()) return value;
+  return {dialect_.rounded(value.text), Expression::atom};
 }
 
 Expression Expressions::call(const std::string& name, const std::vector<Operand>& operands) {
@@ -127,20 +132,22 @@ std::string Expressions::first_factor(const Operand& operand) const {
 }
 
 Expression Expressions::product(const std::vector<Operand>& operands) const {
-  std::string text = first_factor(operands[0]);
+  Expression result{first_factor(operands[0]), Expression::product};
   for (std::size_t i = 1; i < operands.size(); ++i) {
-    text += fmt::format("*{}", at_least(signed_value(operands[i]), Expression::atom));
+    result.text += fmt::format("*{}", at_least(signed_value(operands[i]), Expression::atom));
+    result = rounded(std::move(result));
   }
-  return {text, Expression::product};
+  return result;
 }
 
 Expression Expressions::sum(const std::vector<Operand>& operands) const {
-  std::string text = first_factor(operands[0]);
+  Expression result{first_factor(operands[0]), Expression::sum};
   for (std::size_t i = 1; i < operands.size(); ++i) {
-    text += operands[i].negated ? " - " : " + ";
-    text += at_least(size_of(operands[i]), Expression::product);
+    result.text += operands[i].negated ? " - " : " + ";
+    result.text += at_least(size_of(operands[i]), Expression::product);
+    result = rounded(std::move(result));
   }
-  return {text, Expression::sum};
+  return result;
 }
 
 }  // namespace eomgen::emit

@@ -39,6 +39,7 @@ class Expressions {
  private:
   std::optional<Expression> of_lanes(const program::Instruction& instruction);
   Expression call(const std::string& name, const std::vector<program::Operand>& operands);
+  Expression rounded(Expression value) const;
   std::string first_factor(const program::Operand& operand) const;
   Expression product(const std::vector<program::Operand>& operands) const;
   Expression sum(const std::vector<program::Operand>& operands) const;

@@ -18,8 +18,8 @@ using program::Slot;
 std::string leaf_value(const Dialect& dialect, const ModelNames& names, const EmissionContext& context, Slot slot,
                        std::uint32_t i, bool takes_inputs) {
   switch (slot) {
-    case Slot::state: return fmt::format("{}[{}]", names.x, i);
-    case Slot::parameter: return fmt::format("{}[{}]", names.p, i);
+    case Slot::state: return dialect.rounded(fmt::format("{}[{}]", names.x, i));
+    case Slot::parameter: return dialect.rounded(fmt::format("{}[{}]", names.p, i));
     case Slot::contact: {
       std::string digit = fmt::format("({} & {})", names.mode, eom::contact_bits);
       for (std::uint32_t j = 0; j < i / 2; ++j) digit += fmt::format("/{}", eom::contact_states);
@@ -31,7 +31,8 @@ std::string leaf_value(const Dialect& dialect, const ModelNames& names, const Em
     }
     case Slot::input: {
       const std::string standing = dialect.value(context.inputs.at(i).value);
-      return takes_inputs ? fmt::format("{0} ? {0}[{1}] : {2}", names.u, i, standing) : standing;
+      const std::string given = dialect.rounded(fmt::format("{}[{}]", names.u, i));
+      return takes_inputs ? fmt::format("{} ? {} : {}", names.u, given, standing) : standing;
     }
     case Slot::side: {  // two bits for each kink: held above its surface, held below
       const std::size_t bit = program::first_kink_bit + 2 * i;

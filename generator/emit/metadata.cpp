@@ -217,6 +217,7 @@ std::string info_json(const program::Program& program, const EmissionContext& co
   info["title"] = context.title;
   info["content_hash"] = context.content_hash;
   info["abi"] = 1;
+  if (context.single_error) info["real"] = "float";
   json units = json::object();
   const auto named = [&units](const std::vector<Quantity>& list) {
     json names = json::array();

@@ -94,7 +94,7 @@ constexpr std::string_view python[] = {
 constexpr std::string_view javascript[] = {
     "arguments", "async", "await", "debugger", "eval", "exports", "extends", "finally", "function", "globalThis", "implements", "import", "in", "instanceof",
     "let", "location", "module", "null", "of", "package", "require", "self", "super", "top", "undefined", "var", "window", "with", "yield", "document",
-    "NaN", "Infinity", "Math", "Object", "Array", "Float64Array", "Number", "JSON", "global", "process"};
+    "NaN", "Infinity", "Math", "Object", "Array", "Float32Array", "Float64Array", "fround", "Number", "JSON", "global", "process"};
 // clang-format on
 
 bool is_one_of(std::string_view name, std::span<const std::string_view> list) {

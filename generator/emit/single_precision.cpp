@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <limits>
 
@@ -55,17 +56,29 @@ std::optional<double> error_of(const program::Function& function, const TestVect
   }
 }
 
-std::string literal(double value) {
+void require_place(double value) {
   const double size = std::abs(value);
   if (size > static_cast<double>(std::numeric_limits<float>::max()) ||
       (size > 0 && size < static_cast<double>(std::numeric_limits<float>::min()))) {
     throw Error("emit", {}, fmt::format("the number {} has no place in single precision", decimal(value)),
                 "leave --real float out, or take other units");
   }
+}
+
+std::string literal(double value) {
+  require_place(value);
   return decimal(value) + "f";
 }
 
 }  // namespace
+
+double single_number(double value) {
+  require_place(value);
+  const std::string text = decimal(value);
+  float number = 0;
+  std::from_chars(text.data(), text.data() + text.size(), number);
+  return static_cast<double>(number);
+}
 
 void make_single(const program::Program& program, EmissionContext& context) {
   context.single_error = 0;
@@ -89,9 +102,9 @@ void make_single(const program::Program& program, EmissionContext& context) {
 }
 
 void require_single(const std::string& target) {
-  if (target == "c" || target == "cpp" || target == "cuda") return;
+  if (target != "batch") return;
   throw Error("emit", {}, fmt::format("the target {} knows double precision alone", target),
-              "take the target c, cpp or cuda, or leave --real float out");
+              "take another target, or leave --real float out");
 }
 
 Dialect single_dialect() {

@@ -19,6 +19,9 @@ void make_single(const program::Program& program, EmissionContext& context);
 /// Throws Error{stage "emit"} for targets that know double precision alone.
 void require_single(const std::string& target);
 
+/// The number of single precision that C takes for this one. Throws Error{stage "emit"} where there is none.
+double single_number(double value);
+
 /// C in single precision.
 Dialect single_dialect();
 

@@ -205,8 +205,10 @@ class Printer {
         line(fmt::format("if ({} == {}) return 1;", pivot, dialect_.constant(0)));
       } else {
         expressions_.call(dialect_.absolute);
-        line(fmt::format("if ({0}({1}) <= {2}*{0}({3})) return 1;", dialect_.absolute, pivot,
-                         dialect_.value(dialect_.pivot_tolerance), expressions_.size_of(test.scale).text));
+        const std::string least =
+            dialect_.rounded(fmt::format("{}*{}({})", dialect_.value(dialect_.pivot_tolerance), dialect_.absolute,
+                                         expressions_.size_of(test.scale).text));
+        line(fmt::format("if ({}({}) <= {}) return 1;", dialect_.absolute, pivot, least));
       }
     }
   }
@@ -237,7 +239,8 @@ class Printer {
     const std::string& dx = text_.results[0];
     const std::size_t n = names_.acceleration.size();
     std::string sum = fmt::format("{}[{}]", dx, n);
-    for (std::size_t i = n + 1; i < names_.state.size(); ++i) sum += fmt::format(" + {}[{}]", dx, i);
+    for (std::size_t i = n + 1; i < names_.state.size(); ++i)
+      sum = dialect_.rounded(fmt::format("{} + {}[{}]", sum, dx, i));
     // inf - inf and nan - nan are nan, which equals nothing
     const std::string finite = table_.declare("finite");
     line(fmt::format("{} {} = {};", dialect_.declares(), finite, sum));

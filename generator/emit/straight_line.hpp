@@ -29,9 +29,13 @@ struct Dialect {
   bool using_std = false;  // `using std::sin;` before calls
   bool typed = true;       // false: JavaScript, where constants are declared without a type
   std::string lanes;       // several states side by side: the prefix of the functions of templates/batch
+  std::string rounding;    // the function that every value goes through, where the language computes in double only
 
   /// What the declaration of a value begins with.
   std::string declares() const { return typed ? "const " + real : "const"; }
+  std::string rounded(const std::string& text) const {
+    return rounding.empty() ? text : rounding + "(" + text + ")";
+  }
 };
 
 /// Identifiers of one model: the same in all its functions.

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// C in single precision in the hands of compilers.
+// Every target in single precision, in the hands of compilers and interpreters.
 #include "emit/single_precision.hpp"
 
 #include <doctest/doctest.h>
+
+#include <map>
+#include <random>
 
 #include "emit/examples.hpp"
 #include "error.hpp"
@@ -10,39 +13,216 @@
 using namespace eomgen;
 using namespace test_systems;
 
-TEST_CASE("single precision: C passes its self test, computes no double, and the verdict tells what it costs") {
+namespace {
+
+std::vector<Example> single_examples() {
+  std::vector<Example> all = examples();
+  for (Example& e : all) emit::make_single(e.program, e.context);
+  return all;
+}
+
+bool runs(const char* program) { return emit::run_process({program, "--version"}).status == 0; }
+
+/// The numbers that a command writes.
+std::vector<double> printed(const std::vector<std::string>& command) {
+  const emit::Finished finished = emit::run_process(command);
+  CHECK_MESSAGE(finished.status == 0, finished.output);
+  std::istringstream words(finished.output);
+  std::vector<double> values;
+  for (double value = 0; words >> value;) values.push_back(value);
+  return values;
+}
+
+const std::vector<std::string>& compile_c() {
+  static const std::vector<std::string> command{EOMGEN_TEST_CC, "-std=c11", "-O1", "-ffp-contract=off",
+                                                "-Wdouble-promotion"};
+  return command;
+}
+
+std::vector<std::string> with(std::vector<std::string> command, const std::vector<std::string>& more) {
+  command.insert(command.end(), more.begin(), more.end());
+  return command;
+}
+
+/// What is wrong with the self test of the C of this folder; empty if it agrees.
+std::string wrong_c(const std::string& folder, const Example& e) {
+  const std::string name = emit::mangled_id(e.context.id), use = folder + "/use";
+  std::ofstream(use + ".c") << fmt::format("#include \"{0}.h\"\nint main(void) {{ return {0}_selftest(); }}\n", name);
+  const std::string said = complaints(with(compile_c(), {"-o", use}), {use + ".c", folder + "/" + name + ".c", "-lm"});
+  if (!said.empty()) return said;
+  return emit::run_process({use}).status == 0 ? "" : "its self test";
+}
+
+/// C++ that calls the templates of `header` with floats, at the start.
+std::string wrong_templates(const std::string& folder, const std::string& header, const std::string& space,
+                            const std::string& selftest) {
+  std::ofstream(folder + "/use.cpp") << fmt::format(
+      "#include \"{0}\"\nint main() {{\n  float x[16], p[16], dx[16];\n  {1}::defaults(x, p);\n"
+      "  return {1}::rhs(0.0f, x, p, static_cast<const float*>(nullptr), 0, dx){2};\n}}\n",
+      header, space, selftest);
+  const std::string said =
+      complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", folder + "/use_cpp"}, {folder + "/use.cpp"});
+  if (!said.empty()) return said;
+  return emit::run_process({folder + "/use_cpp"}).status == 0 ? "" : "the templates' self test";
+}
+
+std::string wrong_module(const std::string& folder, const Example& e) {
+  if (!runs("python3")) return "";
+  const std::string c = folder + "/" + emit::mangled_id(e.context.id) + "_simulate.c";
+  const std::string said = complaints(with(compile_c(), {"-c", "-Wno-double-promotion", "-o", folder + "/c.o"}), {c});
+  if (!said.empty()) return said;
+  const Setting cache("EOMGEN_CACHE_DIR", folder);
+  const emit::Finished finished = emit::run_process(
+      {"python3", "-c",
+       fmt::format("import sys; sys.dont_write_bytecode = True; sys.path.insert(0, '{}'); import {} as m\n"
+                   "import ctypes\n"
+                   "def single(values): return all(ctypes.c_float(v).value == v for v in values)\n"
+                   "assert m.info['real'] == 'float'\n"
+                   "dx = m.rhs(0, m.defaults['x']); assert len(dx) == len(m.states) and single(dx), dx\n"
+                   "motion = m.simulate(m.defaults['t'] + 1e-3, samples=5); assert motion.outcome == 'done'\n"
+                   "assert all(single(row) for row in motion.x) and not single(motion.t)\n"
+                   "for wrong in (dict(x0=[1e60] * len(m.states)), dict(rtol=1e-9)):\n"
+                   "    try: m.simulate(m.defaults['t'] + 1e-3, **wrong)\n"
+                   "    except ValueError: continue\n"
+                   "    raise AssertionError(wrong)\n",
+                   folder, emit::module_name(e.context.id))});
+  return finished.status == 0 ? "" : finished.output;
+}
+
+std::string wrong_script(const std::string& folder, const Example& e) {
+  if (!runs("node")) return "";
+  const emit::Finished finished = emit::run_process(
+      {"node", "-e",
+       fmt::format("const assert = require('assert'), m = require('{}/{}.js'); assert.strictEqual(m.selftest(), 0); "
+                   "assert.strictEqual(m.info.real, 'float')",
+                   folder, emit::script_name(e.context.id))});
+  return finished.status == 0 ? "" : finished.output;
+}
+
+/// What is wrong with what a target wrote; empty if it works. A target without an entry fails the test of all.
+const std::map<std::string, std::string (*)(const std::string& folder, const Example& e)> uses = {
+    {"c", wrong_c},
+    {"cpp",
+     [](const std::string& folder, const Example& e) {
+       const std::string name = emit::mangled_id(e.context.id), of_c = wrong_c(folder, e);
+       return of_c.empty() ? wrong_templates(folder, name + ".hpp", "eom::" + name, " + eom::" + name + "::selftest()")
+                           : of_c;
+     }},
+    {"cuda",
+     [](const std::string& folder, const Example& e) {
+       const std::string name = emit::mangled_id(e.context.id);
+       return wrong_templates(folder, name + ".cuh", "eom::" + name + "::device", "");
+     }},
+    {"python",
+     [](const std::string& folder, const Example& e) {
+       const std::string of_c = wrong_c(folder, e);
+       return of_c.empty() ? wrong_module(folder, e) : of_c;
+     }},
+    {"javascript", wrong_script}};
+
+}  // namespace
+
+TEST_CASE("single precision: every target has it, passes its self test, and tells what it costs") {
+  for (const emit::TargetEntry& target : emit::targets()) {
+    INFO(target.name);
+    if (std::string(target.name) == "batch") continue;
+    const auto use = uses.find(target.name);
+    REQUIRE((use != uses.end()));
+    for (const Example& e : single_examples()) {
+      INFO(e.context.id);
+      const Folder folder;
+      const std::vector<emit::EmittedFile> files = target.emit(e.program, e.context);
+      emit::write_files(folder.path, files);
+      CHECK(use->second(folder.path, e) == "");
+      for (const emit::EmittedFile& file : files) {
+        if (file.name.ends_with("_simulate.c")) continue;  // no code of the model
+        INFO(file.name);
+        CHECK(file.text.find("in single precision the right-hand side is off by") != std::string::npos);
+      }
+    }
+  }
+}
+
+TEST_CASE("single precision: C computes no double, loses few digits, and its self test finds a wrong one") {
   for (Example e : examples()) {
     INFO(e.context.id);
-    const std::string in_double = file_named(emit::emit(e.program, e.context, "c"), ".c");
+    CHECK(file_named(emit::emit(e.program, e.context, "c"), ".c").find("float ") == std::string::npos);
     emit::make_single(e.program, e.context);
     const Folder folder;
     const std::vector<emit::EmittedFile> files = emit::emit(e.program, e.context, "c");
     emit::write_files(folder.path, files);
-    const std::string name = emit::mangled_id(e.context.id);
-    std::ofstream(folder.path + "/use.c")
-        << fmt::format("#include \"{0}.h\"\nint main(void) {{ return {0}_selftest(); }}\n", name);
-    const std::vector<std::string> command{EOMGEN_TEST_CC,       "-std=c11", "-O1",
-                                           "-Wdouble-promotion", "-o",       folder.path + "/use"};
-    CHECK(complaints(command, {folder.path + "/use.c", folder.path + "/" + name + ".c", "-lm"}) == "");
-    CHECK(emit::run_process({folder.path + "/use"}).status == 0);
     const std::string text = file_named(files, ".c");
     CHECK(text.find("double ") == std::string::npos);
-    CHECK(text.find("in single precision the right-hand side is off by") != std::string::npos);
     // 24 bits: not less than a fraction of their last one, and these systems lose two digits at most.
     REQUIRE(e.context.single_error);
     CHECK(*e.context.single_error > 1e-9);
     CHECK(*e.context.single_error < 1e-5);
-    CHECK(in_double.find("float ") == std::string::npos);
 
     // A wrong digit of the fifth place is found.
     std::string wrong = text;
     const std::size_t at = wrong.rfind("0.5f*") != std::string::npos ? wrong.rfind("0.5f*") : wrong.rfind("2.0f*");
     if (at == std::string::npos) continue;
     wrong.replace(at, 4, wrong[at] == '0' ? "0.5001f" : "2.0004f");
-    std::ofstream(folder.path + "/" + name + ".c") << wrong;
-    CHECK(complaints(command, {folder.path + "/use.c", folder.path + "/" + name + ".c", "-lm"}) == "");
-    CHECK(emit::run_process({folder.path + "/use"}).status != 0);
+    std::ofstream(folder.path + "/" + emit::mangled_id(e.context.id) + ".c") << wrong;
+    CHECK(wrong_c(folder.path, e) == "its self test");
   }
+}
+
+TEST_CASE("single precision: JavaScript gives the bits of C, but for functions of the libraries") {
+  if (!runs("node")) {
+    MESSAGE("skipped: there is no node");
+    return;
+  }
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> within(-1, 1);
+  int without_functions = 0;
+  for (const Example& e : single_examples()) {
+    INFO(e.context.id);
+    const std::string name = emit::mangled_id(e.context.id);
+    const std::size_t n = e.program.state_count(), states = 200;
+    const Folder folder;
+    for (const char* target : {"c", "javascript"})
+      emit::write_files(folder.path, emit::emit(e.program, e.context, target));
+    std::string numbers;
+    for (std::size_t i = 0; i < n * states; ++i)  // of no float's decimals: both round what they are given
+      numbers += fmt::format("{}{:.17g}", i > 0 ? ", " : "", e.context.start[i % n] + within(random));
+    std::ofstream(folder.path + "/use.c") << fmt::format(
+        "#include <stdio.h>\n#include \"{0}.h\"\nint main(void) {{\n"
+        "  static const double numbers[] = {{{1}}};\n  float x[{2}], p[{0}_parameters + 1], dx[{2}];\n  int i, s, "
+        "code;\n"
+        "  for (s = 0; s < {3}; ++s) {{\n    {0}_defaults(x, p);\n"
+        "    for (i = 0; i < {2}; ++i) x[i] = (float)numbers[{2}*s + i];\n"
+        "    code = {0}_rhs((float)(0.1*s), x, p, NULL, 0, dx);\n    printf(\"%d\\n\", code);\n"
+        "    for (i = 0; i < {2}; ++i) printf(\"%.9g\\n\", code == 0 ? (double)dx[i] : 0.0);\n  }}\n  return 0;\n}}\n",
+        name, numbers, n, states);
+    REQUIRE(complaints(with(compile_c(), {"-Wno-double-promotion", "-o", folder.path + "/use"}),
+                       {folder.path + "/use.c", folder.path + "/" + name + ".c", "-lm"}) == "");
+    std::ofstream(folder.path + "/use.js") << fmt::format(
+        "const m = require('./{0}.js'), numbers = [{1}];\n"
+        "for (let s = 0; s < {3}; ++s) {{\n  const x = [], p = [], dx = [];\n  m.defaults(x, p);\n"
+        "  const code = m.rhs(0.1*s, numbers.slice({2}*s, {2}*s + {2}), p, null, 0, dx);\n  console.log(code);\n"
+        "  for (let i = 0; i < {2}; ++i) console.log(code === 0 ? dx[i] : 0);\n}}\n",
+        emit::script_name(e.context.id), numbers, n, states);
+    const std::vector<double> of_c = printed({folder.path + "/use"}),
+                              of_script = printed({"node", folder.path + "/use.js"});
+    REQUIRE(of_c.size() == states * (1 + n));
+    REQUIRE(of_script.size() == of_c.size());
+    // Sines and cosines of either may be wrong by a unit in the last place, and each result by what its self test
+    // allows of the largest.
+    const bool exact = e.program.functions.front().operations.trig + e.program.functions.front().operations.other == 0;
+    const double allowed = exact ? 0 : 2e-5;
+    without_functions += exact ? 1 : 0;
+    for (std::size_t s = 0; s < states; ++s) {
+      double largest = 0, off = 0;
+      CHECK(of_c[s * (n + 1)] == of_script[s * (n + 1)]);
+      for (std::size_t i = s * (n + 1) + 1; i < (s + 1) * (n + 1); ++i) {
+        largest = std::max(largest, std::abs(of_c[i]));
+        off = std::max(off, std::abs(static_cast<double>(static_cast<float>(of_c[i])) - of_script[i]));
+      }
+      CHECK(off <= allowed * largest);
+    }
+  }
+  CHECK(without_functions > 0);
 }
 
 TEST_CASE("single precision: the header of templates holds its self test too, in double precision") {
@@ -53,14 +233,19 @@ TEST_CASE("single precision: the header of templates holds its self test too, in
   emit::make_single(e.program, e.context);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "cpp"));
-  std::ofstream(folder.path + "/use.cpp") << "#include \"two.hpp\"\nint main() { return eom::two::selftest(); }\n";
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-o", folder.path + "/use"}, {folder.path + "/use.cpp"}) == "");
-  CHECK(emit::run_process({folder.path + "/use"}).status == 0);
+  CHECK(wrong_templates(folder.path, "two.hpp", "eom::two", " + eom::two::selftest()") == "");
 }
 
-TEST_CASE("single precision: targets that know double precision alone are refused, and numbers beyond it") {
-  for (const char* target : {"batch", "python", "javascript"}) CHECK_THROWS_AS(emit::require_single(target), Error);
-  for (const char* target : {"c", "cpp", "cuda"}) CHECK_NOTHROW(emit::require_single(target));
+TEST_CASE("single precision: numbers beyond it are refused by every target") {
   CHECK(emit::single_dialect().value(0.1) == "0.1f");
+  CHECK(emit::single_number(0.1) == static_cast<double>(0.1f));
   CHECK_THROWS_AS(emit::single_dialect().value(1e60), Error);
+  CHECK_THROWS_AS(emit::single_number(1e-60), Error);
+  Example e = examples()[0];
+  emit::make_single(e.program, e.context);
+  e.context.parameters[0].value = 1e60;
+  for (const char* target : {"c", "python", "javascript"}) {
+    INFO(target);
+    CHECK_THROWS_AS(emit::emit(e.program, e.context, target), Error);
+  }
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -10,8 +11,10 @@
 #include "emit/metadata.hpp"
 #include "emit/names.hpp"
 #include "emit/signature.hpp"
+#include "emit/single_precision.hpp"
 #include "emit/straight_line.hpp"
 #include "emit/text.hpp"
+#include "emit/uses.hpp"
 #include "error.hpp"
 #include "skeletons/javascript_model_js.hpp"
 
@@ -26,11 +29,22 @@ std::string number(double value) {
   return decimal(value);
 }
 
-Dialect javascript_dialect() {
+std::string rounded_number(double value) { return number(single_number(value)); }
+
+/// In single precision sums, products, quotients and roots have the bits of C: rounded twice, from 53 bits to 24, they
+/// are what one rounding gives.
+Dialect javascript_dialect(bool single) {
   Dialect dialect;
   dialect.constant = [](const symbolic::Rational& value) { return number(nearest_double(value)); };
   dialect.value = number;
   dialect.pi = "3.141592653589793";
+  if (single) {
+    dialect.constant = [](const symbolic::Rational& value) { return rounded_number(nearest_double(value)); };
+    dialect.value = rounded_number;
+    dialect.pi = "3.1415927410125732";
+    dialect.pivot_tolerance = single_dialect().pivot_tolerance;
+    dialect.rounding = "fround";
+  }
   dialect.absolute = "abs";
   dialect.line_comments = true;
   dialect.typed = false;
@@ -54,26 +68,41 @@ std::string harmless(std::string text) {
   return text;
 }
 
+const char* array_of(const Dialect& dialect) { return dialect.rounding.empty() ? "Float64Array" : "Float32Array"; }
+
 std::string parameter_list(const std::string& function, const FunctionText& text, const ModelNames& names) {
   std::string list;
   for (const Argument& argument : arguments(function, text, names)) list += (list.empty() ? "" : ", ") + argument.name;
   return list;
 }
 
+bool reads_time(const program::Function& function) {
+  const Uses uses = uses_of(function);
+  return std::any_of(uses.leaves.begin(), uses.leaves.end(), [](const Leaves& leaves) {
+    return std::any_of(leaves.begin(), leaves.end(),
+                       [](const auto& leaf) { return leaf.first == program::Slot::time; });
+  });
+}
+
 /// The function; a long one as parts that it calls one after the other, since engines do not optimise functions of any
 /// length.
-std::string definition(const program::Function& function, const FunctionText& text, const ModelNames& names) {
+std::string definition(const program::Function& function, const FunctionText& text, const ModelNames& names,
+                       const Dialect& dialect) {
   const std::string list = parameter_list(function.name, text, names);
-  const std::string head = fmt::format("function {}({})", function.name, list);
-  if (text.parts.empty()) return fmt::format("{} {{\n{}}}\n", head, text.body);
-  std::string parts,
-      calls = fmt::format("  const {} = new Float64Array({});\n  let {} = 0;\n", text.work, text.work_size, text.code);
+  std::string head = fmt::format("function {}({})", function.name, list);
+  if (!dialect.rounding.empty() && reads_time(function))
+    head += fmt::format(" {{\n  {0} = {1};\n", names.arguments_t, dialect.rounded(names.arguments_t));
+  else
+    head += " {\n";
+  if (text.parts.empty()) return fmt::format("{}{}}}\n", head, text.body);
+  std::string parts, calls = fmt::format("  const {} = new {}({});\n  let {} = 0;\n", text.work, array_of(dialect),
+                                         text.work_size, text.code);
   for (std::size_t k = 1; k <= text.parts.size(); ++k) {
     const std::string name = fmt::format("{}_part{}", function.name, k);
     parts += fmt::format("function {}({}, {}) {{\n{}}}\n\n", name, list, text.work, text.parts[k - 1]);
     calls += fmt::format("  {0} = {1}({2}, {3});\n  if ({0} !== 0) return {0};\n", text.code, name, list, text.work);
   }
-  return fmt::format("{}{} {{\n{}  return 0;\n}}\n", parts, head, calls);
+  return fmt::format("{}{}{}  return 0;\n}}\n", parts, head, calls);
 }
 
 /// Sines and cosines one by one: what C computes in vectors has no counterpart.
@@ -121,14 +150,15 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
   require_consistent(program, context);
   require_known(program);
   const std::string name = script_name(context.id);
-  const Dialect dialect = javascript_dialect();
+  const Dialect dialect = javascript_dialect(context.single_error.has_value());
   const ModelNames names = model_names(program, context, javascript_words());
   std::vector<std::vector<std::pair<std::string, std::string>>> functions;
   std::string list;
   for (const program::Function& emitted : program.functions) {
     const program::Function function = without_packs(emitted);
     const FunctionText text = print_function(function, names, context, dialect);
-    functions.push_back({{"purpose", purpose(function.name)}, {"definition", definition(function, text, names)}});
+    functions.push_back(
+        {{"purpose", purpose(function.name)}, {"definition", definition(function, text, names, dialect)}});
     list += ", " + function.name;
   }
   const std::vector<std::pair<std::string, std::string>> values = {
@@ -137,6 +167,8 @@ std::vector<EmittedFile> emit_javascript(const program::Program& program, const 
       {"info", literal(Json::parse(info_json(program, context)))},
       {"defaults", defaults_body(program, context, dialect)},
       {"list", list},
+      {"array", array_of(dialect)},
+      {"rounding", dialect.rounding.empty() ? "" : ", " + dialect.rounding},
       {"prepared", std::to_string(program.prepared_count())},
       {"without_inputs", without_inputs()},
       {"vectors", vectors(context)}};

@@ -32,6 +32,27 @@ std::string functions_of_c() {
   return lines;
 }
 
+/// What the skeletons say of the numbers that the C computes in.
+std::vector<std::pair<std::string, std::string>> of_numbers(bool single) {
+  if (!single) {
+    return {{"real", "double"},          {"cast", ""},
+            {"c_real", "c_double"},      {"tolerances", "rtol=1e-9, atol=1e-12"},
+            {"epsilon", "2.220446e-16"}, {"about_numbers", ""},
+            {"require_place", ""}};
+  }
+  return {{"real", "float"},
+          {"cast", "(float)"},
+          {"c_real", "c_float"},
+          {"tolerances", "rtol=1e-5, atol=1e-7"},
+          {"epsilon", "1.192093e-07"},
+          {"about_numbers",
+           "\n\nNumbers are of single precision: arrays of numpy are float32. `simulate` counts the time in double "
+           "precision, and\nadds up its sums so; states are rounded at every stage."},
+          {"require_place", R"(    if any(map(math.isinf, array)) and not any(map(math.isinf, values)):
+        raise ValueError("%s: a number has no place in single precision" % what)
+)"}};
+}
+
 }  // namespace
 
 std::vector<EmittedFile> emit_python(const program::Program& program, const EmissionContext& context) {
@@ -41,12 +62,12 @@ std::vector<EmittedFile> emit_python(const program::Program& program, const Emis
   }
   std::vector<EmittedFile> files = emit_c(program, context);
   const std::string name = mangled_id(context.id);
-  files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, {{"name", name}}, {})});
-  files.push_back({module_name(context.id) + ".py", rendered(skeleton::python_model_py,
-                                                             {{"banner", banner(program, context, "# ", "# ", "")},
-                                                              {"name", name},
-                                                              {"functions_of_c", functions_of_c()}},
-                                                             {})});
+  std::vector<std::pair<std::string, std::string>> values = {
+      {"name", name}, {"banner", banner(program, context, "# ", "# ", "")}, {"functions_of_c", functions_of_c()}};
+  const std::vector<std::pair<std::string, std::string>> numbers = of_numbers(context.single_error.has_value());
+  values.insert(values.end(), numbers.begin(), numbers.end());
+  files.push_back({name + "_simulate.c", rendered(skeleton::python_simulate_c, values, {})});
+  files.push_back({module_name(context.id) + ".py", rendered(skeleton::python_model_py, values, {})});
   if (context.run) {
     files.push_back(
         {name + "_run.cpp", rendered(skeleton::python_run_cpp,
