@@ -21,8 +21,8 @@ namespace {
 constexpr int digits = 40;
 // Of the largest entry: what is wrong by less is not looked for.
 constexpr double relative_tolerance = 1e-11, single_relative_tolerance = 1e-5;
-// Nothing smaller is a number of single precision.
-constexpr double single_least_number = 1e-37;
+// Nothing smaller is a number of single precision, and what is larger may not be.
+constexpr double single_least_number = 1e-37, single_largest_number = 1e37;
 // Of the first-order bound of rounding.
 constexpr double caution = 16;
 constexpr int taylor_order = 4;
@@ -50,7 +50,8 @@ program::AbiArguments arguments_of(const TestVector& at, const EmissionContext& 
 /// Rounded once, with what rounding may change; nothing where a number is not finite.
 std::optional<FunctionValues> rounded(const std::string& function, const program::AbiResults& results,
                                       const std::vector<std::vector<double>>& bounds, bool single) {
-  constexpr double largest_number = 1e290, least_number = 1e-290;
+  const double largest_number = single ? single_largest_number : 1e290;
+  constexpr double least_number = 1e-290;
   FunctionValues values{function, 0, {}, {}};
   for (std::size_t r = 0; r < results.size(); ++r) {
     double largest = 0, off = 0;

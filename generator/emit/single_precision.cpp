@@ -19,13 +19,26 @@
 namespace eomgen::emit {
 namespace {
 
-constexpr int single_digits = 5, many_digits = 40;  // CLN gives five digits the 24 bits of single precision
+constexpr int many_digits = 40;
+constexpr double pivot_tolerance = single_by_double * program::pivot_tolerance;
+constexpr float least_pivot = static_cast<float>(pivot_tolerance);
 
 double rounded(double value) { return static_cast<double>(static_cast<float>(value)); }
 
-void round(std::vector<double>& values) {
-  for (double& value : values) value = rounded(value);
+/// False where a number is too large.
+bool round(TestVector& at) {
+  at.t = rounded(at.t);
+  bool fits = std::isfinite(at.t);
+  for (std::vector<double>* part : {&at.x, &at.p, &at.u}) {
+    for (double& value : *part) {
+      value = rounded(value);
+      fits = fits && std::isfinite(value);
+    }
+  }
+  return fits;
 }
+
+std::vector<float> single(const std::vector<double>& values) { return {values.begin(), values.end()}; }
 
 std::vector<cln::cl_R> exact(const std::vector<double>& values) {
   std::vector<cln::cl_R> result;
@@ -33,20 +46,25 @@ std::vector<cln::cl_R> exact(const std::vector<double>& values) {
   return result;
 }
 
-/// By the largest entry of each result; nothing where there is no value.
+/// By the largest entry of each result; nothing where there is no value, or none of single precision; nor where the
+/// code calls a matrix singular.
 std::optional<double> error_of(const program::Function& function, const TestVector& at) {
   program::Arguments<cln::cl_R> arguments{numeric::exact(at.t), exact(at.x), exact(at.p), exact(at.u)};
-  arguments.mode = at.mode;
+  program::Arguments<float> rounded_ones{static_cast<float>(at.t), single(at.x), single(at.p), single(at.u)};
+  arguments.mode = rounded_ones.mode = at.mode;
   try {
-    const auto right = program::interpret(function, arguments, many_digits).results,
-               single = program::interpret(function, arguments, single_digits).results;
+    const auto right = program::interpret(function, arguments, many_digits).results;
+    const auto [found, pivots] = program::interpret(function, rounded_ones);
+    for (const auto& [pivot, scale] : pivots)
+      if (!(std::abs(pivot) > least_pivot * std::abs(scale))) return std::nullopt;
     double error = 0;
     for (std::size_t r = 0; r < right.size(); ++r) {
       double largest = 0, off = 0;
       for (std::size_t i = 0; i < right[r].size(); ++i) {
         const double value = cln::double_approx(right[r][i]);
         largest = std::max(largest, std::abs(value));
-        off = std::max(off, std::abs(cln::double_approx(single[r][i]) - value));
+        if (!std::isfinite(found[r][i])) return std::nullopt;
+        off = std::max(off, std::abs(static_cast<double>(found[r][i]) - value));
       }
       if (largest > 0) error = std::max(error, off / largest);
     }
@@ -56,11 +74,11 @@ std::optional<double> error_of(const program::Function& function, const TestVect
   }
 }
 
-void require_place(double value) {
+void require_place(double value, const std::string& what = "number") {
   const double size = std::abs(value);
   if (size > static_cast<double>(std::numeric_limits<float>::max()) ||
       (size > 0 && size < static_cast<double>(std::numeric_limits<float>::min()))) {
-    throw Error("emit", {}, fmt::format("the number {} has no place in single precision", decimal(value)),
+    throw Error("emit", {}, fmt::format("the {} {} has no place in single precision", what, decimal(value)),
                 "leave --real float out, or take other units");
   }
 }
@@ -81,14 +99,15 @@ double single_number(double value) {
 }
 
 void make_single(const program::Program& program, EmissionContext& context) {
+  for (const Quantity& p : context.parameters) require_place(p.value, fmt::format("parameter {} =", p.name));
   context.single_error = 0;
   std::vector<TestVector> tests;
   for (TestVector test : context.tests) {
-    test.t = rounded(test.t);
-    for (std::vector<double>* part : {&test.x, &test.p, &test.u}) round(*part);
-    const std::optional<TestVector> made = test_vector(program, context, test, tests.size());
+    if (!round(test)) continue;
     const std::optional<double> error = error_of(program.functions.front(), test);
-    if (!made || !error) continue;
+    if (!error) continue;
+    const std::optional<TestVector> made = test_vector(program, context, test, tests.size());
+    if (!made) continue;
     context.single_error = std::max(*context.single_error, *error);
     tests.push_back(*made);
   }
@@ -114,7 +133,7 @@ Dialect single_dialect() {
   dialect.value = literal;
   dialect.pi = "3.14159265f";
   dialect.absolute = "fabs";  // of tgmath.h, like all functions
-  dialect.pivot_tolerance = single_by_double * program::pivot_tolerance;
+  dialect.pivot_tolerance = pivot_tolerance;
   return dialect;
 }
 

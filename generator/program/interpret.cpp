@@ -14,6 +14,25 @@ namespace {
 
 using symbolic::Op;
 
+/// Functions are those of binary64, rounded: what they are does not depend on the machine.
+struct Binary32 {
+  using Number = float;
+  using Twice = symbolic::Binary64;
+  static float round(float x) { return x; }
+  static float constant(const symbolic::Rational& value) { return static_cast<float>(Twice::constant(value)); }
+  static float pi() { return static_cast<float>(Twice::pi()); }
+  static float divide(float a, float b) { return a / b; }
+  static float power(float a, long n) { return static_cast<float>(Twice::power(static_cast<double>(a), n)); }
+  static float pow(float a, float b) {
+    return static_cast<float>(Twice::pow(static_cast<double>(a), static_cast<double>(b)));
+  }
+  static float call(Op op, float x) { return static_cast<float>(Twice::call(op, static_cast<double>(x))); }
+  static float atan2(float y, float x) {
+    return static_cast<float>(Twice::atan2(static_cast<double>(y), static_cast<double>(x)));
+  }
+  static bool less(float a, float b) { return a < b; }
+};
+
 template <class Real, class Arithmetic>
 Values<Real> run(const Function& function, const Arguments<Real>& arguments, const Arithmetic& number) {
   work::check();
@@ -109,6 +128,10 @@ Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>
 
 Values<double> interpret(const Function& function, const Arguments<double>& arguments) {
   return run(function, arguments, symbolic::Binary64{});
+}
+
+Values<float> interpret(const Function& function, const Arguments<float>& arguments) {
+  return run(function, arguments, Binary32{});
 }
 
 }  // namespace eomgen::program

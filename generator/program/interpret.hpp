@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs a Function without a compiler: in binary64 as the emitted code would, or with CLN at any number of digits, so
-// that verify can hold the optimised program against the expressions that it was made of.
+// Runs a Function without a compiler: in binary64 or binary32 as the emitted code would, or with CLN at any number of
+// digits, so that verify can hold the optimised program against the expressions that it was made of.
 #pragma once
 
 #include <cln/real.h>
@@ -31,5 +31,6 @@ struct Values {
 Values<cln::cl_R> interpret(const Function& function, const Arguments<cln::cl_R>& arguments, int digits);
 /// Not-a-number or infinite where there is no value.
 Values<double> interpret(const Function& function, const Arguments<double>& arguments);
+Values<float> interpret(const Function& function, const Arguments<float>& arguments);
 
 }  // namespace eomgen::program

@@ -236,14 +236,30 @@ TEST_CASE("single precision: the header of templates holds its self test too, in
   CHECK(wrong_templates(folder.path, "two.hpp", "eom::two", " + eom::two::selftest()") == "");
 }
 
+TEST_CASE("single precision: what vanishes in it is 0, and states beyond it are none of the self test") {
+  const Example e = example("two", double_pendulum(), {"a", "b"}, {"m1", "m2", "l1", "l2", "g"});
+  const auto made = [&e](double factor) {
+    emit::EmissionContext context = e.context;
+    for (double& x : context.tests[1].x) x *= factor;
+    emit::make_single(e.program, context);
+    return context;
+  };
+  CHECK(made(1e-25).tests.size() == e.context.tests.size());  // products of two rates are below the least number
+  CHECK(*made(1e-25).single_error < 1e-5);
+  CHECK(made(1e25).tests.size() == e.context.tests.size() - 1);
+  CHECK(made(1e60).tests.size() == e.context.tests.size() - 1);
+}
+
 TEST_CASE("single precision: numbers beyond it are refused by every target") {
   CHECK(emit::single_dialect().value(0.1) == "0.1f");
   CHECK(emit::single_number(0.1) == static_cast<double>(0.1f));
   CHECK_THROWS_AS(emit::single_dialect().value(1e60), Error);
   CHECK_THROWS_AS(emit::single_number(1e-60), Error);
-  Example e = examples()[0];
+  Example e = examples()[0], other = e;
   emit::make_single(e.program, e.context);
-  e.context.parameters[0].value = 1e60;
+  e.context.parameters[0].value = other.context.parameters[0].value = 1e60;
+  CHECK_THROWS_WITH_AS(emit::make_single(other.program, other.context),
+                       doctest::Contains("the parameter m = 1e+60 has no place in single precision"), Error);
   for (const char* target : {"c", "python", "javascript"}) {
     INFO(target);
     CHECK_THROWS_AS(emit::emit(e.program, e.context, target), Error);

@@ -38,8 +38,8 @@ std::string name_for(const std::string& target, const std::string& id) {
 }
 
 int emit_document(const Options& options, const Common& common) {
-  if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty()) {
-    tell("warning: a document has no functions: --with, --output and --fix change nothing\n");
+  if (!options.with.empty() || !options.outputs.empty() || !options.fix.empty() || options.real != "double") {
+    tell("warning: a document has no functions: --with, --output, --fix and --real change nothing\n");
   }
   const auto model = load_model(options.model);
   const std::string text = analysis::article(model, common.seed);
