@@ -146,6 +146,7 @@ if (data.parts.arrows.length > 0) tools.append(checkbox("forces", "forces"), leg
 const help = document.createElement("p");
 help.className = "quiet";
 help.textContent = live ? "Drag a point to place it and let go; drag beside it to turn the view, with shift to move it." : "Drag to turn the view, with shift to move it. This page replays the run and does not compute: " + data.reason + ".";
+if (data.parts.untried) help.textContent += " Rods are not looked for among so many places.";
 view.append(help);
 pointers(canvas, scene.camera, redraw, grab);
 keys(canvas, player, scene.camera, redraw);

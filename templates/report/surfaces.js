@@ -1,9 +1,9 @@
-// What constraints leave to a particle: the lines of a surface where three coordinates are bound once, a curve where one motion is left. In: psi and the position as functions
-// of the particle's own coordinates, and where the motion takes these.
+// What constraints leave to a particle or a body's centre: the lines of a surface where three coordinates are bound once, a curve where one motion is left. In: psi and the position
+// as functions of its own coordinates, and of others that carry the surface along, and where the motion takes these. Lines are pairs of points in its own coordinates.
 class Surface {
   // `source`: the code of the equations, of a state of all coordinates, and its parameters.
   constructor(description, scene, rows, source) {
-    Object.assign(this, description, {scene, source, at_time: NaN, lines: []});
+    Object.assign(this, description, {scene, source, at_time: NaN, drawn_time: NaN, lines: [], drawn: []});
     this.count = this.columns.length;
     this.x = new Float64Array(source.code.info.states.length);
     this.out = new Float64Array(this.bound + 3);
@@ -52,7 +52,7 @@ class Surface {
           }
           q[i] = at(i, (a0 + share * (a1 - a0)) / cells);
           q[j] = at(j, (b0 + share * (b1 - b0)) / cells);
-          return this.point(q);
+          return [...q];
         };
         for (let a = 0; a < cells; ++a) for (let b = 0; b < cells; ++b) {
           const corners = [[a, b], [a + 1, b], [a + 1, b + 1], [a, b + 1]], found = [];
@@ -60,7 +60,7 @@ class Surface {
             const [a1, b1] = corners[(c + 1) % 4], f0 = value[a0][b0], f1 = value[a1][b1];
             if (Number.isFinite(f0) && Number.isFinite(f1) && (f0 < 0) !== (f1 < 0)) found.push(crossing(a0, b0, f0, a1, b1, f1));
           });
-          for (let n = 0; n + 1 < found.length; n += 2) if (isPoint([...found[n], ...found[n + 1]])) lines.push([found[n], found[n + 1]]);
+          for (let n = 0; n + 1 < found.length; n += 2) lines.push([found[n], found[n + 1]]);
         }
       }
     }
@@ -78,40 +78,50 @@ class Surface {
     };
     const identity = Array.from({length: n}, (_, k) => Float64Array.from({length: n}, (_, l) => (k === l ? 1 : 0)));
     const direction = (A) => unit(n === 2 ? [-A[0][1], A[0][0], 0] : cross(Array.from(A[0]), Array.from(A[1]))).slice(0, n);
-    const begin = start.map((value, k) => (value - this.low[k]) / span[k]), lines = [];
+    const onto = (u, tries) => {
+      for (; tries > 0; --tries) {
+        const back = smallestCorrection(identity, slopes(u), values(u).map((value) => -value));
+        u = u.map((value, i) => value + back[i]);
+      }
+      return u;
+    };
+    // What may leave its curve can be beside it.
+    const begin = onto(start.map((value, k) => (value - this.low[k]) / span[k]), 8), lines = [];
     for (const sense of [1, -1]) {
-      let u = begin, before = null, last = this.point(from(u));
+      let u = begin, before = null;
       for (let k = 0; k < 4000; ++k) {
         let d = direction(slopes(u)).map((value) => sense * value);
         if (before && d.reduce((sum, value, i) => sum + value * before[i], 0) < 0) d = d.map((value) => -value);
         before = d;
-        let next = u.map((value, i) => value + step * d[i]);
-        for (let tries = 0; tries < 2; ++tries) {
-          const back = smallestCorrection(identity, slopes(next), values(next).map((value) => -value));
-          next = next.map((value, i) => value + back[i]);
-        }
+        const next = onto(u.map((value, i) => value + step * d[i]), 2);
         if (!next.every((value) => value > -1e-3 && value < 1.001)) break;
-        const here = this.point(from(next));
-        if (!isPoint(here)) break;
-        lines.push([last, here]);
-        [u, last] = [next, here];
+        lines.push([from(u), from(next)]);
+        u = next;
         if (k > 5 && Math.hypot(...u.map((value, i) => value - begin[i])) < 0.7 * step) return lines;
       }
     }
     return lines;
   }
 
-  // Lines anew where they move with time.
+  // Lines anew where their shape changes, their ends where they are carried along.
   find(t, y) {
     const here = this.own(y);
     if (!this.is_there || !isPoint(here)) return [];
-    if (this.moves ? this.at_time !== t : Number.isNaN(this.at_time)) {
-      this.t = this.at_time = t;
-      const first = 2 * this.source.code.info.coordinates.length;
-      if (this.integrals !== null) for (let k = 0; k < 3 && first + k < this.x.length; ++k) this.x[first + k] = y[this.integrals + k];
+    const isOld = (of, changes) => (changes ? of === t : !Number.isNaN(of));
+    this.t = t;
+    const first = 2 * this.source.code.info.coordinates.length;
+    if (this.integrals !== null) for (let k = 0; k < 3 && first + k < this.x.length; ++k) this.x[first + k] = y[this.integrals + k];
+    this.others.forEach((column, k) => { this.x[column] = y[this.others_at[k]]; });
+    if (!isOld(this.at_time, this.reshapes)) {
       this.lines = this.isCurve() ? this.curve(here) : this.mesh();
+      this.at_time = t;
+      this.drawn_time = NaN;
     }
-    return this.lines;
+    if (!isOld(this.drawn_time, this.moves)) {
+      this.drawn = this.lines.map((ends) => ends.map((q) => this.point(q))).filter(([a, b]) => isPoint(a) && isPoint(b));
+      this.drawn_time = t;
+    }
+    return this.drawn;
   }
   show(t, y) {
     const {pencil} = this.scene, lines = this.find(t, y);

@@ -3,8 +3,11 @@
 // about which a body turns.
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
+#include <string_view>
 
+#include "analysis/drawing/anywhere.hpp"
 #include "analysis/drawing/parts.hpp"
 #include "mechanics/vanishes.hpp"
 #include "symbolic/evaluate.hpp"
@@ -47,56 +50,133 @@ const model::Constraint& written(const model::Model& model, const mechanics::Con
                        [&](const model::Constraint& other) { return other.name == c.name; });
 }
 
-/// Any numbers; which they are does not matter to what holds everywhere.
-double somewhere(const Symbol& s, int state) {
-  const double turn = 1.3 * s.index + 0.7 * static_cast<int>(s.kind) + 2.1 * state;
-  return 0.9 + 0.4 * std::sin(turn);
+/// Of two gradients, whose components take turns, at any two states.
+bool are_parallel(const symbolic::Dag& dag, const std::vector<Ref>& slopes) {
+  for (int state = 0; state < 2; ++state) {
+    const std::vector<double> v =
+        symbolic::evaluate(dag, slopes, [state](const Symbol& s) { return anywhere(s, state); });
+    double pp = 0, ps = 0, ss = 0;
+    for (std::size_t k = 0; k < v.size(); k += 2) {
+      pp += v[k] * v[k];
+      ps += v[k] * v[k + 1];
+      ss += v[k + 1] * v[k + 1];
+    }
+    if (!(pp > 0 && ss > 0 && ps * ps > (1 - parallel) * pp * ss)) return false;
+  }
+  return true;
 }
 
 }  // namespace
 
-void Drawing::surfaces() {
-  symbolic::Dag& dag = *mechanics_.dag;
-  for (const model::Particle& particle : model_.particles) {
-    const std::uint32_t i = particle.place;
-    if (model_.places[i].from != 0) continue;  // moves along with another, and so does its surface
-    const Vec3& r = *mechanics_.place_position[i];
-    DrawnSurface surface;
-    for (std::size_t k = 0; k < 3; ++k) surface.position[k] = written_(r[k]);
-    const std::set<std::uint32_t> own = coordinates_of(dag, {r[0], r[1], r[2]});
-    if (own.size() < 2 || own.size() > 3) continue;
-    bool radial = true;  // all of them hold it at a distance from the origin, and a rod is drawn
-    for (const mechanics::Constraint& c : mechanics_.constraints) {
-      const model::Constraint& of = written(model_, c);
-      if (!binds_places(mechanics_, c, of)) continue;
-      const std::set<std::uint32_t> bound = coordinates_of(dag, {c.psi});
-      if (bound.empty() || !std::includes(own.begin(), own.end(), bound.begin(), bound.end())) continue;
-      surface.name += (surface.name.empty() ? "" : ", ") + c.label;
-      surface.psi.push_back(written_(c.psi));
-      surface.touched = surface.touched || of.friction || of.unilateral;
-      radial = radial && is_rod(static_cast<std::uint32_t>(&c - mechanics_.constraints.data()), 0, i);
-    }
-    if (surface.psi.empty() || surface.psi.size() >= own.size()) continue;
-    std::vector<Ref> all = surface.psi;
-    all.insert(all.end(), surface.position.begin(), surface.position.end());
-    surface.moves = is_moving(dag, all);
-    if (radial && !surface.touched && !surface.moves) continue;
-    surface.place = i - 1;
-    surface.coordinates.assign(own.begin(), own.end());
-    Vec3 coordinates = symbolic::zero_vector(dag), integrals = coordinates;
-    for (std::size_t k = 0; k < own.size(); ++k) coordinates[k] = mechanics_.q[surface.coordinates[k]];
-    surface.at = vector(coordinates);
-    const std::vector<Symbol> symbols = dag.symbols(all);
-    if (std::any_of(symbols.begin(), symbols.end(),
-                    [](const Symbol& s) { return s.kind == SymbolKind::integral && s.index > 2; }))
-      continue;
-    if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::integral; })) {
-      for (std::uint32_t k = 0; k < std::min<std::size_t>(3, model_.integrals.size()); ++k)
-        integrals[k] = dag.symbol({SymbolKind::integral, k, 0});
-      surface.integrals = vector(integrals);
-    }
-    parts_.surfaces.push_back(std::move(surface));
+std::set<std::uint32_t> Drawing::coordinates_of_place(std::uint32_t place) const {
+  const model::Place& of = model_.places[place];
+  if (!of.chart) {
+    const Vec3& r = *mechanics_.place_position[place];
+    return coordinates_of(*mechanics_.dag, {r[0], r[1], r[2]});
   }
+  std::vector<Ref> entries;
+  for (const model::NodeId entry : of.chart->entries) {
+    if (entry != model::no_node) entries.push_back(mechanics::lower_scalar(mechanics_, entry));
+  }
+  return coordinates_of(*mechanics_.dag, entries);
+}
+
+void Drawing::surfaces() {
+  std::vector<Bound> bound;
+  for (std::uint32_t i = 1; i < model_.places.size(); ++i) {
+    if (parts_.places[i - 1].kind != std::string_view("point")) bound.push_back({i, coordinates_of_place(i)});
+  }
+  for (const Bound& one : bound) {
+    if (one.own.size() == 2 || one.own.size() == 3) surface(one, bound);
+  }
+}
+
+// Besides coordinates of its own, a constraint may have those that move other places, if it binds two of its own: a
+// bead on a wedge that slides. Of two places that it binds so it is a rod, or has no surface.
+bool Drawing::is_bound(const Bound& one, const std::vector<Bound>& all, std::uint32_t constraint) {
+  const std::set<std::uint32_t> of = coordinates_of(*mechanics_.dag, {mechanics_.constraints[constraint].psi});
+  const auto common = [&](const Bound& place) {
+    return std::count_if(of.begin(), of.end(), [&](std::uint32_t c) { return place.own.contains(c); });
+  };
+  if (of.empty() || common(one) == 0) return false;
+  if (std::includes(one.own.begin(), one.own.end(), of.begin(), of.end())) return true;
+  const bool of_places = std::all_of(of.begin(), of.end(), [&](std::uint32_t c) {
+    return std::any_of(all.begin(), all.end(), [c](const Bound& place) { return place.own.contains(c); });
+  });
+  const auto several = std::count_if(all.begin(), all.end(), [&](const Bound& place) { return common(place) > 1; });
+  return of_places && several == 1 && common(one) > 1 && !is_radial(one, constraint);
+}
+
+// Its slopes along these coordinates are those of the distance from what the place is measured from: a thread.
+bool Drawing::is_radial(const Bound& one, std::uint32_t constraint) {
+  symbolic::Dag& dag = *mechanics_.dag;
+  const Vec3 d = symbolic::subtract(dag, *mechanics_.place_position[one.place],
+                                    *mechanics_.place_position[model_.places[one.place].from]);
+  const Ref square = symbolic::dot(dag, d, d);
+  std::vector<Ref> slopes;
+  for (const std::uint32_t i : one.own) {
+    slopes.push_back(mechanics_.constraints[constraint].gradient[i]);
+    slopes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(square));
+  }
+  return are_parallel(dag, slopes);
+}
+
+void Drawing::surface(const Bound& one, const std::vector<Bound>& all_places) {
+  symbolic::Dag& dag = *mechanics_.dag;
+  const std::uint32_t i = one.place, from = model_.places[i].from;
+  const Vec3& r = *mechanics_.place_position[i];
+  const Vec3 relative = symbolic::subtract(dag, r, *mechanics_.place_position[from]);
+  DrawnSurface surface;
+  for (std::size_t k = 0; k < 3; ++k) surface.position[k] = written_(r[k]);
+  bool radial = true;  // all of them hold it at a distance from what it is measured from, and a rod is drawn
+  for (std::uint32_t c = 0; c < mechanics_.constraints.size(); ++c) {
+    const mechanics::Constraint& constraint = mechanics_.constraints[c];
+    const model::Constraint& of = written(model_, constraint);
+    if (!binds_places(mechanics_, constraint, of) || !is_bound(one, all_places, c)) continue;
+    surface.name += (surface.name.empty() ? "" : ", ") + constraint.label;
+    surface.psi.push_back(written_(constraint.psi));
+    surface.touched = surface.touched || of.friction || of.unilateral;
+    radial = radial && is_rod(c, from, i);
+  }
+  if (surface.psi.empty() || surface.psi.size() >= one.own.size()) return;
+  std::vector<Ref> seen = surface.psi;
+  for (const Ref& part : relative) seen.push_back(written_(part));
+  const bool changes = is_moving(dag, seen);
+  if (radial && !surface.touched && !changes) return;
+  seen.insert(seen.end(), surface.position.begin(), surface.position.end());
+  surface.place = i - 1;
+  surface.coordinates.assign(one.own.begin(), one.own.end());
+  const std::set<std::uint32_t> of_shape = coordinates_of(dag, surface.psi), of_all = coordinates_of(dag, seen);
+  std::set_difference(of_all.begin(), of_all.end(), one.own.begin(), one.own.end(), std::back_inserter(surface.others));
+  surface.reshapes =
+      is_moving(dag, surface.psi) || !std::includes(one.own.begin(), one.own.end(), of_shape.begin(), of_shape.end());
+  surface.moves = surface.reshapes || !surface.others.empty() || is_moving(dag, seen);
+  surface.at = values_of(surface.coordinates).front();
+  for (const std::size_t at : values_of(surface.others)) surface.others_at.push_back(at);
+  const std::vector<Symbol> symbols = dag.symbols(seen);
+  if (std::any_of(symbols.begin(), symbols.end(),
+                  [](const Symbol& s) { return s.kind == SymbolKind::integral && s.index > 2; }))
+    return;
+  if (std::any_of(symbols.begin(), symbols.end(), [](const Symbol& s) { return s.kind == SymbolKind::integral; })) {
+    Vec3 integrals = symbolic::zero_vector(dag);
+    for (std::uint32_t k = 0; k < std::min<std::size_t>(3, model_.integrals.size()); ++k)
+      integrals[k] = dag.symbol({SymbolKind::integral, k, 0});
+    surface.integrals = vector(integrals);
+  }
+  parts_.surfaces.push_back(std::move(surface));
+}
+
+// Three of them in each vector that is drawn from.
+std::vector<std::size_t> Drawing::values_of(const std::vector<std::uint32_t>& coordinates) {
+  std::vector<std::size_t> result;
+  for (std::size_t k = 0; k < coordinates.size(); k += 3) {
+    Vec3 three = symbolic::zero_vector(*mechanics_.dag);
+    const std::size_t count = std::min<std::size_t>(3, coordinates.size() - k);
+    for (std::size_t i = 0; i < count; ++i) three[i] = mechanics_.q[coordinates[k + i]];
+    const std::size_t first = vector(three);
+    for (std::size_t i = 0; i < count; ++i) result.push_back(first + i);
+  }
+  return result;
 }
 
 // psi is a function of their distance alone: its slopes are along those of the distance wherever they are.
@@ -114,18 +194,7 @@ bool Drawing::is_rod(std::uint32_t constraint, std::uint32_t a, std::uint32_t b)
     slopes.push_back(c.gradient[i]);
     slopes.push_back(symbolic::partial(dag, {SymbolKind::coordinate, i, 0})(square));
   }
-  for (int state = 0; state < 2; ++state) {
-    const std::vector<double> v =
-        symbolic::evaluate(dag, slopes, [state](const Symbol& s) { return somewhere(s, state); });
-    double pp = 0, ps = 0, ss = 0;
-    for (std::size_t k = 0; k < v.size(); k += 2) {
-      pp += v[k] * v[k];
-      ps += v[k] * v[k + 1];
-      ss += v[k + 1] * v[k + 1];
-    }
-    if (!(pp > 0 && ss > 0 && ps * ps > (1 - parallel) * pp * ss)) return false;
-  }
-  return true;
+  return are_parallel(dag, slopes);
 }
 
 // They move against one another, and their distance does not change.
@@ -175,7 +244,8 @@ void Drawing::pivots() {
 }
 
 void Drawing::rods() {
-  if (model_.places.size() > most_places) return;
+  parts_.untried_rods = model_.places.size() > most_places;
+  if (parts_.untried_rods) return;
   for (const model::Particle& particle : model_.particles) {
     if (model_.places[particle.place].chart) continue;
     // The nearest before it in the model, as of the links of a chain.

@@ -12,8 +12,9 @@
 #include <vector>
 
 #include "analysis/drawing/parts.hpp"
+#include "analysis/drawing/placed.hpp"
 #include "analysis/drawing/sketch.hpp"
-#include "analysis/drawing/solids.hpp"
+#include "analysis/drawing/surfaces_at_start.hpp"
 #include "analysis/drawing/wheels.hpp"
 #include "error.hpp"
 #include "reading/reading.hpp"
@@ -31,11 +32,6 @@ constexpr double seen_sideways = 0.2;       // of a length that is seen from its
 constexpr int arc_strokes = 16;
 constexpr double least_turn = 0.02;  // rad
 
-struct Placed {
-  std::size_t place;
-  std::vector<Solid> solids;
-  std::function<Point(const Point&)> world;  // from its own axes
-};
 struct Rod {  // between places, -1 the origin
   long from, to;
 };
@@ -54,12 +50,16 @@ class Drawer {
     }
     sizes_ = sizes_of(drawing_, *m_.dag, scene_.parameters);
     look_elsewhere();
-    find_solids();
+    solids_ = placed_solids(parts_, sizes_, at_start_);
     std::optional<Point> down;
     if (const auto g = falling(m_, scene_.parameters)) down = Point(g->data());
     const View view(points_of_view(), down);
-    Sketch sketch(view, extent());
+    std::vector<Point> all = extent();
+    const std::vector<BoundLine> bound = surfaces_at_start(m_, parts_, scene_, at_start_, view, size(all));
+    for (const BoundLine& line : bound) all.insert(all.end(), line.points.begin(), line.points.end());
+    Sketch sketch(view, all);
     axes(sketch);
+    for (const BoundLine& line : bound) sketch.curve(line.points, line.edge ? Weight::plain : Weight::fine);
     for (const DrawnContact& contact : parts_.contacts) ground(sketch, contact);
     for (const Rod& rod : links()) link(sketch, rod);
     for (const Placed& placed : solids_) {
@@ -104,63 +104,6 @@ class Drawer {
   Point point(std::size_t i) const { return at(at_start_, i); }
   Point foot(const DrawnPlace& place) const {
     return *place.from < 0 ? Point(Point::Zero()) : point(parts_.places[static_cast<std::size_t>(*place.from)].at);
-  }
-
-  Eigen::Matrix3d axes_of(const DrawnBody& body) const {
-    Eigen::Matrix3d axes;
-    axes.col(0) = point(body.axes[0]);
-    axes.col(1) = point(body.axes[1]);
-    axes.col(2) = axes.col(0).cross(axes.col(1));
-    return axes;
-  }
-  std::function<Point(const Point&)> world_of(const DrawnBody& body) const {
-    return [centre = point(parts_.places[body.place].at), axes = axes_of(body)](const Point& r) -> Point {
-      return centre + axes * r;
-    };
-  }
-
-  /// Where a joint or a point is on a body, or else the origin, in its own axes.
-  Point attached(const DrawnBody& body) const {
-    Point spot = Point::Zero();
-    const auto joint = std::find_if(parts_.joints.begin(), parts_.joints.end(), [&](const DrawnJoint& j) {
-      return j.of[0] == body.place || j.of[1] == body.place;
-    });
-    const auto place = std::find_if(parts_.places.begin(), parts_.places.end(),
-                                    [&](const DrawnPlace& p) { return p.from == static_cast<long>(body.place); });
-    if (joint != parts_.joints.end())
-      spot = point(joint->at);
-    else if (place != parts_.places.end())
-      spot = point(place->at);
-    return axes_of(body).transpose() * (spot - point(parts_.places[body.place].at));
-  }
-
-  /// Of bodies, and of particles that [draw] gives a shape, whose axes are the fixed ones.
-  void find_solids() {
-    for (const DrawnBody& body : parts_.bodies) {
-      solids_.push_back({body.place, shapes_of(body.place), world_of(body)});
-      if (!solids_.back().solids.empty() || is_drawn(body.place)) continue;
-      std::optional<Solid> solid = solid_of_inertia(body, sizes_);
-      if (!solid) solid = bar_of_inertia(body, sizes_, attached(body));
-      if (solid) solids_.back().solids.push_back(*solid);
-    }
-    for (std::size_t i = 0; i < parts_.places.size(); ++i) {
-      const auto is_this = [i](const DrawnBody& body) { return body.place == i; };
-      if (!is_drawn(i) || std::any_of(parts_.bodies.begin(), parts_.bodies.end(), is_this)) continue;
-      const Point centre = point(parts_.places[i].at);
-      solids_.push_back({i, shapes_of(i), [centre](const Point& r) -> Point { return centre + r; }});
-    }
-  }
-  bool is_drawn(std::size_t place) const {
-    return std::any_of(parts_.shapes.begin(), parts_.shapes.end(),
-                       [place](const DrawnShape& shape) { return shape.place == place; });
-  }
-  std::vector<Solid> shapes_of(std::size_t place) const {
-    std::vector<Solid> result;
-    for (const DrawnShape& shape : parts_.shapes) {
-      if (shape.place != place) continue;
-      if (auto solid = solid_of_shape(shape, sizes_)) result.push_back(*solid);
-    }
-    return result;
   }
 
   std::vector<std::size_t> spots() const {
@@ -217,6 +160,17 @@ class Drawer {
       }
     }
     return result;
+  }
+
+  /// Of the rest of the figure and what it is measured from: surfaces are drawn as far as that.
+  static double size(std::vector<Point> all) {
+    all.push_back(Point::Zero());
+    Point low = all.front(), high = low;
+    for (const Point& r : all) {
+      low = low.cwiseMin(r);
+      high = high.cwiseMax(r);
+    }
+    return high == low ? 1 : (high - low).norm();
   }
 
   /// At the origin where that is on the paper, else in its corner.

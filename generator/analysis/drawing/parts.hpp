@@ -6,6 +6,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -42,16 +43,19 @@ struct DrawnContact {
   std::optional<std::array<std::size_t, 2>> tangents;  // of a plane
   std::size_t foot;  // the same point moved onto the plane: what is not touched yet is above it
 };
-/// What holonomic constraints leave to a particle whose position is of two or three coordinates that they bind.
+/// What holonomic constraints leave to a particle or to the centre of a body with two or three coordinates of its own.
 struct DrawnSurface {
   std::string name;  // of the constraints
   std::size_t place;
   std::size_t at;                          // a vector: its coordinates
-  std::vector<std::uint32_t> coordinates;  // of the model
+  std::vector<std::uint32_t> coordinates;  // of the model: its own, relative to what it is measured from
+  std::vector<std::uint32_t> others;       // of the model: they carry the surface along, or its shape depends on them
+  std::vector<std::size_t> others_at;      // where each is among the outputs
   std::optional<std::size_t> integrals;    // a vector: the first integrals over time
   bool touched = false;                    // with friction, or one side only
-  bool moves = false;                      // with time
-  std::vector<symbolic::Ref> psi;          // of these coordinates, time and parameters
+  bool reshapes = false;                   // psi changes with time or with the others
+  bool moves = false;                      // that, or it is carried along
+  std::vector<symbolic::Ref> psi;          // of all these coordinates, time and parameters
   symbolic::Vec3 position;
 };
 /// Two places, -1 the origin, at a distance that coordinates or a constraint hold.
@@ -84,6 +88,7 @@ struct DrawnParts {
   std::vector<DrawnShape> shapes;
   std::vector<DrawnSurface> surfaces;
   std::vector<DrawnRod> rods;
+  bool untried_rods = false;  // there are more places than are tried
 };
 
 class Drawing {
@@ -113,7 +118,17 @@ class Drawing {
   void contacts();
   void couplings();
   void shapes();
+  /// A particle or body, and the coordinates that its position has against what it is measured from.
+  struct Bound {
+    std::uint32_t place;
+    std::set<std::uint32_t> own;
+  };
   void surfaces();
+  void surface(const Bound& one, const std::vector<Bound>& all_places);
+  std::set<std::uint32_t> coordinates_of_place(std::uint32_t place) const;
+  bool is_bound(const Bound& one, const std::vector<Bound>& all, std::uint32_t constraint);
+  bool is_radial(const Bound& one, std::uint32_t constraint);
+  std::vector<std::size_t> values_of(const std::vector<std::uint32_t>& coordinates);
   void rods();
   bool is_rod(std::uint32_t constraint, std::uint32_t a, std::uint32_t b);
   bool is_rigid(std::uint32_t a, std::uint32_t b);

@@ -17,6 +17,7 @@ constexpr double width = 90, height = 65;  // mm, without labels
 constexpr double dash = 1.2;               // mm, and as much between two
 constexpr double sharp = 0.8;              // cosine of the angle between faces that share an edge worth drawing
 constexpr int ring = 40;                   // strokes of a circle
+constexpr double straight = 0.04;          // mm that a point may be off its stroke
 
 print::Figure::Point plain(const PlanePoint& p) { return {p.x(), p.y()}; }
 
@@ -37,6 +38,40 @@ bool crosses(const print::Figure::Stroke& s, const Box& box) {
   if (!box.meets({a.cwiseMin(b), a.cwiseMax(b)})) return false;
   const PlanePoint normal = across(b - a), half = (box.high - box.low) / 2;
   return std::abs(normal.dot((box.low + box.high) / 2 - a)) <= normal.cwiseAbs().dot(half);
+}
+
+// Those from which no other is farther than nobody sees off the strokes between them (Douglas and Peucker).
+std::vector<PlanePoint> simplified(const std::vector<PlanePoint>& points) {
+  if (points.size() < 3) return points;
+  const auto off = [](const PlanePoint& p, const PlanePoint& a, const PlanePoint& b) {
+    const PlanePoint d = b - a;
+    const double length = d.squaredNorm();
+    return (p - a - (length > 0 ? std::clamp((p - a).dot(d) / length, 0.0, 1.0) : 0.0) * d).norm();
+  };
+  std::vector<bool> kept(points.size(), false);
+  kept.front() = kept.back() = true;
+  std::vector<std::pair<std::size_t, std::size_t>> open{{0, points.size() - 1}};
+  while (!open.empty()) {
+    const auto [first, last] = open.back();
+    open.pop_back();
+    std::size_t farthest = first;
+    double most = straight;
+    for (std::size_t k = first + 1; k < last; ++k) {
+      const double distance = off(points[k], points[first], points[last]);
+      if (distance <= most) continue;
+      most = distance;
+      farthest = k;
+    }
+    if (farthest == first) continue;
+    kept[farthest] = true;
+    open.emplace_back(first, farthest);
+    open.emplace_back(farthest, last);
+  }
+  std::vector<PlanePoint> result;
+  for (std::size_t k = 0; k < points.size(); ++k) {
+    if (kept[k]) result.push_back(points[k]);
+  }
+  return result;
 }
 
 }  // namespace
@@ -76,6 +111,12 @@ void Sketch::dashes(const PlanePoint& from, const PlanePoint& to) {
 
 void Sketch::path(const std::vector<PlanePoint>& points, Weight weight) {
   for (std::size_t k = 1; k < points.size(); ++k) line(points[k - 1], points[k], weight);
+}
+
+void Sketch::curve(const std::vector<Point>& points, Weight weight) {
+  std::vector<PlanePoint> all;
+  for (const Point& r : points) all.push_back(on_paper(r));
+  path(simplified(all), weight);
 }
 
 void Sketch::arrow(const PlanePoint& from, const PlanePoint& to, Weight weight) {

@@ -26,6 +26,8 @@ class Sketch {
   void line(const Point& from, const Point& to, Weight weight) { line(on_paper(from), on_paper(to), weight); }
   void dashes(const PlanePoint& from, const PlanePoint& to);
   void path(const std::vector<PlanePoint>& points, Weight weight);
+  /// The same from space, with as few strokes as nobody tells from all of them.
+  void curve(const std::vector<Point>& points, Weight weight);
   void arrow(const PlanePoint& from, const PlanePoint& to, Weight weight);
   void dot(const PlanePoint& at, double diameter, bool filled);
   void coil(const Point& a, const Point& b);

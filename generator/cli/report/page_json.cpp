@@ -65,6 +65,8 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
             {"place", s.place},
             {"at", s.at},
             {"columns", s.coordinates},
+            {"others", s.others},
+            {"others_at", s.others_at},
             {"bound", s.psi.size()},
             {"angles", of_unit("rad")},
             {"lengths", of_unit("m")},
@@ -72,9 +74,11 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
             {"upper", bounds(upper)},
             {"integrals", or_null(s.integrals)},
             {"touched", s.touched},
+            {"reshapes", s.reshapes},
             {"moves", s.moves},
             {"equations", "surface_" + std::to_string(++count)}};
   });
+  result["untried"] = parts.untried_rods;
   result["rods"] = list_of(parts.rods, [](const analysis::DrawnRod& r) { return Json::array({r.a, r.b}); });
   return result;
 }

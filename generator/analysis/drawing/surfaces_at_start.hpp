@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The surfaces and curves of a drawing at the start of a scene. In: their equations, values of the drawing's vectors
+// there. Out: lines in space.
+#pragma once
+
+#include <vector>
+
+#include "analysis/drawing/bound_lines.hpp"
+#include "analysis/drawing/parts.hpp"
+#include "run/scene.hpp"
+
+namespace eomgen::analysis {
+
+/// `values`: of the drawing's expressions; `size`: of the rest of the figure.
+std::vector<BoundLine> surfaces_at_start(const mechanics::Mechanics& mechanics, const DrawnParts& parts,
+                                         const run::Scene& scene, const std::vector<double>& values, const View& view,
+                                         double size);
+
+}  // namespace eomgen::analysis
