@@ -84,18 +84,21 @@ function checkbox(text, key) {
   return label;
 }
 
-// What the colours of forces mean; shown with them.
+// What the colours of forces and their heads mean, and which are not there; shown with them.
 function legend() {
-  const place = document.createElement("span"), kinds = {applied: "applied", constraint: "of constraints", friction: "of friction"};
+  const place = document.createElement("span"), kinds = {applied: "applied", constraint: "of constraints", friction: "of friction"}, {arrows, beyond, without_vector} = data.parts;
+  const add = (text, colour) => {
+    const entry = document.createElement("span");
+    entry.textContent = text;
+    if (colour) entry.style.color = colour;
+    place.append(entry);
+  };
   place.className = "legend";
   place.hidden = true;
-  for (const kind in kinds) {
-    if (!data.parts.arrows.some((arrow) => arrow.kind === kind)) continue;
-    const entry = document.createElement("span");
-    entry.textContent = "\u2192 " + kinds[kind];
-    entry.style.color = forceColours[kind];
-    place.append(entry);
-  }
+  for (const kind in kinds) if (arrows.some((arrow) => arrow.kind === kind)) add("\u2192 " + kinds[kind], forceColours[kind]);
+  if (arrows.some((arrow) => arrow.turns)) add(arrows.some((arrow) => !arrow.turns) ? "\u21a0 moments, in a scale of their own" : "\u21a0 moments");
+  if (beyond > 0) add(arrows.length + " arrows are drawn, " + beyond + " more are not");
+  if (without_vector.length > 0) add("not drawn, since no vector is known of all that they do: " + without_vector.join(", "));
   tools.addEventListener("change", () => { place.hidden = !scene.shown.forces; });
   return place;
 }
@@ -142,7 +145,7 @@ function panel() {
 tools.append(button("+", "Zoom in (+)", () => { scene.camera.zoom *= 1.25; redraw(); }), button("\u2212", "Zoom out (-)", () => { scene.camera.zoom /= 1.25; redraw(); }),
              button("View", "The first view (0)", () => { scene.camera.home(); redraw(); }), checkbox("traces", "traces"), checkbox("axes", "axes"), checkbox("names", "names"));
 if (data.parts.surfaces.length + data.parts.contacts.length > 0) tools.append(checkbox("surfaces", "surfaces"));
-if (data.parts.arrows.length > 0) tools.append(checkbox("forces", "forces"), legend());
+if (data.parts.arrows.length + data.parts.without_vector.length > 0) tools.append(checkbox("forces", "forces"), legend());
 const help = document.createElement("p");
 help.className = "quiet";
 help.textContent = live ? "Drag a point to place it and let go; drag beside it to turn the view, with shift to move it." : "Drag to turn the view, with shift to move it. This page replays the run and does not compute: " + data.reason + ".";

@@ -56,14 +56,35 @@ class Pencil {
     draw.fill();
     if (edge) this.stroke(edge, 2);
   }
+  head([x, y], [ux, uy], size, colour, width) {
+    this.line([[x - size * (ux + 0.45 * uy), y - size * (uy - 0.45 * ux)], [x, y], [x - size * (ux - 0.45 * uy), y - size * (uy + 0.45 * ux)]], colour, width);
+  }
   // Its tip on the screen, and the direction there; null where it is seen from its end.
   arrow(from, to, colour, width) {
     const a = this.at(from), b = this.at(to), length = Math.hypot(b[0] - a[0], b[1] - a[1]);
     if (!(length >= 3)) return null;
-    const u = [(b[0] - a[0]) / length, (b[1] - a[1]) / length], head = Math.min(4 + 2.2 * width, length / 2);
+    const u = [(b[0] - a[0]) / length, (b[1] - a[1]) / length];
     this.line([a, b], colour, width);
-    this.line([[b[0] - head * (u[0] + 0.45 * u[1]), b[1] - head * (u[1] - 0.45 * u[0])], b, [b[0] - head * (u[0] - 0.45 * u[1]), b[1] - head * (u[1] + 0.45 * u[0])]], colour, width);
+    this.head(b, u, Math.min(4 + 2.2 * width, length / 2), colour, width);
     return {tip: b, along: u};
+  }
+  // A moment by the rule of the right hand: an arrow of two heads, or where that is seen from its end an arc about it, as wide as the arrow is long.
+  moment(from, to, colour, width) {
+    const {camera} = this, axis = minus(to, from), length = Math.hypot(...axis) * camera.scale(), [x, y] = this.at(from), b = this.at(to), seen = Math.hypot(b[0] - x, b[1] - y);
+    if (!(length >= 3)) return null;
+    const size = Math.min(4 + 2.2 * width, length / 2);
+    if (seen > 0.5 * length && seen >= 3) {
+      const drawn = this.arrow(from, to, colour, width);
+      this.head([b[0] - 0.8 * size * drawn.along[0], b[1] - 0.8 * size * drawn.along[1]], drawn.along, size, colour, width);
+      return drawn;
+    }
+    const sense = Math.sign(dot(axis, camera.toward)), radius = length / 2, points = [];
+    const on = (share) => { const angle = Math.PI * (0.25 + 1.5 * share) * sense; return [x + radius * Math.cos(angle), y - radius * Math.sin(angle)]; };
+    for (let k = 0; k <= 36; ++k) points.push(on(k / 36));
+    this.line(points, colour, width);
+    const tip = on(1), before = on(0.9), d = Math.hypot(tip[0] - before[0], tip[1] - before[1]);
+    this.head(tip, [(tip[0] - before[0]) / d, (tip[1] - before[1]) / d], size, colour, width);
+    return {tip: [x + 0.7 * radius, y - 0.7 * radius], along: [0.7, -0.7]};
   }
   // Beyond the tip of an arrow.
   name(text, arrow, colour) { if (arrow) this.names.push({text, at: [arrow.tip[0] + 11 * arrow.along[0], arrow.tip[1] + 11 * arrow.along[1] + 5], colour, middle: true}); }

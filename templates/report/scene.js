@@ -154,18 +154,21 @@ class Scene {
     return Math.hypot(cx - x, cy - y) < 0.5 * shape.radius * this.camera.scale();
   }
 
-  // Forces as arrows from where they act, all in one scale, by which the greatest are a quarter of the picture; a rare peak (an impact) does not make the others vanish.
+  // Forces and moments as arrows from where they act, each of the two in one scale, by which the greatest are a quarter of the picture; a rare peak (an impact) does not make the others vanish.
   showForces(y) {
     const {parts, pencil, camera} = this, size = (row, arrow) => Math.hypot(...this.position(row, arrow.value));
     if (this.longest === null) {
-      const all = this.motion.drawn().flatMap((row) => parts.arrows.map((arrow) => size(row, arrow))).filter((value) => Number.isFinite(value) && value > 0).sort((a, b) => a - b);
-      this.longest = all.length > 0 ? all[Math.floor(0.98 * (all.length - 1))] : 1;
+      this.longest = [false, true].map((turns) => {
+        const all = this.motion.drawn().flatMap((row) => parts.arrows.filter((arrow) => arrow.turns === turns).map((arrow) => size(row, arrow))).filter((value) => Number.isFinite(value) && value > 0).sort((a, b) => a - b);
+        return all.length > 0 ? all[Math.floor(0.98 * (all.length - 1))] : 1;
+      });
     }
     for (const arrow of parts.arrows) {
-      const at = this.position(y, arrow.at), value = this.position(y, arrow.value), length = Math.hypot(...value);
-      if (!isPoint([...at, length]) || length < 1e-6 * this.longest) continue;
-      const drawn = pencil.arrow(at, plus(at, scaled(value, 0.3 * camera.size * Math.min(1 / this.longest, 1.3 / length))), forceColours[arrow.kind], 2.6);
-      if (this.shown.names && parts.arrows.length < 9) pencil.name(arrow.name, drawn, forceColours[arrow.kind]);
+      const at = this.position(y, arrow.at), value = this.position(y, arrow.value), length = Math.hypot(...value), longest = this.longest[arrow.turns ? 1 : 0];
+      if (!isPoint([...at, length]) || length < 1e-6 * longest) continue;
+      const to = plus(at, scaled(value, 0.3 * camera.size * Math.min(1 / longest, 1.3 / length))), colour = forceColours[arrow.kind];
+      const drawn = arrow.turns ? pencil.moment(at, to, colour, 2.6) : pencil.arrow(at, to, colour, 2.6);
+      if (this.shown.names && parts.arrows.length < 9) pencil.name(arrow.name, drawn, colour);
     }
   }
 

@@ -92,6 +92,17 @@ function surfaces(report) {
   return {lines: lines.length, off: Math.max(...lines.flat().map((r) => Math.abs(Math.hypot(...r) - radius)))};
 }
 
+// A bowl z = x^2 + y^2 that goes along with the place that its particle is measured from: how far its lines are off at most, and how far they go along.
+function carried(report) {
+  const {scene, player} = report, lines = () => scene.surfaces[0].find(player.at, scene.now), cart = () => scene.placeAt(scene.now, 0);
+  let off = 0;
+  const look = () => { for (const [x, y, z] of lines().flat()) off = Math.max(off, Math.abs(z - (x - cart()[0]) ** 2 - y * y)); return cart()[0]; };
+  player.jump(player.t0);
+  const before = look();
+  player.jump(player.t1);
+  return {moved: Math.abs(look() - before), off, lines: lines().length};
+}
+
 // Pixels that forces add to the drawing when they are asked for, by the box that a reader ticks.
 function forces(page, report) {
   const box = [...page.querySelectorAll("label")].find((label) => label.textContent.trim() === "forces"), canvas = page.getElementById("scene");
@@ -100,7 +111,8 @@ function forces(page, report) {
   box.querySelector("input").click();
   const shown = !page.querySelector(".legend").hidden, after = picture(canvas).sum;
   box.querySelector("input").click();
-  return {drawn: shown && before !== after, taken_back: picture(canvas).sum === before, arrows: report.data.parts.arrows.length};
+  return {drawn: shown && before !== after, taken_back: picture(canvas).sum === before, arrows: report.data.parts.arrows.length,
+          moments: report.data.parts.arrows.filter((arrow) => arrow.turns).length, legend_of_moments: page.querySelector(".legend").textContent.includes("moments")};
 }
 
 async function wait(condition) {
@@ -166,6 +178,7 @@ async function look(entry) {
       report.player.jump(report.player.t0 + 0.37 * (report.player.t1 - report.player.t0));
       at.forces = forces(page, report);
       if (report.scene.surfaces.length > 0) at.surfaces = surfaces(report);
+      if (entry.bowl) at.carried = carried(report);
       at.live = report.live !== null;
       if (width === widths[0] && entry.drag) at.drag = await drag(frame, report, entry.drag);
     }

@@ -229,6 +229,59 @@ TEST_CASE(
   CHECK(contains(folder.read("page.html"), "p_all"));
 }
 
+TEST_CASE("report: a page of many coordinates and outputs stays below 1 MB with fewer rows, and says so") {
+  const Folder folder;
+  std::string text = "format = 1\n[parameters]\nm = \"1 kg\"\n", outputs;
+  for (int i = 1; i <= 22; ++i) {
+    const std::string n = std::to_string(i), name = "P" + n;
+    text += "[[particle]]\nname = \"" + name + "\"\nmass = \"m\"\nposition = { cartesian = [\"x" + n + "\", \"y" + n +
+            "\", \"z" + n + "\"] }\n";
+    for (const char* axis : {"x", "y", "z"}) outputs += (outputs.empty() ? "\"" : ", \"") + (axis + n) + "_ddot\"";
+    for (const char* of : {".velocity", ".position"}) {
+      for (const char* axis : {"1", "2", "3"}) outputs += ", \"" + name + of + axis + "\"";
+    }
+  }
+  folder.write("rain.toml",
+               text +
+                   "[[force]]\ngravity = \"-9.81[m/s^2]*E3\"\n[[constraint]]\nname = \"floor\"\nholonomic = "
+                   "\"z1\"\nholds = \"unilateral\"\nrestitution = 0.5\n[scene.default]\nt = [0, 1]\noutputs = [" +
+                   outputs + "]\ninitial = { z1 = 1, x1_dot = 0.3 }\n");
+  expect(0, folder, {"report", "rain.toml", "-o", "page.html"});
+  const std::string page = folder.read("page.html");
+  CHECK(page.size() < 1000000);
+  const Json moving = motion(page);
+  CHECK(moving["t"].size() < 100);
+  CHECK(moving["t"].back() == 1.0);
+  CHECK(moving["y"].size() == moving["t"].size());
+  CHECK(contains(page, "Coarser than of a small system, so that the page stays below 1 MB: " +
+                           std::to_string(moving["t"].size()) + " rows of the run."));
+  expect(0, folder, {"report", "S5_double_pendulum", "-o", "page.html", "--t-end", "1"});
+  CHECK_FALSE(contains(folder.read("page.html"), "Coarser"));
+}
+
+TEST_CASE("report: what is not drawn is told on the page: forces without a vector, arrows and rods among too many") {
+  const Folder folder;
+  std::string text = "format = 1\n[parameters]\nm = \"1 kg\"\n[coordinates]\nX = \"m\"\n";
+  for (int i = 1; i <= 62; ++i) {
+    const std::string n = std::to_string(i);
+    text += "[[particle]]\nname = \"P" + n + "\"\nmass = \"m\"\nposition = \"X*E1 + " + n + "[m]*E2\"\n";
+  }
+  folder.write("row.toml",
+               text +
+                   "[[force]]\ngravity = \"-9.81[m/s^2]*E1\"\n[[force]]\nname = \"push\"\ngeneralized = { X = \"4 "
+                   "N\" }\n[scene.default]\nt = [0, 1]\ninitial = { X_dot = 1 }\n");
+  expect(0, folder, {"report", "row.toml", "-o", "page.html"});
+  const std::string page = folder.read("page.html");
+  const Json parts = motion(page)["parts"];
+  CHECK(parts["arrows"].size() == 60);
+  CHECK(parts["beyond"].get<int>() >= 2);
+  CHECK(parts["without_vector"] == Json::array({"push"}));
+  CHECK(parts["untried"] == true);
+  for (const char* words :
+       {" arrows are drawn, ", "no vector is known", "Rods are not looked for among so many places."})
+    CHECK(contains(page, words));
+}
+
 TEST_CASE("report: what a model writes stays text") {
   const Folder folder;
   folder.write("hostile.toml",

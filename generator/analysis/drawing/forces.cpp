@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "analysis/drawing/components.hpp"
 #include "mechanics/particle_force.hpp"
 #include "mechanics/vanishes.hpp"
 
@@ -38,16 +39,33 @@ class Collection {
     for (std::size_t p = 0; p < m_.masses.size(); ++p) on_particle(p);
     for (std::uint32_t i = 0; i < model_.joints.size(); ++i) joint(i);
     for (const model::Constraint& c : model_.constraints) body_contact(c);
+    for (std::uint32_t k = 0; k < m_.constraints.size(); ++k) on_bodies(k);
     for (std::uint32_t j = 0; j < m_.contacts.size(); ++j) rubbing(j);
   }
 
   std::vector<std::string> names;
   std::vector<DrawnForce> list;
+  std::vector<std::string> unknown;
+  std::size_t beyond = 0;
 
  private:
-  void put(const std::string& name, const char* kind, std::size_t at, const Vec3& value) {
-    if (list.size() >= most_forces || symbolic::is_zero(dag_, value)) return;
-    list.push_back({name, kind, at, vector(value)});
+  void put(const std::string& name, const char* kind, std::size_t at, const Vec3& value, bool turns = false) {
+    if (symbolic::is_zero(dag_, value)) return;
+    if (list.size() >= most_forces) {
+      ++beyond;
+      return;
+    }
+    list.push_back({name, kind, at, vector(value), turns});
+  }
+  void put_moment(const std::string& name, const char* kind, const BodyMoment& moment) {
+    put(name, kind, place(model_.bodies[moment.body].place), moment.value, true);
+  }
+  BodyMoments& moments() {
+    if (!moments_) moments_.emplace(m_);
+    return *moments_;
+  }
+  void leave_out(const std::string& name) {
+    if (std::find(unknown.begin(), unknown.end(), name) == unknown.end()) unknown.push_back(name);
   }
   std::size_t vector(const Vec3& value) {
     const std::size_t first = drawing_.outputs().size() + names.size();
@@ -69,11 +87,11 @@ class Collection {
     });
     return found == system_.outputs.end() ? nullptr : &*found;
   }
-  /// Three outputs along these axes; what is not there is 0.
-  Vec3 along(OutputKind kind, std::uint32_t index, const std::array<Vec3, 3>& axes) {
+  /// Three outputs along these axes, from part `first` on; what is not there is 0.
+  Vec3 along(OutputKind kind, std::uint32_t index, const std::array<Vec3, 3>& axes, std::uint32_t first = 0) {
     Vec3 sum = symbolic::zero_vector(dag_);
     for (std::uint32_t k = 0; k < 3; ++k) {
-      if (const system::Output* o = output(kind, index, k))
+      if (const system::Output* o = output(kind, index, first + k))
         sum = symbolic::add(dag_, sum, symbolic::scale(dag_, o->value, axes[k]));
     }
     return sum;
@@ -89,6 +107,7 @@ class Collection {
 
   /// On the mass that is there, else at the point.
   void act(const std::string& name, const Vec3& value, const Vec3& at) {
+    acts_.push_back({value, at});
     const auto mass =
         std::find_if(m_.masses.begin(), m_.masses.end(), [&](const PointMass& p) { return p.position == at; });
     if (mass == m_.masses.end()) {
@@ -107,6 +126,8 @@ class Collection {
       all_are_vectors_ = false;
       return;
     }
+    acts_.clear();
+    turns_.clear();
     bool is_vector = true;
     for (const model::Effect& effect : force.effects) {
       if (effect.acts == Acts::acceleration) {
@@ -116,6 +137,8 @@ class Collection {
           act(named ? force.name : "weight", symbolic::scale(dag_, mass.mass, g), mass.position);
       } else if (effect.acts == Acts::potential) {
         is_vector = spring(force, effect) && is_vector;
+      } else if (effect.acts == Acts::moment) {
+        is_vector = moment(force, effect) && is_vector;
       } else if (effect.acts == Acts::work || effect.acts == Acts::component) {
         is_vector = false;
       }
@@ -123,7 +146,20 @@ class Collection {
     for (const mechanics::Load& load : m_.loads) {
       if (load.name == force.name) act(force.name, load.force, load.at);
     }
-    if (!is_vector) generalised(i);
+    if (!is_vector && !generalised(i)) {
+      all_are_vectors_ = false;
+      leave_out(force.name);
+    }
+  }
+
+  /// On a body; the ground bears what acts on it.
+  bool moment(const model::Force& force, const model::Effect& effect) {
+    if (effect.index == 0) return true;
+    const auto body = moments().body_of(effect.index);
+    if (!body) return false;
+    turns_.push_back({*body, mechanics::lower_vector(m_, effect.value)});
+    put_moment(force.name, applied, turns_.back());
+    return true;
   }
 
   /// Of a stiffness between two points.
@@ -144,20 +180,33 @@ class Collection {
     return true;
   }
 
-  /// What is known by its components along coordinates only: on particles that these move alone.
-  void generalised(std::size_t i) {
-    std::vector<Ref> Q = m_.force_components[i];
-    for (std::uint32_t c = 0; c < Q.size(); ++c)
-      Q[c] = dag_.sub(Q[c], symbolic::partial(dag_, {SymbolKind::coordinate, c, 0})(m_.potential_by_force[i]));
-    bool any = false;
-    for (std::size_t p = 0; p < m_.masses.size(); ++p) {
-      if (!is_particle(m_.masses[p])) continue;
-      const auto value = mechanics::force_on_particle(m_, p, Q);
-      if (!value || mechanics::vanishes(dag_, {(*value)[0], (*value)[1], (*value)[2]})) continue;
-      put(model_.forces[i].name, applied, place(m_.masses[p].place), *value);
-      any = true;
+  /// What is known by its components along coordinates only. Whether the arrows are all of it.
+  bool generalised(std::size_t i) {
+    const model::Force& force = model_.forces[i];
+    Components Q(m_, moments(), m_.force_components[i]);
+    Q.add_potential(m_.potential_by_force[i]);
+    for (const Act& act : acts_) Q.take(act.force, act.at);
+    for (const BodyMoment& turn : turns_) Q.take(turn);
+    for (const Ref angle : angles(force)) {
+      for (const BodyMoment& turn : Q.along_angle(angle)) put_moment(force.name, applied, turn);
     }
-    all_are_vectors_ = all_are_vectors_ && any;
+    for (const auto& [p, value] : Q.on_masses()) {
+      put(force.name, applied, place(m_.masses[p].place), value);
+      on_mass_[p] = symbolic::add(dag_, on_mass_[p], value);
+    }
+    for (const BodyMoment& turn : Q.on_attitudes()) put_moment(force.name, applied, turn);
+    return mechanics::vanishes(dag_, Q.rest());
+  }
+  /// Along which it acts: that of its own, or coordinates.
+  std::vector<Ref> angles(const model::Force& force) {
+    std::vector<Ref> result;
+    if (const model::NodeId own = force.value("angle"); own != model::no_node)
+      result.push_back(mechanics::lower_scalar(m_, own));
+    for (const model::Effect& effect : force.effects) {
+      if (effect.acts == model::Effect::Acts::component && model_.coordinates[effect.index].unit.text == "rad")
+        result.push_back(m_.q[effect.index]);
+    }
+    return result;
   }
 
   /// What all constraints exert; where coordinates move several masses Newton's law says it, m a - F.
@@ -172,9 +221,15 @@ class Collection {
     }
     put("N", constraint, place(mass.place), force);
   }
-  /// By its coordinates or by constraints: not one that three coordinates of its own move freely.
+  /// By its coordinates or by constraints: not one that coordinates of its own move freely in space, or in the plane of
+  /// its chart.
   bool is_held(const PointMass& mass) {
-    return !mechanics::force_on_particle(m_, static_cast<std::size_t>(&mass - m_.masses.data()),
+    const std::vector<symbolic::Symbol> symbols = dag_.symbols({mass.position[0], mass.position[1], mass.position[2]});
+    const auto count = std::count_if(symbols.begin(), symbols.end(),
+                                     [](const symbolic::Symbol& s) { return s.kind == SymbolKind::coordinate; });
+    const std::optional<model::Chart>& chart = model_.places[mass.place].chart;
+    return count < (chart && chart->planar ? 2 : 3) ||
+           !mechanics::force_on_particle(m_, static_cast<std::size_t>(&mass - m_.masses.data()),
                                          std::vector<Ref>(m_.q.size(), dag_.zero()));
   }
 
@@ -189,6 +244,7 @@ class Collection {
         axes[k] = mechanics::lower_vector(m_, model_.frames[joint.axes].stages.back().e[k]);
     }
     put(joint.name, constraint, at->at, along(OutputKind::joint_reaction, i, axes));
+    put(joint.name, constraint, at->at, along(OutputKind::joint_reaction, i, axes, 3), true);
   }
 
   const DrawnContact* contact_drawn(const std::string& name) const {
@@ -214,9 +270,59 @@ class Collection {
     }
     put(c.name, constraint, drawn->at, sum);
   }
+  /// What written constraints and couplings exert on bodies; particles have it in N.
+  void on_bodies(std::uint32_t k) {
+    const mechanics::Constraint& c = m_.constraints[k];
+    const model::Constraint& of = *std::find_if(model_.constraints.begin(), model_.constraints.end(),
+                                                [&](const model::Constraint& other) { return other.name == c.name; });
+    if (of.joint || of.contact || of.unit || m_.spins.empty() || !m_.holds(k)) return;
+    std::vector<std::uint32_t> concerned;
+    for (std::uint32_t i = 0; i < m_.q.size(); ++i) {
+      if (!dag_.is_zero(c.gradient[i]) && moves_bodies(i)) concerned.push_back(i);
+    }
+    if (concerned.empty()) return;
+    const system::Output* lambda = output(OutputKind::constraint_reaction, k, 0);
+    if (lambda == nullptr) return leave_out(c.label);
+    std::vector<Ref> along;
+    for (const Ref f : c.gradient) along.push_back(dag_.mul(lambda->value, f));
+    Components Q(m_, moments(), along);
+    if (of.coupled) coupling(c.label, *of.coupled, lambda->value, Q);
+    for (const auto& [p, value] : Q.on_masses()) {
+      if (!is_particle(m_.masses[p])) put(c.label, constraint, place(m_.masses[p].place), value);
+    }
+    for (const BodyMoment& turn : Q.on_attitudes()) put_moment(c.label, constraint, turn);
+    for (const std::uint32_t i : concerned) {
+      if (!mechanics::vanishes(dag_, {Q.rest()[i]})) return leave_out(c.label);
+    }
+  }
+  bool moves_bodies(std::uint32_t c) {
+    symbolic::Derivation by = symbolic::partial(dag_, {SymbolKind::coordinate, c, 0});
+    for (std::size_t b = 0; b < m_.spins.size(); ++b) {
+      const Vec3& r = *m_.place_position[model_.bodies[b].place];
+      if (moments().turns(b, c) || !symbolic::is_zero(dag_, {by(r[0]), by(r[1]), by(r[2])})) return true;
+    }
+    return false;
+  }
+  /// Its multiplier is the moment on the first body about its axis.
+  void coupling(const std::string& name, const model::Coupled& coupled, Ref lambda, Components& Q) {
+    const Vec3 a = symbolic::scale(dag_, lambda, mechanics::lower_vector(m_, coupled.axes[0])),
+               b = symbolic::scale(dag_, dag_.neg(dag_.mul(lambda, mechanics::lower_scalar(m_, coupled.ratio))),
+                                   mechanics::lower_vector(m_, coupled.axes[1])),
+               rest = symbolic::scale(dag_, dag_.integer(-1), symbolic::add(dag_, a, b));
+    const std::array<Vec3, 3> values{a, b, rest};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto body = coupled.frames[k] > 0 ? moments().body_of(coupled.frames[k]) : std::nullopt;
+      if (!body) continue;
+      put_moment(name, constraint, {*body, values[k]});
+      Q.take({*body, values[k]});
+    }
+  }
   void rubbing(std::uint32_t j) {
     const mechanics::Contact& contact = m_.contacts[j];
-    if (contact.directions.empty()) return;
+    if (contact.directions.empty()) {
+      if (contact.place == 0) leave_out(contact.name);  // a coordinate rubs
+      return;
+    }
     const Vec3 force = along(OutputKind::friction, j, fixed_axes());
     if (const DrawnContact* drawn = contact_drawn(contact.name))
       put(contact.name, friction, drawn->at, force);
@@ -230,7 +336,13 @@ class Collection {
   system::EquationSystem& system_;
   symbolic::Dag& dag_;
   symbolic::Substitution imposed_, written_;
-  std::vector<Vec3> on_mass_;     // applied
+  std::vector<Vec3> on_mass_;  // applied
+  struct Act {
+    Vec3 force, at;
+  };
+  std::vector<Act> acts_;  // of the force under way
+  std::vector<BodyMoment> turns_;
+  std::optional<BodyMoments> moments_;
   bool all_are_vectors_ = false;  // so that the rest of m a is of constraints
 };
 
@@ -241,6 +353,8 @@ void DrawnForces::add_outputs(system::EquationSystem& system) {
   collection.run();
   names_ = std::move(collection.names);
   list_ = std::move(collection.list);
+  beyond_ = collection.beyond;
+  unknown_ = std::move(collection.unknown);
 }
 
 }  // namespace eomgen::analysis

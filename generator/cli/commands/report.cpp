@@ -31,8 +31,9 @@ struct Options : SceneOptions {
 };
 
 constexpr double most_rows = 400, least_rows = 120, most_values = 20000;   // of a motion
+constexpr std::size_t fewest_rows = 40;                                    // that still are a motion
 constexpr std::size_t longest_formula = 60000, longest_formulas = 350000;  // bytes of MathML
-constexpr std::size_t largest_page = 980000, of_its_own = 90000;           // bytes; of scripts and style
+constexpr std::size_t largest_page = 980000, largest_motion = 900000;      // bytes; without formulas
 
 /// Between rows the page has cubics: many coordinates need no more numbers than few.
 double rows_of_a_page(const model::Model& model) {
@@ -72,14 +73,19 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
 }
 
 // A page that is opened anywhere stays small: what is longer than a reader follows is left to `derive`.
-void add_formula(Html& html, const std::string& mathml, std::size_t& room) {
-  if (mathml.size() > std::min(longest_formula, room)) {
+struct Room {
+  std::size_t taken;     // by what is not in `html`
+  std::size_t formulas;  // left for all formulas
+};
+void add_formula(Html& html, const std::string& mathml, Room& room) {
+  if (mathml.size() > std::min(longest_formula, room.formulas) ||
+      room.taken + html.text().size() + mathml.size() > largest_page) {
     html.paragraph(fmt::format("Left out: {} kB of formula, more than a page shows. `eomgen derive` writes it.",
                                (mathml.size() + 999) / 1000),
                    "quiet");
     return;
   }
-  room -= mathml.size();
+  room.formulas -= mathml.size();
   html.formula(mathml);
 }
 
@@ -88,7 +94,7 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
                    std::size_t taken) {
   const reading::ReadingForm form = analysis::form_to_show(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
-  std::size_t room = std::min(longest_formulas, taken < largest_page ? largest_page - taken : 0);
+  Room room{taken, longest_formulas};
   const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},
                                                                   {"energies", "Energies"},
                                                                   {"equations", "Equations of motion"},
@@ -148,9 +154,16 @@ void add_certificate(Html& html, const verify::Certificate& certificate) {
   html.markup("</details>");
 }
 
-void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run, const std::string& plots) {
+void add_run(Html& html, const pipeline::Simulation& simulation, const Json& run, const RecordedMotion& recorded,
+             const std::vector<Panel>& curves, bool coarser) {
   html.heading(2, "The run: scene " + simulation.scene.name);
-  html.markup("<section id=\"plots\">\n" + plots + "</section>");
+  html.markup("<section id=\"plots\">\n" + recorded.plots(curves) + "</section>");
+  if (coarser) {
+    html.paragraph(fmt::format("Coarser than of a small system, so that the page stays below 1 MB: {} rows of the run. "
+                               "`eomgen run` writes as many as are asked for.",
+                               recorded.size()),
+                   "quiet");
+  }
   html.table({"", ""},
              {{"outcome", text(run["outcome"]) + (text(run["detail"]).empty() ? "" : ": " + text(run["detail"]))},
               {"solver", fmt::format("{} ({})", text(run["solver"]), text(run["solver_reason"]))},
@@ -229,17 +242,26 @@ int execute(const Options& options, const Common& common) {
   for (const auto& [name, value] : request.overrides.values) set.insert(name);
   const analysis::LiveModel live = analysis::live_model(simulation, *drawing, outputs, set);
   const analysis::SurfaceCode surfaces = analysis::surface_code(simulation, *drawing);
-  const Json moving = recorded.json(simulation, *drawing, forces->list(), live, outputs, curves);
-  const std::string motion = moving.is_null() ? "" : moving.dump();
-  Html html, rest;
-  add_head(html, model, !moving.is_null());
-  add_run(rest, simulation, run, recorded.plots(curves));
+  const std::string title = model.title.empty() ? model.id : model.title;
+  Html html, plots, rest;
   add_model(rest, model, to_json(model, analysis::examine(simulation.derived->shared)));
   add_certificate(rest, simulation.certificate);
-  add_equations(html, simulation.derived->mechanics, simulation.derived->conserved,
-                of_its_own + rest.text().size() + motion.size() + live.script.size() + surfaces.script.size());
-  write_text(file, page({model.title.empty() ? model.id : model.title, html.text() + rest.text(), motion, live.script,
-                         live.name, surfaces.script, surfaces.name}));
+  std::string motion;
+  std::size_t taken = 0;
+  for (bool coarser = *request.rows < most_rows;; coarser = true) {
+    const Json moving = recorded.json(simulation, *drawing, *forces, live, outputs, curves);
+    motion = moving.is_null() ? "" : moving.dump();
+    plots = Html();
+    add_run(plots, simulation, run, recorded, curves, coarser);
+    taken = page({title, plots.text() + rest.text(), motion, live.script, live.name, surfaces.script, surfaces.name})
+                .size();
+    if (taken <= largest_motion || recorded.size() <= fewest_rows) break;
+    recorded.thin();
+  }
+  add_head(html, model, !motion.empty());
+  add_equations(html, simulation.derived->mechanics, simulation.derived->conserved, taken);
+  write_text(file, page({title, html.text() + plots.text() + rest.text(), motion, live.script, live.name,
+                         surfaces.script, surfaces.name}));
   const eom::Outcome outcome = simulation.result.outcome;
   if (common.json) {
     print_document({{"format", 1},

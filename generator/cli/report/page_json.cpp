@@ -83,10 +83,12 @@ Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const
   return result;
 }
 
-Json to_json(const std::vector<analysis::DrawnForce>& forces) {
-  return list_of(forces, [](const analysis::DrawnForce& f) -> Json {
-    return {{"name", f.name}, {"kind", f.kind}, {"at", f.at}, {"value", f.value}};
+void add_forces(Json& parts, const analysis::DrawnForces& forces) {
+  parts["arrows"] = list_of(forces.list(), [](const analysis::DrawnForce& f) -> Json {
+    return {{"name", f.name}, {"kind", f.kind}, {"at", f.at}, {"value", f.value}, {"turns", f.turns}};
   });
+  parts["beyond"] = forces.beyond();
+  parts["without_vector"] = forces.without_vector();
 }
 
 Json to_json(const analysis::LiveStart& start) {

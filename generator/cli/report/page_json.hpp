@@ -11,7 +11,8 @@ namespace eomgen::cli {
 
 /// The bounds of coordinates are those of the scene.
 Json to_json(const analysis::DrawnParts& parts, const model::Model& model, const run::Scene& scene);
-Json to_json(const std::vector<analysis::DrawnForce>& forces);
+/// Arrows of forces, and what has none, among the parts of a page.
+void add_forces(Json& parts, const analysis::DrawnForces& forces);
 Json to_json(const analysis::LiveStart& start);
 
 }  // namespace eomgen::cli

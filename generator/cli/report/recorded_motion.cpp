@@ -28,6 +28,18 @@ void RecordedMotion::row(double t, std::span<const double> values) {
   rows_.emplace_back(values.begin(), values.end());
 }
 
+void RecordedMotion::thin() {
+  std::size_t kept = 0;
+  for (std::size_t k = 0; k < t_.size(); ++k) {
+    if (k % 2 == 1 && k + 1 < t_.size()) continue;
+    t_[kept] = t_[k];
+    std::swap(rows_[kept], rows_[k]);
+    ++kept;
+  }
+  t_.resize(kept);
+  rows_.resize(kept);
+}
+
 std::vector<double> RecordedMotion::column(const std::string& name) const {
   const auto found = std::find(names_.begin(), names_.end(), name);
   std::vector<double> result;
@@ -63,7 +75,7 @@ Json RecordedMotion::rows(const std::vector<std::string>& names, int digits) con
 }
 
 Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
-                          const std::vector<analysis::DrawnForce>& forces, const analysis::LiveModel& live,
+                          const analysis::DrawnForces& forces, const analysis::LiveModel& live,
                           const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const {
   if (t_.size() < 2) return nullptr;
   const model::Model& model = simulation.derived->model;
@@ -89,7 +101,7 @@ Json RecordedMotion::json(const pipeline::Simulation& simulation, const analysis
   const auto down = analysis::falling(simulation.derived->mechanics, simulation.scene.parameters);
   const bool is_live = !live.script.empty();
   Json parts = to_json(drawing.parts(), model, simulation.scene);
-  parts["arrows"] = to_json(forces);
+  add_forces(parts, forces);
   return {{"t", times},
           {"x", is_live ? rows(states, digits_of_states) : Json(nullptr)},
           {"y", is_live ? Json(nullptr) : rows(outputs, digits_of_screens)},

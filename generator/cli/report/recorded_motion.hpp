@@ -18,13 +18,17 @@ class RecordedMotion {
   void begin(const std::vector<std::string>& names) { names_ = names; }
   void row(double t, std::span<const double> values);
 
+  std::size_t size() const { return t_.size(); }
+  /// Leaves out every second row, but the last.
+  void thin();
+
   /// The panels as SVG, which a page without scripts and paper show.
   std::string plots(const std::vector<Panel>& panels) const;
 
   /// What the page's script works on; null where nothing can be drawn or run. With a live model the states alone, from
   /// which the script computes the rest; else all `outputs`.
   Json json(const pipeline::Simulation& simulation, const analysis::Drawing& drawing,
-            const std::vector<analysis::DrawnForce>& forces, const analysis::LiveModel& live,
+            const analysis::DrawnForces& forces, const analysis::LiveModel& live,
             const std::vector<std::string>& outputs, const std::vector<Panel>& panels) const;
 
  private:
