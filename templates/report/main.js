@@ -98,7 +98,7 @@ function legend() {
   for (const kind in kinds) if (arrows.some((arrow) => arrow.kind === kind)) add("\u2192 " + kinds[kind], forceColours[kind]);
   if (arrows.some((arrow) => arrow.turns)) add(arrows.some((arrow) => !arrow.turns) ? "\u21a0 moments, in a scale of their own" : "\u21a0 moments");
   if (beyond > 0) add(arrows.length + " arrows are drawn, " + beyond + " more are not");
-  if (without_vector.length > 0) add("not drawn, since no vector is known of all that they do: " + without_vector.join(", "));
+  if (without_vector.length > 0) add("not drawn, since no vector is known of all that they do: " + without_vector.slice(0, 6).join(", ") + (without_vector.length > 6 ? " and " + (without_vector.length - 6) + " more" : ""));
   tools.addEventListener("change", () => { place.hidden = !scene.shown.forces; });
   return place;
 }
