@@ -221,8 +221,7 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
       out.push_back({"constraints", c.label, "", std::move(role), std::move(formula)});
     };
     const Formula zero = reading::number(0);
-    const Formula psi =
-        form.constraints.size() == 1 ? mark(letters.psi) : mark(letters.psi, {reading::number(c.constraint + 1)});
+    const Formula psi = constraint_letter(letters, m, c.constraint);
     const auto as_read = [&] {
       if (!(c.holonomic ? c.no_psi : c.no_rate).empty()) return mark("...");
       return arrange(c.holonomic ? c.psi : c.rate, c.holonomic ? Layout::grouped : Layout::terms);
@@ -251,7 +250,8 @@ void add_constraints(const Mechanics& m, const ReadingForm& form, std::vector<St
       add(found == mechanics::Integrable::yes  ? "binds velocities, integrable"
           : found == mechanics::Integrable::no ? "binds velocities, not integrable"
                                                : "binds velocities, integrability unknown",
-          reading::relation({written, zero}));
+          // Equations by parts name it.
+          form.by_parts ? reading::relation({dotted(psi), written, zero}) : reading::relation({written, zero}));
       for (const mechanics::Integral& integral : m.integrals) {
         if (integral.label == c.label)
           add("its integral", reading::relation({reading::wrap(Form::rate, {read_or_dots(m, integral.psi)}), zero}));

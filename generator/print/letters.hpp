@@ -6,8 +6,9 @@
 #include <algorithm>
 #include <string>
 
-#include "model/model.hpp"
+#include "mechanics/mechanics.hpp"
 #include "print/notation.hpp"
+#include "reading/formula.hpp"
 
 namespace eomgen::print {
 
@@ -34,5 +35,14 @@ struct Letters {
     for (std::string* letter : {&T, &U, &L}) *letter += "~";
   }
 };
+
+/// psi of a constraint of Mechanics, with its number where there are several that hold.
+inline reading::Formula constraint_letter(const Letters& letters, const mechanics::Mechanics& m,
+                                          std::uint32_t constraint) {
+  std::size_t held = 0;
+  for (std::uint32_t k = 0; k < m.constraints.size(); ++k) held += m.holds(k) ? 1 : 0;
+  return held == 1 ? reading::mark(letters.psi)
+                   : reading::mark(letters.psi, {reading::number(static_cast<long>(constraint) + 1)});
+}
 
 }  // namespace eomgen::print

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // M dq'' + C dq' + K dq = B du, entry by entry; what is zero is left out.
+#include <algorithm>
+
 #include "print/formulas.hpp"
 #include "print/render.hpp"
 #include "reading/linear_form.hpp"
@@ -58,8 +60,13 @@ std::vector<Item> render_linear(const mechanics::Mechanics& m, const LinearForm&
   Entries entries(form, out);
   entries.show(form.along, "along a motion");
   for (std::size_t i = 0; i < form.rest.size(); ++i) {
-    out.push_back({"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
-                   reading::relation({arrange(form.rest[i]), reading::number(0)})});
+    if (form.rest[i].is_zero()) continue;  // at rest anywhere
+    const auto& terms = form.rest[i].terms();
+    const bool all_are_subtracted =
+        std::all_of(terms.begin(), terms.end(), [](const auto& term) { return cln::minusp(term.second); });
+    out.push_back(
+        {"linear", "", m.model->coordinates[form.coordinates[i]].name, "at rest where",
+         reading::relation({arrange(all_are_subtracted ? -form.rest[i] : form.rest[i]), reading::number(0)})});
   }
   entries.show(form.at_rest, "at rest");
   return render(m, out);

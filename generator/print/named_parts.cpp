@@ -230,7 +230,7 @@ class NamedParts {
     if (!m_.holds(k) || (two_ && std::any_of(m_.fixed.begin(), m_.fixed.end(), built_in))) return;
     const bool acts = c.holonomic() ? depends(c.psi, i, 0) : depends(m_.velocity_form(c), i, 1);
     if (!acts) return;
-    const Formula psi = mark(letters_.psi, {index(k + 1)});
+    const Formula psi = constraint_letter(letters_, m_, k);
     terms.push_back(
         reading::product({reading::symbol({SymbolKind::multiplier, k, 0}),
                           c.holonomic() ? partial(psi, coordinate(i, 0)) : partial(dotted(psi), coordinate(i, 1))}));

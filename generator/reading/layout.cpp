@@ -84,7 +84,7 @@ bool subtracts(const Formula& f) {
          std::any_of(f.args.begin(), f.args.end(), [](const Formula& t) { return t.form == Form::negative; });
 }
 
-// -f without a minus in front, where a bracket can take it: -(a - b) c is (b - a) c.
+// -f without a minus in front, where a bracket can take it: -(a - b) c is (b - a) c, also over a denominator.
 Formula opposite(Formula f) {
   if (f.form == Form::negative) return negative(std::move(f));
   if (subtracts(f)) return opposite_sum(std::move(f));
@@ -92,6 +92,13 @@ Formula opposite(Formula f) {
     const auto found = std::find_if(f.args.begin(), f.args.end(), subtracts);
     if (found != f.args.end()) {
       *found = opposite_sum(std::move(*found));
+      return f;
+    }
+  }
+  if (f.form == Form::fraction) {
+    Formula above = opposite(f.args[0]);
+    if (above.form != Form::negative) {
+      f.args[0] = std::move(above);
       return f;
     }
   }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "print/render.hpp"
+#include "reading/linear_form.hpp"
 #include "support/folders.hpp"
 
 using namespace eomgen;
@@ -214,6 +215,20 @@ TEST_CASE("no minus leads where a bracket or another order avoids it") {
   CHECK(expression("x_dot*(b*sin(y)^2 - a*sin(y)^2 + c*cos(y))", print::Format::text).front() != '-');
   CHECK(expression("-(a - b)*x", print::Format::text) == "(b - a) x");
   CHECK(expression("y_dot - a*x_dot*cos(y)", print::Format::text).front() != '-');
+  CHECK(expression("-(a - b)*x/(a + b)", print::Format::text) == "(b - a) x/(a + b)");
+}
+
+TEST_CASE("linear: what holds at rest anywhere is no condition, and none begins with a minus that can be left out") {
+  const mechanics::Mechanics m = mechanics::build_mechanics(
+      model::read_model_text("format = 1\n[parameters]\nm = \"1 kg\"\nk = \"2 N/m\"\n[[particle]]\nname = \"P\"\nmass "
+                             "= \"m\"\nposition = { cartesian "
+                             "= [\"x\", \"y\"] }\n[[force]]\non = \"P\"\nforce = \"k*x*E1\"\n",
+                             "text"));
+  std::vector<std::string> rest;
+  for (const Item& item : print::render_linear(m, reading::linear_form(m))) {
+    if (item.role == "at rest where") rest.push_back(item.text);
+  }
+  CHECK(rest == std::vector<std::string>{"k x = 0"});
 }
 
 TEST_CASE("decimals of the author stay decimals, and what textbooks write as fractions stays a fraction") {

@@ -9,10 +9,12 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <regex>
 #include <set>
 
 #include "derive/routes/lagrange.hpp"
 #include "print/formulas.hpp"
+#include "print/render.hpp"
 #include "support/folders.hpp"
 #include "symbolic/evaluate.hpp"
 
@@ -247,6 +249,33 @@ TEST_CASE("named parts: forms that are too long have them, also for the constrai
     CHECK(count("angular velocity") == 4);
     CHECK(count("rate of the angular momentum") == 1);
   }
+}
+
+TEST_CASE("named parts: the letters of constraints in equations are those under which the constraints are given") {
+  const std::regex letter(R"(d((?:psi|Psi)(?:_[0-9]+)?(?:_dot)?)/d)");
+  std::set<std::string> seen;
+  for (const char* name :
+       {"R1_free_body_euler_parameters", "R3_sphere_on_incline", "R4_turntable", "R5_chaplygin_sphere"}) {
+    const std::string model = name;
+    CAPTURE(model);
+    const mechanics::Mechanics m =
+        mechanics::build_mechanics(model::read_model(test::source_folder() + "/models/" + model + ".toml"));
+    const reading::ReadingForm form = reading::derive_reading(m, system::Approach::two);
+    REQUIRE(form.by_parts);
+    const std::vector<print::Item> constraints = print::render(m, form, {"constraints"});
+    for (const print::Item& item : print::render(m, form, {"equations"})) {
+      for (std::sregex_iterator match(item.text.begin(), item.text.end(), letter), end; match != end; ++match) {
+        const std::string given = (*match)[1].str() + " = ";
+        CAPTURE(given);
+        seen.insert(given);
+        CHECK(std::any_of(constraints.begin(), constraints.end(),
+                          [&](const print::Item& c) { return c.text.starts_with(given); }));
+      }
+    }
+  }
+  CHECK(seen.contains("psi = "));        // of one constraint
+  CHECK(seen.contains("psi_1_dot = "));  // of velocities
+  CHECK(seen.contains("psi_4 = "));
 }
 
 // A damper, a force, a force and a moment at once, a spring among them, all from a body in a Rodrigues vector.
