@@ -27,6 +27,9 @@ Certificate Model::verify(const VerifyOptions& options, const Task& task) const 
 }
 
 Sources Model::emit(const EmitOptions& options, const Task& task) const {
+  if (options.real != "double" && options.real != "float")
+    throw Error("library", {}, "code computes in `double` or in `float`",
+                "leave EmitOptions::real as it is, or set one");
   return called(task, [&](Call&) {
     pipeline::EmissionRequest request{options.target,
                                       choice_of(options.approach),
@@ -34,7 +37,8 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
                                       options.with,
                                       options.outputs,
                                       options.fix,
-                                      options.seed};
+                                      options.seed,
+                                      options.real == "float"};
     const pipeline::Emission emission = pipeline::emit_model(read_, request);
     Sources result;
     for (const emit::EmittedFile& file : emission.files) result.files.push_back({file.name, file.text});
@@ -43,6 +47,7 @@ Sources Model::emit(const EmitOptions& options, const Task& task) const {
     result.form = system::name(emission.program.form);
     result.flops = emission.program.functions.front().operations.flops();
     result.certificate = emission.certificate.summary();
+    result.single_error = emission.single_error.value_or(0);
     return result;
   });
 }

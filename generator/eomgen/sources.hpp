@@ -19,6 +19,7 @@ struct EmitOptions {
   std::vector<std::string> outputs = {};  // names for the function `outputs`
   std::vector<std::string> fix = {};      // parameters that become numbers
   std::uint64_t seed = 1;
+  std::string real = "double";  // or "float": single precision (docs/abi.md, "Single precision")
 };
 
 struct SourceFile {
@@ -31,6 +32,8 @@ struct Sources {
   std::string route, approach, form;
   std::size_t flops = 0;    // of rhs
   std::string certificate;  // the summary; what fails is not emitted
+  double single_error =
+      0;  // in single precision: how far rhs is off at the states of the self test, by its largest entry
 };
 
 /// Names that EmitOptions::target takes.

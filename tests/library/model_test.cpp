@@ -77,7 +77,13 @@ TEST_CASE("library: verified, emitted and run, with rows and with a function for
   CHECK(std::any_of(sources.files.begin(), sources.files.end(), [](const SourceFile& f) {
     return f.name == "pendulum.c" && f.text.find("pendulum_jac(") != std::string::npos;
   }));
+  CHECK(sources.single_error == 0);
   CHECK_THROWS_AS(model.emit({.target = "fortran77"}), Error);
+  const Sources single = model.emit({.target = "c", .real = "float"});
+  CHECK(single.files.front().text.find("double ") == std::string::npos);
+  CHECK(single.single_error > 0);
+  CHECK(single.single_error < 1e-5);
+  CHECK_THROWS_AS(model.emit({.real = "half"}), Error);
 
   const Motion motion = model.run({.every = 0.5});
   CHECK(motion.outcome == "done");
