@@ -138,6 +138,27 @@ TEST_CASE("a stage includes the libraries that its CMakeLists.txt links, and no 
   }
 }
 
+TEST_CASE("a test names doctest, itself or by a header beside it: builds without precompiled headers need it") {
+  const auto names_doctest = [](const fs::path& file) {
+    const std::vector<Include> includes = parse_includes(read_text(file));
+    return std::any_of(includes.begin(), includes.end(),
+                       [](const Include& i) { return i.path == "doctest/doctest.h"; });
+  };
+  std::size_t seen = 0;
+  for (const fs::path& file : files_below(root / "tests", {".cpp"})) {
+    if (!file.filename().string().ends_with("_test.cpp")) continue;
+    ++seen;
+    bool named = names_doctest(file);
+    for (const Include& include : parse_includes(read_text(file))) {
+      const fs::path header = root / "tests" / include.path;
+      named = named || (include.quoted && fs::exists(header) && names_doctest(header));
+    }
+    INFO(file.string());
+    CHECK(named);
+  }
+  CHECK(seen > 200);
+}
+
 TEST_CASE("no stage needs itself, over whatever way") {
   const Generator generator = read_generator();
   for (const auto& entry : generator.stages) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Equilibria and steady motions against closed forms, with their stability.
+#include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include "analysis/steady_search.hpp"

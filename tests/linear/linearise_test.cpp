@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Linearisations against closed forms, and against difference quotients of the flow on the constraints.
+#include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include "linearised.hpp"

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Forces at rest and at the edges of their formulas: dampers whose points meet, drag, branches that are not taken,
 // roots that are multiple, balances that hold but for roundings; chains of damped bodies.
+#include <doctest/doctest.h>
 #include <fmt/format.h>
 
 #include "analysis/steady_search.hpp"

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/names.hpp"
 
+#include <doctest/doctest.h>
+
 #include "model/content_hash.hpp"
 #include "model_support.hpp"
 

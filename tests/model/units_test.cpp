@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "model/units.hpp"
 
+#include <doctest/doctest.h>
+
 #include "model_support.hpp"
 
 using namespace eomgen::model;

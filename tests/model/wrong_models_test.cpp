@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "wrong_models.hpp"
 
+#include <doctest/doctest.h>
+
 #include <chrono>
 
 #include "model_support.hpp"

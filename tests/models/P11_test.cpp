@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The wall presses with m f'' = m b; the pull along it is F0 t.
+#include <doctest/doctest.h>
+
 #include "models/rough.hpp"
 #include "support/folders.hpp"
 

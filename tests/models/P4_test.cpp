@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's law in spherical coordinates, phi = pi/2 - alpha(t) put in by hand.
+#include <doctest/doctest.h>
+
 #include "models/rough.hpp"
 
 using namespace eomgen;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The rough sphere of Ex 2.5, (2.157)-(2.160) written out by hand; inside (psi = R0 - R) and outside (psi = R - R0, can
 // be left).
+#include <doctest/doctest.h>
+
 #include "models/reading_of.hpp"
 #include "models/rough.hpp"
 

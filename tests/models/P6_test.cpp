@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Newton's law in polar coordinates with the friction of (2.44).
+#include <doctest/doctest.h>
+
 #include "models/rough.hpp"
 
 using namespace eomgen;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // R16: bodies on one another; a rod and a sphere that can leave the plane.
+#include <doctest/doctest.h>
+
 #include <array>
 
 #include "models/rough.hpp"

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <doctest/doctest.h>
+
 #include "models/rough.hpp"
 
 using namespace eomgen;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From the two balances of the dumbbell: theta_ddot = (-N cos + F sin)/(m L), x_c_ddot = F/(2 m), and y_A_ddot = 0
 // gives N.
+#include <doctest/doctest.h>
+
 #include "models/rough.hpp"
 
 using namespace eomgen;

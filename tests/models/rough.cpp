@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "models/rough.hpp"
 
+#include <doctest/doctest.h>
+
 #include <utility>
 
 #include "numeric/numbers.hpp"

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // R3, R4, R6 with friction: bodies that slide until they roll, and roll until friction gives way.
+#include <doctest/doctest.h>
+
 #include <array>
 
 #include "models/rough.hpp"

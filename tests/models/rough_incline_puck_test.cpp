@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // With psi the angle between velocity and downhill, v sin(psi)/tan(psi/2)^k and v (k + cos psi) - g sin(beta) (1 - k^2)
 // t are constant, k = mu_d/tan(beta): time and place of the stop follow.
+#include <doctest/doctest.h>
+
 #include "models/rough.hpp"
 
 using namespace eomgen;
