@@ -7,7 +7,7 @@
 
 #include "eom/ensemble/integrate.hpp"
 #include "eom/ode.hpp"
-#include "lib/problems.hpp"
+#include "lib/series_problems.hpp"
 
 namespace {
 
@@ -132,6 +132,67 @@ struct WithJacobians {
   One alone(std::size_t, const double* p) const { return {p, m}; }
 };
 
+/// Kepler's problem with its series; a place without a value, one that no step crosses, and a jump of the slopes at
+/// t = 1.5 that no series sees.
+struct WithSeries {
+  struct One {
+    const double* p;
+    int operator()(double t, const double* x, double* dx) const {
+      problems::KeplerSeries()(t, x, dx);
+      return finish(t, x, dx);
+    }
+    int taylor(double t, const double* x, int order, double* c) const {
+      problems::KeplerSeries().taylor(t, x, order, c);
+      return order > 0 ? finish(t, x, c + states) : 0;
+    }
+    int finish(double t, const double* x, double* dx) const {
+      if (p[1] == 2 && t > 1.5) return 1;
+      if (p[1] == 3 && x[0] < 0.5) return 3;
+      if (p[1] == 4 && t > 1.5) dx[3] += 0.1;
+      return 0;
+    }
+    int events(double, const double* x, double* values) const { return event_functions(x, p, values); }
+    int taylor_order() const { return 22; }  // less than some ask for
+    std::size_t taylor_states() const { return states; }
+  };
+  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
+                 int* codes) const {
+    return many(count, stride, x, p, codes, [&](const One& one, std::size_t s, const double* at) {
+      double slope[states];
+      const int code = one(t[s], at, slope);
+      for (std::size_t i = 0; i < states; ++i) dx[i * stride + s] = slope[i];
+      return code;
+    });
+  }
+  int taylor(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+             const int* orders, double* c, int* codes) const {
+    return many(count, stride, x, p, codes, [&](const One& one, std::size_t s, const double* at) {
+      double series[states * (problems::hand_order + 1)];
+      const int code = one.taylor(t[s], at, orders[s], series);
+      const std::size_t terms = static_cast<std::size_t>(orders[s]) + 1;
+      for (std::size_t i = 0; i < states * terms; ++i) c[i * stride + s] = series[i];
+      return code;
+    });
+  }
+  int taylor_order() const { return One{}.taylor_order(); }
+  One alone(std::size_t, const double* p) const { return {p}; }
+
+ private:
+  template <class Function>
+  static int many(std::size_t count, std::size_t stride, const double* x, const double* p, int* codes,
+                  const Function& function) {
+    int first = 0;
+    for (std::size_t s = 0; s < count; ++s) {
+      double at[states], own[parameters];
+      for (std::size_t i = 0; i < states; ++i) at[i] = x[i * stride + s];
+      for (std::size_t i = 0; i < parameters; ++i) own[i] = p[i * stride + s];
+      codes[s] = function(One{own}, s, at);
+      if (first == 0) first = codes[s];
+    }
+    return first;
+  }
+};
+
 End alone(const char* method, std::size_t member, const eom::EnsembleOptions& options) {
   problems::State x(states), p(parameters);
   eom::EnsembleStart start{0, 0, x, p};
@@ -190,6 +251,41 @@ TEST_CASE("ensemble: fixed steps, of every method") {
   for (const char* method : {"rk4", "dopri5", "tsit5", "dop853"}) same_as_alone(method, options, 60);
 }
 
+namespace {
+
+/// Ends and statistics of members side by side against those that they have alone; how many steps were rejected.
+template <class Rhs>
+std::size_t rejected_as_alone(const char* method, const Rhs& rhs, const eom::EnsembleOptions& options) {
+  std::vector<End> ends(200);
+  eom::integrate_ensemble(method, rhs, ends.size(), states, parameters, options, start_of,
+                          [&](const eom::EnsembleEnd& end) {
+                            End& kept = ends[end.member];
+                            kept = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, kept.times + 1};
+                          });
+  std::size_t rejected = 0;
+  for (std::size_t i = 0; i < ends.size(); ++i) {
+    CAPTURE(i);
+    problems::State x(states), p(parameters);
+    eom::EnsembleStart start{0, 0, x, p};
+    start_of(i, start);
+    auto alone = rhs.alone(i, p.data());
+    const eom::Result one = eom::integrate(method, alone, start.t0, x, start.t1, eom::ensemble::options_of(options));
+    CHECK(ends[i].times == 1);
+    CHECK(ends[i].outcome == one.outcome);
+    CHECK(ends[i].t == one.t);
+    CHECK(ends[i].x == one.x);
+    CHECK(ends[i].statistics.steps == one.statistics.steps);
+    CHECK(ends[i].statistics.rejected == one.statistics.rejected);
+    CHECK(ends[i].statistics.rhs_evaluations == one.statistics.rhs_evaluations);
+    CHECK(ends[i].statistics.jacobians == one.statistics.jacobians);
+    CHECK(ends[i].statistics.factorisations == one.statistics.factorisations);
+    rejected += one.statistics.rejected;
+  }
+  return rejected;
+}
+
+}  // namespace
+
 TEST_CASE("ensemble: Rosenbrock steps of members side by side have the bits that they have alone") {
   struct Case {
     double rtol, fixed_step;
@@ -206,33 +302,30 @@ TEST_CASE("ensemble: Rosenbrock steps of members side by side have the bits that
     options.lanes = c.lanes;
     options.threads = c.threads;
     const WithJacobians rhs{states - c.quadratures};
-    std::vector<End> ends(200);
-    eom::integrate_ensemble("rodas", rhs, ends.size(), states, parameters, options, start_of,
-                            [&](const eom::EnsembleEnd& end) {
-                              End& kept = ends[end.member];
-                              kept = {end.outcome, end.t, {end.x.begin(), end.x.end()}, end.statistics, kept.times + 1};
-                            });
-    std::size_t rejected = 0;
-    for (std::size_t i = 0; i < ends.size(); ++i) {
-      CAPTURE(i);
-      problems::State x(states), p(parameters);
-      eom::EnsembleStart start{0, 0, x, p};
-      start_of(i, start);
-      auto alone = rhs.alone(i, p.data());
-      const eom::Result one = eom::integrate("rodas", alone, start.t0, x, start.t1, eom::ensemble::options_of(options));
-      CHECK(ends[i].times == 1);
-      CHECK(ends[i].outcome == one.outcome);
-      CHECK(ends[i].t == one.t);
-      CHECK(ends[i].x == one.x);
-      CHECK(ends[i].statistics.steps == one.statistics.steps);
-      CHECK(ends[i].statistics.rejected == one.statistics.rejected);
-      CHECK(ends[i].statistics.rhs_evaluations == one.statistics.rhs_evaluations);
-      CHECK(ends[i].statistics.jacobians == one.statistics.jacobians);
-      CHECK(ends[i].statistics.factorisations == one.statistics.factorisations);
-      rejected += one.statistics.rejected;
-    }
+    CHECK(eom::ensemble::has_lanes<WithJacobians>("rodas", options));
+    const std::size_t rejected = rejected_as_alone("rodas", rhs, options);
     CHECK((c.fixed_step > 0 || rejected > 100));
   }
+}
+
+TEST_CASE(
+    "ensemble: Taylor series of members side by side, each of its own order, have the bits that they have alone") {
+  for (const auto& [rtol, lanes] : {std::pair<double, std::size_t>{1e-12, 32}, {1e-4, 13}, {1e-8, 64}, {1e-15, 7}}) {
+    CAPTURE(rtol);
+    eom::EnsembleOptions options;
+    options.rtol = rtol;
+    options.atol = 1e-2 * rtol;
+    options.lanes = lanes;
+    options.threads = lanes == 13 ? 2 : 1;
+    options.max_steps = 3000;  // at the finest tolerance a jump takes all of them
+    if (lanes == 64) options.initial_step = 0.3, options.max_step = 0.4;
+    CHECK(eom::ensemble::has_lanes<WithSeries>("taylor", options));
+    CHECK(rejected_as_alone("taylor", WithSeries{}, options) > 100);
+  }
+  eom::EnsembleOptions options;
+  options.fixed_step = 0.05;
+  CHECK(!eom::ensemble::has_lanes<WithSeries>("taylor", options));
+  rejected_as_alone("taylor", WithSeries{}, options);
 }
 
 TEST_CASE("ensemble: the members of the test end in many ways") {
@@ -390,6 +483,9 @@ TEST_CASE("ensemble: events of every member are those that it has alone, to the 
   events_as_alone("rodas", WithJacobians{}, options);
   options.quadratures = 1;
   events_as_alone("rodas", WithJacobians{3}, options);
+  options.quadratures = 0;
+  options.rtol = 1e-9;
+  events_as_alone("taylor", WithSeries{}, options);
 }
 
 TEST_CASE("ensemble: methods that know no lanes integrate each member by its functions of one state") {

@@ -22,11 +22,11 @@ struct Unwatched {
 };
 
 /// Lanes: on LaneRows, with adaptive_method, end_known and order, steps() of a lane at its start, attempt(),
-/// interpolate(lane, t, x), and where it likes first_step(lane), begin_slopes(), end_slopes(), prepare_dense(), move(),
-/// accept(). Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done: (const EnsembleEnd&). Watch:
-/// Unwatched, or what has begin(slot, start, member) -> Outcome, step(slot, StepView) -> bool, false where the member
-/// ends there, and end(slot, EnsembleEnd&, t), which may change the end; a member keeps its slot, of which there are as
-/// many as lanes.
+/// interpolate(lane, t, x), and where it likes first_step(lane), begin_slopes(), end_slopes(), prepare_accepted(),
+/// move(), accept(). Next: (size_t& member) -> bool. Start: (size_t member, EnsembleStart&). Done: (const
+/// EnsembleEnd&). Watch: Unwatched, or what has begin(slot, start, member) -> Outcome, step(slot, StepView) -> bool,
+/// false where the member ends there, and end(slot, EnsembleEnd&, t), which may change the end; a member keeps its
+/// slot, of which there are as many as lanes.
 template <class Lanes, class Next, class Start, class Done, class Watch = Unwatched>
 class Block : Lanes {
   static constexpr bool watched = Watch::dense;
@@ -244,7 +244,7 @@ class Block : Lanes {
       else
         complete(l);
     }
-    if constexpr (watched) this->prepare_dense();
+    this->prepare_accepted();
     for (std::size_t l = 0; l < lane_.size(); ++l) {
       if (accepted_[l] != 0) goes_on_[l] = accept(l, adaptive() ? error_[l] : 0);
     }

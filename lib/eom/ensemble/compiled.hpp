@@ -21,4 +21,35 @@ struct CompiledBatch {
   }
 };
 
+/// With NAME_jac_batch: `rodas` takes members side by side.
+struct CompiledBatchJacobian : CompiledBatch {
+  using JacobianFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x,
+                                   const double* p, const double* u, const int* mode, int own, double* dfdx,
+                                   double* dfdt, int* codes);
+  JacobianFunction jacobian_function = nullptr;
+
+  int jacobian(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dfdx,
+               double* dfdt, int* codes) const {
+    return jacobian_function(count, stride, t, x, p, u, &mode, own_time + own_parameters, dfdx, dfdt, codes);
+  }
+};
+
+/// With NAME_taylor_batch and NAME_taylor_order: `taylor` takes members side by side.
+struct CompiledBatchSeries : CompiledBatch {
+  using SeriesFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x,
+                                 const double* p, const double* u, const int* mode, const int* order, int own,
+                                 double* coefficients, int* codes);
+  static constexpr int own_orders = 32;  // NAME_own_orders
+
+  SeriesFunction series_function = nullptr;
+  int highest_order = 0;
+
+  int taylor(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+             const int* orders, double* coefficients, int* codes) const {
+    return series_function(count, stride, t, x, p, u, &mode, orders, own_time + own_parameters + own_orders,
+                           coefficients, codes);
+  }
+  int taylor_order() const { return highest_order; }
+};
+
 }  // namespace eom

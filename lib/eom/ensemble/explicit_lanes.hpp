@@ -79,7 +79,7 @@ class ExplicitLanes : public LaneRows<Rhs, explicit_rk::Controller, width> {
   }
 
   /// The stages and corrections of the dense output of lanes whose step was accepted; where one fails, none.
-  void prepare_dense() {
+  void prepare_accepted() {
     if constexpr (dense_rows > 0) {
       for (std::size_t l = 0; l < lane_.size(); ++l) failed_[l] = accepted_[l] == 0 ? code_not_finite : 0;
       stages_from<T::stages + 1, columns>();

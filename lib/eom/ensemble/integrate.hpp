@@ -15,6 +15,7 @@
 #include "eom/ensemble/events.hpp"
 #include "eom/ensemble/explicit_lanes.hpp"
 #include "eom/ensemble/rosenbrock_lanes.hpp"
+#include "eom/ensemble/series_lanes.hpp"
 #include "eom/ensemble/threads.hpp"
 #include "eom/ode.hpp"
 #include "eom/registry.hpp"
@@ -57,6 +58,16 @@ bool in_lanes(std::string_view method, Rhs& rhs, std::size_t members, std::size_
   return eom::detail::any_method(by);
 }
 
+/// Whether this method takes members of such a right-hand side side by side.
+template <class Rhs>
+bool has_lanes(std::string_view method, const EnsembleOptions& options) {
+  return eom::detail::any_method([&]<class T>(T*) {
+    if constexpr (requires { typename LanesOf<T, Rhs, false>::type; })
+      return method == T::name && LanesOf<T, Rhs, false>::takes(options);
+    return false;
+  });
+}
+
 /// Each member after the other in its thread, by any method, where no lanes are known.
 template <class Rhs, class Start, class Done>
 void one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::size_t states, std::size_t parameters,
@@ -79,7 +90,8 @@ void one_by_one(std::string_view method, Rhs& rhs, std::size_t members, std::siz
 
 /// Integrates `members` runs. rhs: as EnsembleRhs; start(member, EnsembleStart&) writes x, p, t0, t1; done(const
 /// EnsembleEnd&) sees each end, in no particular order. All three are called from `threads` threads at once. Explicit
-/// Runge-Kutta methods take many members side by side; others take them one by one in each thread, where
+/// Runge-Kutta methods take many members side by side, `rodas` where rhs has jacobian() (rosenbrock_lanes.hpp) and
+/// `taylor` where it has taylor() (series_lanes.hpp); others take them one by one in each thread, where
 /// rhs.alone(member, p) gives what integrate() takes for one. Throws std::invalid_argument for a method that is none of
 /// them, and for options that make no sense.
 template <class Rhs, class Start, class Done>
@@ -92,12 +104,13 @@ void integrate_ensemble(std::string_view method, Rhs&& rhs, std::size_t members,
   if constexpr (requires(const double* p) { rhs.alone(std::size_t{}, p); })
     return ensemble::one_by_one(method, rhs, members, states, parameters, options, start, done);
   throw std::invalid_argument("eom::integrate_ensemble: " + std::string(method) +
-                              " is no explicit Runge-Kutta method, and the right-hand side has no alone() for others");
+                              " knows no members side by side, or not with this right-hand side, which has no alone() "
+                              "for others");
 }
 
-/// The same with events, by an explicit Runge-Kutta method: rhs.alone(member, p) has events(t, x, values) -> code too,
-/// of as many as there are `functions`. told(member, const EventPoint&) hears of each crossing, from several threads at
-/// once; at a breaking one the member ends, as stopped_by_event.
+/// The same with events, by a method that takes members side by side: rhs.alone(member, p) has events(t, x, values) ->
+/// code too, of as many as there are `functions`. told(member, const EventPoint&) hears of each crossing, from several
+/// threads at once; at a breaking one the member ends, as stopped_by_event.
 template <class Rhs, class Told, class Start, class Done>
 void integrate_ensemble_events(std::string_view method, Rhs&& rhs, std::size_t members, std::size_t states,
                                std::size_t parameters, const EnsembleOptions& options,
@@ -109,7 +122,7 @@ void integrate_ensemble_events(std::string_view method, Rhs&& rhs, std::size_t m
   };
   if (!ensemble::in_lanes(method, rhs, members, states, parameters, options, start, done, watch))
     throw std::invalid_argument("eom::integrate_ensemble_events: " + std::string(method) +
-                                " is no explicit Runge-Kutta method");
+                                " knows no members side by side, or not with this right-hand side");
 }
 
 }  // namespace eom

@@ -29,6 +29,7 @@ class Lane {
   void count_factorisation() { ++statistics_.factorisations; }
   void fall_back() { ++statistics_.dense_fallbacks; }
   Steps& steps() { return steps_; }
+  const Steps& steps() const { return steps_; }
   const Statistics& statistics() const { return statistics_; }
   double longest_step(const EnsembleOptions& options) const {
     return std::min(options.max_step, std::abs(t_end_ - t_start_));

@@ -110,8 +110,8 @@ class LaneRows {
     }
   }
 
-  /// Nothing that only observers ask for.
-  void prepare_dense() {}
+  /// What is to be known of accepted steps before they are looked at: nothing.
+  void prepare_accepted() {}
 
   /// Of lanes whose step was accepted the end is the start of the next.
   void accept() {
