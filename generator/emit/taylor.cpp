@@ -81,19 +81,6 @@ constexpr const char* driver = R"({{
 }}
 )";
 
-/// The code of one order sees k in place of the time, and x_k under the names of the state.
-ModelNames names_of_next(const ModelNames& names) {
-  ModelNames result = names;
-  NameTable table;
-  for (const auto* list : {&names.state, &names.parameters, &names.inputs}) {
-    for (const std::string& name : *list) table.declare(name);
-  }
-  result.arguments_t = table.declare("k");
-  result.x = table.declare("x");
-  result.w = table.declare("w");
-  return result;
-}
-
 /// The function, and before it the parts that it calls where it is long.
 std::string helper(const program::Function& function, const ModelNames& names, const EmissionContext& context,
                    const Dialect& dialect, const std::string& prefix, const std::string& remark) {
@@ -114,6 +101,18 @@ std::string helper(const program::Function& function, const ModelNames& names, c
 }
 
 }  // namespace
+
+ModelNames names_of_next(const ModelNames& names) {
+  ModelNames result = names;
+  NameTable table;
+  for (const auto* list : {&names.state, &names.parameters, &names.inputs}) {
+    for (const std::string& name : *list) table.declare(name);
+  }
+  result.arguments_t = table.declare("k");
+  result.x = table.declare("x");
+  result.w = table.declare("w");
+  return result;
+}
 
 TaylorText print_taylor(const program::Program& program, const ModelNames& names, const EmissionContext& context,
                         const Dialect& dialect, const std::string& prefix) {

@@ -13,6 +13,9 @@ struct TaylorText {
   std::string definition;  // helpers and the function itself
 };
 
+/// Of taylor_next, which sees k in place of the time, and x_k under the names of the state.
+ModelNames names_of_next(const ModelNames& names);
+
 /// `prefix`: "NAME_", or "" for the template.
 TaylorText print_taylor(const program::Program& program, const ModelNames& names, const EmissionContext& context,
                         const Dialect& dialect, const std::string& prefix);

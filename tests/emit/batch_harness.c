@@ -18,7 +18,7 @@ enum {
   parameters = OF(_parameters) > 0 ? OF(_parameters) : 1,
   inputs = OF(_inputs) > 0 ? OF(_inputs) : 1,
   prepared = OF(_prepared_size) > 0 ? OF(_prepared_size) : 1,
-  all = OF(_own_time) | OF(_own_parameters) | OF(_own_inputs) | OF(_own_modes) | OF(_own_prepared)
+  all = OF(_own_time) | OF(_own_parameters) | OF(_own_inputs) | OF(_own_modes) | OF(_own_prepared) | OF(_own_orders)
 };
 
 static unsigned long long seed = 1;
@@ -31,6 +31,9 @@ static double within_one(void) /* -1 to 1 */
 static double t[stride], x[states * stride], p[parameters * stride], u[inputs * stride], w[prepared * stride],
     own_x[states], own_p[parameters], own_u[inputs], own_w[prepared];
 static int mode[stride], codes[stride];
+#ifdef TAYLOR
+static int order[stride];
+#endif
 
 static void entries_of(const double* from, int entries, int s, int own, double* to) {
   for (int i = 0; i < entries; ++i) to[i] = own ? from[i * stride + s] : from[i];
@@ -99,6 +102,32 @@ static int compare(int own, int with_inputs) {
   CHECK_FUNCTION(OF(_event_count), OF(_events_batch)(count, stride, t, x, p, inputs_of, mode, own, batch, codes),
                  OF(_events)(T, own_x, own_p, inputs_alone, MODE, before));
 #endif
+#ifdef TAYLOR
+  {
+    static double series[states * (OF(_taylor_order) + 1) * stride], one[states * (OF(_taylor_order) + 1)];
+    int highest = 0, first = 0;
+    for (int s = 0; s < count; ++s) {
+      const int asked = order[(own & OF(_own_orders)) ? s : 0];
+      if (asked > highest && asked <= OF(_taylor_order)) highest = asked;
+    }
+    for (int i = 0; i < states * (OF(_taylor_order) + 1) * stride; ++i) series[i] = 7.25;
+    const int code = OF(_taylor_batch)(count, stride, t, x, p, inputs_of, mode, order, own, series, codes);
+    for (int s = 0; s < count; ++s) {
+      const int asked = order[(own & OF(_own_orders)) ? s : 0];
+      take(s, own);
+      const int alone = OF(_taylor)(T, own_x, own_p, inputs_alone, MODE, asked, one);
+      if (first == 0) first = alone;
+      if (codes[s] != alone) return __LINE__;
+      if (alone == 0 && !same(series, one, states * (asked + 1), s)) return __LINE__;
+    }
+    if (code != first) return __LINE__;
+    for (int i = 0; i < states * (OF(_taylor_order) + 1); ++i) {
+      for (int s = i < states * (highest + 1) ? count : 0; s < stride; ++s) {
+        if (series[i * stride + s] != 7.25) return __LINE__; /* beyond the last state, or the highest order */
+      }
+    }
+  }
+#endif
   return 0;
 }
 
@@ -112,6 +141,9 @@ int main(void) {
   for (int s = 0; s < count; ++s) {
     t[s] = 0.5 * within_one() + 0.6;
     mode[s] = modes[(s * 7 + 1) % mode_count];
+#ifdef TAYLOR
+    order[s] = s == 11 ? -1 : s == 20 ? OF(_taylor_order) + 1 : (s * 5 + 3) % (OF(_taylor_order) - 1);
+#endif
     for (int i = 0; i < states; ++i) x[i * stride + s] = x0[i] * (1 + 0.1 * within_one()) + 0.4 * within_one();
     for (int i = 0; i < OF(_parameters); ++i) p[i * stride + s] = p0[i] * (1 + 0.05 * within_one());
     for (int i = 0; i < OF(_inputs); ++i) u[i * stride + s] = within_one();

@@ -45,6 +45,7 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
        {std::pair{"prepare", "-DPREPARED"}, {"jac", "-DJAC"}, {"outputs", "-DOUTPUTS"}, {"events", "-DEVENTS"}}) {
     if (has(function)) command.emplace_back(define);
   }
+  if (e.program.taylor) command.emplace_back("-DTAYLOR");
   const std::string said =
       complaints(command, {EOMGEN_TEST_HARNESS, folder + "/" + name + ".c", folder + "/" + name + "_batch.c", "-lm"});
   if (!said.empty()) return said;
@@ -68,6 +69,16 @@ TEST_CASE(
     "batch: every state has the bits and the code that it has alone, whatever its neighbours are, for every width") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
+    CHECK(wrong(e) == "");
+  }
+}
+
+TEST_CASE("batch: series of states side by side, each of an order of its own") {
+  auto list = {example("chain3", chain(3), {"k", "x", "w"}, {"m1", "a", "b", "l1", "z", "dx", "g"}, {}, {"taylor"}),
+               example("cart", cart_pendulum(), {"x", "theta"}, {"M", "m", "l", "g", "c"}, {"F"}, {"taylor", "mass"})};
+  for (const Example& e : list) {
+    INFO(e.context.id);
+    REQUIRE(e.program.taylor);
     CHECK(wrong(e) == "");
   }
 }

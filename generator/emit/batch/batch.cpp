@@ -7,6 +7,7 @@
 #include <eom/modes/contact_state.hpp>
 #include <set>
 
+#include "emit/batch/taylor_lanes.hpp"
 #include "emit/c/c.hpp"
 #include "emit/kernels.hpp"
 #include "emit/metadata.hpp"
@@ -15,6 +16,7 @@
 #include "emit/signature.hpp"
 #include "emit/text.hpp"
 #include "error.hpp"
+#include "program/taylor.hpp"
 #include "skeletons/batch_model_batch_c.hpp"
 #include "skeletons/batch_model_batch_h.hpp"
 
@@ -63,6 +65,7 @@ class File {
 
   std::vector<EmittedFile> run() {
     for (const Function& function : program_.functions) add(function);
+    if (program_.taylor) add_taylor();
     std::vector<std::pair<std::string, std::string>> values = {
         {"banner", banner(program_, context_, "/* ", " * ", " */")},
         {"name", name_},
@@ -91,79 +94,108 @@ class File {
     const bool gives =
         std::any_of(function.results.begin(), function.results.end(), [](const auto& r) { return !r.entries.empty(); });
     if (!gives) return;
-    const FunctionText text = print_function(function, names_, context_, dialect_);
+    std::vector<std::pair<std::string, std::size_t>> results;
+    for (const program::Result& result : function.results) {
+      if (!result.is_test()) results.emplace_back(result.name, result.entries.size());
+    }
     const std::vector<Argument> list = abi_arguments(function.name);
+    if (!fits(list, results)) return;
+    add(function.name, list, results,
+        block_function(function.name, print_function(function, names_, context_, dialect_)));
+  }
+  void add_taylor() {
+    const std::vector<Argument> list = abi_arguments("taylor");
+    const std::vector<std::pair<std::string, std::size_t>> results{
+        {list.back().name, program_.state_count() * (program::taylor_order(*program_.taylor) + 1)}};
+    if (!fits(list, results) || !taylor_fits_lanes(*program_.taylor, program_.state_count())) return;
+    for (const char* name : {"taylor_sums", "taylor_block"}) name_for_width(name);
+    add("taylor", list, results,
+        taylor_block(program_, names_, context_, dialect_,
+                     [this](const std::string& name, const FunctionText& text) { return block_function(name, text); }));
+  }
+  void add(const std::string& function, const std::vector<Argument>& list,
+           const std::vector<std::pair<std::string, std::size_t>>& results, const std::string& block) {
+    const std::string head =
+        wrapped(fmt::format("int {}_{}_batch({})", name_, function, batch_arguments(list)), "    ");
+    declared_.push_back({{"purpose", purpose(function)}, {"prototype", head}});
+    defined_.push_back({{"adaptor", adaptor(function, list)},
+                        {"kernel", kernel(function, block)},
+                        {"many", driver(function, list, results)},
+                        {"entry", entry(function, list, head)}});
+  }
+  bool fits(const std::vector<Argument>& list, const std::vector<std::pair<std::string, std::size_t>>& results) const {
     std::size_t numbers = 0;
     for (const Array& array : arrays) numbers += takes(list, array.slot) ? entries(array) : 0;
-    for (const auto& result : function.results) numbers += result.entries.size();
-    if (numbers > most_numbers) return;
-    packs_ = packs_ || text.packs > 0;
-    library_.insert(text.library.begin(), text.library.end());
-    const std::string head =
-        wrapped(fmt::format("int {}_{}_batch({})", name_, function.name, batch_arguments(list)), "    ");
-    declared_.push_back({{"purpose", purpose(function.name)}, {"prototype", head}});
-    defined_.push_back({{"adaptor", adaptor(function, list)},
-                        {"kernel", kernel(function, text)},
-                        {"many", driver(function, list)},
-                        {"entry", entry(function, list, head)}});
+    for (const auto& [name, size] : results) numbers += size;
+    return numbers <= most_numbers;
   }
 
   static bool takes(const std::vector<Argument>& list, Slot slot) {
     return std::any_of(list.begin(), list.end(), [&](const Argument& a) {
-      return a.kind != Argument::Kind::mode && a.kind != Argument::Kind::result && a.slot == slot;
+      return (a.kind == Argument::Kind::number || a.kind == Argument::Kind::input) && a.slot == slot;
     });
   }
 
+  static bool is_integer(const Argument& a) {
+    return a.kind == Argument::Kind::mode || a.kind == Argument::Kind::integer;
+  }
   static std::string batch_arguments(const std::vector<Argument>& list) {
     std::string inputs, results;
     for (const Argument& a : list) {
       if (a.kind == Argument::Kind::result)
         results += fmt::format("double* {}, ", a.name);
       else
-        inputs += a.kind == Argument::Kind::mode ? "const int* mode, " : fmt::format("const double* {}, ", a.name);
+        inputs += fmt::format("const {}* {}, ", is_integer(a) ? "int" : "double", a.name);
     }
     return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
   }
 
-  std::string kernel(const Function& function, const FunctionText& text) {
-    const std::string full = name_for_width(function.name), block = name_for_width(function.name + "_block"),
+  /// The function for the lanes of one block.
+  std::string block_function(const std::string& function, const FunctionText& text) {
+    const std::string block = name_for_width(function + "_block"),
                       arguments = fmt::format("const struct {}block* {}, size_t {}", prefix_, text.block, text.now),
                       handed = fmt::format("{}, {}", text.block, text.now);
-    std::string result = fmt::format("#if {}WIDTH > 1\n", prefix_);
+    std::string result;
     for (std::size_t k = 0; k < text.parts.size(); ++k) {
-      const std::string part = name_for_width(fmt::format("{}_part{}", function.name, k + 1));
+      const std::string part = name_for_width(fmt::format("{}_part{}", function, k + 1));
       result += fmt::format("__attribute__((noinline))\nstatic int {}({}, {}* {})\n{{\n{}}}\n\n", part, arguments,
                             dialect_.real, text.work, text.parts[k]);
     }
-    const std::string body = text.parts.empty() ? text.body : calls_of_parts(full, text, handed, dialect_.real);
-    result += fmt::format("{}INLINE int {}({})\n{{\n{}}}\n\n", prefix_, block, arguments, body);
-    return result + fmt::format(R"(static size_t {0}(const struct {1}block* block, size_t blocks)
+    const std::string body =
+        text.parts.empty() ? text.body : calls_of_parts(prefix_ + function, text, handed, dialect_.real);
+    packs_ = packs_ || text.packs > 0;
+    library_.insert(text.library.begin(), text.library.end());
+    return result + fmt::format("{}INLINE int {}({})\n{{\n{}}}\n\n", prefix_, block, arguments, body);
+  }
+  std::string kernel(const std::string& function, const std::string& block) {
+    return fmt::format(R"(#if {1}WIDTH > 1
+{2}static size_t {0}(const struct {1}block* block, size_t blocks)
 {{
   size_t now;
-  for (now = 0; now < blocks && {2}(block, now) == 0; ++now) {{
+  for (now = 0; now < blocks && {0}_block(block, now) == 0; ++now) {{
   }}
   return now;
 }}
 #endif
 
 )",
-                                full, prefix_, block);
+                       name_for_width(function), prefix_, block);
   }
 
-  std::string adaptor(const Function& function, const std::vector<Argument>& list) const {
+  std::string adaptor(const std::string& function, const std::vector<Argument>& list) const {
     std::string handed;
     std::size_t results = 0;
     for (const Argument& a : list) {
       handed += handed.empty() ? "" : ", ";
       if (a.kind == Argument::Kind::result)
         handed += fmt::format("state->to[{}]", results++);
-      else if (a.kind == Argument::Kind::mode)
-        handed += "state->mode";
+      else if (is_integer(a))
+        handed += "state->" + a.name;
       else
         handed += fmt::format("{}state->from[{}]", a.kind == Argument::Kind::number ? "*" : "", place_of(a.slot));
     }
-    return fmt::format("\nstatic int {0}{1}_alone(const struct {0}state* state)\n{{\n{2}\n}}\n", prefix_, function.name,
-                       wrapped(fmt::format("  return {}_{}({});", name_, function.name, handed), "      "));
+    return fmt::format("\nstatic int {0}{1}_alone(const struct {0}state* state)\n{{\n{2}\n}}\n", prefix_, function,
+                       wrapped(fmt::format("  return {}_{}({});", name_, function, handed), "      "));
   }
   static std::size_t place_of(Slot slot) {
     return static_cast<std::size_t>(
@@ -172,7 +204,8 @@ class File {
   }
 
   /// NAME_FUNCTION_batch for registers of one width.
-  std::string driver(const Function& function, const std::vector<Argument>& list) {
+  std::string driver(const std::string& function, const std::vector<Argument>& list,
+                     const std::vector<std::pair<std::string, std::size_t>>& results) {
     std::string body = fmt::format("  struct {}call call;\n", prefix_), numbers;
     const bool inputs = takes(list, Slot::input) && !context_.inputs.empty();
     if (inputs) {
@@ -187,7 +220,7 @@ class File {
     std::string fill = fmt::format(
         "  memset(&call, 0, sizeof call);\n#if {0}WIDTH > 1\n  call.kernel = {0}{1};\n#endif\n"
         "  call.one = {0}{1}_alone;\n",
-        prefix_, function.name);
+        prefix_, function);
     for (std::size_t k = 0; k < std::size(arrays); ++k) {
       const Array& array = arrays[k];
       if (!takes(list, array.slot)) continue;
@@ -203,28 +236,43 @@ class File {
           array.own == nullptr ? "1" : fmt::format("{}(own & {}_{}) != 0", input ? "u && " : "", name_, array.own);
       fill += fmt::format("  call.own[{}] = {};\n", k, own);
     }
-    if (std::any_of(list.begin(), list.end(), [](const Argument& a) { return a.kind == Argument::Kind::mode; })) {
-      fill += fmt::format("  call.mode = mode;\n  call.own_modes = mode && (own & {}_own_modes) != 0;\n", name_);
+    for (const Argument& a : list) {
+      if (a.kind == Argument::Kind::mode)
+        fill += fmt::format("  call.mode = mode;\n  call.own_modes = mode && (own & {}_own_modes) != 0;\n", name_);
+      if (a.kind == Argument::Kind::integer)
+        fill += fmt::format("  call.order = order;\n  call.own_orders = (own & {}_own_orders) != 0;\n", name_);
     }
-    std::size_t r = 0;
-    for (const program::Result& result : function.results) {
-      if (result.is_test()) continue;
-      fill += fmt::format("  call.to[{0}] = {1};\n  call.results[{0}] = {2};\n", r++, result.name,
-                          size(result.entries.size()));
+    for (std::size_t r = 0; r < results.size(); ++r) {
+      fill += fmt::format("  call.to[{0}] = {1};\n  call.results[{0}] = {2};\n", r, results[r].first,
+                          size(results[r].second));
     }
+    if (function == "taylor") fill += rows_asked_for();
     body += fmt::format("  double room[({}WIDTH + 1)*({})];\n", prefix_, numbers.empty() ? "1" : numbers);
-    const std::string head = wrapped(
-        fmt::format("static int {}({})", name_for_width(function.name + "_many"), batch_arguments(list)), "    ");
+    const std::string head =
+        wrapped(fmt::format("static int {}({})", name_for_width(function + "_many"), batch_arguments(list)), "    ");
     return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,
                        prefix_);
   }
 
-  std::string entry(const Function& function, const std::vector<Argument>& list, const std::string& head) const {
+  /// Coefficients up to the highest order that a state asks for.
+  std::string rows_asked_for() const {
+    return fmt::format(R"(  {{
+    int highest = 0;
+    size_t s;
+    for (s = 0; s < (call.own_orders ? count : 1); ++s)
+      if (order[s] > highest && order[s] <= {0}_taylor_order) highest = order[s];
+    call.results[0] = {1}*((size_t)highest + 1);
+  }}
+)",
+                       name_, program_.state_count());
+  }
+
+  std::string entry(const std::string& function, const std::vector<Argument>& list, const std::string& head) const {
     std::string inputs, results;
     for (const Argument& a : list) (a.kind == Argument::Kind::result ? results : inputs) += a.name + ", ";
     return fmt::format("{}\n{{\n{}\n}}\n", head,
                        wrapped(fmt::format("  {}FOR_WIDTH({}_many, (count, stride, {}own, {}codes));", prefix_,
-                                           function.name, inputs, results),
+                                           function, inputs, results),
                                "      "));
   }
 

@@ -54,6 +54,8 @@ LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : mod
   };
   rhs = reinterpret_cast<BatchFunction>(find("_rhs_batch"));
   rhs_prepared = reinterpret_cast<PreparedBatchFunction>(find("_rhs_prepared_batch"));
+  jac = reinterpret_cast<BatchJacobian>(find("_jac_batch"));
+  taylor = reinterpret_cast<BatchSeries>(find("_taylor_batch"));
   const auto width_of = reinterpret_cast<int (*)()>(find("_batch_width"));
   if (width_of != nullptr) width = width_of();
   const bool whole =

@@ -19,9 +19,14 @@ using BatchFunction = int (*)(std::size_t count, std::size_t stride, const doubl
 using PreparedBatchFunction = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x,
                                       const double* p, const double* w, const double* u, const int* mode, int own,
                                       double* dx, int* codes);
+using BatchJacobian = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+                              const double* u, const int* mode, int own, double* dfdx, double* dfdt, int* codes);
+using BatchSeries = int (*)(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+                            const double* u, const int* mode, const int* order, int own, double* coefficients,
+                            int* codes);
 
 /// NAME_own_time, ... of every NAME_batch.h (docs/abi.md).
-inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepared = 16;
+inline constexpr int own_time = 1, own_parameters = 2, own_inputs = 4, own_prepared = 16, own_orders = 32;
 
 class LoadedBatch {
  public:
@@ -35,6 +40,8 @@ class LoadedBatch {
   LoadedModel model;
   BatchFunction rhs = nullptr;
   PreparedBatchFunction rhs_prepared = nullptr;  // there with `prepare`
+  BatchJacobian jac = nullptr;                   // these where they are emitted, and not too large for lanes
+  BatchSeries taylor = nullptr;
   int width = 1;                                 // states side by side
   std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
 
