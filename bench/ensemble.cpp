@@ -49,7 +49,24 @@ std::string processor() {
   return "unknown processor";
 }
 
-void measure(const char* method, std::size_t members, int repeats, std::size_t lanes) {
+/// One pendulum with what the method needs of it.
+struct One {
+  const double* p;
+  int operator()(double t, const double* x, double* dx) const {
+    return S5_double_pendulum_rhs(t, x, p, nullptr, 0, dx);
+  }
+  int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {
+    return S5_double_pendulum_jac(t, x, p, nullptr, 0, dfdx, dfdt);
+  }
+  int taylor(double t, const double* x, int order, double* c) const {
+    return S5_double_pendulum_taylor(t, x, p, nullptr, 0, order, c);
+  }
+  int taylor_order() const { return S5_double_pendulum_taylor_order; }
+  std::size_t taylor_states() const { return states; }
+};
+
+template <class Rhs>
+void measure(const Rhs& batch, const char* method, std::size_t members, int repeats, std::size_t lanes) {
   std::vector<double> alone(members * states), together(members * states), alone_times, ensemble_times, ratios;
   for (int r = 0; r < repeats; ++r) {
     alone_times.push_back(seconds([&] {
@@ -58,10 +75,7 @@ void measure(const char* method, std::size_t members, int repeats, std::size_t l
       for (std::size_t i = 0; i < members; ++i) {
         std::vector<double> x(states), p(parameters);
         start_of(i, x.data(), p.data());
-        const auto rhs = [&p](double t, const double* state, double* dx) {
-          return S5_double_pendulum_rhs(t, state, p.data(), nullptr, 0, dx);
-        };
-        const eom::Result result = eom::integrate(method, rhs, 0, x, t_end, options);
+        const eom::Result result = eom::integrate(method, One{p.data()}, 0, x, t_end, options);
         if (result.outcome != eom::Outcome::done) std::exit(1);
         std::copy(result.x.begin(), result.x.end(), alone.begin() + static_cast<std::ptrdiff_t>(i * states));
       }
@@ -78,8 +92,7 @@ void measure(const char* method, std::size_t members, int repeats, std::size_t l
         if (end.outcome != eom::Outcome::done) std::exit(1);
         std::copy(end.x.begin(), end.x.end(), together.begin() + static_cast<std::ptrdiff_t>(end.member * states));
       };
-      eom::integrate_ensemble(method, eom::CompiledBatch{S5_double_pendulum_rhs_batch}, members, states, parameters,
-                              options, start, done);
+      eom::integrate_ensemble(method, batch, members, states, parameters, options, start, done);
     }));
     ratios.push_back(alone_times.back() / ensemble_times.back());
   }
@@ -99,7 +112,11 @@ int main(int argc, char** argv) {
   fmt::print(
       "| method | lanes | one after the other, us per run | ensemble, us per run | times as fast | largest difference "
       "|\n|---|---|---|---|---|---|\n");
-  for (const char* method : {"dop853", "tsit5", "dopri5"}) {
-    for (const std::size_t lanes : {16, 32, 64}) measure(method, members, 9, lanes);
+  const eom::CompiledBatch batch{S5_double_pendulum_rhs_batch};
+  for (const std::size_t lanes : {16, 32, 64}) {
+    for (const char* method : {"dop853", "tsit5", "dopri5"}) measure(batch, method, members, 9, lanes);
+    measure(eom::CompiledBatchSeries{batch, S5_double_pendulum_taylor_batch, S5_double_pendulum_taylor_order}, "taylor",
+            members, 9, lanes);
+    measure(eom::CompiledBatchJacobian{batch, S5_double_pendulum_jac_batch}, "rodas", members / 8, 9, lanes);
   }
 }

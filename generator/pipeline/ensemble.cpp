@@ -105,13 +105,15 @@ class Runs {
     });
   }
 
+  /// Whether the method of the scene takes members side by side.
+  static bool wants_lanes(const run::Scene& scene) {
+    return eom::ensemble::has_lanes<Lanes>(scene.solver, options_of(scene));
+  }
+
   void run() {
     const run::Scene& scene = first_.scene;
-    if (!run::method_named(scene.solver).ensemble) return one_by_one();
-    eom::EnsembleOptions options;
-    options.rtol = scene.rtol;
-    options.atol = scene.atol;
-    options.fixed_step = scene.step;
+    eom::EnsembleOptions options = options_of(scene);
+    if (!has_lanes(scene)) return one_by_one();
     if (scene.max_step > 0) options.max_step = scene.max_step;
     if (scene.step > 0) options.max_steps = std::numeric_limits<std::size_t>::max();
     options.interrupt = asked_.interrupt;
@@ -128,6 +130,21 @@ class Runs {
   }
 
  private:
+  static eom::EnsembleOptions options_of(const run::Scene& scene) {
+    eom::EnsembleOptions options;
+    options.rtol = scene.rtol;
+    options.atol = scene.atol;
+    options.fixed_step = scene.step;
+    return options;
+  }
+  /// And its functions are there for lanes.
+  bool has_lanes(const run::Scene& scene) const {
+    if (batch_ == nullptr || !wants_lanes(scene)) return false;
+    const eom::Needs& needs = run::method_named(scene.solver).needs;
+    return (!needs.used.has(eom::Feature::jacobian) || batch_->jac != nullptr) &&
+           (!needs.required.has(eom::Feature::series) || batch_->taylor != nullptr);
+  }
+
   enum class How : char { together, alone, refused };
 
   /// The functions of one state as a run alone calls them.
@@ -148,16 +165,29 @@ class Runs {
   };
 
   struct Lanes {
+    static constexpr int own = emit::own_time + emit::own_parameters + emit::own_inputs;
     const Runs& of;
+
+    const double* inputs(const double* p, std::size_t stride) const {
+      return of.u_ > 0 ? p + (of.p_ + of.w_) * stride : nullptr;
+    }
     int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
                    int* codes) const {
-      const double* const w = p + of.p_ * stride;
-      const double* const u = of.u_ > 0 ? w + of.w_ * stride : nullptr;
-      constexpr int own = emit::own_time + emit::own_parameters + emit::own_inputs;
+      const double *const w = p + of.p_ * stride, *const u = inputs(p, stride);
       return of.w_ > 0
                  ? of.batch_->rhs_prepared(count, stride, t, x, p, w, u, nullptr, own + emit::own_prepared, dx, codes)
                  : of.batch_->rhs(count, stride, t, x, p, u, nullptr, own, dx, codes);
     }
+    int jacobian(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dfdx,
+                 double* dfdt, int* codes) const {
+      return of.batch_->jac(count, stride, t, x, p, inputs(p, stride), nullptr, own, dfdx, dfdt, codes);
+    }
+    int taylor(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+               const int* orders, double* coefficients, int* codes) const {
+      return of.batch_->taylor(count, stride, t, x, p, inputs(p, stride), nullptr, orders, own + emit::own_orders,
+                               coefficients, codes);
+    }
+    int taylor_order() const { return of.code_.taylor_order; }
     One alone(std::size_t member, const double* p) const {
       const double* const w = p + of.p_;
       return {of, of.ranges_[member].get(), p, of.w_ > 0 ? w : nullptr, of.u_ > 0 ? w + of.w_ : nullptr};
@@ -304,7 +334,7 @@ std::string ensemble_obstacle(const Simulation& first) {
 }
 
 Ensemble::Ensemble(const Simulation& first) : first_(first) {
-  if (run::method_named(first.scene.solver).ensemble) batch_.emplace(compile_batch(first));
+  if (Runs::wants_lanes(first.scene)) batch_.emplace(compile_batch(first));
 }
 
 void Ensemble::run(const EnsembleRuns& asked) { Runs(first_, batch_ ? &*batch_ : nullptr, asked).run(); }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Many runs of a scene by threads, in which explicit Runge-Kutta methods take some side by side in the lanes of vector
-// registers (eom/ensemble), and other methods one after the other. In: a run that
-// has been made, values for the others. Out: their results, to the last bit those that they have alone.
+// Many runs of a scene by threads, in which explicit Runge-Kutta methods, rodas and taylor take some side by side in
+// the lanes of vector registers (eom/ensemble), and other methods one after the other. In: a run that has been made,
+// values for the others. Out: their results, to the last bit those that they have alone.
 #pragma once
 
 #include <atomic>

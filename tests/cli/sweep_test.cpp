@@ -197,6 +197,8 @@ TEST_CASE(
         Case{"watched.toml", {"--grid", "m=1:3:40", "--sample", "x=0.5:1", "--samples", "2", "--solver", "dop853"}, 0},
         Case{"watched.toml", {"--grid", "m=1:3:20", "--solver", "tsit5", "--rtol", "1e-6"}, 0},
         Case{"pushed.toml", {"--grid", "m=1:3:7", "--solver", "rodas"}, 0},
+        Case{"watched.toml", {"--grid", "m=1:3:20", "--solver", "rodas", "--rtol", "1e-6"}, 0},
+        Case{"watched.toml", {"--grid", "m=1:3:20", "--solver", "taylor"}, 0},
         Case{"watched.toml", {"--grid", "m=1:3:7", "--solver", "radau"}, 0},
         Case{"S6_chain_2", {"--grid", "L=0.5:2:5", "--solver", "taylor"}, 0}}) {
     CAPTURE(std::string(c.model));
