@@ -1,5 +1,5 @@
 // Formulas break where their printer allows it. One that is still wider than its column is broken before signs inside of brackets too, then between
-// factors, then gets smaller letters, as small as they have to be.
+// factors; then wide fractions, powers and roots are written on the line, and broken likewise; then it gets smaller letters, as small as they have to be.
 function breakFormula(math, betweenFactors) {
   const pieces = [[]], flat = (node) => {
     for (const child of [...node.children]) {
@@ -17,13 +17,29 @@ function breakFormula(math, betweenFactors) {
   math.replaceWith(...parts.flatMap((part) => [part, document.createTextNode(" ")]));
 }
 
+// What holds a wide part together: a fraction as (a + b)/c, a power of a bracket with its exponent at the closing one, a root as a power. Then they can be broken.
+function loosen(line) {
+  const element = (name, ...parts) => { const node = document.createElementNS("http://www.w3.org/1998/Math/MathML", name); node.append(...parts); return node; };
+  const sign = (text) => { const node = element("mo", text); node.setAttribute("stretchy", "false"); return node; };
+  const bracketed = (node) => (node.children.length > 1 ? [sign("("), node, sign(")")] : [node]);
+  const inner = (node) => (node.localName === "mrow" && node.children.length === 1 ? inner(node.firstElementChild) : node);
+  for (const node of [...line.querySelectorAll("mfrac, msup, msqrt")].reverse()) {
+    if (node.getBoundingClientRect().width <= 0.85 * line.clientWidth) continue;
+    const [first, second] = [...node.children], base = inner(first);
+    if (node.localName === "mfrac") node.replaceWith(element("mrow", ...bracketed(first), sign("/"), ...bracketed(second)));
+    else if (node.localName === "msqrt") node.replaceWith(element("mrow", sign("("), ...node.children, element("msup", sign(")"), element("mrow", element("mn", "1"), sign("/"), element("mn", "2")))));
+    else if (base.children.length > 2 && base.lastElementChild.textContent === ")") node.replaceWith(element("mrow", ...[...base.children].slice(0, -1), element("msup", base.lastElementChild, second)));
+  }
+}
+
 function fitFormulas() {
   for (const line of document.querySelectorAll("p.formula")) {
     const isWide = () => line.scrollWidth > line.clientWidth + 1;
     line.style.fontSize = "";
     if (!isWide()) continue;
-    for (const betweenFactors of [false, true]) {
+    for (const [betweenFactors, loosened] of [[false, false], [true, false], [false, true], [true, false]]) {
       if (!isWide()) break;
+      if (loosened) loosen(line);
       for (const math of [...line.querySelectorAll("math")]) if (math.getBoundingClientRect().width > 0.85 * line.clientWidth) breakFormula(math, betweenFactors);
     }
     for (let size = 0.85; isWide() && size > 0.45; size -= 0.05) line.style.fontSize = size + "rem";

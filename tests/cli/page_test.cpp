@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <sstream>
 
@@ -21,6 +22,7 @@ namespace {
 constexpr std::size_t largest_page = 1000000;  // bytes
 constexpr double as_run_does = 1e-5;  // the page integrates with rtol 1e-8, the run with 1e-9 and another method
 constexpr double a_pixel = 1;
+constexpr std::size_t longest_formula = 60000;  // bytes; as on a page
 constexpr double on_the_sphere =
     1e-3;  // of a radius of 1: where a line of a surface crosses a cell is found by secants
 
@@ -280,4 +282,47 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
   }
   const Json found = looked_at(folder, *program, cases);
   for (std::size_t k = 0; k < list.size(); ++k) check(found[k], list[k], wanted[k]);
+}
+
+TEST_CASE("page: the formulas of all shipped models stand whole in their column, with gaps and without overlaps") {
+  const std::optional<std::string> program = browser();
+  if (!program) {
+    MESSAGE("skipped: there is no chromium");
+    return;
+  }
+  const Folder folder;
+  const std::string head = "<!DOCTYPE html><html><head><style>" + source("templates/report/page.css") +
+                           "</style></head><body><main>",
+                    foot =
+                        "</main><script>" + source("templates/report/fit.js") + "fitFormulas();</script></body></html>";
+  std::vector<std::string> models;
+  for (const auto& entry : std::filesystem::directory_iterator(source_folder() + "/models")) {
+    if (entry.path().extension() == ".toml") models.push_back(entry.path().stem().string());
+  }
+  std::sort(models.begin(), models.end());
+  Json cases = Json::array();
+  for (const std::string& model : models) {
+    std::string body;
+    const std::function<void(const Json&)> collect = [&](const Json& value) {
+      if (value.is_object() && value.contains("mathml") && value["mathml"].is_string() &&
+          value["mathml"].get<std::string>().size() < longest_formula)
+        body += "<p class=\"formula\">" + value["mathml"].get<std::string>() + "</p>\n";
+      if (value.is_structured()) std::for_each(value.begin(), value.end(), collect);
+    };
+    collect(document(folder, {"derive", model, "--show", "all"}));
+    cases.push_back({{"name", model}, {"page", head + body + foot}});
+  }
+  std::size_t count = 0;
+  for (const Json& found : looked_at(folder, *program, cases)) {
+    CAPTURE(found.dump());
+    REQUIRE_FALSE(found.contains("failed"));
+    for (const std::string width : {"1280", "390"}) {
+      const Json& at = found["widths"][width];
+      CHECK(at["messages"] == Json::array());
+      CHECK(at["sideways"] == 0);
+      for (const char* fault : {"overlaps", "tight", "wide"}) CHECK(at["formulas"][fault][0] == 0);
+      count += at["formulas"]["count"].get<std::size_t>();
+    }
+  }
+  CHECK(count > 10000);
 }
