@@ -120,12 +120,6 @@ void make_single(const program::Program& program, EmissionContext& context) {
                                  *context.single_error);
 }
 
-void require_single(const std::string& target) {
-  if (target != "batch") return;
-  throw Error("emit", {}, fmt::format("the target {} knows double precision alone", target),
-              "take another target, or leave --real float out");
-}
-
 Dialect single_dialect() {
   Dialect dialect;
   dialect.real = "float";
@@ -133,21 +127,9 @@ Dialect single_dialect() {
   dialect.value = literal;
   dialect.pi = "3.14159265f";
   dialect.absolute = "fabs";  // of tgmath.h, like all functions
+  dialect.reach = "2048.0f";
   dialect.pivot_tolerance = pivot_tolerance;
   return dialect;
-}
-
-std::string single_sincos(const std::string& prefix) {
-  return fmt::format(R"(static inline void {}sincos(float a, float b, float* sine, float* cosine)
-{{
-  sine[0] = sinf(a);
-  sine[1] = sinf(b);
-  cosine[0] = cosf(a);
-  cosine[1] = cosf(b);
-}}
-
-)",
-                     prefix);
 }
 
 }  // namespace eomgen::emit

@@ -16,16 +16,10 @@ inline constexpr double single_by_double = 536870912;  // 2^29
 /// each array. Throws Error{stage "emit"} where the right-hand side has no value in single precision at any of them.
 void make_single(const program::Program& program, EmissionContext& context);
 
-/// Throws Error{stage "emit"} for targets that know double precision alone.
-void require_single(const std::string& target);
-
 /// The number of single precision that C takes for this one. Throws Error{stage "emit"} where there is none.
 double single_number(double value);
 
 /// C in single precision.
 Dialect single_dialect();
-
-/// NAME_sincos of two angles, by the C library.
-std::string single_sincos(const std::string& prefix);
 
 }  // namespace eomgen::emit

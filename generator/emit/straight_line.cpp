@@ -169,7 +169,7 @@ class Printer {
                        "      ") +
                "\n";
     }
-    require(fmt::format("{} <= 65536.0", reach));
+    require(fmt::format("{} <= {}", reach, dialect_.reach));
   }
   Expression from_pack(const Instruction& instruction) const {
     return {fmt::format("{}[{}]", instruction.op == Op::sin ? sine_ : cosine_, instruction.lane), Expression::atom};
@@ -273,7 +273,8 @@ class Printer {
       const std::vector<Operand>& entries = function_.results[r].entries;
       if (function_.results[r].is_test()) continue;
       const std::string& to = text_.results[k];
-      body_ += fmt::format("  double* const {} = {}to({}, {}, {});\n", to, dialect_.lanes, place, text_.now, k++);
+      body_ += fmt::format("  {}* const {} = {}to({}, {}, {});\n", dialect_.element, to, dialect_.lanes, place,
+                           text_.now, k++);
       if (entries.empty()) body_ += fmt::format("  (void){};\n", to);
       const bool optional = may_be_null(r);
       if (optional) body_ += fmt::format("  if ({}) {{\n", to);

@@ -26,15 +26,21 @@ struct Dialect {
   // memory; the function starts again where an angle turns out to be far (FunctionText::near_first).
   bool near_first = false;
   bool line_comments = false;
-  bool using_std = false;  // `using std::sin;` before calls
-  bool typed = true;       // false: JavaScript, where constants are declared without a type
-  std::string lanes;       // several states side by side: the prefix of the functions of templates/batch
-  std::string rounding;    // the function that every value goes through, where the language computes in double only
+  bool using_std = false;         // `using std::sin;` before calls
+  bool typed = true;              // false: JavaScript, where constants are declared without a type
+  std::string reach = "65536.0";  // of the angles of sincos (templates/kernels)
+  std::string lanes;              // several states side by side: the prefix of the functions of templates/batch
+  std::string element;            // of lanes: what each of them holds
+  std::string rounding;  // the function that every value goes through, where the language computes in double only
 
   /// What the declaration of a value begins with.
   std::string declares() const { return typed ? "const " + real : "const"; }
-  std::string rounded(const std::string& text) const {
-    return rounding.empty() ? text : rounding + "(" + text + ")";
+  std::string rounded(const std::string& text) const { return rounding.empty() ? text : rounding + "(" + text + ")"; }
+  /// The same numbers, several side by side.
+  void in_lanes_of(const std::string& prefix) {
+    element = real;
+    lanes = prefix;
+    real = prefix + "lanes";
   }
 };
 

@@ -116,7 +116,6 @@ void require_target(const std::string& target, const std::vector<std::string>& b
 Emission emit_model(std::shared_ptr<const model::Model> model, const EmissionRequest& request) {
   require_target(request.target);
   require_with(request.with);
-  if (request.single) emit::require_single(request.target);
   const auto derived = derive_model(std::move(model), request.approach, request.form);
   const run::Scene scene =
       run::resolve_scene(derived->mechanics, derived->candidates.front(), derived->model.scene("default"), {});

@@ -1,11 +1,17 @@
 /* SPDX-License-Identifier: GPL-3.0-or-later */
-/* Compiled with the header and the sources that target batch wrote, and -DNAME=..: every state of a batch has the bits,
- * and the code, that it has alone. The line of what is wrong is what is returned. */
+/* Compiled with the header and the sources that target batch wrote, and -DNAME=.., in single precision with
+ * -DREAL=float: every state of a batch has the bits, and the code, that it has alone. The line of what is wrong is what
+ * is returned. */
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
 
 #include HEADER
+
+#ifndef REAL
+#define REAL double
+#endif
+#define LARGE ((REAL)(sizeof(REAL) == 4 ? 1e30 : 1e200)) /* of single precision too */
 
 #define JOIN2(a, b) a##b
 #define JOIN(a, b) JOIN2(a, b)
@@ -22,29 +28,30 @@ enum {
 };
 
 static unsigned long long seed = 1;
-static double within_one(void) /* -1 to 1 */
+static REAL within_one(void) /* -1 to 1 */
 {
   seed = seed * 6364136223846793005ULL + 1442695040888963407ULL;
-  return (double)(seed >> 11) * 0x1p-52 - 1.0;
+  return (REAL)((double)(seed >> 11) * 0x1p-52 - 1.0);
 }
 
-static double t[stride], x[states * stride], p[parameters * stride], u[inputs * stride], w[prepared * stride],
+static REAL t[stride], x[states * stride], p[parameters * stride], u[inputs * stride], w[prepared * stride],
     own_x[states], own_p[parameters], own_u[inputs], own_w[prepared];
 static int mode[stride], codes[stride];
 #ifdef TAYLOR
 static int order[stride];
 #endif
 
-static void entries_of(const double* from, int entries, int s, int own, double* to) {
+static void entries_of(const REAL* from, int entries, int s, int own, REAL* to) {
   for (int i = 0; i < entries; ++i) to[i] = own ? from[i * stride + s] : from[i];
 }
 
 /* Whether entries i of the results of state s are these. */
-static int same(const double* batch, const double* alone, int entries, int s) {
+static int same(const REAL* batch, const REAL* alone, int entries, int s) {
   for (int i = 0; i < entries; ++i) {
-    if (memcmp(&batch[i * stride + s], &alone[i], sizeof(double)) == 0) continue;
+    if (memcmp(&batch[i * stride + s], &alone[i], sizeof(REAL)) == 0) continue;
     if (isnan(batch[i * stride + s]) && isnan(alone[i])) continue; /* the sign of a NaN is nobody's */
-    printf("state %d, entry %d: %.17g in the batch, %.17g alone\n", s, i, batch[i * stride + s], alone[i]);
+    printf("state %d, entry %d: %.17g in the batch, %.17g alone\n", s, i, (double)batch[i * stride + s],
+           (double)alone[i]);
     return 0;
   }
   return 1;
@@ -57,30 +64,30 @@ static void take(int s, int own) {
   entries_of(w, prepared, s, own & OF(_own_prepared), own_w);
 }
 
-#define CHECK_FUNCTION(entries, batch_call, alone_call)                                 \
-  do {                                                                                  \
-    static double batch[(entries)*stride + 1], before[(entries) + 1];                   \
-    int first = 0;                                                                      \
-    for (int i = 0; i < (entries)*stride; ++i) batch[i] = 7.25;                         \
-    const int code = (batch_call);                                                      \
-    for (int s = 0; s < count; ++s) {                                                   \
-      take(s, own);                                                                     \
-      for (int i = 0; i < (entries); ++i) before[i] = 7.25;                             \
-      const int alone = (alone_call);                                                   \
-      if (first == 0) first = alone;                                                    \
-      if (codes[s] != alone || !same(batch, before, (entries), s)) return __LINE__;     \
-    }                                                                                   \
-    if (code != first) return __LINE__;                                                 \
-    for (int i = 0; i < (entries); ++i) {                                               \
-      for (int s = count; s < stride; ++s) {                                            \
-        if (batch[i * stride + s] != 7.25) return __LINE__; /* beyond the last state */ \
-      }                                                                                 \
-    }                                                                                   \
+#define CHECK_FUNCTION(entries, batch_call, alone_call)                                       \
+  do {                                                                                        \
+    static REAL batch[(entries)*stride + 1], before[(entries) + 1];                           \
+    int first = 0;                                                                            \
+    for (int i = 0; i < (entries)*stride; ++i) batch[i] = (REAL)7.25;                         \
+    const int code = (batch_call);                                                            \
+    for (int s = 0; s < count; ++s) {                                                         \
+      take(s, own);                                                                           \
+      for (int i = 0; i < (entries); ++i) before[i] = (REAL)7.25;                             \
+      const int alone = (alone_call);                                                         \
+      if (first == 0) first = alone;                                                          \
+      if (codes[s] != alone || !same(batch, before, (entries), s)) return __LINE__;           \
+    }                                                                                         \
+    if (code != first) return __LINE__;                                                       \
+    for (int i = 0; i < (entries); ++i) {                                                     \
+      for (int s = count; s < stride; ++s) {                                                  \
+        if (batch[i * stride + s] != (REAL)7.25) return __LINE__; /* beyond the last state */ \
+      }                                                                                       \
+    }                                                                                         \
   } while (0)
 
 static int compare(int own, int with_inputs) {
-  const double* const inputs_of = with_inputs ? u : NULL;
-  const double* const inputs_alone = with_inputs ? own_u : NULL;
+  const REAL* const inputs_of = with_inputs ? u : NULL;
+  const REAL* const inputs_alone = with_inputs ? own_u : NULL;
 #define T (t[(own & OF(_own_time)) ? s : 0])
 #define MODE (mode[(own & OF(_own_modes)) ? s : 0])
   CHECK_FUNCTION(states, OF(_rhs_batch)(count, stride, t, x, p, inputs_of, mode, own, batch, codes),
@@ -132,24 +139,24 @@ static int compare(int own, int with_inputs) {
 }
 
 int main(void) {
-  static double kept[states * stride];
-  double x0[states], p0[parameters];
+  static REAL kept[states * stride];
+  REAL x0[states], p0[parameters];
   int modes[] = {0, MODES};
   const int mode_count = (int)(sizeof modes / sizeof modes[0]);
   if (OF(_batch_width)() != WIDTH) return 1;
   OF(_defaults)(x0, p0);
   for (int s = 0; s < count; ++s) {
-    t[s] = 0.5 * within_one() + 0.6;
+    t[s] = within_one() / 2 + 1;
     mode[s] = modes[(s * 7 + 1) % mode_count];
 #ifdef TAYLOR
     order[s] = s == 11 ? -1 : s == 20 ? OF(_taylor_order) + 1 : (s * 5 + 3) % (OF(_taylor_order) - 1);
 #endif
-    for (int i = 0; i < states; ++i) x[i * stride + s] = x0[i] * (1 + 0.1 * within_one()) + 0.4 * within_one();
-    for (int i = 0; i < OF(_parameters); ++i) p[i * stride + s] = p0[i] * (1 + 0.05 * within_one());
+    for (int i = 0; i < states; ++i) x[i * stride + s] = x0[i] * (1 + within_one() / 8) + within_one() / 2;
+    for (int i = 0; i < OF(_parameters); ++i) p[i * stride + s] = p0[i] * (1 + within_one() / 16);
     for (int i = 0; i < OF(_inputs); ++i) u[i * stride + s] = within_one();
   }
   for (int i = 0; i < OF(_prepared_size); ++i) {
-    for (int s = 0; s < stride; ++s) w[i * stride + s] = 1 + 0.3 * within_one();
+    for (int s = 0; s < stride; ++s) w[i * stride + s] = 1 + within_one() / 4;
   }
   for (int own = 0; own <= all; own += own == 0 ? 5 : all - own > 0 ? all - own : 1) {
     const int line = compare(own, own != 5);
@@ -157,10 +164,10 @@ int main(void) {
   }
   /* Lanes that nobody else may feel: far and infinite angles, what is no number, singular masses. */
   for (int i = 0; i < states; ++i) {
-    x[i * stride + 3] = 1e6 + i;
-    x[i * stride + 4] = (double)NAN;
-    x[i * stride + 12] = 1e200;
-    x[i * stride + 28] = (double)INFINITY;
+    x[i * stride + 3] = (REAL)(1000000 + i);
+    x[i * stride + 4] = (REAL)NAN;
+    x[i * stride + 12] = LARGE;
+    x[i * stride + 28] = (REAL)INFINITY;
   }
   for (int i = 0; i < parameters; ++i) p[i * stride + 17] = 0;
   for (int i = 0; i < OF(_prepared_size); ++i) w[i * stride + 17] = 0;
@@ -170,7 +177,7 @@ int main(void) {
   memcpy(kept, x, sizeof kept);
   OF(_rhs_batch)(count, stride, t, x, p, NULL, mode, all, x, NULL);
   for (int s = 0; s < count; ++s) {
-    double dx[states];
+    REAL dx[states];
     entries_of(kept, states, s, 1, own_x);
     entries_of(p, parameters, s, 1, own_p);
     memcpy(dx, own_x, sizeof dx);

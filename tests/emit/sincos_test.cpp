@@ -4,7 +4,6 @@
 #include <dlfcn.h>
 #include <doctest/doctest.h>
 
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -18,19 +17,24 @@ using namespace test_systems;
 
 namespace {
 
-using Packed = void (*)(double a, double b, double* sine, double* cosine);
+/// Beyond it angles are left to the C library.
+template <class Real>
+constexpr Real far = sizeof(Real) == 4 ? 2048 : 65536;
 
-bool same_bits(double a, double b) {
-  return std::isnan(a) ? std::isnan(b) : std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+template <class Real>
+bool same_bits(Real a, Real b) {
+  return std::isnan(a) ? std::isnan(b) : a == b && std::signbit(a) == std::signbit(b);
 }
 
 /// The kernel compiled with `flags`, its text changed by the caller where another processor or compiler is to be met.
+template <class Real>
 struct Kernel {
   Folder folder;
   void* handle = nullptr;
-  Packed packed = nullptr;
+  void (*packed)(Real a, Real b, Real* sine, Real* cosine) = nullptr;
   explicit Kernel(const std::vector<std::string>& flags, const std::string& replace = "", const std::string& by = "") {
-    std::string text = emit::sincos_kernel("k_", "static inline", "");
+    const char* real = sizeof(Real) == 4 ? "float" : "double";
+    std::string text = emit::sincos_kernel("k_", "static inline", "", sizeof(Real) == 4);
     for (std::size_t at = text.find(replace); !replace.empty() && at != std::string::npos;
          at = text.find(replace, at + by.size())) {
       text.replace(at, replace.size(), by);
@@ -39,16 +43,18 @@ struct Kernel {
     // In a header: clang finds fault with what a source has and does not use, and one test does not use all.
     std::ofstream(folder.path + "/kernel.h") << "#include <float.h>\n#include <math.h>\n#include <string.h>\n" << text;
     std::ofstream(source) << "#include \"kernel.h\"\n"
-                          << "void packed(double a, double b, double* sine, double* cosine);\n"
-                             "void packed(double a, double b, double* sine, double* cosine)\n"
-                             "{\n  k_sincos(a, b, sine, cosine);\n}\n";
+                          << fmt::format(
+                                 "void packed({0} a, {0} b, {0}* sine, {0}* cosine);\n"
+                                 "void packed({0} a, {0} b, {0}* sine, {0}* cosine)\n"
+                                 "{{\n  k_sincos(a, b, sine, cosine);\n}}\n",
+                                 real);
     std::vector<std::string> command{EOMGEN_TEST_CC, "-std=c11", "-fPIC", "-shared", "-o", library};
     command.insert(command.end(), flags.begin(), flags.end());
     const std::string said = complaints(command, {source, "-lm"});
     CHECK(said == "");
     handle = ::dlopen(library.c_str(), RTLD_NOW | RTLD_LOCAL);
     REQUIRE((handle != nullptr));
-    packed = reinterpret_cast<Packed>(::dlsym(handle, "packed"));
+    packed = reinterpret_cast<decltype(packed)>(::dlsym(handle, "packed"));
     REQUIRE((packed != nullptr));
   }
   ~Kernel() {
@@ -57,8 +63,8 @@ struct Kernel {
   Kernel(const Kernel&) = delete;
   Kernel& operator=(const Kernel&) = delete;
 
-  std::pair<double, double> operator()(double angle, double other = 0) const {
-    double sine[2], cosine[2], exchanged[2], exchanged_cosine[2];
+  std::pair<Real, Real> operator()(Real angle, Real other = 0) const {
+    Real sine[2], cosine[2], exchanged[2], exchanged_cosine[2];
     packed(angle, other, sine, cosine);
     packed(other, angle, exchanged, exchanged_cosine);
     CHECK(same_bits(sine[0], exchanged[1]));
@@ -68,55 +74,75 @@ struct Kernel {
 };
 
 /// The distance from the true value in units of its last place.
-double ulps(double got, const cln::cl_R& exact) {
-  const double nearest = std::abs(cln::double_approx(exact));
-  const double unit = std::nextafter(nearest, std::numeric_limits<double>::infinity()) - nearest;
-  return cln::double_approx(cln::abs(numeric::exact(got) - exact) / numeric::exact(unit));
+template <class Real>
+double ulps(Real got, const cln::cl_R& exact) {
+  const Real nearest = std::abs(static_cast<Real>(cln::double_approx(exact)));
+  const Real unit = std::nextafter(nearest, std::numeric_limits<Real>::infinity()) - nearest;
+  return cln::double_approx(cln::abs(numeric::exact(static_cast<double>(got)) - exact) /
+                            numeric::exact(static_cast<double>(unit)));
 }
-double worst(const Kernel& kernel, double angle) {
-  const cln::cl_R x = cln::cl_float(numeric::exact(angle), cln::float_format(60));
+template <class Real>
+double worst(const Kernel<Real>& kernel, Real angle) {
+  const cln::cl_R x = cln::cl_float(numeric::exact(static_cast<double>(angle)), cln::float_format(60));
   const auto [sine, cosine] = kernel(angle);
   return std::max(ulps(sine, cln::sin(x)), ulps(cosine, cln::cos(x)));
 }
 
-std::vector<double> angles() {
-  std::vector<double> list;
+template <class Real>
+std::vector<Real> angles() {
+  std::vector<Real> list;
   std::mt19937_64 random(1);
-  for (const double reach : {1e-3, 0.8, 3.2, 20.0, 1e3, 65536.0}) {
+  for (const double reach : {1e-3, 0.8, 3.2, 20.0, 1e3, static_cast<double>(far<Real>)}) {
     std::uniform_real_distribution<double> within(-reach, reach);
-    for (int i = 0; i < 1500; ++i) list.push_back(within(random));
+    for (int i = 0; i < 1500; ++i) list.push_back(static_cast<Real>(within(random)));
   }
   // Next to multiples of pi/4: where sines and cosines vanish, and where the reduction goes from one quarter to the
   // next.
   const cln::cl_R quarter = cln::pi(cln::float_format(60)) / 4;
-  for (int k = 1; k * 0.7853981633974483 < 65536; k += k < 400 ? 1 : 41) {
-    const double x = cln::double_approx(k * quarter);
-    for (const double towards : {0.0, x, 1e9}) list.push_back(std::nextafter(x, towards));
+  for (int k = 1; k * 0.7853981633974483 < static_cast<double>(far<Real>); k += k < 400 ? 1 : 41) {
+    const Real x = static_cast<Real>(cln::double_approx(k * quarter));
+    for (const Real towards : {Real{0}, x, Real{1e9}}) list.push_back(std::nextafter(x, towards));
   }
   return list;
 }
 
-std::vector<double> special() {
-  const double inf = std::numeric_limits<double>::infinity(), tiny = std::numeric_limits<double>::denorm_min();
-  return {0.0,     -0.0,     tiny,
-          -tiny,   1e-310,   1e-30,
-          65536.0, -65536.0, std::nextafter(65536.0, inf),
-          1e5,     -1e5,     1e22,
-          -1e22,   1e300,    std::numeric_limits<double>::max(),
-          inf,     -inf,     std::nan("")};
+template <class Real>
+std::vector<Real> special() {
+  using Limits = std::numeric_limits<Real>;
+  const Real inf = Limits::infinity(), tiny = Limits::denorm_min(), reach = far<Real>;
+  return {Real{0},
+          -Real{0},
+          tiny,
+          -tiny,
+          Limits::min() / 4,
+          Real(1e-30),
+          reach,
+          -reach,
+          std::nextafter(reach, inf),
+          2 * reach,
+          -2 * reach,
+          Real(1e22),
+          -Real(1e22),
+          Limits::max() / 8,
+          Limits::max(),
+          inf,
+          -inf,
+          Limits::quiet_NaN()};
 }
 
 }  // namespace
 
-TEST_CASE("packed sincos: wrong by less than a unit in the last place up to 65536") {
+TEST_CASE_TEMPLATE("packed sincos: wrong by less than a unit in the last place up to where it leaves off", Real, double,
+                   float) {
   std::vector<std::vector<std::string>> flags = {{"-O2"}};
   // With fused multiplications and wide registers, where this machine has them.
   if (emit::run_process({EOMGEN_TEST_CC, "-march=native", "-E", "-x", "c", "/dev/null"}).status == 0)
     flags.push_back({"-O3", "-march=native"});
   for (const auto& set : flags) {
-    const Kernel kernel(set);
-    double largest = 0, where = 0;
-    for (const double angle : angles()) {
+    const Kernel<Real> kernel(set);
+    double largest = 0;
+    Real where = 0;
+    for (const Real angle : angles<Real>()) {
       const double error = worst(kernel, angle);
       if (error > largest) largest = error, where = angle;
     }
@@ -126,17 +152,18 @@ TEST_CASE("packed sincos: wrong by less than a unit in the last place up to 6553
   }
 }
 
-TEST_CASE(
+TEST_CASE_TEMPLATE(
     "packed sincos: zeros keep their sign, denormals are their own sine, what is large or not finite is the C "
-    "library's") {
-  const Kernel kernel({"-O2"});
-  for (const double angle : special()) {
+    "library's",
+    Real, double, float) {
+  const Kernel<Real> kernel({"-O2"});
+  for (const Real angle : special<Real>()) {
     CAPTURE(angle);
     const auto [sine, cosine] = kernel(angle);
-    if (std::abs(angle) <= 65536) {
+    if (std::abs(angle) <= far<Real>) {
       CHECK(same_bits(kernel(-angle).first, -sine));
       CHECK(same_bits(kernel(-angle).second, cosine));
-      const bool its_own_sine = std::abs(angle) < 1e-300;  // CLN's floats underflow there
+      const bool its_own_sine = std::abs(angle) < std::numeric_limits<Real>::min();  // CLN's floats underflow there
       CHECK((its_own_sine ? same_bits(sine, angle) && cosine == 1
                           : worst(kernel, angle) < tolerances::packed_sincos_ulps));
     } else {
@@ -146,14 +173,14 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("packed sincos: the same bits in any company, with and without optimisation") {
-  const Kernel kernel({"-O2"}), unoptimised({"-O0"});
-  std::vector<double> all = angles();
-  const std::vector<double> more = special();
+TEST_CASE_TEMPLATE("packed sincos: the same bits in any company, with and without optimisation", Real, double, float) {
+  const Kernel<Real> kernel({"-O2"}), unoptimised({"-O0"});
+  std::vector<Real> all = angles<Real>();
+  const std::vector<Real> more = special<Real>();
   all.insert(all.end(), more.begin(), more.end());
-  for (const double angle : all) {
+  for (const Real angle : all) {
     const auto [sine, cosine] = kernel(angle);
-    for (const double other : {-3.0, 1e22, std::nan("")}) {
+    for (const Real other : {Real(-3), Real(1e22), std::numeric_limits<Real>::quiet_NaN()}) {
       CHECK(same_bits(kernel(angle, other).first, sine));
       CHECK(same_bits(kernel(angle, other).second, cosine));
     }
@@ -162,10 +189,11 @@ TEST_CASE("packed sincos: the same bits in any company, with and without optimis
   }
 }
 
-TEST_CASE(
-    "packed sincos: without vector types, or where doubles are kept in wider registers, all is left to the C library") {
-  const Kernel kernel({"-O2"}, "defined(__GNUC__) && defined(FLT_EVAL_METHOD)", "0");
-  for (const double angle : {0.5, -2.0, 1e3, 1e22}) {
+TEST_CASE_TEMPLATE(
+    "packed sincos: without vector types, or where numbers are kept in wider registers, all is left to the C library",
+    Real, double, float) {
+  const Kernel<Real> kernel({"-O2"}, "defined(__GNUC__) && defined(FLT_EVAL_METHOD)", "0");
+  for (const Real angle : {Real(0.5), Real(-2), Real(1e3), Real(1e22)}) {
     CHECK(same_bits(kernel(angle).first, std::sin(angle)));
     CHECK(same_bits(kernel(angle).second, std::cos(angle)));
   }

@@ -102,6 +102,11 @@ std::string wrong_script(const std::string& folder, const Example& e) {
 /// What is wrong with what a target wrote; empty if it works. A target without an entry fails the test of all.
 const std::map<std::string, std::string (*)(const std::string& folder, const Example& e)> uses = {
     {"c", wrong_c},
+    {"batch",  // what its lanes compute: batch_test.cpp
+     [](const std::string& folder, const Example& e) {
+       const std::string of_c = wrong_c(folder, e), c = folder + "/" + emit::mangled_id(e.context.id) + "_batch.c";
+       return of_c.empty() ? complaints(with(compile_c(), {"-c", "-o", folder + "/batch.o"}), {c}) : of_c;
+     }},
     {"cpp",
      [](const std::string& folder, const Example& e) {
        const std::string name = emit::mangled_id(e.context.id), of_c = wrong_c(folder, e);
@@ -125,7 +130,6 @@ const std::map<std::string, std::string (*)(const std::string& folder, const Exa
 TEST_CASE("single precision: every target has it, passes its self test, and tells what it costs") {
   for (const emit::TargetEntry& target : emit::targets()) {
     INFO(target.name);
-    if (std::string(target.name) == "batch") continue;
     const auto use = uses.find(target.name);
     REQUIRE((use != uses.end()));
     for (const Example& e : single_examples()) {
@@ -260,7 +264,7 @@ TEST_CASE("single precision: numbers beyond it are refused by every target") {
   e.context.parameters[0].value = other.context.parameters[0].value = 1e60;
   CHECK_THROWS_WITH_AS(emit::make_single(other.program, other.context),
                        doctest::Contains("the parameter m = 1e+60 has no place in single precision"), Error);
-  for (const char* target : {"c", "python", "javascript"}) {
+  for (const char* target : {"c", "batch", "python", "javascript"}) {
     INFO(target);
     CHECK_THROWS_AS(emit::emit(e.program, e.context, target), Error);
   }

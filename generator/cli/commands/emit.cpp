@@ -163,7 +163,7 @@ Execute declare_emit(Arguments& app) {
                      fmt::join(abi::asked_for(), ", ")))
       .one_of(pipeline::emitted_functions());
   app.add_list("--output", options->outputs, "names for the function outputs");
-  app.add_option("--real", options->real, "double, or float: single precision, which the target batch does not know")
+  app.add_option("--real", options->real, "double, or float: single precision")
       .show_preset()
       .one_of({"double", "float"});
   add_approach(app, options->approach);

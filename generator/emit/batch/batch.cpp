@@ -7,6 +7,7 @@
 #include <eom/modes/contact_state.hpp>
 #include <set>
 
+#include "emit/batch/lane_numbers.hpp"
 #include "emit/batch/taylor_lanes.hpp"
 #include "emit/c/c.hpp"
 #include "emit/kernels.hpp"
@@ -49,12 +50,7 @@ class File {
         name_(mangled_id(context.id)),
         prefix_(name_ + "_batch_"),
         names_(model_names(program, context)) {
-    dialect_.real = prefix_ + "lanes";
-    dialect_.constant = [](const symbolic::Rational& value) { return decimal(nearest_double(value)); };
-    dialect_.value = decimal;
-    dialect_.pi = "3.141592653589793";
-    dialect_.absolute = "fabs";
-    dialect_.lanes = prefix_;
+    dialect_ = dialect_of_lanes(single(), prefix_);
     NameTable table;
     for (const auto* list : {&names_.state, &names_.contacts, &names_.parameters, &names_.inputs, &names_.sides}) {
       for (const std::string& name : *list) table.declare(name);
@@ -75,11 +71,14 @@ class File {
         {"contact_states", std::to_string(eom::contact_states)},
         {"sincos", packs_ ? sincos() : ""},
         {"names", named()}};
+    const std::vector<std::pair<std::string, std::string>> numbers = values_of_lanes(single());
+    values.insert(values.end(), numbers.begin(), numbers.end());
     return {{name_ + "_batch.c", rendered(skeleton::batch_model_batch_c, values, defined_)},
             {name_ + "_batch.h", rendered(skeleton::batch_model_batch_h, values, declared_)}};
   }
 
  private:
+  bool single() const { return context_.single_error.has_value(); }
   std::size_t entries(const Array& array) const {
     switch (array.slot) {
       case Slot::time: return 1;
@@ -139,13 +138,13 @@ class File {
   static bool is_integer(const Argument& a) {
     return a.kind == Argument::Kind::mode || a.kind == Argument::Kind::integer;
   }
-  static std::string batch_arguments(const std::vector<Argument>& list) {
+  std::string batch_arguments(const std::vector<Argument>& list) {
     std::string inputs, results;
     for (const Argument& a : list) {
       if (a.kind == Argument::Kind::result)
-        results += fmt::format("double* {}, ", a.name);
+        results += fmt::format("{}* {}, ", dialect_.element, a.name);
       else
-        inputs += fmt::format("const {}* {}, ", is_integer(a) ? "int" : "double", a.name);
+        inputs += fmt::format("const {}* {}, ", is_integer(a) ? "int" : dialect_.element, a.name);
     }
     return "size_t count, size_t stride, " + inputs + "int own, " + results + "int* codes";
   }
@@ -210,8 +209,9 @@ class File {
     const bool inputs = takes(list, Slot::input) && !context_.inputs.empty();
     if (inputs) {
       std::string values;
-      for (const Quantity& input : context_.inputs) values += (values.empty() ? "" : ", ") + decimal(input.value);
-      body += wrapped(fmt::format("  static const double standing[] = {{{}}};", values), "      ") + "\n";
+      for (const Quantity& input : context_.inputs)
+        values += (values.empty() ? "" : ", ") + dialect_.value(input.value);
+      body += wrapped(fmt::format("  static const {} standing[] = {{{}}};", dialect_.element, values), "      ") + "\n";
     }
     const auto size = [&](std::size_t count) {
       if (count > 0) numbers += (numbers.empty() ? "" : " + ") + std::to_string(count);
@@ -247,7 +247,7 @@ class File {
                           size(results[r].second));
     }
     if (function == "taylor") fill += rows_asked_for();
-    body += fmt::format("  double room[({}WIDTH + 1)*({})];\n", prefix_, numbers.empty() ? "1" : numbers);
+    body += fmt::format("  {} room[({}WIDTH + 1)*({})];\n", dialect_.element, prefix_, numbers.empty() ? "1" : numbers);
     const std::string head =
         wrapped(fmt::format("static int {}({})", name_for_width(function + "_many"), batch_arguments(list)), "    ");
     return fmt::format("{}\n{{\n{}{}  return {}run(&call, count, stride, room, codes);\n}}\n", head, body, fill,
@@ -294,7 +294,7 @@ class File {
 
   std::string sincos() const {
     constexpr const char* together = R"(
-/* Sines and cosines of the lanes of one angle, right up to 65536. Adds their sizes to `reach`: lanes in which that stays
+/* Sines and cosines of the lanes of one angle, right up to {1}. Adds their sizes to `reach`: lanes in which that stays
  * below it are fine. */
 {0}INLINE void {0}sincos({0}lanes angle, {0}lanes* sine, {0}lanes* cosine, {0}lanes* reach)
 {{
@@ -303,7 +303,8 @@ class File {
   *reach += size;
 }}
 )";
-    return sincos_lanes(prefix_, "static inline", "") + fmt::format(together, prefix_);
+    return sincos_lanes(prefix_, "static inline", "", single()) +
+           fmt::format(together, prefix_, single() ? 2048 : 65536);
   }
 
   std::string library() const {
@@ -314,7 +315,7 @@ class File {
           two ? fmt::format("{0}lanes a, {0}lanes b", prefix_) : fmt::format("{}lanes a", prefix_);
       text += fmt::format(
           "{0}INLINE {0}lanes {1}({2})\n{{\n  for (int k = 0; k < {0}WIDTH; ++k) a[k] = {3}({4});\n  return a;\n}}\n\n",
-          prefix_, prefix_ + function, arguments, function, two ? "a[k], b[k]" : "a[k]");
+          prefix_, prefix_ + function, arguments, function + (single() ? "f" : ""), two ? "a[k], b[k]" : "a[k]");
     }
     return text;
   }

@@ -96,7 +96,7 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const bool single = context.single_error.has_value();
   Dialect dialect = single ? single_dialect() : c_dialect();
   dialect.kernels = name + "_";
-  dialect.near_first = !single;
+  dialect.near_first = true;
   if (single && (program.taylor || context.run)) {
     throw Error("emit", {}, "the Taylor series and the header of a run know double precision alone",
                 "leave taylor and run out of --with, or --real float");
@@ -128,13 +128,12 @@ std::vector<EmittedFile> emit_c(const program::Program& program, const EmissionC
   const std::vector<std::pair<std::string, std::string>> values = {
       {"banner", banner(program, context, "/* ", " * ", " */")},
       {"name", name},
-      {"includes", single                    ? "#include <math.h>\n#include <tgmath.h>"
-                   : packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>"
-                                             : "#include <math.h>"},
+      {"includes", fmt::format("{}{}",
+                               packs || program.taylor ? "#include <float.h>\n#include <math.h>\n#include <string.h>"
+                                                       : "#include <math.h>",
+                               single ? "\n#include <tgmath.h>" : "")},
       {"real", dialect.real},
-      {"kernels", packs && single ? single_sincos(name + "_")
-                  : packs         ? sincos_kernel(name + "_", "static inline", "") + "\n"
-                                  : ""},
+      {"kernels", packs ? sincos_kernel(name + "_", "static inline", "", single) + "\n" : ""},
       {"sizes", sizes(name, program, context)},
       {"info", string_literal(info_json(program, context), "      ")},
       {"defaults", defaults_body(program, context, dialect)},
