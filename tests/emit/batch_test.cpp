@@ -3,6 +3,7 @@
 #include <doctest/doctest.h>
 
 #include "emit/examples.hpp"
+#include "emit/shared_library/loaded_batch.hpp"
 #include "error.hpp"
 
 using namespace eomgen;
@@ -81,6 +82,21 @@ TEST_CASE("batch: series of states side by side, each of an order of its own") {
     REQUIRE(e.program.taylor);
     CHECK(wrong(e) == "");
   }
+}
+
+TEST_CASE("batch: what is loaded for an ensemble has its functions, also where it has been moved to") {
+  const Example e =
+      example("chain3", chain(3), {"a", "b", "c"}, {"m1", "m2", "m3", "l1", "l2", "l3", "g"}, {}, {"taylor", "jac"});
+  std::vector<std::pair<std::string, std::string>> files;
+  for (const emit::EmittedFile& file : emit::emit(e.program, e.context, "batch"))
+    files.emplace_back(file.name, file.text);
+  emit::LoadedBatch loaded = emit::compile_and_load_batch(files, emit::mangled_id(e.context.id), nullptr);
+  const emit::LoadedBatch moved = std::move(loaded);
+  CHECK((moved.rhs != nullptr));
+  CHECK((moved.rhs_prepared != nullptr));
+  CHECK((moved.jac != nullptr));
+  CHECK((moved.taylor != nullptr));
+  CHECK(moved.width >= 1);
 }
 
 TEST_CASE("batch: compiled for any processor of its kind, it takes the widest registers of the one that it meets") {

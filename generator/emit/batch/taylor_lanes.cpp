@@ -10,6 +10,8 @@
 namespace eomgen::emit {
 namespace {
 
+static_assert(program::taylor_lanes % 4 == 0);
+
 constexpr std::size_t most_lanes = 8, stack_budget = std::size_t{1} << 21;  // bytes, as of one state alone
 
 // Sums are added up in the order of NAME_taylor_sums, and orders are computed up to the highest that a lane asks for.
@@ -17,10 +19,20 @@ constexpr const char* text = R"(/* sums[i] = a_1 b_(k-1) + ... + a_(k-1) b_1 of 
 static void {0}taylor_sums(int k, const {0}lanes* a, const {0}lanes* b, {0}lanes* sums)
 {{
   int i, j;
-  for (i = 0; i < {products}; ++i) {{
-    {0}lanes sum = {{0}};
-    for (j = 1; j < k; ++j) sum += a[j*{products} + i]*b[(k - j)*{products} + i];
-    sums[i] = sum;
+  for (i = 0; i < {products}; i += 4) {{
+    {0}lanes s0 = {{0}}, s1 = {{0}}, s2 = {{0}}, s3 = {{0}}; /* a sum waits for its last one */
+    for (j = 1; j < k; ++j) {{
+      const {0}lanes* const u = a + j*{products} + i;
+      const {0}lanes* const v = b + (k - j)*{products} + i;
+      s0 += u[0]*v[0];
+      s1 += u[1]*v[1];
+      s2 += u[2]*v[2];
+      s3 += u[3]*v[3];
+    }}
+    sums[i] = s0;
+    sums[i + 1] = s1;
+    sums[i + 2] = s2;
+    sums[i + 3] = s3;
   }}
 }}
 

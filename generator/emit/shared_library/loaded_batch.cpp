@@ -48,9 +48,9 @@ bool agrees(const LoadedBatch& batch) {
 }  // namespace
 
 LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : model(path, name) {
-  handle_ = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  handle_.reset(::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL));
   const auto find = [&](const char* what) {
-    return handle_ == nullptr ? nullptr : ::dlsym(handle_, (name + what).c_str());
+    return handle_ == nullptr ? nullptr : ::dlsym(handle_.get(), (name + what).c_str());
   };
   rhs = reinterpret_cast<BatchFunction>(find("_rhs_batch"));
   rhs_prepared = reinterpret_cast<PreparedBatchFunction>(find("_rhs_prepared_batch"));
@@ -61,7 +61,6 @@ LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : mod
   const bool whole =
       rhs != nullptr && width_of != nullptr && (model.rhs_prepared == nullptr || rhs_prepared != nullptr);
   if (whole && agrees(*this)) return;
-  if (handle_ != nullptr) ::dlclose(handle_);
   throw Error("compile", {},
               whole ? "a batch of compiled code has other bits than its states alone: " + path
                     : "compiled code lacks batches: " + path,
@@ -70,17 +69,7 @@ LoadedBatch::LoadedBatch(const std::string& path, const std::string& name) : mod
               Fault::tool);
 }
 
-LoadedBatch::~LoadedBatch() {
-  if (handle_ != nullptr) ::dlclose(handle_);
-}
-
-LoadedBatch::LoadedBatch(LoadedBatch&& other) noexcept
-    : model(std::move(other.model)),
-      rhs(other.rhs),
-      rhs_prepared(other.rhs_prepared),
-      width(other.width),
-      folder(std::move(other.folder)),
-      handle_(std::exchange(other.handle_, nullptr)) {}
+void LoadedBatch::Close::operator()(void* handle) const { ::dlclose(handle); }
 
 LoadedBatch compile_and_load_batch(const std::vector<std::pair<std::string, std::string>>& files,
                                    const std::string& name, const std::atomic<bool>* interrupt) {

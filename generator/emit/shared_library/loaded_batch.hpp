@@ -33,9 +33,6 @@ class LoadedBatch {
   /// Throws Error{Fault::tool} as LoadedModel does, and where a batch of the default state has other bits than that
   /// state alone.
   LoadedBatch(const std::string& path, const std::string& name);
-  ~LoadedBatch();
-  LoadedBatch(LoadedBatch&& other) noexcept;
-  LoadedBatch& operator=(LoadedBatch&&) = delete;
 
   LoadedModel model;
   BatchFunction rhs = nullptr;
@@ -46,7 +43,10 @@ class LoadedBatch {
   std::shared_ptr<const Workplace> folder = {};  // of a library that is kept for this process alone
 
  private:
-  void* handle_ = nullptr;
+  struct Close {
+    void operator()(void* handle) const;
+  };
+  std::unique_ptr<void, Close> handle_;
 };
 
 /// `files`: name and text of NAME.c, NAME.h, NAME_batch.c and NAME_batch.h.
