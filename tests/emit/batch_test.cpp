@@ -4,6 +4,7 @@
 
 #include "emit/examples.hpp"
 #include "emit/shared_library/loaded_batch.hpp"
+#include "emit/single_precision.hpp"
 #include "error.hpp"
 
 using namespace eomgen;
@@ -16,13 +17,20 @@ struct Width {
   std::vector<std::string> flags;
 };
 
-/// What the processor of this machine can run.
-std::vector<Width> widths() {
-  std::vector<Width> all{{2, {"-DEOM_BATCH_LANES=2"}}, {1, {"-DEOM_BATCH_LANES=1"}}};
+/// What the processor of this machine can run, in single precision twice as many.
+std::vector<Width> widths(const Example& e) {
+  const int twice = e.context.single_error ? 2 : 1;
+  const auto asked = [](int lanes) { return fmt::format("-DEOM_BATCH_LANES={}", lanes); };
+  std::vector<Width> all{{2 * twice, {asked(2 * twice)}}, {1, {asked(1)}}};
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx2")) all.push_back({4, {"-mavx2", "-DEOM_BATCH_LANES=4"}});
-  if (__builtin_cpu_supports("avx512f")) all.push_back({8, {"-mavx512f"}});
+  if (__builtin_cpu_supports("avx2")) all.push_back({4 * twice, {"-mavx2", asked(4 * twice)}});
+  if (__builtin_cpu_supports("avx512f")) all.push_back({8 * twice, {"-mavx512f"}});
 #endif
+  return all;
+}
+
+std::vector<Example> in_single(std::vector<Example> all) {
+  for (Example& e : all) emit::make_single(e.program, e.context);
   return all;
 }
 
@@ -40,6 +48,7 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
                                    "-DHEADER=\"" + name + "_batch.h\"",
                                    "-DMODES=" + modes,
                                    fmt::format("-DWIDTH={}", width.lanes),
+                                   e.context.single_error ? "-DREAL=float" : "-DREAL=double",
                                    "-I" + folder};
   command.insert(command.end(), width.flags.begin(), width.flags.end());
   for (const auto& [function, define] :
@@ -57,7 +66,7 @@ std::string wrong(const std::string& folder, const Example& e, const Width& widt
 std::string wrong(const Example& e, const std::string& modes = "0") {
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-  for (const Width& width : widths()) {
+  for (const Width& width : widths(e)) {
     const std::string found = wrong(folder.path, e, width, modes);
     if (!found.empty()) return fmt::format("{} lanes: {}", width.lanes, found);
   }
@@ -70,6 +79,10 @@ TEST_CASE(
     "batch: every state has the bits and the code that it has alone, whatever its neighbours are, for every width") {
   for (const Example& e : examples()) {
     INFO(e.context.id);
+    CHECK(wrong(e) == "");
+  }
+  for (const Example& e : in_single(examples())) {
+    INFO("in single precision ", e.context.id);
     CHECK(wrong(e) == "");
   }
 }
@@ -100,16 +113,18 @@ TEST_CASE("batch: what is loaded for an ensemble has its functions, also where i
 }
 
 TEST_CASE("batch: compiled for any processor of its kind, it takes the widest registers of the one that it meets") {
-  const Example e = example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"});
-  const Folder folder;
-  emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-  int widest = widths().front().lanes;
-  for (const Width& width : widths()) widest = std::max(widest, width.lanes);
-  CHECK(wrong(folder.path, e, {widest, {}}, "0") == "");
+  const Example two = example("two", double_pendulum(), {"theta1", "theta2"}, {"m1", "m2", "l1", "l2", "g"});
+  for (const Example& e : {two, in_single({two}).front()}) {
+    const Folder folder;
+    emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
+    int widest = widths(e).front().lanes;
+    for (const Width& width : widths(e)) widest = std::max(widest, width.lanes);
+    CHECK(wrong(folder.path, e, {widest, {}}, "0") == "");
 #if defined(__x86_64__) && defined(__GNUC__)
-  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
-    CHECK(wrong(folder.path, e, {widest, {"-mavx2", "-mfma"}}, "0") == "");
+    if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma"))
+      CHECK(wrong(folder.path, e, {widest, {"-mavx2", "-mfma"}}, "0") == "");
 #endif
+  }
 }
 
 TEST_CASE("batch: a function of thousands of operations comes in parts") {
@@ -124,21 +139,24 @@ TEST_CASE("batch: a function of thousands of operations comes in parts") {
   REQUIRE(e.program.functions[0].code.size() > 3000);
   const Folder folder;
   emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-  CHECK(wrong(folder.path, e, widths().back(), "0") == "");
+  CHECK(wrong(folder.path, e, widths(e).back(), "0") == "");
 }
 
 TEST_CASE("batch: hostile names, and every compiler there is") {
-  Example e = example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"fine", "place", "now", "w_0", "dx"});
-  CHECK(wrong(e) == "");
-  const Folder folder;
-  emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
-  const std::string c = folder.path + "/two_batch.c";
-  CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) == "");
-  if (emit::run_process({"clang", "--version"}).started) {
-    CHECK(complaints({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
+  const Example two =
+      example("two", double_pendulum(), {"two_batch_sincos", "block"}, {"fine", "place", "now", "w_0", "dx"});
+  for (const Example& e : {two, in_single({two}).front()}) {
+    CHECK(wrong(e) == "");
+    const Folder folder;
+    emit::write_files(folder.path, emit::emit(e.program, e.context, "batch"));
+    const std::string c = folder.path + "/two_batch.c";
+    CHECK(complaints({EOMGEN_TEST_CXX, "-std=c++20", "-x", "c++", "-c", "-o", folder.path + "/o"}, {c}) == "");
+    if (emit::run_process({"clang", "--version"}).started) {
+      CHECK(complaints({"clang", "-std=c11", "-c", "-o", folder.path + "/o"}, {c}) == "");
+    }
+    CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c})
+              .find("without -ffast-math") != std::string::npos);
   }
-  CHECK(complaints({EOMGEN_TEST_CC, "-std=c11", "-ffast-math", "-c", "-o", folder.path + "/o"}, {c})
-            .find("without -ffast-math") != std::string::npos);
 }
 
 TEST_CASE("batch: what the other target writes stays as it is") {
