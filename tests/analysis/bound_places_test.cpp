@@ -36,6 +36,16 @@ TEST_CASE("drawing: rods are where coordinates or a constraint hold two masses a
   }
 }
 
+TEST_CASE("drawing: the rods of a long chain are all found") {
+  mechanics::Mechanics m = mechanics::build_mechanics(model::read_model_text(
+      "format = 1\n[[chain]]\nname = \"link\"\nn = 40\nmass = \"1 kg\"\nlength = \"1 m\"\n[[force]]\ngravity = "
+      "\"-9.81[m/s^2]*E2\"\n",
+      "chain.toml"));
+  const analysis::Drawing drawing(m);
+  CHECK(drawing.parts().rods.size() == 40);
+  CHECK_FALSE(drawing.parts().untried_rods);
+}
+
 TEST_CASE("drawing: a body whose position turns with it has a joint where it does") {
   const AtStart found = shipped("n_four_bar_2");
   std::vector<Eigen::Vector3d> wanted{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 1, 0}};

@@ -215,6 +215,4 @@ TEST_CASE("drawing: what is no arrow is named, and arrows beyond what anybody te
   const AtStart all = of_text(replaced(many, "E3", "E2") + "[scene.default]\ninitial = { x0 = 1 }\n");
   CHECK(all.forces.list().size() == 60);
   CHECK(all.forces.beyond() == 3);
-  CHECK(all.drawing.parts().untried_rods);
-  CHECK_FALSE(shipped("S6_chain_6").drawing.parts().untried_rods);
 }

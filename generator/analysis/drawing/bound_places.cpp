@@ -21,8 +21,8 @@ using symbolic::Vec3;
 
 namespace {
 
-constexpr std::uint32_t most_places = 30;  // of which each pair is tried for a rod
-constexpr double parallel = 1e-9;          // of slopes in binary64, relative
+constexpr std::uint32_t most_places = 200;  // of which each pair is tried for a rod
+constexpr double parallel = 1e-9;           // of slopes in binary64, relative
 
 std::set<std::uint32_t> coordinates_of(const symbolic::Dag& dag, const std::vector<Ref>& expressions) {
   std::set<std::uint32_t> result;
@@ -65,6 +65,45 @@ bool are_parallel(const symbolic::Dag& dag, const std::vector<Ref>& slopes) {
   }
   return true;
 }
+
+/// What tells of most pairs of places, without a derivative, that no rod is between them.
+class DistancesAnywhere {
+ public:
+  explicit DistancesAnywhere(const mechanics::Mechanics& m) {
+    std::vector<Ref> all;
+    for (const auto& r : m.place_position) {
+      all.insert(all.end(), r->begin(), r->end());
+      coordinates_.push_back(coordinates_of(*m.dag, {(*r)[0], (*r)[1], (*r)[2]}));
+    }
+    for (int state = 0; state < 2; ++state) {
+      positions_.push_back(symbolic::evaluate(*m.dag, all, [state](const Symbol& s) {
+        return anywhere(s, s.kind == SymbolKind::parameter ? 0 : state);  // of one system
+      }));
+    }
+  }
+  /// Their distance at two states is one, as far as numbers say.
+  bool may_be_rigid(std::size_t a, std::size_t b) const {
+    const double before = square(0, a, b), after = square(1, a, b);
+    return !(std::abs(before - after) > parallel * (before + after));
+  }
+  /// Positions that name all of these.
+  bool have(std::size_t a, std::size_t b, const std::set<std::uint32_t>& coordinates) const {
+    return std::all_of(coordinates.begin(), coordinates.end(),
+                       [&](std::uint32_t c) { return coordinates_[a].contains(c) || coordinates_[b].contains(c); });
+  }
+
+ private:
+  double square(std::size_t state, std::size_t a, std::size_t b) const {
+    double sum = 0;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const double d = positions_[state][3 * a + k] - positions_[state][3 * b + k];
+      sum += d * d;
+    }
+    return sum;
+  }
+  std::vector<std::vector<double>> positions_;
+  std::vector<std::set<std::uint32_t>> coordinates_;
+};
 
 }  // namespace
 
@@ -246,11 +285,12 @@ void Drawing::pivots() {
 void Drawing::rods() {
   parts_.untried_rods = model_.places.size() > most_places;
   if (parts_.untried_rods) return;
+  const DistancesAnywhere distances(mechanics_);
   for (const model::Particle& particle : model_.particles) {
     if (model_.places[particle.place].chart) continue;
     // The nearest before it in the model, as of the links of a chain.
     for (std::uint32_t a = particle.place; a-- > 0;) {
-      if (!is_rigid(a, particle.place)) continue;
+      if (!distances.may_be_rigid(a, particle.place) || !is_rigid(a, particle.place)) continue;
       parts_.rods.push_back({static_cast<long>(a) - 1, static_cast<long>(particle.place) - 1});
       break;
     }
@@ -265,10 +305,11 @@ void Drawing::rods() {
     const mechanics::Constraint& c = mechanics_.constraints[k];
     const model::Constraint& of = written(model_, c);
     if (!binds_places(mechanics_, c, of) || of.unilateral || of.friction) continue;
+    const std::set<std::uint32_t> coordinates = coordinates_of(*mechanics_.dag, {c.psi});
     bool found = false;
     for (std::uint32_t a = 0; a < model_.places.size() && !found; ++a) {
       for (std::uint32_t b = a + 1; b < model_.places.size() && !found; ++b) {
-        found = is_rod(k, a, b);
+        found = distances.have(a, b, coordinates) && is_rod(k, a, b);
         const DrawnPlace& place = parts_.places[b - 1];
         const bool linked = place.from && *place.from == static_cast<long>(a) - 1;
         if (found && !linked) parts_.rods.push_back({static_cast<long>(a) - 1, static_cast<long>(b) - 1});

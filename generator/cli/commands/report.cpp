@@ -73,28 +73,45 @@ void add_model(Html& html, const model::Model& model, const Json& found) {
 }
 
 // A page that is opened anywhere stays small: what is longer than a reader follows is left to `derive`.
-struct Room {
-  std::size_t taken;     // by what is not in `html`
-  std::size_t formulas;  // left for all formulas
-};
-void add_formula(Html& html, const std::string& mathml, Room& room) {
-  if (mathml.size() > std::min(longest_formula, room.formulas) ||
-      room.taken + html.text().size() + mathml.size() > largest_page) {
-    html.paragraph(fmt::format("Left out: {} kB of formula, more than a page shows. `eomgen derive` writes it.",
-                               (mathml.size() + 999) / 1000),
-                   "quiet");
-    return;
+class Formulas {
+ public:
+  /// `taken`: bytes of the page beside `html`.
+  Formulas(Html& html, std::size_t taken) : html_(html), taken_(taken) {}
+
+  void add(const std::string& mathml) {
+    if (mathml.size() > std::min(longest_formula, room_) ||
+        taken_ + html_.text().size() + mathml.size() > largest_page) {
+      ++left_out_;
+      bytes_ += mathml.size();
+      return;
+    }
+    end();
+    room_ -= mathml.size();
+    html_.formula(mathml);
   }
-  room.formulas -= mathml.size();
-  html.formula(mathml);
-}
+  /// Tells how many were left out since it told so.
+  void end() {
+    if (left_out_ > 0) {
+      html_.paragraph(
+          fmt::format("Left out: {} kB of {}, more than a page shows. `eomgen derive` writes {}.",
+                      (bytes_ + 999) / 1000, left_out_ == 1 ? "formula" : fmt::format("{} formulas", left_out_),
+                      left_out_ == 1 ? "it" : "them"),
+          "quiet");
+    }
+    left_out_ = bytes_ = 0;
+  }
+
+ private:
+  Html& html_;
+  std::size_t taken_, room_ = longest_formulas, left_out_ = 0, bytes_ = 0;
+};
 
 /// `taken`: bytes of the rest of the page.
 void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<conservation::Conserved>& conserved,
                    std::size_t taken) {
   const reading::ReadingForm form = analysis::form_to_show(m);
   html.heading(2, fmt::format("Lagrange's equations, approach {}", system::name(form.approach)));
-  Room room{taken, longest_formulas};
+  Formulas formulas(html, taken);
   const std::vector<std::pair<std::string, std::string>> sections{{"constraints", "Constraints and functions of time"},
                                                                   {"energies", "Energies"},
                                                                   {"equations", "Equations of motion"},
@@ -121,23 +138,30 @@ void add_equations(Html& html, const mechanics::Mechanics& m, const std::vector<
                                : item.key == "singular" ? "approach " + item.role
                                : item.key == "parts"    ? item.role + (item.name.empty() ? "" : " of " + item.name)
                                                         : item.role;
-      if (what != before && !what.empty()) html.paragraph(what, "quiet");
+      if (what != before && !what.empty()) {
+        formulas.end();
+        html.paragraph(what, "quiet");
+      }
       before = what;
-      add_formula(html, item.mathml, room);
+      formulas.add(item.mathml);
     }
+    formulas.end();
     if (derivatives.empty()) continue;
     html.markup("<details><summary>Their time derivatives</summary>");
     for (const print::Item& item : derivatives) {
+      formulas.end();
       html.paragraph(item.name + ", " + item.role, "quiet");
-      add_formula(html, item.mathml, room);
+      formulas.add(item.mathml);
     }
+    formulas.end();
     html.markup("</details>");
   }
   if (conserved.empty()) return;
   html.heading(3, "Conserved");
   for (const conservation::Conserved& c : conserved) {
     html.paragraph(c.title, "quiet");
-    add_formula(html, print::render_expression(m, "", "", c.expression).mathml, room);
+    formulas.add(print::render_expression(m, "", "", c.expression).mathml);
+    formulas.end();
   }
 }
 
