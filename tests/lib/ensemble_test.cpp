@@ -310,15 +310,19 @@ TEST_CASE("ensemble: Rosenbrock steps of members side by side have the bits that
 
 TEST_CASE(
     "ensemble: Taylor series of members side by side, each of its own order, have the bits that they have alone") {
-  for (const auto& [rtol, lanes] : {std::pair<double, std::size_t>{1e-12, 32}, {1e-4, 13}, {1e-8, 64}, {1e-15, 7}}) {
-    CAPTURE(rtol);
+  struct Case {
+    double rtol;
+    std::size_t lanes;
+  };
+  for (const Case& c : {Case{1e-12, 32}, {1e-4, 13}, {1e-8, 64}, {1e-15, 7}}) {
+    CAPTURE(c.rtol);
     eom::EnsembleOptions options;
-    options.rtol = rtol;
-    options.atol = 1e-2 * rtol;
-    options.lanes = lanes;
-    options.threads = lanes == 13 ? 2 : 1;
+    options.rtol = c.rtol;
+    options.atol = 1e-2 * c.rtol;
+    options.lanes = c.lanes;
+    options.threads = c.lanes == 13 ? 2 : 1;
     options.max_steps = 3000;  // at the finest tolerance a jump takes all of them
-    if (lanes == 64) options.initial_step = 0.3, options.max_step = 0.4;
+    if (c.lanes == 64) options.initial_step = 0.3, options.max_step = 0.4;
     CHECK(eom::ensemble::has_lanes<WithSeries>("taylor", options));
     CHECK(rejected_as_alone("taylor", WithSeries{}, options) > 100);
   }
