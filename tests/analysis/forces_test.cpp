@@ -184,6 +184,16 @@ TEST_CASE("drawing: what acts along an angle is a moment on the body that it tur
   }
 }
 
+TEST_CASE("drawing: a constraint on an angle is a moment on the body that does no work along the other angles") {
+  AtStart start = shipped("R8_pendulum_body");
+  CHECK(start.forces.without_vector().empty());
+  const auto& list = start.forces.list();
+  const auto found = std::find_if(list.begin(), list.end(), [](const auto& force) { return force.name == "no_spin"; });
+  REQUIRE(found != list.end());
+  CHECK(found->turns);
+  CHECK(std::string_view(found->kind) == "constraint");
+}
+
 TEST_CASE("drawing: a generalised force on a mass that its coordinate holds is no part of what the constraints exert") {
   AtStart start = of_text(
       "[parameters]\nm = \"1 kg\"\nL = \"2 m\"\n[[particle]]\nname = \"P\"\nmass = \"m\"\nposition = { cylindrical = "

@@ -179,6 +179,10 @@ async function look(entry) {
       at.forces = forces(page, report);
       if (report.scene.surfaces.length > 0) at.surfaces = surfaces(report);
       if (entry.bowl) at.carried = carried(report);
+      if (entry.floor) {
+        const lines = report.scene.surfaces[0].find(report.player.at, report.scene.now);
+        at.floor = {lines: lines.length, off: Math.max(...lines.flat().map(([, y]) => Math.abs(y)))};
+      }
       at.live = report.live !== null;
       if (width === widths[0] && entry.drag) at.drag = await drag(frame, report, entry.drag);
     }

@@ -196,6 +196,10 @@ void check(const Json& found, const Case& c, const Json& wanted) {
       CHECK(at["carried"]["off"] < on_the_sphere);
       CHECK(at["carried"]["moved"] > 0.1);
     }
+    if (c.model == "bouncing_ball") {  // the line of the floor, from wherever the ball is above it
+      CHECK(at["floor"]["lines"] > 50);
+      CHECK(at["floor"]["off"] < 1e-9);
+    }
     if (!c.sphere) continue;
     CHECK(at["surfaces"]["lines"] > 500);
     CHECK(at["surfaces"]["off"] < on_the_sphere);
@@ -247,6 +251,7 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
                                {"S5_double_pendulum", true, "m2", 1.5, "P2"},
                                {"R6_rolling_disk", true, "R", 0.25},
                                {"bowl.toml"},
+                               {"bouncing_ball", false},
                                {"R7_satellite"},
                                {"R10_lagrange_top"},
                                {"R15_pin_joint", true, "m1", 2},
@@ -267,6 +272,7 @@ TEST_CASE("page: in a browser reports show their equations whole, move as the ru
     Json entry{{"name", c.model}, {"page", page}, {"csv", positions(folder, c.model, motion["parts"]["places"])}};
     if (!c.drag.empty()) entry["drag"] = c.drag;
     if (c.model == "bowl.toml") entry["bowl"] = true;
+    if (c.model == "bouncing_ball") entry["floor"] = true;
     if (!c.corner.empty()) entry["corner"] = c.corner;
     wanted.emplace_back();
     if (!c.slider.empty()) {

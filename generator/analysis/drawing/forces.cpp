@@ -287,6 +287,9 @@ class Collection {
     for (const Ref f : c.gradient) along.push_back(dag_.mul(lambda->value, f));
     Components Q(m_, moments(), along);
     if (of.coupled) coupling(c.label, *of.coupled, lambda->value, Q);
+    if (!of.coupled && c.holonomic()) {  // psi may be an angle
+      for (const BodyMoment& turn : Q.along_angle(c.psi)) put_moment(c.label, constraint, turn);
+    }
     for (const auto& [p, value] : Q.on_masses()) {
       if (!is_particle(m_.masses[p])) put(c.label, constraint, place(m_.masses[p].place), value);
     }
