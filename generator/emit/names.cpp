@@ -52,7 +52,7 @@ constexpr std::string_view runtime[] = {
     "EINTR", "EISDIR", "ELOOP", "F_DUPFD_CLOEXEC", "O_CLOEXEC", "O_CREAT", "O_EXCL", "O_NOCTTY", "O_NOFOLLOW", "O_RDONLY", "O_RDWR", "O_WRONLY",
     "S_ISCHR", "S_ISDIR", "S_ISREG",  // macros of what its headers include
     "STDERR_FILENO", "STDIN_FILENO", "STDOUT_FILENO", "StepBound", "WholeFile",
-    "AtEvent", "Automatic", "ChangeReason", "Choice", "CompiledBatch", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
+    "AtEvent", "Automatic", "ChangeReason", "Choice", "CompiledBatch", "CompiledBatchJacobian", "CompiledBatchSeries", "CompiledModel", "Complex", "Contact", "ContactMotion", "ContactShape", "Contacts",
     "Crossing", "CsvWriter", "Direction", "Drift", "Eligibility", "EnsembleEnd", "EnsembleOptions", "EnsembleRhs", "EnsembleStart", "ErrorEstimate", "EventFunction", "EventLocator", "EventPoint", "Feature", "Features", "Lu",
     "MethodChange", "MethodInfo", "Mode", "ModeEvent", "ModePoint", "ModeResult", "Needs", "NoObserver", "NoProjection", "Options",
     "Outcome", "Plot", "PlotMark", "PlotSeries", "PowerBalance", "Projection", "ProjectionOptions", "ProjectionResult", "Refusal", "Registry", "Result", "Rhs",
