@@ -137,12 +137,14 @@ class Runs {
     options.fixed_step = scene.step;
     return options;
   }
-  /// And its functions are there for lanes.
+  /// And its functions are there for lanes. Work that is integrated along is none of their states: explicit methods
+  /// have it for nothing, others evaluate more for it, which a run alone counts.
   bool has_lanes(const run::Scene& scene) const {
     if (batch_ == nullptr || !wants_lanes(scene)) return false;
-    const eom::Needs& needs = run::method_named(scene.solver).needs;
-    return (!needs.used.has(eom::Feature::jacobian) || batch_->jac != nullptr) &&
-           (!needs.required.has(eom::Feature::series) || batch_->taylor != nullptr);
+    const eom::MethodInfo& method = run::method_named(scene.solver);
+    return method.ensemble ||
+           (watches_energy_ && (!method.needs.used.has(eom::Feature::jacobian) || batch_->jac != nullptr) &&
+            (!method.needs.required.has(eom::Feature::series) || batch_->taylor != nullptr));
   }
 
   enum class How : char { together, alone, refused };
@@ -155,6 +157,14 @@ class Runs {
     int operator()(double t, const double* x, double* dx) const {
       return w != nullptr ? of.code_.rhs_prepared(t, x, p, w, u, 0, dx) : of.code_.rhs(t, x, p, u, 0, dx);
     }
+    int jacobian(double t, const double* x, double* dfdx, double* dfdt) const {
+      return of.code_.jac(t, x, p, u, 0, dfdx, dfdt);
+    }
+    int taylor(double t, const double* x, int order, double* c) const {
+      return of.code_.taylor(t, x, p, u, 0, order, c);
+    }
+    int taylor_order() const { return of.code_.taylor_order; }
+    std::size_t taylor_states() const { return of.states_; }
     int events(double t, const double* x, double* values) const { return of.code_.events(t, x, p, u, 0, values); }
     std::optional<std::pair<double, double>> hidden(const eom::StepView& step, std::size_t i, int side, double from,
                                                     double to) const {

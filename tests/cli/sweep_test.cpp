@@ -167,13 +167,17 @@ TEST_CASE(
                "[[force]]\nname = \"push\"\ngeneralized = { x = \"F - c*x_dot\" }\n[scene.default]\nt = [0, "
                "3]\ninitial = { x = 1 }\ninputs = { F = \"2*m\" }\n");
   // Some of its runs end at a wall, after passing the middle so many times; others never get there.
-  folder.write("watched.toml",
-               "format = 1\n[parameters]\nm = 1\nk = 9\nc = 0.1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = "
-               "\"m*(x_dot^2 + y_dot^2)/2\"\npotential = \"k*x^2/2 + k*y^2/3 + x^2*y\"\n"
-               "[[force]]\nname = \"drag\"\ngeneralized = { x = \"-c*x_dot\", y = \"-c*y_dot\" }\n"
-               "[[event]]\nname = \"middle\"\nwhen = \"x\"\n[[event]]\nname = \"wall\"\nwhen = \"y - 0.5*m + "
-               "0.2\"\ndirection = \"up\"\n"
-               "[scene.default]\nt = [0, 4]\ninitial = { x = 1, y = -0.5 }\nstop = [\"wall\"]\n");
+  const auto watched = [&](const std::string& file, const std::string& force) {
+    folder.write(file,
+                 "format = 1\n[parameters]\nm = 1\nk = 9\nc = 0.1\n[coordinates]\nx = {}\ny = {}\n[energy]\nkinetic = "
+                 "\"m*(x_dot^2 + y_dot^2)/2\"\npotential = \"k*x^2/2 + k*y^2/3 + x^2*y + c*x\"\n" +
+                     force +
+                     "[[event]]\nname = \"middle\"\nwhen = \"x\"\n[[event]]\nname = \"wall\"\nwhen = \"y - 0.5*m + "
+                     "0.2\"\ndirection = \"up\"\n"
+                     "[scene.default]\nt = [0, 4]\ninitial = { x = 1, y = -0.5 }\nstop = [\"wall\"]\n");
+  };
+  watched("watched.toml", "[[force]]\nname = \"drag\"\ngeneralized = { x = \"-c*x_dot\", y = \"-c*y_dot\" }\n");
+  watched("watched_energy.toml", "");
   const auto rows_of = [&](const std::string& file) {
     const std::string text = folder.read(file);
     return text.substr(text.find('\n'));  // the first line tells sweeps apart
@@ -199,6 +203,8 @@ TEST_CASE(
         Case{"pushed.toml", {"--grid", "m=1:3:7", "--solver", "rodas"}, 0},
         Case{"watched.toml", {"--grid", "m=1:3:20", "--solver", "rodas", "--rtol", "1e-6"}, 0},
         Case{"watched.toml", {"--grid", "m=1:3:20", "--solver", "taylor"}, 0},
+        Case{"watched_energy.toml", {"--grid", "m=1:3:20", "--solver", "rodas", "--rtol", "1e-6"}, 0},
+        Case{"watched_energy.toml", {"--grid", "m=1:3:20", "--solver", "taylor"}, 0},
         Case{"watched.toml", {"--grid", "m=1:3:7", "--solver", "radau"}, 0},
         Case{"S6_chain_2", {"--grid", "L=0.5:2:5", "--solver", "taylor"}, 0}}) {
     CAPTURE(std::string(c.model));

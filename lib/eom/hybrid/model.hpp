@@ -26,6 +26,7 @@ class Model {
         n_(problem.n()),
         inputs_(problem),
         u_(std::max<std::size_t>(1, problem.inputs.size())),
+        inputs_move_(std::any_of(problem.inputs.begin(), problem.inputs.end(), moves)),
         h_(n_),
         y_(problem.code->output_names.size()) {
     // Before the first segment starts: just inside it, so that a table gives its value right of t0.
@@ -69,14 +70,14 @@ class Model {
     return motion(t, x, inputs(t), (mode_ & ~contact_bits) | contacts, dx);
   }
 
-  /// Of the states without the work, which is a quadrature; partial, with the inputs held: df/dt along them is not
-  /// told.
+  /// Of the states without the work, which is a quadrature; partial, with the inputs held: where these move between
+  /// their jumps, df/dt along them is not told.
   int jacobian(double t, const double* x, double* dfdx, double* dfdt) {
     if (code_->jac == nullptr) return no_jacobian_here;
     const double* u = inputs(t);
     int code = code_->jac(t, x, parameters(), u, mode_, dfdx, dfdt);
     if (code != 0 && mode_ != live()) code = code_->jac(t, x, parameters(), u, live(), dfdx, dfdt);
-    return code == 0 && !problem_.inputs.empty() ? no_time_derivative_here : code;
+    return code == 0 && inputs_move_ ? no_time_derivative_here : code;
   }
 
   /// Of the states without the work, which is integrated along them.
@@ -133,6 +134,7 @@ class Model {
   double side_ = 0;
   Inputs inputs_;
   mutable std::vector<double> u_;
+  bool inputs_move_;       // between their jumps
   std::vector<double> w_;  // of Code::prepare
   std::vector<double> h_, y_;
 };
