@@ -216,6 +216,36 @@ TEST_CASE("hybrid: segments end where a table jumps, and each side has its value
   CHECK(segments(problem)[1].end == 1.5);
 }
 
+TEST_CASE("hybrid: df/dt is that of the code where inputs stand still or jump, and has differences where they move") {
+  Code code = corner::code();
+  code.kinks.clear();
+  code.events = nullptr;
+  code.rhs = pushed;
+  code.jac = [](double, const double*, const double*, const double*, int, double* dfdx, double* dfdt) {
+    const double all[4] = {0, 0, 1, 0};
+    std::copy(all, all + 4, dfdx);
+    if (dfdt != nullptr) dfdt[0] = dfdt[1] = 0;
+    return 0;
+  };
+  Problem problem = corner::problem(code);
+  problem.events.clear();
+  problem.invariants.clear();
+  problem.start = {0, 0};
+  problem.t1 = 2;
+  problem.solver = "rodas";
+  problem.inputs = {{{}, {0, 1}, {1, -2}}};
+  const RunResult jumps = run(problem);
+  REQUIRE(jumps.outcome == eom::Outcome::done);
+  CHECK(jumps.statistics.jacobians > 0);
+  CHECK(jumps.statistics.difference_evaluations == 0);
+  CHECK(jumps.state[1] == doctest::Approx(-1));
+  problem.inputs = {{[](double t) { return std::sin(t); }}};
+  const RunResult moves = run(problem);
+  REQUIRE(moves.outcome == eom::Outcome::done);
+  CHECK(moves.statistics.difference_evaluations == 2 * moves.statistics.jacobians);  // two for each
+  CHECK(moves.state[1] == doctest::Approx(1 - std::cos(2.0)).epsilon(1e-8));
+}
+
 TEST_CASE("hybrid: a coordinate that leaves its range ends the run with the step before") {
   const Code code = corner::code();
   Problem problem = corner::problem(code);

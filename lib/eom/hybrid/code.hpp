@@ -28,7 +28,7 @@ struct Code {
   std::size_t prepared = 0;  // entries of what `prepare` writes
   int (*outputs)(double, const double*, const double*, const double*, int, double*) = nullptr;
   int (*events)(double, const double*, const double*, const double*, int, double*) = nullptr;
-  // For implicit solvers; without it, and for df/dt along inputs, they take differences.
+  // For implicit solvers; without it, and for df/dt along inputs that move, they take differences.
   int (*jac)(double, const double*, const double*, const double*, int, double*, double*) = nullptr;
   int (*mass)(double, const double*, const double*, double*, double*) = nullptr;
   int (*constraints)(double, const double*, const double*, double*, double*, double*) = nullptr;
