@@ -7,7 +7,7 @@
 
 #include "eom/ensemble/integrate.hpp"
 #include "eom/ode.hpp"
-#include "lib/series_problems.hpp"
+#include "lib/ensemble_members.hpp"
 
 namespace {
 std::size_t allocations = 0;
@@ -95,49 +95,36 @@ TEST_CASE("all methods: a run of 100 periods allocates as often as one of a tent
 struct ManyKepler {
   Kepler one;
 
-  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double*, double* dx,
+  int operator()(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dx,
                  int* codes) const {
-    return each(count, stride, x, codes, [&](std::size_t s, const double* at) {
+    return members::each<4, 0>(count, stride, x, p, codes, [&](std::size_t s, const double* at, const double*) {
       double slope[4];
       one(t[s], at, slope);
-      for (std::size_t i = 0; i < 4; ++i) dx[i * stride + s] = slope[i];
+      members::put(slope, 4, s, stride, dx);
+      return 0;
     });
   }
-  int jacobian(std::size_t count, std::size_t stride, const double*, const double* x, const double*, double* dfdx,
+  int jacobian(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p, double* dfdx,
                double* dfdt, int* codes) const {
-    return each(count, stride, x, codes, [&](std::size_t s, const double* at) {
-      const double r2 = at[0] * at[0] + at[1] * at[1], r3 = r2 * std::sqrt(r2);
-      for (std::size_t i = 0; i < 4; ++i) {
-        dfdt[i * stride + s] = 0;
-        for (std::size_t j = 0; j < 4; ++j)
-          dfdx[(i + 4 * j) * stride + s] = i < 2   ? (j == i + 2 ? 1 : 0)
-                                           : j < 2 ? 3 * at[i - 2] * at[j] / (r2 * r3) - (i == j + 2 ? 1 / r3 : 0)
-                                                   : 0;
-      }
+    return members::each<4, 0>(count, stride, x, p, codes, [&](std::size_t s, const double* at, const double*) {
+      const double alike[2] = {1, 0};
+      double by_x[16], by_t[4];
+      members::jacobian(t[s], at, alike, 4, by_x, by_t);
+      members::put(by_x, 16, s, stride, dfdx);
+      members::put(by_t, 4, s, stride, dfdt);
+      return 0;
     });
   }
-  int taylor(std::size_t count, std::size_t stride, const double* t, const double* x, const double*, const int* orders,
-             double* coefficients, int* codes) const {
-    return each(count, stride, x, codes, [&](std::size_t s, const double* at) {
+  int taylor(std::size_t count, std::size_t stride, const double* t, const double* x, const double* p,
+             const int* orders, double* coefficients, int* codes) const {
+    return members::each<4, 0>(count, stride, x, p, codes, [&](std::size_t s, const double* at, const double*) {
       double series[4 * (problems::hand_order + 1)];
       one.taylor(t[s], at, orders[s], series);
-      for (std::size_t i = 0; i < 4 * (static_cast<std::size_t>(orders[s]) + 1); ++i)
-        coefficients[i * stride + s] = series[i];
+      members::put(series, 4 * (static_cast<std::size_t>(orders[s]) + 1), s, stride, coefficients);
+      return 0;
     });
   }
   int taylor_order() const { return one.taylor_order(); }
-
- private:
-  template <class Function>
-  static int each(std::size_t count, std::size_t stride, const double* x, int* codes, const Function& function) {
-    for (std::size_t s = 0; s < count; ++s) {
-      double at[4];
-      for (std::size_t i = 0; i < 4; ++i) at[i] = x[i * stride + s];
-      function(s, at);
-      codes[s] = 0;
-    }
-    return 0;
-  }
 };
 
 TEST_CASE("ensembles: a hundred members over 100 periods allocate as often as one over a tenth of a period") {
