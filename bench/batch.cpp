@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -19,8 +16,11 @@
 #include "chain_6_batch.h"
 #include "handwritten.hpp"
 #include "handwritten_batch.hpp"
+#include "measure.hpp"
 
 namespace {
+
+using namespace eomgen::bench;
 
 using eomgen::bench::Handwritten;
 using eomgen::bench::HandwrittenBatch;
@@ -54,30 +54,11 @@ struct Case {
 
 template <class Run>
 double nanoseconds_per_state(std::size_t calls, const Run& run) {
-  run();                                    // what ran before it is out of the caches
-  const std::clock_t start = std::clock();  // of the processor: others may use it too
+  run();  // what ran before it is out of the caches
+  const double start = processor_seconds();
   for (std::size_t k = 0; k < calls; ++k) run();
-  const double seconds = static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+  const double seconds = (processor_seconds() - start);
   return 1e9 * seconds / static_cast<double>(calls * count);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  fmt::print(stderr, "{}\n", what);
-  std::exit(1);
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
 }
 
 void measure(const Case& c) {

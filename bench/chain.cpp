@@ -6,7 +6,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -16,8 +15,11 @@
 #include "chain_3.h"
 #include "chain_6.h"
 #include "handwritten.hpp"
+#include "measure.hpp"
 
 namespace {
+
+using namespace eomgen::bench;
 
 constexpr double p[] = {1.0, 1.0, 9.81};  // m, L, g
 constexpr int repeats = 31;
@@ -54,11 +56,6 @@ double nanoseconds(int n, int calls, Rhs rhs) {
   return elapsed.count() / calls;
 }
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + values.size() / 2, values.end());
-  return values[values.size() / 2];
-}
-
 void require_agreement(const Case& c, const Handwritten& other) {
   std::vector<double> x(2 * static_cast<std::size_t>(c.n)), a(x.size()), b(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) x[i] = 0.4 + 0.17 * static_cast<double>(i * i % 7);
@@ -69,14 +66,6 @@ void require_agreement(const Case& c, const Handwritten& other) {
     fmt::print(stderr, "n = {}: emitted and {} differ: {} and {}\n", c.n, other.name, a[i], b[i]);
     std::exit(1);
   }
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -15,8 +14,11 @@
 #include "eom/ensemble/compiled.hpp"
 #include "eom/ensemble/integrate.hpp"
 #include "eom/ode.hpp"
+#include "measure.hpp"
 
 namespace {
+
+using namespace eomgen::bench;
 
 constexpr std::size_t states = S5_double_pendulum_states, parameters = S5_double_pendulum_parameters;
 constexpr double t_end = 10, tolerance = 1e-9;
@@ -34,19 +36,6 @@ double seconds(const Work& work) {
   const auto begin = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
 }
 
 /// One pendulum with what the method needs of it.

@@ -10,9 +10,6 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <ctime>
-#include <fstream>
 #include <random>
 #include <string>
 #include <thread>
@@ -22,6 +19,7 @@
 #include "eom/ensemble/compiled.hpp"
 #include "eom/ensemble/integrate.hpp"
 #include "eom/ode.hpp"
+#include "measure.hpp"
 #include "model/model.hpp"
 #include "pipeline/simulate.hpp"
 #include "reference/reference.hpp"
@@ -30,6 +28,8 @@
 #endif
 
 namespace {
+
+using namespace eomgen::bench;
 
 constexpr std::size_t states = S5_double_pendulum_states, parameters = S5_double_pendulum_parameters;
 constexpr double t_end = 10, tolerance = 1e-9;
@@ -52,14 +52,6 @@ Member member(std::size_t i) {
   m.x[1] -= 0.3 * (place(0.5698402909980532) - 0.25);
   m.p[0] *= 1 + 0.1 * place(0.6180339887498949);
   return m;
-}
-
-double processor_seconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  fmt::print(stderr, "{}\n", what);
-  std::exit(1);
 }
 
 State alone(const char* method, const Member& m) {
@@ -130,14 +122,6 @@ State exact(const eomgen::pipeline::Simulation& model, const Member& m) {
   State x;
   std::copy(solution.x.back().begin(), solution.x.back().end(), x.begin());
   return x;
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
 }
 
 double quantile(std::vector<double> values, double part) {

@@ -5,9 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
-#include <fstream>
 #include <string>
 #include <vector>
 
@@ -23,8 +20,11 @@
 #include "chain_30_single_batch.h"
 #include "chain_6_batch.h"
 #include "chain_6_single_batch.h"
+#include "measure.hpp"
 
 namespace {
+
+using namespace eomgen::bench;
 
 constexpr int repeats = 41;
 constexpr std::size_t count = 64, stride = 72;  // as in batch.cpp
@@ -44,12 +44,6 @@ struct Case {
   Code<double> twice;
   Code<float> once;
 };
-
-void require(bool holds, const char* what) {
-  if (holds) return;
-  fmt::print(stderr, "{}\n", what);
-  std::exit(1);
-}
 
 template <class Real>
 class Run {
@@ -93,23 +87,10 @@ class Run {
 
 template <class Call>
 double nanoseconds_per_state(std::size_t calls, const Call& call) {
-  call();                                   // what ran before it is out of the caches
-  const std::clock_t start = std::clock();  // of the processor: others may use it too
+  call();  // what ran before it is out of the caches
+  const double start = processor_seconds();
   for (std::size_t k = 0; k < calls; ++k) call();
-  return 1e9 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC / static_cast<double>(calls * count);
-}
-
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
-}
-
-std::string processor() {
-  std::ifstream info("/proc/cpuinfo");
-  for (std::string line; std::getline(info, line);) {
-    if (line.starts_with("model name")) return line.substr(line.find(':') + 2);
-  }
-  return "unknown processor";
+  return 1e9 * (processor_seconds() - start) / static_cast<double>(calls * count);
 }
 
 void measure(const Case& c) {
