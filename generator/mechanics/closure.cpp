@@ -93,6 +93,9 @@ Selection select_independent(const std::vector<Row>& rows, const std::vector<Tur
 
 Closure::Closure(Mechanics& m, Lowering& lower) : m_(m), lower_(lower) {
   symbolic::Substitution written = write_out(m);
+  for (const JointReaction& joint : m.joints) {
+    for (const auto& direction : joint.along) along_.insert(along_.end(), direction.begin(), direction.end());
+  }
   for (std::uint32_t k = 0; k < m.constraints.size(); ++k) {
     const Constraint& c = m.constraints[k];
     for (const Ref slope : c.gradient) all_.push_back(written(slope));
@@ -321,8 +324,8 @@ bool Closure::settle(Configuration& at, const std::vector<bool>& moves) {
     if (size < small(closed_digits)) {
       gap_ = rest > small(closed_digits - 8) ? cln::double_approx(rest) : 0;
       if (gap_ != 0) return false;
-      for (const auto* others : {&all_, &rates_})
-        values(*others, at);  // of velocities alone too: throws without a value
+      // What else is asked for here, of velocities alone too: throws where it has no value.
+      for (const auto* others : {&all_, &rates_, &along_}) values(*others, at);
       return true;
     }
     const std::size_t r = chosen.kept.size();

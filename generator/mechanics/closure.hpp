@@ -67,6 +67,7 @@ class Closure {
   std::vector<Ref> gradient_;         // of these
   std::vector<Ref> all_;              // rows of all constraints
   std::vector<Ref> rates_;
+  std::vector<Ref> along_;  // directions of what joints exert
   double gap_ = 0;
   std::uint32_t gap_at_ = 0;
 };
